@@ -1,5 +1,5 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
-import { invalidArgument, Sim3AlignError } from "./error.js";
+import { failure, invalidArgument } from "./error.js";
 import { onAbort } from "./on-abort.js";
 import type { CreateWorker, LazySource, SignalLike, WasmSource } from "./platform.js";
 import { ownOptions, snapshot } from "./snapshot.js";
@@ -53,13 +53,9 @@ export function checkedOptions<T extends object>(options: T | undefined) {
   const own = options === undefined ? ({} as T) : ownOptions(options);
   const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
   if (misplaced === undefined) return withoutUndefined(own);
-  throw new Sim3AlignError({
-    code: "UNKNOWN_OPTION",
-    argument: `options.${misplaced}`,
-    found: `\`${misplaced}\`, which is an option of createAligner`,
-    expected: "options of this call",
-    remedy: `Pass it once, when the aligner is created: createAligner({ ${misplaced} }).`,
-  });
+  const found = `\`${misplaced}\`, which is an option of createAligner`;
+  const remedy = `Pass it once, when the aligner is created: createAligner({ ${misplaced} }).`;
+  throw failure("UNKNOWN_OPTION", `options.${misplaced}`, found, "options of this call", remedy);
 }
 
 const alignerOptions: readonly string[] = [
@@ -80,13 +76,8 @@ export function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
   const own = snapshot("options", options);
   const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
   if (unknown === undefined) return own;
-  throw new Sim3AlignError({
-    code: "UNKNOWN_OPTION",
-    argument: unknown,
-    found: "an unknown option",
-    expected: `one of ${alignerOptions.join(", ")}`,
-    remedy: "Check the spelling. Options of a call, such as `quality`, belong to the call.",
-  });
+  const remedy = "Check the spelling. Options of a call, such as `quality`, belong to the call.";
+  throw failure("UNKNOWN_OPTION", unknown, "an unknown option", `one of ${alignerOptions.join(", ")}`, remedy);
 }
 
 /** The function of the caller that creates workers. */

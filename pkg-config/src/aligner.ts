@@ -15,7 +15,7 @@ import {
 import { checkAttached } from "./attached.js";
 import { coreModule } from "./core.js";
 import { type Call, type Engine, MainThreadEngine, signalsOf } from "./engine.js";
-import { disposed, internalError, Sim3AlignError } from "./error.js";
+import { disposed, failure, internalError, Sim3AlignError } from "./error.js";
 import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
 import type { ViewsInput } from "./input/frame-types.js";
@@ -49,7 +49,7 @@ import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
-import { failure, isRecord, withoutUndefined } from "./values.js";
+import { isRecord, withoutUndefined } from "./values.js";
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;

@@ -1,5 +1,5 @@
 /** Checks that the memory of arrays is there. */
-import { describe, Sim3AlignError, withoutInput } from "./error.js";
+import { describe, failure, type Sim3AlignError, withoutInput } from "./error.js";
 import { isAttached, isBuffer, isRecord } from "./kinds.js";
 
 /**
@@ -20,11 +20,11 @@ export function checkAttached(argument: string, value: unknown): void {
 }
 
 function detached(argument: string, value: unknown): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "INVALID_ARGUMENT",
-    argument: withoutInput(argument),
-    found: `${describe(value).replace(/ of 0$/, "")} whose memory is detached: it was moved to another thread, or shrunk`,
-    expected: "an array with its memory",
-    remedy: "After a call with transfer: true, use the arrays in `input` of the result or of the error.",
-  });
+  return failure(
+    "INVALID_ARGUMENT",
+    withoutInput(argument),
+    `${describe(value).replace(/ of 0$/, "")} whose memory is detached: it was moved to another thread, or shrunk`,
+    "an array with its memory",
+    "After a call with transfer: true, use the arrays in `input` of the result or of the error.",
+  );
 }

@@ -1,11 +1,13 @@
 /** Datasets in the layout of BOP on disk (Node only): models, scenes and targets of a split. */
+
 import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { type BopScene, bopId, bopModels, bopName, openBopScene } from "./bop-folder.js";
 import { fileNotFound } from "./case-files.js";
 import { read } from "./case-folder.js";
+import { failure } from "./error.js";
 import { isNumber, numbersIn, parsedJson, shown } from "./formats/json.js";
-import { failure, isRecord } from "./values.js";
+import { isRecord, oncePerKey } from "./values.js";
 
 /** The file of targets that a split has by default. */
 const TARGETS = "test_targets_bop19.json";
@@ -43,12 +45,14 @@ export class BopDataset {
   /** The name of the split: that of its folder. */
   readonly split: string;
   readonly #folder: string;
-  readonly #scenes = new Map<number, Promise<BopScene>>();
+  /** A scene, which is read once. */
+  readonly scene: (sceneId: number) => Promise<BopScene>;
 
   constructor(folder: string, split: string) {
     this.name = basename(resolve(folder));
     this.split = split;
     this.#folder = folder;
+    this.scene = oncePerKey((sceneId) => openBopScene(join(folder, split, bopName(sceneId))));
   }
 
   /** The folder of the models that are aligned. */
@@ -59,15 +63,6 @@ export class BopDataset {
   /** The folder of the models that errors are measured with. */
   modelsOfErrors(): Promise<string> {
     return bopModels(this.#folder, ["models_eval", "models"]);
-  }
-
-  /** A scene, which is read once. */
-  scene(sceneId: number): Promise<BopScene> {
-    const known = this.#scenes.get(sceneId);
-    if (known !== undefined) return known;
-    const opening = openBopScene(join(this.#folder, this.split, bopName(sceneId)));
-    this.#scenes.set(sceneId, opening);
-    return opening;
   }
 
   /**

@@ -1,6 +1,6 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { Sim3AlignError } from "./error.js";
+import { failure, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
@@ -34,7 +34,7 @@ export const caseFiles = {
   mesh: ["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"],
   camera: ["camera.json", "scene_camera.json"],
   image: ["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"],
-} as const;
+} as const satisfies { mesh: readonly `mesh.${MeshFormat}`[]; [part: string]: readonly string[] };
 
 /** Frames whose files have been read, but not decoded. */
 export interface FrameFiles {
@@ -55,48 +55,47 @@ const CAMERA_POSE_FILE = "pose.json";
  * @internal
  */
 export async function frameFrom(files: CaseFiles, settings: CaseSettings, place: string): Promise<FrameFiles> {
-  const read = async (name: string) => {
-    const file = files[name];
-    return requiredBytes(name, typeof file === "function" ? await file() : file);
-  };
-  const find = (part: "depth" | "mask" | "camera" | "image") => caseFiles[part].find((candidate) => candidate in files);
-  const required = (part: "depth" | "camera") => {
+  const { find, required, read, optional } = filesOf(files, settings, place);
+  const names = { depth: required("depth"), camera: required("camera") };
+  const [mask, image] = [find("mask"), find("image")];
+  const [depth, cameraFile, maskBytes, imageBytes, pose, truth] = await Promise.all([
+    ...[read(names.depth), read(names.camera)],
+    ...[optional(mask), optional(image), optional(CAMERA_POSE_FILE), optional("gt.json")],
+  ]);
+  const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
+  const { image: _, ...more } = settings;
+  const parts = { depth, cameraFile, mask: maskBytes, image: imageBytes, cameraToWorld };
+  const input = withoutUndefined({ ...parts, ...more }) as ViewInput;
+  const named = withoutUndefined({ ...names, mask, image }) as FrameFiles["files"];
+  return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+}
+
+/** Finds and reads the files of a case. */
+function filesOf(files: CaseFiles, { image = true }: CaseSettings, place: string) {
+  /** The name of a part's file; that of the photo only if it is wanted. */
+  const find = (part: keyof typeof caseFiles) =>
+    part === "image" && !image ? undefined : caseFiles[part].find((candidate) => candidate in files);
+  const required = (part: keyof typeof caseFiles) => {
     const name = find(part);
     if (name !== undefined) return name;
     throw fileNotFound(part, `no such file in ${place}`, caseFiles[part].join(" or "));
   };
+  const read = async (name: string) => {
+    const file = files[name];
+    return requiredBytes(name, typeof file === "function" ? await file() : file);
+  };
   const optional = (name: string | undefined) => (name !== undefined && name in files ? read(name) : undefined);
-  const names = { depth: required("depth"), camera: required("camera") };
-  const { image: withImage = true, ...more } = settings;
-  const [maskName, photo] = [find("mask"), withImage ? find("image") : undefined];
-  const [depth, cameraFile, mask, image, pose, truth] = await Promise.all([
-    read(names.depth),
-    read(names.camera),
-    optional(maskName),
-    optional(photo),
-    optional(CAMERA_POSE_FILE),
-    optional("gt.json"),
-  ]);
-  const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
-  const input = withoutUndefined({ depth, cameraFile, mask, image, cameraToWorld, ...more }) as ViewInput;
-  const named = withoutUndefined({ ...names, mask: maskName, image: photo }) as FrameFiles["files"];
-  return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+  return { find, required, read, optional };
 }
 
 function cameraPose(bytes: Uint8Array): number[] {
   const json = parsedJson("pose", bytes);
   const rows = isRecord(json) ? numbersIn(json.camera_to_world, 16) : null;
   if (rows !== null) return Array.from(rows, (_, i) => rows[4 * (i % 4) + Math.floor(i / 4)] as number);
-  throw new Sim3AlignError({
-    code: "CORRUPT_FILE",
-    argument: "pose",
-    found: isRecord(json) ? shown(json.camera_to_world) : shown(json),
-    expected: '{ "camera_to_world": 4 × 4 numbers, row by row }',
-    remedy: "The matrix maps points of the camera (x right, y down, z forward) to the world, in metres.",
-  });
+  const expected = '{ "camera_to_world": 4 × 4 numbers, row by row }';
+  const remedy = "The matrix maps points of the camera (x right, y down, z forward) to the world, in metres.";
+  throw failure("CORRUPT_FILE", "pose", isRecord(json) ? shown(json.camera_to_world) : shown(json), expected, remedy);
 }
-
-const meshFormats: readonly string[] = ["glb", "gltf", "obj", "ply", "stl"] satisfies MeshFormat[];
 
 /**
  * Reads a case: depth map, mask, mesh, camera file and `gt.json`, identified by name.
@@ -109,30 +108,25 @@ export async function caseFrom(
   formats: LoadFormats,
   place = "the files",
 ): Promise<Case> {
-  const { image: withImage = true, ...more } = settings;
-  const existing = (part: keyof typeof caseFiles) => caseFiles[part].find((candidate) => candidate in files);
-  const find = (part: keyof typeof caseFiles) => {
-    const name = existing(part);
-    if (name !== undefined) return name;
-    throw fileNotFound(part, `no such file in ${place}`, caseFiles[part].join(" or "));
+  const { find, required, read, optional } = filesOf(files, settings, place);
+  const parts = {
+    depth: required("depth"),
+    mask: required("mask"),
+    mesh: required("mesh"),
+    camera: required("camera"),
   };
-  const names = { depth: find("depth"), mask: find("mask"), mesh: find("mesh"), camera: find("camera") };
-  const read = async (name: string) => {
-    const file = files[name];
-    return requiredBytes(name, typeof file === "function" ? await file() : file);
-  };
-  const photo = withImage ? existing("image") : undefined;
+  const photo = find("image");
   const [depth, mask, meshBytes, cameraFile, truth, image] = await Promise.all([
-    ...[read(names.depth), read(names.mask), read(names.mesh), read(names.camera)],
-    "gt.json" in files ? read("gt.json") : undefined,
-    photo === undefined ? undefined : read(photo),
+    ...[read(parts.depth), read(parts.mask), read(parts.mesh), read(parts.camera)],
+    ...[optional("gt.json"), optional(photo)],
   ]);
-  const mesh = await meshFile(names.mesh, meshBytes as Uint8Array, formats, async (path) => {
+  const mesh = await meshFile(parts.mesh, meshBytes as Uint8Array, formats, async (path) => {
     if (path in files) return read(path);
-    throw fileNotFound("mesh", `no ${path} in ${place}`, `the files that ${names.mesh} refers to`);
+    throw fileNotFound("mesh", `no ${path} in ${place}`, `the files that ${parts.mesh} refers to`);
   });
+  const { image: _, ...more } = settings;
   const input = { depth, mask, mesh, cameraFile, ...(image === undefined ? {} : { image }), ...more } as AlignInput;
-  const named = photo === undefined ? names : { ...names, image: photo };
+  const named = photo === undefined ? parts : { ...parts, image: photo };
   return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
 }
 
@@ -148,9 +142,8 @@ export async function meshFile(
   formats: LoadFormats,
   read: (path: string) => Promise<Uint8Array>,
 ): Promise<MeshFile> {
-  const extension = /\.([^./\\]+)$/.exec(name)?.[1]?.toLowerCase() ?? "";
-  if (!meshFormats.includes(extension)) return { bytes };
-  const format = extension as MeshFormat;
+  const format = /\.([^./\\]+)$/.exec(name)?.[1]?.toLowerCase() as MeshFormat | undefined;
+  if (!caseFiles.mesh.some((known) => known === `mesh.${format}`)) return { bytes };
   if (format !== "gltf" && format !== "obj") return { bytes, format };
   const resources: Record<string, Uint8Array> = {};
   const readers = await formats();
@@ -191,13 +184,9 @@ function pathBelow(uri: string): string | undefined {
 }
 
 function outside(uri: string): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "CORRUPT_FILE",
-    argument: "mesh",
-    found: `a buffer at ${JSON.stringify(uri)}`,
-    expected: "a path in the folder of the .gltf, or below it",
-    remedy: "Put the buffers next to the .gltf, or convert it to a single .glb.",
-  });
+  const expected = "a path in the folder of the .gltf, or below it";
+  const remedy = "Put the buffers next to the .gltf, or convert it to a single .glb.";
+  return failure("CORRUPT_FILE", "mesh", `a buffer at ${JSON.stringify(uri)}`, expected, remedy);
 }
 
 function decoded(uri: string): string {
@@ -211,5 +200,5 @@ function decoded(uri: string): string {
 /** The error for a missing file of a case. */
 export function fileNotFound(argument: string, found: string, expected: string, cause?: unknown): Sim3AlignError {
   const remedy = 'See "sim3align align --help" for the layout of a case folder.';
-  return new Sim3AlignError({ code: "FILE_NOT_FOUND", argument, found, expected, remedy }, { cause });
+  return failure("FILE_NOT_FOUND", argument, found, expected, remedy, cause);
 }

@@ -72,6 +72,12 @@ export async function readFrames(folder: string, settings: CaseSettings = {}): P
   return { mesh: await readMeshFile(meshIn(folder)), frames: await Promise.all(frames) };
 }
 
+/** A frame as an input for `align` and `evaluate`; `undefined` without a mask. */
+export function inputOfFrame({ input }: Pick<FrameFiles, "input">, mesh: MeshFile): AlignInput | undefined {
+  const { cameraToWorld: _, ...view } = input;
+  return view.mask === undefined ? undefined : ({ ...view, mesh } as AlignInput);
+}
+
 /** The path of the mesh of a case. */
 export function meshIn(folder: string): string {
   const name = caseFiles.mesh.find((name) => existsSync(join(folder, name)));

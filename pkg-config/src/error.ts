@@ -58,10 +58,20 @@ export class Sim3AlignError extends Error implements ErrorParts {
   }
 }
 
+/** Creates an error from its five parts and, if there is one, its cause. */
+export const failure = (
+  code: ErrorCode,
+  argument: string,
+  found: string,
+  expected: string,
+  remedy: string,
+  cause?: unknown,
+): Sim3AlignError =>
+  new Sim3AlignError({ code, argument, found, expected, remedy }, cause === undefined ? undefined : { cause });
+
 /** The error for an argument of the wrong type. */
-export function invalidArgument(argument: string, value: unknown, expected: string, remedy: string): Sim3AlignError {
-  return new Sim3AlignError({ code: "INVALID_ARGUMENT", argument, found: describe(value), expected, remedy });
-}
+export const invalidArgument = (argument: string, value: unknown, expected: string, remedy: string): Sim3AlignError =>
+  failure("INVALID_ARGUMENT", argument, describe(value), expected, remedy);
 
 /** Describes a value for error messages. */
 export function describe(value: unknown): string {
@@ -111,16 +121,8 @@ export const withoutInput = (argument: string) => argument.replace(/^input\./, "
 
 /** The error for a trap inside WebAssembly, which no input should cause. */
 export function internalError(cause: unknown): Sim3AlignError {
-  return new Sim3AlignError(
-    {
-      code: "INTERNAL",
-      argument: "sim3align",
-      found: messageOf(cause),
-      expected: "a result",
-      remedy: "This is a bug in sim3align: please report it with the input. The next call uses a new instance.",
-    },
-    { cause },
-  );
+  const remedy = "This is a bug in sim3align: please report it with the input. The next call uses a new instance.";
+  return failure("INTERNAL", "sim3align", messageOf(cause), "a result", remedy, cause);
 }
 
 /**
@@ -137,16 +139,9 @@ const EXHAUSTED = "sim3align: memory exhausted";
 
 /** The error for a call that needs more memory than there is. */
 export function outOfMemory(cause: unknown): Sim3AlignError {
-  return new Sim3AlignError(
-    {
-      code: "OUT_OF_MEMORY",
-      argument: "input",
-      found: "more data than the memory can hold",
-      expected: "a call that fits in 4 GB, and in the memory of the machine",
-      remedy: "Crop the images to the object, reduce their size, or simplify the mesh; use fewer workers.",
-    },
-    { cause },
-  );
+  const expected = "a call that fits in 4 GB, and in the memory of the machine";
+  const remedy = "Crop the images to the object, reduce their size, or simplify the mesh; use fewer workers.";
+  return failure("OUT_OF_MEMORY", "input", "more data than the memory can hold", expected, remedy, cause);
 }
 
 /** The parts of an error, which can be sent to another thread. */
@@ -161,11 +156,6 @@ export function renamed(error: Sim3AlignError, argument: string): Sim3AlignError
 
 /** The error for calls on a disposed aligner. */
 export function disposed(): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "DISPOSED",
-    argument: "aligner",
-    found: "a disposed aligner",
-    expected: "an active aligner",
-    remedy: "Create another one with createAligner().",
-  });
+  const remedy = "Create another one with createAligner().";
+  return failure("DISPOSED", "aligner", "a disposed aligner", "an active aligner", remedy);
 }

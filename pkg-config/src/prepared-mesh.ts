@@ -1,5 +1,5 @@
 /** Meshes that are read, validated and decimated once for many calls. */
-import { invalidArgument, Sim3AlignError } from "./error.js";
+import { failure, invalidArgument } from "./error.js";
 import { isRecord } from "./kinds.js";
 
 /** Colours of a surface, at points spread evenly over it. */
@@ -87,13 +87,8 @@ function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
     throw invalidArgument("mesh", mesh, "a prepared mesh that is no proxy", remedy);
   }
   if (state === "disposed") {
-    throw new Sim3AlignError({
-      code: "DISPOSED",
-      argument: "mesh",
-      found: "a disposed mesh",
-      expected: "an active prepared mesh",
-      remedy: "Prepare it again with prepareMesh(), or dispose it later.",
-    });
+    const remedy = "Prepare it again with prepareMesh(), or dispose it later.";
+    throw failure("DISPOSED", "mesh", "a disposed mesh", "an active prepared mesh", remedy);
   }
   state.holders.add(holder);
   return state;

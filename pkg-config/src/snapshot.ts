@@ -3,7 +3,7 @@
  * next time. What is read afterwards are plain objects and arrays.
  */
 import { checkAttached } from "./attached.js";
-import { invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
+import { failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
 import { isKind, isRecord, proxiedKind } from "./kinds.js";
 import { PreparedMesh } from "./prepared-mesh.js";
 
@@ -138,14 +138,7 @@ function proxy(argument: string, value: unknown, kind: string): Sim3AlignError {
 }
 
 function unreadable(argument: string, cause: unknown): Sim3AlignError {
-  return new Sim3AlignError(
-    {
-      code: "INVALID_ARGUMENT",
-      argument: withoutInput(argument),
-      found: `a property that throws ${messageOf(cause)}`,
-      expected: "a property that can be read",
-      remedy: "The property is a getter or belongs to a proxy: see the cause of this error.",
-    },
-    { cause },
-  );
+  const found = `a property that throws ${messageOf(cause)}`;
+  const remedy = "The property is a getter or belongs to a proxy: see the cause of this error.";
+  return failure("INVALID_ARGUMENT", withoutInput(argument), found, "a property that can be read", remedy, cause);
 }

@@ -8,10 +8,11 @@ import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput } from "./input/frame-types.js";
 import { classNames } from "./input/resolve.js";
 import type { MeshInput } from "./input/types.js";
-import type { Job, Results } from "./jobs.js";
+import type { Job } from "./jobs.js";
 import { checkSignals, onAbort } from "./on-abort.js";
 import type { CallOptions } from "./options.js";
 import type { SignalLike } from "./platform.js";
+import { sendableParts } from "./pool/transfer.js";
 import { ProgressListener } from "./progress.js";
 import type { TrackedFrame } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
@@ -76,7 +77,7 @@ export class Tracker {
         checkSignals([signal]);
         tracker.#unfollow = onAbort(signal, () => tracker.close());
       }
-      await tracker.#inOrder(() => tracker.#run({ method: "openTracker", ...mesh, options, tracker: tracker.#id }));
+      await tracker.#inOrder({ method: "openTracker", ...mesh, options, tracker: tracker.#id });
       if (signal !== undefined) checkSignals([signal]);
       return tracker;
     } catch (error) {
@@ -103,11 +104,8 @@ export class Tracker {
     const isMoved = checkedFlag("transfer", transfer);
     const data = snapshot("input", frame, classNames);
     const job = { method: "trackFrame", data, options: {}, tracker: this.#id } as const;
-    return this.#inOrder(async () => {
-      if (listened !== undefined) checkSignals([listened]);
-      const { result, data } = await this.#outcome(job, isMoved);
-      return isMoved ? { ...result, input: data } : result;
-    });
+    const { result, data: moved } = await this.#inOrder(job, isMoved, listened);
+    return isMoved ? { ...result, input: moved } : result;
   }
 
   /**
@@ -124,8 +122,8 @@ export class Tracker {
     if (frame !== undefined && frame !== null && typeof frame !== "number") {
       throw invalidArgument("frame", frame, "the number of a frame", "Pass `frame` of its result.");
     }
-    const data = { pose: coreSim3(ownArgument("pose", pose)), frame };
-    return this.#inOrder(() => this.#run({ method: "correctTrack", data, options: {}, tracker: this.#id }));
+    const data = { pose: sendableParts(coreSim3(ownArgument("pose", pose))), frame };
+    return (await this.#inOrder({ method: "correctTrack", data, options: {}, tracker: this.#id })).result;
   }
 
   /** Ends the tracker, and frees its worker. Running and later calls reject with `DISPOSED`. */
@@ -145,21 +143,19 @@ export class Tracker {
     this.close();
   }
 
-  /** Runs a call after those before. */
-  #inOrder<T>(run: () => Promise<T>): Promise<T> {
-    const own = this.#last.then(run, run);
+  /** Runs a job after those before. One that has not begun when the signal aborts is left out. */
+  #inOrder<J extends Job>(job: J, transfer = false, signal?: SignalLike) {
+    const own = this.#last.then(() => this.#run(job, transfer, signal));
     this.#last = own.catch(() => {});
     return own;
   }
 
-  async #run<J extends Job>(job: J): Promise<Results[J["method"]]> {
-    return (await this.#outcome(job, false)).result;
-  }
-
-  async #outcome<J extends Job>(job: J, transfer: boolean) {
+  async #run<J extends Job>(job: J, transfer: boolean, signal: SignalLike | undefined) {
+    if (signal !== undefined) checkSignals([signal]);
     if (this.#isClosed) throw disposed();
     try {
-      const outcome = await this.#own.engine.run(job, call(transfer));
+      const call = { signal: undefined, progress: new ProgressListener(undefined), transfer };
+      const outcome = await this.#own.engine.run(job, call);
       if (this.#isClosed) throw disposed();
       return outcome;
     } catch (error) {
@@ -167,5 +163,3 @@ export class Tracker {
     }
   }
 }
-
-const call = (transfer = false) => ({ signal: undefined, progress: new ProgressListener(undefined), transfer });

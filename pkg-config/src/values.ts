@@ -1,5 +1,5 @@
 /** Validation of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
-import { describe, type ErrorCode, invalidArgument, Sim3AlignError } from "./error.js";
+import { describe, failure, invalidArgument, type Sim3AlignError } from "./error.js";
 import { isKind, isRecord, isTypedArray, typedArrayKind } from "./kinds.js";
 
 export { isKind, isRecord, isTypedArray };
@@ -22,6 +22,15 @@ export function withoutUndefined<T extends object>(object: T): { [K in keyof T]?
   return Object.fromEntries(entries) as { [K in keyof T]?: Exclude<T[K], undefined> };
 }
 
+/** A function that makes something once for each key. */
+export function oncePerKey<K, T, A extends unknown[]>(make: (key: K, ...more: A) => T): (key: K, ...more: A) => T {
+  const made = new Map<K, T>();
+  return (key, ...more) => {
+    if (!made.has(key)) made.set(key, make(key, ...more));
+    return made.get(key) as T;
+  };
+}
+
 /** The strings in an array; none for any other value. */
 export const stringsIn = (value: unknown): string[] =>
   Array.isArray(value) ? value.filter((text) => typeof text === "string") : [];
@@ -42,17 +51,6 @@ export type Vector3 = [x: number, y: number, z: number];
 
 /** A unit quaternion, x, y, z, w: the order of three.js, glTF and ROS. */
 export type Quaternion = [x: number, y: number, z: number, w: number];
-
-/** Creates an error from its five parts. */
-export function failure(
-  code: ErrorCode,
-  argument: string,
-  found: string,
-  expected: string,
-  remedy: string,
-): Sim3AlignError {
-  return new Sim3AlignError({ code, argument, found, expected, remedy });
-}
 
 /** Levels of nested arrays: a tensor has few, and an array may contain itself. */
 const MAX_NESTING = 16;
@@ -109,13 +107,8 @@ export function positive(argument: string, value: unknown): number {
 /** An integer of at least `least`. */
 export function whole(argument: string, value: unknown, least: number): number {
   if (Number.isSafeInteger(value) && (value as number) >= least) return value as number;
-  throw failure(
-    "INVALID_ARGUMENT",
-    argument,
-    describe(value),
-    `an integer of at least ${least}`,
-    "Pass a number of pixels.",
-  );
+  const remedy = "Pass a number of pixels.";
+  throw failure("INVALID_ARGUMENT", argument, describe(value), `an integer of at least ${least}`, remedy);
 }
 
 /** One of several names. */

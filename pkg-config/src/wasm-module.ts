@@ -1,5 +1,5 @@
 /** Loading and calling one WebAssembly module. */
-import { internalError, isCoded, isExhausted, outOfMemory, Sim3AlignError } from "./error.js";
+import { failure, internalError, isCoded, isExhausted, outOfMemory, type Sim3AlignError } from "./error.js";
 import type { CompiledModule, LazySource, WasmSource } from "./platform.js";
 import { Queue } from "./queue.js";
 import { isKind } from "./values.js";
@@ -96,16 +96,9 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
   const remedy = isMoved
     ? `If a bundler has moved this script, import from "sim3align/inline", which needs no other file, or exclude sim3align from the bundle; or pass createAligner the URL, bytes or module of ${file}.`
     : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module; for bundlers that leave it out, such as esbuild, import from "sim3align/inline".`;
-  return new Sim3AlignError(
-    {
-      code: "NOT_INITIALISED",
-      argument: name === "core" ? "wasm" : `${name}Wasm`,
-      found: cause instanceof Error ? cause.message : String(cause),
-      expected: `the WebAssembly module ${file} of the same version`,
-      remedy,
-    },
-    { cause },
-  );
+  const found = cause instanceof Error ? cause.message : String(cause);
+  const expected = `the WebAssembly module ${file} of the same version`;
+  return failure("NOT_INITIALISED", name === "core" ? "wasm" : `${name}Wasm`, found, expected, remedy, cause);
 }
 
 /** A loaded module: its current instance, whose heap is let go when it has grown too large. */
@@ -143,7 +136,7 @@ export class LoadedModule<G extends Glue> {
     } catch (error) {
       if (isCoded(error)) {
         const { code, argument, found, expected, remedy } = error;
-        throw new Sim3AlignError({ code, argument: rename(argument), found, expected, remedy });
+        throw failure(code, rename(argument), found, expected, remedy);
       }
       this.#isSpent = true;
       throw isExhausted(error) ? outOfMemory(error) : internalError(error);

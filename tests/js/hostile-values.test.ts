@@ -332,8 +332,10 @@ test("a tracker refuses a pose that cannot be sent to its worker, and remains us
   for (const [name, aligner] of aligners) {
     using tracker = await aligner.track(mesh, { quality: "fast" });
     await tracker.next(view);
-    for (const translation of [Symbol("odd"), () => 1]) {
-      await rejectsWith(() => tracker.correct({ ...truth, translation } as never), "INVALID_ARGUMENT pose.translation");
+    for (const odd of [Symbol("odd"), () => 1]) {
+      const inTranslation = { ...truth, translation: odd } as never;
+      await rejectsWith(() => tracker.correct(inTranslation), "INVALID_ARGUMENT pose.translation");
+      await rejectsWith(() => tracker.correct({ matrix: odd } as never), "INVALID_ARGUMENT pose");
     }
     assert.equal((await tracker.next(view)).frame, 1, name);
   }

@@ -1,9 +1,11 @@
 //! The TypeScript package's declarations of options, results and codes, its defaults and its table of options are
 //! generated from the Rust declarations.
 //!
-//! `UPDATE=1 cargo test --features types typescript` writes the files after a change.
+//! `UPDATE=1 cargo test --package sim3align-lab typescript` writes the files after a change.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::path::Path;
 
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
@@ -11,18 +13,18 @@ use sim3align::metrics::Metrics;
 use sim3align::metrics::bop::BopErrors;
 use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::PoseErrors;
+use sim3align::metrics::symmetry::Symmetry;
+use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
-use sim3align::paper::options::GuardMode;
-use sim3align::precise::options::{ExtentAxis, SearchScope};
+use sim3align::paper::options::{GuardMode, PaperOptions};
+use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::progress::Stage;
-use sim3align::register::options::Icp;
-use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
+use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
 use sim3align::register::report::{Registration, RegistrationDiagnostics};
 use sim3align::report::{
-    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PaperDiagnostics, PreciseDiagnostics, ScoreTerms,
-    SearchCounts, Sim3, Uncertainty, Warning, WarningCode,
+    Alignment, Alternative, ColorReport, ColorVerdict, Counts, Diagnostics, Effort, PaperAlignment, PaperDiagnostics,
+    PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Uncertainty, Warning, WarningCode,
 };
-use sim3align::report::{ColorReport, ColorVerdict, Effort, Preset};
 use sim3align::scene::contact::Contact;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::{CorrectedFrame, TrackState, TrackedFrame};
@@ -30,10 +32,13 @@ use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{
     CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty,
 };
-use sim3align_lab::prelude::*;
+use sim3align_geometry::error::ErrorCode;
 use ts_rs::{Config, TS};
 
 const HEADER: &str = "// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.\n\n";
+
+/// The longest line of the package.
+const LINE_WIDTH: usize = 120;
 
 /// An option, as the tables of both packages have it.
 struct Row {
@@ -50,15 +55,47 @@ struct Row {
     default: Value,
 }
 
-fn rows<T: Options>() -> Vec<Row> {
+/// A call whose options are a table.
+struct Call {
+    /// Its name in the table of options.
+    key: &'static str,
+    /// What the name of the constant with its defaults begins with.
+    constant: &'static str,
+    /// The name of its options' type.
+    interface: &'static str,
+    doc: &'static str,
+    /// The preset that its options name.
+    preset: Option<&'static str>,
+    rows: Vec<Row>,
+}
+
+fn call<T: Options>([key, constant, interface]: [&'static str; 3], preset: Option<&'static str>) -> Call {
     let mut options = T::default();
     let docs: Vec<String> = T::FIELDS.iter().map(|(_, doc)| text(doc)).collect();
-    options.named_fields().iter().zip(docs).map(|((name, field), doc)| row(name.clone(), doc, field)).collect()
+    let rows =
+        options.named_fields().iter().zip(docs).map(|((name, field), doc)| row(name.clone(), doc, field)).collect();
+    Call { key, constant, interface, doc: T::DOC, preset, rows }
+}
+
+fn calls() -> [Call; 7] {
+    [
+        call::<AlignOptions>(["align", "ALIGN", "AlignOptions"], Some("precise")),
+        call::<PaperOptions>(["paper", "PAPER", "PaperOptions"], Some("paper")),
+        call::<ViewsOptions>(["alignViews", "VIEWS", "ViewsOptions"], None),
+        call::<TrackOptions>(["track", "TRACK", "TrackOptions"], None),
+        call::<EvaluateOptions>(["evaluate", "EVALUATE", "EvaluateOptions"], None),
+        call::<RegisterOptions>(["register", "REGISTER", "RegisterOptions"], None),
+        call::<EstimateSim3Options>(["estimateSim3", "ESTIMATE_SIM3", "EstimateSim3Options"], None),
+    ]
 }
 
 fn row(name: String, doc: String, field: &Field<'_>) -> Row {
     let between = |min: Value, max: Value| vec![("min", min), ("max", max)];
     let or_null = |ts: &str| format!("{ts} | null");
+    let is_numeric = matches!(
+        field,
+        Field::Guard(_) | Field::Count(..) | Field::Number(..) | Field::OptionalNumber(..) | Field::Positive(_)
+    );
     let (kind, ts, limits, default) = match field {
         Field::Count(value, range) => {
             ("integer", "number".into(), between(json!(range.start()), json!(range.end())), json!(value))
@@ -68,11 +105,9 @@ fn row(name: String, doc: String, field: &Field<'_>) -> Row {
         }
         Field::OptionalNumber(value, range) => {
             let limits = between(plain(*range.start()), plain(*range.end()));
-            ("number", or_null("number"), limits, value.map_or(Value::Null, plain))
+            ("number", or_null("number"), limits, json!(value.map(plain)))
         }
-        Field::Positive(value) => {
-            ("number", or_null("number"), vec![("above", json!(0))], value.map_or(Value::Null, plain))
-        }
+        Field::Positive(value) => ("number", or_null("number"), vec![("above", json!(0))], json!(value.map(plain))),
         Field::Flag(value) => ("boolean", "boolean".into(), vec![], json!(value)),
         Field::Scale(value) => {
             assert_eq!(**value, ScaleOption::Free);
@@ -88,19 +123,14 @@ fn row(name: String, doc: String, field: &Field<'_>) -> Row {
             ("transform", or_null("Sim3Like"), vec![], Value::Null)
         }
         Field::Guard(value) => {
-            let default = value.map_or(Value::Null, |bounds| json!(bounds.map(plain)));
-            ("guard", "readonly [min: number, max: number] | null".into(), vec![], default)
+            let bounds = value.map(|bounds| bounds.map(plain));
+            ("guard", or_null("readonly [min: number, max: number]"), vec![], json!(bounds))
         }
         Field::Choice(choice) => {
             ("choice", choice.type_name().into(), vec![("choices", json!(choice.names()))], json!(choice.name()))
         }
     };
-    let range = match field {
-        Field::Count(..) | Field::Number(..) | Field::OptionalNumber(..) | Field::Positive(_) | Field::Guard(_) => {
-            field.expected()
-        }
-        _ => String::new(),
-    };
+    let range = if is_numeric { field.expected() } else { String::new() };
     Row { name, doc, kind, ts, range, limits, default }
 }
 
@@ -119,141 +149,168 @@ fn first_sentence(doc: &str) -> &str {
     doc.split_once(". ").map_or(doc.trim_end_matches('.'), |(first, _)| first)
 }
 
-fn comment(out: &mut String, indent: &str, text: &str) {
-    let _ = writeln!(out, "{indent}/**");
-    let mut line = String::new();
-    for word in text.split(' ') {
-        if !line.is_empty() && line.chars().count() + word.chars().count() + indent.len() + 4 > 118 {
-            let _ = writeln!(out, "{indent} * {line}");
-            line.clear();
+/// A doc comment, in lines of the package's length.
+fn comment(indent: &str, doc: &str) -> String {
+    let prefix = format!("{indent} * ");
+    let mut lines = Vec::new();
+    for paragraph in doc.split("\n\n") {
+        let mut line = prefix.clone();
+        for word in paragraph.split_whitespace() {
+            if line.len() > prefix.len() && line.chars().count() + word.chars().count() > LINE_WIDTH - 2 {
+                lines.push(std::mem::replace(&mut line, prefix.clone()).trim_end().to_owned());
+            }
+            line += &format!("{word} ");
         }
-        if !line.is_empty() {
-            line.push(' ');
+        lines.extend([line.trim_end().to_owned(), format!("{indent} *")]);
+    }
+    lines.pop();
+    match &lines[..] {
+        [line] if line.chars().count() + "/* */".len() <= LINE_WIDTH => {
+            format!("{indent}/**{} */\n", &line[prefix.len() - 1..])
         }
-        line.push_str(word);
-    }
-    let _ = writeln!(out, "{indent} * {line}\n{indent} */");
-}
-
-/// Options as an interface; `preset` is the property that tells the presets apart.
-fn interface<T: Options>(name: &str, preset: &str) -> String {
-    let mut out = String::new();
-    comment(&mut out, "", &text(T::DOC));
-    let _ = writeln!(out, "export interface {name} {{\n{preset}");
-    for Row { name, doc, ts, range, default, .. } in rows::<T>() {
-        let range = if range.is_empty() { range } else { format!(" Takes {range}.") };
-        comment(&mut out, "  ", &format!("{doc}{range} Default `{default}`."));
-        let _ = writeln!(out, "  {name}?: {ts} | undefined;");
-    }
-    out.replace("{\n\n", "{\n") + "}\n"
-}
-
-fn declaration<T: TS>(config: &Config) -> String {
-    format!("{}export {}\n", T::docs().unwrap_or_default(), T::decl(config))
-}
-
-/// The options of a call in all their forms.
-struct Call {
-    /// The interface, and the constant with the defaults.
-    interface: String,
-    defaults: String,
-    /// The rows of the table of options, under the name of the call.
-    table: String,
-    summaries: Vec<String>,
-}
-
-/// The options of a call. `property` is the property of the interface that tells the presets apart.
-fn call<T: Options>(name: &str, ts: &str, described: &str, preset: Option<&str>, property: &str) -> Call {
-    let constant = ts.strip_suffix("Options").unwrap_or(ts);
-    let words = constant.char_indices().flat_map(|(i, c)| [(i > 0 && c.is_uppercase()).then_some('_'), Some(c)]);
-    let constant = words.flatten().collect::<String>().to_uppercase();
-    Call {
-        interface: interface::<T>(ts, property),
-        defaults: defaults::<T>(&format!("{constant}_DEFAULTS"), &format!("Defaults of {described}."), ts, preset),
-        table: table::<T>(name),
-        summaries: rows::<T>().iter().map(|row| first_sentence(&row.doc).to_owned()).collect(),
+        _ => format!("{indent}/**\n{}\n{indent} */\n", lines.join("\n")),
     }
 }
 
-fn calls() -> [Call; 7] {
-    let precise = "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n";
-    let paper = "  /** The paper's method. */\n  preset: \"paper\";\n";
-    let of_paper = "`align` with `preset: \"paper\"`";
-    [
-        call::<AlignOptions>("align", "AlignOptions", "`align`", Some("precise"), precise),
-        call::<PaperOptions>("paper", "PaperOptions", of_paper, Some("paper"), paper),
-        call::<ViewsOptions>("alignViews", "ViewsOptions", "`alignViews`", None, ""),
-        call::<TrackOptions>("track", "TrackOptions", "`track`", None, ""),
-        call::<EvaluateOptions>("evaluate", "EvaluateOptions", "`evaluate`", None, ""),
-        call::<RegisterOptions>("register", "RegisterOptions", "`register`", None, ""),
-        call::<EstimateSim3Options>("estimateSim3", "EstimateSim3Options", "`estimateSim3`", None, ""),
-    ]
+/// The text of a doc comment that `ts_rs` wrote.
+fn uncommented(comment: &str) -> String {
+    let lines = comment.trim().trim_start_matches("/**").trim_end_matches("*/").trim().lines();
+    lines.map(|line| line.trim_start_matches([' ', '*'])).collect::<Vec<_>>().join("\n")
+}
+
+/// A property of a type.
+#[derive(PartialEq)]
+struct Member {
+    name: String,
+    /// Its comment and its declaration.
+    text: String,
+}
+
+/// The declarations of a file. A type names the earlier ones that have some of its members, and does not repeat these.
+#[derive(Default)]
+struct Types {
+    declarations: Vec<String>,
+    objects: Vec<(String, Vec<Member>)>,
+    options: Vec<(String, Vec<Member>)>,
+}
+
+impl Types {
+    /// A result as an object type, everything else as it is.
+    fn add<T: TS>(&mut self) {
+        let config = Config::default();
+        let doc = T::docs().map(|doc| comment("", &uncommented(&doc))).unwrap_or_default();
+        let declaration = T::decl(&config);
+        let Some(body) = declaration.split_once("= { \n").and_then(|(_, body)| body.strip_suffix(", };")) else {
+            return self.declarations.push(format!("{doc}export {declaration}\n"));
+        };
+        let name = T::name(&config);
+        let mut members = members_of(body);
+        let mut code = String::new();
+        for (base, theirs) in self.objects.iter().rev() {
+            if theirs.iter().all(|member| members.contains(member)) {
+                let _ = write!(code, "{base} & ");
+                members.retain(|member| !theirs.contains(member));
+            }
+        }
+        let own: String = members.iter().map(|member| &*member.text).collect();
+        self.declarations.push(format!("{doc}export type {name} = {code}{{\n{own}}};\n"));
+        self.objects.push((name, members_of(body)));
+    }
+
+    /// Options as an interface.
+    fn add_options(&mut self, call: &Call) {
+        let preset = match call.preset {
+            Some("precise") => {
+                "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n"
+            }
+            Some(_) => "  /** The paper's method. */\n  preset: \"paper\";\n",
+            None => "",
+        };
+        let member = |Row { name, doc, ts, range, default, .. }: &Row| {
+            let range = if range.is_empty() { String::new() } else { format!(" Takes {range}.") };
+            let comment = comment("  ", &format!("{doc}{range} Default `{default}`."));
+            Member { name: name.clone(), text: format!("{comment}  {name}?: {ts} | undefined;\n") }
+        };
+        let all: Vec<Member> = call.rows.iter().map(member).collect();
+        let mut bases = Vec::new();
+        let mut inherited: Vec<&Member> = Vec::new();
+        for (base, theirs) in &self.options {
+            let shared = |member: &&Member| theirs.contains(member) && !inherited.contains(member);
+            let taken: Vec<&Member> = all.iter().filter(shared).collect();
+            let names: Vec<String> = taken.iter().map(|member| format!("\"{}\"", member.name)).collect();
+            inherited.extend(taken);
+            if !names.is_empty() {
+                bases.push(format!("Pick<{base}, {}>", names.join(" | ")));
+            }
+        }
+        let own: String = all.iter().filter(|member| !inherited.contains(member)).map(|member| &*member.text).collect();
+        let mut extends = if bases.is_empty() { String::new() } else { format!(" extends {}", bases.join(", ")) };
+        if "export interface  {".len() + call.interface.len() + extends.len() > LINE_WIDTH {
+            extends = format!("\n  extends {}", bases.join(",\n    "));
+        }
+        let doc = comment("", call.doc);
+        self.declarations.push(format!("{doc}export interface {}{extends} {{\n{preset}{own}}}\n", call.interface));
+        self.options.push((call.interface.to_owned(), all));
+    }
+}
+
+/// The members in the braces of a type that `ts_rs` declares.
+fn members_of(body: &str) -> Vec<Member> {
+    let member = |part: &str| {
+        let (doc, code) = part.split_once("*/\n").unwrap();
+        let (name, ts) = code.split_once(':').unwrap();
+        let text = format!("{}  {name}:{ts};\n", comment("  ", &uncommented(doc)));
+        Member { name: name.trim_end_matches('?').to_owned(), text }
+    };
+    body.split(", \n").map(member).collect()
+}
+
+/// Adds declarations in their order.
+macro_rules! add {
+    ($types:ident: $($name:ty),* $(,)?) => {
+        $($types.add::<$name>();)*
+    };
 }
 
 fn types() -> String {
-    let config = Config::default();
-    let declarations = [
-        declaration::<Preset>(&config),
-        declaration::<ColorVerdict>(&config),
-        declaration::<Quality>(&config),
-        declaration::<Effort>(&config),
-        declaration::<SearchScope>(&config),
-        declaration::<ExtentAxis>(&config),
-        declaration::<GuardMode>(&config),
-        declaration::<Icp>(&config),
-        calls().map(|call| call.interface).join("\n"),
-        declaration::<Stage>(&config),
+    let mut types = Types::default();
+    add! { types:
+        Preset, ColorVerdict, Quality, Effort, SearchScope, ExtentAxis, GuardMode, Icp,
+    }
+    for call in calls() {
+        types.add_options(&call);
+    }
+    types.add::<Stage>();
+    types.declarations.push(
         "/** Milliseconds per stage, in the order in which the stages first ran, and their total. */\n\
          export type Timings = Partial<Record<Stage, number>> & { total: number };\n"
             .into(),
-        declaration::<ErrorCode>(&config),
-        declaration::<WarningCode>(&config),
-        declaration::<Warning>(&config),
-        declaration::<Sim3>(&config),
-        declaration::<Metrics>(&config),
-        declaration::<PoseErrors>(&config),
-        declaration::<LayoutErrors>(&config),
-        declaration::<BopErrors>(&config),
-        declaration::<Counts>(&config),
-        declaration::<SearchCounts>(&config),
-        declaration::<ScoreTerms>(&config),
-        declaration::<ColorReport>(&config),
-        declaration::<Alternative>(&config),
-        declaration::<Uncertainty>(&config),
-        declaration::<Diagnostics>(&config),
-        declaration::<PaperDiagnostics>(&config),
-        declaration::<PreciseDiagnostics>(&config),
-        declaration::<Alignment>(&config),
-        declaration::<PaperAlignment>(&config),
-        declaration::<WorldFrame>(&config),
-        declaration::<ViewRole>(&config),
-        declaration::<WorldUncertainty>(&config),
-        declaration::<CameraPose>(&config),
-        declaration::<ViewPose>(&config),
-        declaration::<ViewsDiagnostics>(&config),
-        declaration::<ViewsAlignment>(&config),
-        declaration::<TrackState>(&config),
-        declaration::<TrackedFrame>(&config),
-        declaration::<CorrectedFrame>(&config),
-        declaration::<EvaluationDiagnostics>(&config),
-        declaration::<Evaluation>(&config),
-        declaration::<Contact>(&config),
-        declaration::<RegistrationDiagnostics>(&config),
-        declaration::<Registration>(&config),
-    ];
+    );
+    add! { types:
+        ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, LayoutErrors, BopErrors, SearchCounts,
+        Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, EvaluationDiagnostics, Diagnostics,
+        PaperDiagnostics, PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole,
+        WorldUncertainty, CameraPose, ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame,
+        TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration,
+    }
     let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
-    HEADER.to_owned() + imports + &declarations.join("\n")
+    HEADER.to_owned() + imports + &types.declarations.join("\n")
 }
 
-fn defaults<T: Options>(name: &str, doc: &str, ts: &str, preset: Option<&str>) -> String {
-    let mut out = format!("/** {doc} */\nexport const {name} = {{\n");
+fn defaults(call: &Call) -> String {
+    let Call { constant, key, interface, preset, rows, .. } = call;
+    let what = preset.map_or(format!("`{key}`"), |preset| match preset {
+        "precise" => "`align`".into(),
+        _ => format!("`align` with `preset: \"{preset}\"`"),
+    });
+    let mut out = format!("/** Defaults of {what}. */\nexport const {constant}_DEFAULTS = {{\n");
     if let Some(preset) = preset {
         let _ = writeln!(out, "  preset: \"{preset}\",");
     }
-    for Row { name, default, .. } in rows::<T>() {
-        let _ = writeln!(out, "  {name}: {},", spaced(&default));
+    for Row { name, default, .. } in rows {
+        let _ = writeln!(out, "  {name}: {},", spaced(default));
     }
-    let _ = writeln!(out, "}} as const satisfies {ts};");
+    let _ = writeln!(out, "}} as const satisfies {interface};");
     out
 }
 
@@ -262,30 +319,60 @@ fn spaced(value: &Value) -> String {
     value.to_string().replace(',', ", ")
 }
 
-fn table<T: Options>(name: &str) -> String {
-    let mut out = format!("  {name}: [\n");
-    for Row { name, doc, kind, ts, limits, default, .. } in rows::<T>() {
-        let nullable = ts.ends_with("| null");
-        let _ = write!(out, "    {{\n      name: \"{name}\",\n      kind: \"{kind}\",\n");
-        for (limit, value) in limits {
-            let _ = writeln!(out, "      {limit}: {},", spaced(&value));
+/// What the table of options says of one: a property per item.
+fn properties(row: &Row) -> Vec<String> {
+    let Row { name, doc, kind, ts, limits, default, .. } = row;
+    let mut all = vec![format!("name: \"{name}\""), format!("kind: \"{kind}\"")];
+    all.extend(limits.iter().map(|(limit, value)| format!("{limit}: {}", spaced(value))));
+    all.push(format!("isNullable: {}", ts.ends_with("| null")));
+    all.extend([format!("default: {}", spaced(default)), format!("summary: {}", json!(first_sentence(doc)))]);
+    all
+}
+
+/// A row of the table of options: itself, or what differs from the row that calls share under its name.
+fn entry(row: &Row, shared: Option<&Vec<String>>) -> String {
+    let mut parts = properties(row);
+    if let Some(shared) = shared {
+        parts.retain(|property| !shared.contains(property));
+        if parts.is_empty() {
+            return row.name.clone();
         }
-        let _ = writeln!(out, "      isNullable: {nullable},\n      default: {},", spaced(&default));
-        let _ = writeln!(out, "      summary: {},\n    }},", json!(first_sentence(&doc)));
+        parts.insert(0, format!("...{}", row.name));
     }
-    out + "  ],\n"
+    let line = format!("{{ {} }}", parts.join(", "));
+    if line.len() + "    ,".len() <= LINE_WIDTH {
+        line
+    } else {
+        format!("{{\n      {},\n    }}", parts.join(",\n      "))
+    }
 }
 
 fn options() -> String {
-    let imports = "import type { OptionRow } from \"../options.js\";\nimport type {\n  AlignOptions,\n  EstimateSim3Options,\n  \
-        EvaluateOptions,\n  PaperOptions,\n  RegisterOptions,\n  TrackOptions,\n  ViewsOptions,\n} from \"./types.js\";\n\n";
-    let (constants, tables): (Vec<String>, Vec<String>) =
-        calls().into_iter().map(|call| (call.defaults, call.table)).unzip();
+    let calls = calls();
+    let all: Vec<&Row> = calls.iter().flat_map(|call| &call.rows).collect();
+    // Options that several calls have, each as the first of them has it.
+    let mut shared = BTreeMap::new();
+    for row in &all {
+        if all.iter().filter(|other| other.name == row.name && other.kind == row.kind).count() > 1 {
+            shared.entry(&*row.name).or_insert_with(|| properties(row));
+        }
+    }
+    let constant =
+        |(name, own): (&&str, &Vec<String>)| format!("const {name} = {{\n  {},\n}} as const;\n\n", own.join(",\n  "));
+    let constants: String = shared.iter().map(constant).collect();
+    let table = |call: &Call| {
+        let rows = call.rows.iter().map(|row| format!("    {},\n", entry(row, shared.get(&*row.name))));
+        format!("  {}: [\n{}  ],\n", call.key, rows.collect::<String>())
+    };
+    // A call, because bundlers keep an unused object with spreads.
     format!(
-        "{HEADER}{imports}{}\n/** Every option with its kind, range, default and a one-line description. */\n\
-         export const OPTIONS = {{\n{}}} as const satisfies Readonly<Record<string, readonly OptionRow[]>>;\n",
-        constants.join("\n"),
-        tables.concat()
+        "{HEADER}import type {{ OptionRow }} from \"../options.js\";\n\
+         import type {{\n  {},\n}} from \"./types.js\";\n\n{}\n{constants}\
+         /** Every option with its kind, range, default and a one-line description. */\n\
+         export const OPTIONS = /* @__PURE__ */ (() => ({{\n{}}}) as const satisfies Readonly<Record<string, readonly OptionRow[]>>)();\n",
+        calls.each_ref().map(|call| call.interface).join(",\n  "),
+        calls.each_ref().map(defaults).join("\n"),
+        calls.each_ref().map(table).concat(),
     )
 }
 
@@ -305,7 +392,8 @@ fn generated_files_are_those_of_the_rust_declarations() {
 
 #[test]
 fn every_option_is_described_on_one_line() {
-    for summary in calls().into_iter().flat_map(|call| call.summaries) {
+    for Row { doc, .. } in calls().iter().flat_map(|call| &call.rows) {
+        let summary = first_sentence(doc);
         assert!((10..=130).contains(&summary.chars().count()), "{summary}");
     }
 }

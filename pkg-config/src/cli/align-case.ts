@@ -1,21 +1,23 @@
 /** Aligns a case, with the options of the command line. */
-import { type CaseOnDisk, frameNames, readFrames } from "../case-folder.js";
+import { type CaseOnDisk, frameNames, inputOfFrame, readFrames } from "../case-folder.js";
+import type { KnownPose } from "../conventions/pose-file.js";
 import {
   type Aligner,
   type AlignInput,
   OPTIONS,
   type OptionRow,
   type OptionsOf,
+  type PoseErrors,
   type Preset,
   type Progress,
-  Sim3AlignError,
+  type Sim3,
   type ViewsOptions,
 } from "../index.js";
 import { withoutUndefined } from "../values.js";
 import { type CaseFlags, caseSettings } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
 import { givenOptions } from "./option-flags.js";
-import { failure, type Outcome, type Success } from "./outcome.js";
+import { failureOf, type Outcome } from "./outcome.js";
 import { readTransform } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
@@ -47,15 +49,9 @@ export async function alignCase(
     files = read_.files;
     const options = await alignOptions(flags, name);
     const alignment = await aligner.align(input, withoutUndefined({ ...options, onProgress }));
-    const success: Success = { name, alignment, errors: null };
-    if (truth === null) return success;
-    const { transform, symmetry } = truth;
-    const { errors } = await aligner.evaluate(input, alignment, { truth: transform, symmetry, layout: false });
-    return { ...success, errors };
+    return { name, alignment, errors: await errorsOf(aligner, input, alignment, truth) };
   } catch (error) {
-    if (error instanceof UsageError) throw error;
-    if (isAboutOptions(error)) throw new UsageError(error.message);
-    return failure(name, error, files);
+    return failureOf(name, error, files);
   }
 }
 
@@ -77,26 +73,24 @@ async function alignFrames(
     withoutUndefined({ ...(options as ViewsOptions), onProgress }),
   );
   const errors = await Promise.all(
-    frames.map(async ({ input, truth }, k) => {
-      const pose = alignment.views[k];
-      if (truth === null || pose === undefined || input.mask === undefined) return null;
-      const { cameraToWorld, ...frame } = input;
-      const { transform, symmetry } = truth;
-      const found = await aligner.evaluate({ ...frame, mesh } as AlignInput, pose, {
-        truth: transform,
-        symmetry,
-        layout: false,
-      });
-      return found.errors;
+    frames.map(async (frame, k) => {
+      const [pose, input] = [alignment.views[k], inputOfFrame(frame, mesh)];
+      return pose === undefined || input === undefined ? null : errorsOf(aligner, input, pose, frame.truth);
     }),
   );
   return { name, views: alignment, frames: frames.map((frame) => frame.name), errors };
 }
 
-/** Whether all cases would fail with this error. The initial pose may differ from case to case. */
-export function isAboutOptions(error: unknown): error is Sim3AlignError {
-  if (!(error instanceof Sim3AlignError)) return false;
-  return error.argument.startsWith("options") && !error.argument.startsWith("options.initial");
+/** The errors of a pose relative to the true one, if that is known. */
+export async function errorsOf(
+  aligner: Aligner,
+  input: AlignInput,
+  pose: Sim3,
+  truth: KnownPose | null | undefined,
+): Promise<PoseErrors | null> {
+  if (truth === null || truth === undefined) return null;
+  const { transform, symmetry } = truth;
+  return (await aligner.evaluate(input, pose, { truth: transform, symmetry, layout: false })).errors;
 }
 
 /** The options set by `--options` and by flags. */

@@ -10,9 +10,8 @@ import { addOptionFlags } from "./option-flags.js";
 import { type Outcome, outcomeJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { camera, jsonObject } from "./parse.js";
-import { drawEntry, inputsOfCase } from "./picture-inputs.js";
-import { addPictureFlags, type PictureFlags } from "./pictures.js";
-import { details, notes, Summary, viewsDetails } from "./report.js";
+import { addPictureFlags, drawEntry, inputsOfCase, type PictureFlags } from "./pictures.js";
+import { details, notes, summaryTable, viewsDetails } from "./report.js";
 import { runBatch } from "./run-batch.js";
 import { transformFileHelp } from "./transform-file.js";
 
@@ -90,12 +89,14 @@ async function run(args: string[], flags: CaseBatchFlags): Promise<void> {
 
 /** Aligns cases, and writes and prints their results. */
 export async function alignBatch(cases: readonly CaseToDo[], flags: CaseBatchFlags, output: Output): Promise<void> {
-  const summary = new Summary(cases, output.style);
+  const summary = summaryTable(cases, output.style);
   await runBatch(cases, flags, output, {
     async run(aligner, each, live) {
       const outcome = await alignCase(aligner, each, flags, live?.progress);
       const [rows, remarks] =
-        live === undefined ? [summary.lines(outcome), notes([outcome], output.style)] : [[], only(outcome, output)];
+        live === undefined
+          ? [summary(each.name, outcome), notes([outcome], output.style)]
+          : [[], only(outcome, output)];
       return { key: each, entry: outcomeJson(outcome), rows, remarks };
     },
     draw: (pictures, each, entry, isResumed) =>

@@ -12,17 +12,16 @@ import { alignBatch, type CaseBatchFlags } from "./align-command.js";
 import { addRecordFlags } from "./batch-flags.js";
 import { Detections } from "./bop-detections.js";
 import { type BopEvaluation, evaluateBop } from "./bop-evaluation.js";
-import { BopModels } from "./bop-models.js";
+import { bopModelsIn } from "./bop-models.js";
 import { type BopInstance, BopResultsFile, METRES_PER_UNIT, readResults, resultsName } from "./bop-results.js";
 import { conventionsHelp, statusHelp } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
-import { fixed } from "./number.js";
 import { addOptionFlags } from "./option-flags.js";
 import { Output } from "./output.js";
 import { jsonObject } from "./parse.js";
 import { addPictureFlags } from "./pictures.js";
 import { StatusLine } from "./status-line.js";
-import { pairs } from "./table.js";
+import { fixed, pairs } from "./table.js";
 import { UsageError } from "./usage-error.js";
 import { checkWritable } from "./writable.js";
 
@@ -113,7 +112,7 @@ async function run(folder: string, flags: BopFlags): Promise<void> {
 async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags: BopFlags) {
   const detections = flags.masks === "gt" ? undefined : new Detections(flags.masks);
   const withPhoto = flags.image !== false;
-  const models = new BopModels(flags.models ?? (await dataset.models()), withPhoto);
+  const modelOf = bopModelsIn(flags.models ?? (await dataset.models()), withPhoto);
   const info = await dataset.info().catch(() => new Map<number, BopModelInfo>());
   const instances = new Map<string, BopInstance>();
   const cases: CaseToDo[] = [];
@@ -130,7 +129,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
     instances.set(name, { sceneId, imageId, objectId, detectionScore, detectionSeconds });
     const read = async (): Promise<CaseOnDisk> => {
       const image = await readBopImage(await dataset.scene(sceneId), bopId(imageId), withPhoto);
-      const input = { ...image, mask: await maskOf(), mesh: await models.mesh(objectId) } as AlignInput;
+      const input = { ...image, mask: await maskOf(), mesh: await modelOf(objectId) } as AlignInput;
       return { name, input, files: {}, truth };
     };
     cases.push({ name, hasTruth: truth !== null, read });

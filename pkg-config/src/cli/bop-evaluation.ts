@@ -8,7 +8,7 @@ import type { BopErrors } from "../generated/types.js";
 import type { CoreFrame } from "../input/core-input.js";
 import { resolveFrame } from "../input/frames.js";
 import { registrationModule } from "../registration-module.js";
-import { BopModels } from "./bop-models.js";
+import { bopModelsIn } from "./bop-models.js";
 import { type BopResult, METRES_PER_UNIT } from "./bop-results.js";
 import { type BopScores, best, grouped, type ObjectErrors, scoresOf } from "./bop-scores.js";
 
@@ -39,7 +39,7 @@ export async function evaluateBop(
   results: readonly BopResult[],
   onProgress: (done: number) => void,
 ): Promise<BopEvaluation> {
-  const models = new BopModels(await dataset.modelsOfErrors(), false);
+  const modelOf = bopModelsIn(await dataset.modelsOfErrors(), false);
   const registrar = await registrationModule.load();
   const info = await dataset.info();
   const byTarget = grouped(results, targetKey);
@@ -69,7 +69,7 @@ export async function evaluateBop(
     const entries = scene.truths.get(bopId(imageId)) ?? [];
     const truths = all.map((place) => fromBop(entries[place] as (typeof entries)[number]));
     const { diameterMm, discrete, continuous } = model;
-    const mesh = await models.mesh(objectId);
+    const mesh = await modelOf(objectId);
     const given = { ...frame, mesh, diameterM: METRES_PER_UNIT * diameterMm, discrete, continuous };
     const errors = registrar.call((module) =>
       module.bopErrors(

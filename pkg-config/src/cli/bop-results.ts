@@ -1,10 +1,11 @@
 /** The results file of BOP's leaderboard. */
+
 import { writeFileSync } from "node:fs";
 import { type BopTarget, imageKey } from "../bop-dataset.js";
 import { type Matrix3, rotationOf } from "../conventions/rotation.js";
 import { sim3Of } from "../conventions/similarity.js";
+import { failure } from "../error.js";
 import type { Sim3 } from "../sim3.js";
-import { failure } from "../values.js";
 import type { EntrySink } from "./output.js";
 import { textOf } from "./parse.js";
 import { UsageError } from "./usage-error.js";

@@ -1,6 +1,6 @@
 /** What a case is in a record: its path relative to the record, and its content for where it has moved. */
 import { createHash } from "node:crypto";
-import { existsSync, readdirSync, readFileSync, realpathSync, statSync } from "node:fs";
+import { readdirSync, readFileSync, realpathSync, statSync } from "node:fs";
 import { basename, dirname, join, relative, resolve, sep } from "node:path";
 import { caseFiles } from "../case-files.js";
 
@@ -55,8 +55,8 @@ const childrenOf = (folder: string, pattern: RegExp) =>
     .filter((name) => pattern.test(name))
     .map((name) => join(folder, name));
 
-function namesIn(folder: string): string[] {
-  if (!existsSync(folder)) return [];
+/** The names in a folder; none if it cannot be read. */
+export function namesIn(folder: string): string[] {
   try {
     return readdirSync(folder).sort();
   } catch {

@@ -1,9 +1,17 @@
 /** `sim3align evaluate`: computes the metrics of transforms on cases. */
+
 import { Command } from "commander";
-import { frameNames, readCaseFolder, readFrames } from "../case-folder.js";
+import { frameNames, inputOfFrame, readCaseFolder, readFrames } from "../case-folder.js";
 import type { KnownPose } from "../conventions/pose-file.js";
-import { type Aligner, type AlignInput, type Evaluation, OPTIONS, type OptionRow, Sim3AlignError } from "../index.js";
-import { isAboutOptions } from "./align-case.js";
+import { failure } from "../error.js";
+import {
+  type Aligner,
+  type AlignInput,
+  type Evaluation,
+  OPTIONS,
+  type OptionRow,
+  type Sim3AlignError,
+} from "../index.js";
 import type { Done } from "./batch.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
 import {
@@ -16,13 +24,11 @@ import {
 } from "./case-options.js";
 import { caseKind, type FolderToDo, foldersToDo } from "./folders.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { evaluationJson, type Failure, failure, failureText } from "./outcome.js";
+import { evaluationJson, type Failure, failedLine, failureOf } from "./outcome.js";
 import { Output } from "./output.js";
-import { EvaluationSummary, evaluationDetails } from "./report.js";
+import { evaluationDetails, evaluationTable } from "./report.js";
 import { runBatch } from "./run-batch.js";
-import type { Style } from "./style.js";
 import { readTransform, transformFileHelp } from "./transform-file.js";
-import { UsageError } from "./usage-error.js";
 
 interface EvaluateFlags extends CaseFlags, BatchFlags, Readonly<Record<string, unknown>> {
   transform: string;
@@ -60,85 +66,74 @@ export function evaluateCommand(): Command {
 async function run(args: string[], flags: EvaluateFlags): Promise<void> {
   const cases = await foldersToDo(caseKind, args, flags.list);
   const output = new Output(flags);
-  const summary = new EvaluationSummary(cases, output.style);
+  const { style } = output;
+  const names = cases.map(({ name }) => name);
+  const row = evaluationTable(names, style);
   await runBatch(cases, flags, output, {
     async run(aligner, key, live): Promise<Done> {
       const results = await evaluateCase(aligner, key, flags);
-      const [, first] = results[0] ?? [];
-      const isWhole = results.length === 1 && first !== undefined && results[0]?.[0] === undefined;
-      const entry = isWhole
-        ? evaluationJson(first)
-        : { frames: Object.fromEntries(results.map(([frame, result]) => [frame, evaluationJson(result)])) };
-      const named = results.map(
-        ([frame, result]) => [frame === undefined ? key.name : `${key.name}/${frame}`, result] as const,
-      );
-      const failures = named.flatMap(([name, result]) =>
-        "error" in result ? [failed(name, result, output.style)] : [],
-      );
-      if (live === undefined)
-        return { key, entry, rows: named.flatMap((each) => summary.lines(...each)), remarks: failures };
-      const details = named.flatMap(([name, result]) =>
-        "error" in result ? [failed(name, result, output.style)] : evaluationDetails(name, result, output.style),
-      );
-      return { key, entry, rows: [], remarks: details };
+      const json = results.map(({ result }) => evaluationJson(result));
+      const isWhole = results.length === 1 && results[0]?.frame === undefined;
+      const frames = Object.fromEntries(results.map(({ frame }, i) => [frame, json[i]]));
+      const rows: string[] = [];
+      const remarks: string[] = [];
+      for (const { frame, result } of results) {
+        const name = frame === undefined ? key.name : `${key.name}/${frame}`;
+        if (live === undefined) rows.push(...row(name, result));
+        if ("error" in result) remarks.push(failedLine({ ...result, name }, style));
+        else if (live !== undefined) remarks.push(...evaluationDetails(name, result, style));
+      }
+      return { key, entry: isWhole ? (json[0] as object) : { frames }, rows, remarks };
     },
   });
 }
 
-const failed = (name: string, failure: Failure, style: Style) =>
-  style.red("failed ") + failureText({ ...failure, name });
+/** The result of a case, or of one of its frames. */
+interface Evaluated {
+  frame?: string;
+  result: Evaluation | Failure;
+}
 
-/** The metrics of a case, or of each of its frames with a mask, by name. Only errors that concern all cases are thrown. */
+/** The metrics of a case, or of each of its frames with a mask. Only errors that concern all cases are thrown. */
 async function evaluateCase(
   aligner: Aligner,
   { name, folder }: FolderToDo,
   flags: EvaluateFlags,
-): Promise<[frame: string | undefined, result: Evaluation | Failure][]> {
+): Promise<Evaluated[]> {
   const given = givenOptions(flags, rows);
-  const evaluate = async (input: AlignInput, truth: KnownPose | null, frame?: string) => {
-    if (flags.transform === "gt" && truth === null) throw noTruth(frame === undefined ? folder : `${folder}/${frame}`);
-    const matrix =
-      flags.transform === "gt"
-        ? truth?.transform.matrix
-        : await readTransform("transform", flags.transform, name, frame);
-    const against = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
-    return aligner.evaluate(input, { matrix: matrix ?? [] }, { ...given, ...against });
-  };
-  const attempt = async (files: Readonly<Record<string, string>>, run: () => Promise<Evaluation>) => {
+  type Known = { truth: KnownPose | null; files: Readonly<Record<string, string>> };
+  const evaluate = async (input: AlignInput, { truth, files }: Known, frame?: string) => {
     try {
-      return await run();
+      if (flags.transform === "gt" && truth === null)
+        throw noTruth(frame === undefined ? folder : `${folder}/${frame}`);
+      const matrix =
+        flags.transform === "gt"
+          ? truth?.transform.matrix
+          : await readTransform("transform", flags.transform, name, frame);
+      const against = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
+      return await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...given, ...against });
     } catch (error) {
-      if (error instanceof UsageError) throw error;
-      if (isAboutOptions(error)) throw new UsageError(error.message);
-      return failure(name, error, files);
+      return failureOf(name, error, files);
     }
   };
   try {
     if ((await frameNames(folder)).length === 0) {
-      const { input, truth, files } = await readCaseFolder(folder, caseSettings(flags));
-      return [[undefined, await attempt(files, () => evaluate(input, truth))]];
+      const read = await readCaseFolder(folder, caseSettings(flags));
+      return [{ result: await evaluate(read.input, read) }];
     }
     const { mesh, frames } = await readFrames(folder, caseSettings(flags));
-    const results: [string, Evaluation | Failure][] = [];
-    for (const { name: frame, input, files, truth } of frames) {
-      const { cameraToWorld, ...view } = input;
-      if (view.mask === undefined) continue;
-      const whole = { ...view, mesh } as AlignInput;
-      results.push([frame, await attempt(files, () => evaluate(whole, truth, frame))]);
+    const results: Evaluated[] = [];
+    for (const read of frames) {
+      const input = inputOfFrame(read, mesh);
+      if (input !== undefined) results.push({ frame: read.name, result: await evaluate(input, read, read.name) });
     }
     return results;
   } catch (error) {
-    if (error instanceof UsageError) throw error;
-    return [[undefined, failure(name, error)]];
+    return [{ result: failureOf(name, error) }];
   }
 }
 
 function noTruth(folder: string): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "FILE_NOT_FOUND",
-    argument: "transform",
-    found: `no true pose in ${folder}`,
-    expected: "gt.json with a pose",
-    remedy: "Pass --transform FILE.",
-  });
+  const found = `no true pose in ${folder}`;
+  return failure("FILE_NOT_FOUND", "transform", found, "gt.json with a pose", "Pass --transform FILE.");
 }

@@ -5,7 +5,7 @@ import { basename, join, resolve, sep } from "node:path";
 import { text } from "node:stream/consumers";
 import { globSync, isDynamicPattern } from "tinyglobby";
 import { caseFiles } from "../case-files.js";
-import { absolutePath } from "./case-identity.js";
+import { absolutePath, namesIn } from "./case-identity.js";
 import type { CaseKey } from "./jsonl-file.js";
 import { UsageError } from "./usage-error.js";
 
@@ -19,6 +19,7 @@ export interface FolderKind {
   is(folder: string): boolean;
 }
 
+const partNames: readonly string[] = Object.values(caseFiles).flat();
 const hasMesh = (folder: string) => caseFiles.mesh.some((name) => existsSync(join(folder, name)));
 const has = (folder: string, ...names: string[]) => names.every((name) => existsSync(join(folder, name)));
 
@@ -89,28 +90,12 @@ function unique(folders: readonly string[]): { folder: string; path: string }[] 
 /** @throws {@link UsageError} for a folder that is above of what is meant */
 function refuseParent({ noun, is }: FolderKind, folder: string): void {
   if (is(folder)) return;
-  const children = childrenOf(folder);
-  if (
-    children.some((name) =>
-      Object.values(caseFiles)
-        .flat()
-        .includes(name as never),
-    )
-  )
-    return;
+  if (namesIn(folder).some((name) => partNames.includes(name))) return;
   const inside = (path: string, depth: number): boolean =>
-    childrenOf(path).some((name) => is(join(path, name)) || (depth > 1 && inside(join(path, name), depth - 1)));
+    namesIn(path).some((name) => is(join(path, name)) || (depth > 1 && inside(join(path, name), depth - 1)));
   if (!inside(folder, 2)) return;
   const pattern = `${folder.replace(/[\\/]+$/, "")}/**`;
   throw new UsageError(`${folder} is no ${noun} but holds some. Pass '${pattern}', in quotes, for all of them.`);
-}
-
-function childrenOf(folder: string): string[] {
-  try {
-    return readdirSync(folder);
-  } catch {
-    return [];
-  }
 }
 
 /** Expands a pattern that the shell did not expand. What exists is no pattern. */

@@ -38,10 +38,9 @@ export function givenOptions(
 
 function flagOf(row: OptionRow, rows: readonly OptionRow[]): Option {
   const flag = isNegated(row) ? `--no-${flagName(row)}` : `--${flagName(row)}`;
-  const option = new Option(`${flag}${placeholder(row)}`, description(row, rows));
-  const parse = parserOf(row);
-  if (parse !== undefined) option.argParser(parse);
-  return option;
+  const { value, parse } = kinds[row.kind];
+  const option = new Option(`${flag}${value(row.name)}`, description(row, rows));
+  return parse === undefined ? option : option.argParser((text) => parse(text, row));
 }
 
 /** The summary of an option with its values and default. Option names in it are replaced by flags. */
@@ -76,49 +75,22 @@ function defaultOf({ kind, default: value }: OptionRow): string | undefined {
   return `default ${Array.isArray(value) ? value.join(",") : String(value)}`;
 }
 
-function placeholder({ kind, name }: OptionRow): string {
-  switch (kind) {
-    case "integer":
-      return " <n>";
-    case "number":
-      return name.endsWith("M") ? " <metres>" : name.endsWith("Deg") ? " <degrees>" : " <x>";
-    case "boolean":
-      return "";
-    case "choice":
-      return " <name>";
-    case "scale":
-      return " <free|a|min,max>";
-    case "direction":
-      return " <x,y,z>";
-    case "symmetry":
-      return " <name|json>";
-    case "transform":
-      return " <file>";
-    case "guard":
-      return " <min,max|none>";
-  }
-}
+const numeric = (name: string) => (name.endsWith("M") ? " <metres>" : name.endsWith("Deg") ? " <degrees>" : " <x>");
 
-function parserOf(row: OptionRow): ((text: string) => unknown) | undefined {
-  switch (row.kind) {
-    case "integer":
-    case "number":
-      return number;
-    case "choice":
-      return (text) => chosen(text, row.choices ?? []);
-    case "scale":
-      return scale;
-    case "direction":
-      return direction;
-    case "symmetry":
-      return symmetry;
-    case "guard":
-      return guard;
-    case "boolean":
-    case "transform":
-      return undefined;
-  }
-}
+/** What follows the flags of each kind of option, by the name of the option, and how it is parsed. */
+const kinds: Readonly<
+  Record<OptionRow["kind"], { value: (name: string) => string; parse?: (text: string, row: OptionRow) => unknown }>
+> = {
+  integer: { value: () => " <n>", parse: number },
+  number: { value: numeric, parse: number },
+  boolean: { value: () => "" },
+  choice: { value: () => " <name>", parse: (text, { choices = [] }) => chosen(text, choices) },
+  scale: { value: () => " <free|a|min,max>", parse: scale },
+  direction: { value: () => " <x,y,z>", parse: direction },
+  symmetry: { value: () => " <name|json>", parse: symmetry },
+  transform: { value: () => " <file>" },
+  guard: { value: () => " <min,max|none>", parse: guard },
+};
 
 function chosen(text: string, choices: readonly string[]): string {
   if (choices.includes(text)) return text;

@@ -1,6 +1,8 @@
 /** Outcomes of cases, for tables and for JSON. */
-import { describe, Sim3AlignError } from "../error.js";
+import { describe, failure, Sim3AlignError } from "../error.js";
 import type { AlignResult, Evaluation, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
+import type { Style } from "./style.js";
+import { UsageError } from "./usage-error.js";
 
 /** An aligned case. */
 export interface Success {
@@ -31,30 +33,35 @@ export interface Failure {
 export type Outcome = Success | ViewsSuccess | Failure;
 
 /** Converts any exception to a `Sim3AlignError`. */
-export function asSim3AlignError(error: unknown): Sim3AlignError {
+function asSim3AlignError(error: unknown): Sim3AlignError {
   if (error instanceof Sim3AlignError) return error;
-  return new Sim3AlignError(
-    {
-      code: "INTERNAL",
-      argument: "sim3align",
-      found: error instanceof Error ? (error.stack ?? error.message) : describe(error),
-      expected: "a result or a Sim3AlignError",
-      remedy: "This is a bug in sim3align. Please report it with the input.",
-    },
-    { cause: error },
-  );
+  const found = error instanceof Error ? (error.stack ?? error.message) : describe(error);
+  const remedy = "This is a bug in sim3align. Please report it with the input.";
+  return failure("INTERNAL", "sim3align", found, "a result or a Sim3AlignError", remedy, error);
 }
 
-/** The failure of a case. `files` maps arguments to the known files. */
-export function failure(name: string, thrown: unknown, files: Readonly<Record<string, string>> = {}): Failure {
+/**
+ * The failure of a case. `files` maps arguments to the known files.
+ * @throws {@link UsageError} for what concerns all cases
+ */
+export function failureOf(name: string, thrown: unknown, files: Readonly<Record<string, string>> = {}): Failure {
+  if (thrown instanceof UsageError) throw thrown;
   const error = asSim3AlignError(thrown);
+  if (isAboutOptions(error)) throw new UsageError(error.message);
   return { name, error, file: files[error.argument.split(".")[0] ?? ""] };
 }
+
+/** Whether all cases would fail with this error. The initial pose may differ from case to case. */
+const isAboutOptions = ({ argument }: Sim3AlignError) =>
+  argument.startsWith("options") && !argument.startsWith("options.initial");
 
 /** Formats a failure in one or two lines. */
 export function failureText({ name, error, file }: Failure): string {
   return `${name}: ${error.code}: ${error.message}${file === undefined ? "" : `\n  in ${file}`}`;
 }
+
+/** What is printed of a failure. */
+export const failedLine = (failure: Failure, style: Style): string => style.red("failed ") + failureText(failure);
 
 /** The transform and other common properties of a JSON entry. */
 function transformJson<T extends Sim3>({ scale, rotation, rotationMatrix, translation, matrix, ...rest }: T) {

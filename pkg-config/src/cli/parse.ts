@@ -3,6 +3,7 @@ import { readFileSync } from "node:fs";
 import { InvalidArgumentError } from "commander";
 import { MAX_WORKERS } from "../aligner-options.js";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
+import { isRecord } from "../values.js";
 import { UsageError } from "./usage-error.js";
 
 /** Parses a number. */
@@ -51,7 +52,10 @@ export function direction(text: string): [number, number, number] {
 
 /** Parses a name, which the core checks, or a JSON array of axes. */
 export function symmetry(text: string): SymmetryOption {
-  if (!text.trimStart().startsWith("[")) return text as "auto";
+  return text.trimStart().startsWith("[") ? (json(text) as SymmetryOption) : (text as "auto");
+}
+
+function json(text: string): unknown {
   try {
     return JSON.parse(text);
   } catch (error) {
@@ -61,12 +65,8 @@ export function symmetry(text: string): SymmetryOption {
 
 /** Parses a JSON object. */
 export function jsonObject(text: string): Record<string, unknown> {
-  try {
-    const value: unknown = JSON.parse(text);
-    if (typeof value === "object" && value !== null && !Array.isArray(value)) return value as Record<string, unknown>;
-  } catch (error) {
-    throw new InvalidArgumentError(`Invalid JSON: ${(error as Error).message}.`);
-  }
+  const value = json(text);
+  if (isRecord(value)) return value;
   throw new InvalidArgumentError('Expected an object, such as {"ransacIterations": 200000}.');
 }
 

@@ -2,11 +2,14 @@
 import { writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import type { Command } from "commander";
+import { inputOfFrame, readFrames } from "../case-folder.js";
 import { exportGlb, placeGlb } from "../conventions/glb.js";
 import type { AlignInput, MeshArrays } from "../input/types.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
 import { isRecord } from "../values.js";
+import { type CaseFlags, caseSettings } from "./case-options.js";
+import type { CaseToDo } from "./cases.js";
 import { alternativesOf, fileName, ReportFolder } from "./report-folder.js";
 import { makeFolder } from "./writable.js";
 
@@ -102,4 +105,43 @@ export class Pictures {
 function posed({ mesh }: AlignInput, shot: Shot, matrix: readonly number[]): Uint8Array {
   if (isRecord(mesh) && mesh.format === "glb") return placeGlb(mesh.bytes as Uint8Array, { matrix });
   return exportGlb(shot.mesh as MeshArrays, { matrix });
+}
+
+/**
+ * Draws the poses in an entry. What cannot be drawn is said, and changes no result.
+ * @param isResumed whether pictures may be there already
+ * @param inputsOf reads what the poses were found in, by the names that {@link shownIn} gives them
+ */
+export async function drawEntry(
+  pictures: Pictures,
+  name: string,
+  entry: object,
+  isResumed: boolean,
+  inputsOf: () => Promise<ReadonlyMap<string, AlignInput>>,
+): Promise<void> {
+  if (!pictures.isWanted || "error" in entry) return;
+  const shown = shownIn(name, entry);
+  if (isResumed && shown.every((each) => pictures.has(each.name))) return;
+  try {
+    const inputs = await inputsOf();
+    for (const each of shown) await pictures.draw({ ...each, input: inputs.get(each.name) });
+  } catch (error) {
+    console.error(`no pictures of ${name}: ${(error as Error).message}`);
+  }
+}
+
+/** What the poses of a case were found in. */
+export async function inputsOfCase(
+  { name, folder, read }: CaseToDo,
+  entry: object,
+  flags: CaseFlags,
+): Promise<Map<string, AlignInput>> {
+  if (!("frames" in entry) || folder === undefined) return new Map([[name, (await read()).input]]);
+  const { mesh, frames } = await readFrames(folder, caseSettings(flags));
+  const inputs = new Map<string, AlignInput>();
+  for (const frame of frames) {
+    const input = inputOfFrame(frame, mesh);
+    if (input !== undefined) inputs.set(`${name}/${frame.name}`, input);
+  }
+  return inputs;
 }

@@ -1,120 +1,106 @@
 /** Human-readable tables of results. */
 import type { AlignResult, Evaluation, LayoutErrors, Metrics, PoseErrors, Warning } from "../index.js";
-import { fixed, significant } from "./number.js";
-import { type Failure, failureText, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
+import { type Failure, failedLine, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
 import type { Style } from "./style.js";
-import { type Column, headings, pairs, tableLine, textWidth } from "./table.js";
+import { type Column, fixed, headings, pairs, significant, tableLine, textWidth } from "./table.js";
 
 const number = (heading: string): Column => ({ heading, isNumber: true, width: 6 });
 
-const columns: readonly Column[] = [
-  { heading: "case" },
-  ...["conf.", "alt."].map(number),
-  { ...number("scale"), width: 9 },
-  ...["s/s_init", "IoU", "bound. F", "drift px", "Chamfer mm", "fitness", "MAE mm", "time s"].map(number),
-];
+/** The metrics in tables: heading, name, and number of decimals. */
+const metricColumns = [
+  ["IoU", "iou", 3],
+  ["bound. F", "boundaryF", 3],
+  ["drift px", "centerDriftPx", 1],
+  ["Chamfer mm", "chamferMm", 2],
+  ["fitness", "fitness", 3],
+  ["MAE mm", "depthMaeMm", 2],
+] as const;
 
-const errorColumns: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
+type Metric = (typeof metricColumns)[number][1];
 
-/** The table of several cases, one row per case, whose columns do not depend on the results. */
-export class Summary {
-  readonly #columns: readonly Column[];
-  readonly #hasTruth: boolean;
-  readonly #style: Style;
-  #isEmpty = true;
+const metricHeadings = metricColumns.map(([heading]) => number(heading));
+const metricCells = (read: (metric: Metric) => number | null | undefined): string[] =>
+  metricColumns.map(([, metric, digits]) => fixed(read(metric), digits));
 
-  /** @param cases all cases of the table; the errors have columns if a case has a true pose */
-  constructor(cases: readonly { name: string; hasTruth: boolean }[], style: Style) {
-    this.#hasTruth = cases.some(({ hasTruth }) => hasTruth);
-    const width = cases.reduce((widest, { name }) => Math.max(widest, textWidth(name)), 0);
-    const all = this.#hasTruth ? [...columns, ...errorColumns] : columns;
-    this.#columns = all.map((column, i) => (i === 0 ? { ...column, width } : column));
-    this.#style = style;
-  }
+const errorHeadings: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
 
-  /** The row of a case; the first one is preceded by the headings. */
-  lines(outcome: Outcome): string[] {
-    const cells =
-      "error" in outcome
-        ? [outcome.name, this.#style.red(outcome.error.code)]
-        : "views" in outcome
-          ? [...viewsRow(outcome), ...(this.#hasTruth ? errorCells(null) : [])]
-          : [...row(outcome), ...(this.#hasTruth ? errorCells(outcome.errors) : [])];
-    const lines = [tableLine(this.#columns, cells)];
-    if (this.#isEmpty) lines.unshift(this.#style.bold(headings(this.#columns)));
-    this.#isEmpty = false;
-    return lines;
-  }
+/** Writes the lines of a table, whose columns do not depend on the results. The first row is preceded by the headings. */
+export type RowLines<T> = (name: string, result: T | Failure) => string[];
+
+function tableOf<T extends object>(
+  names: readonly string[],
+  columns: readonly Column[],
+  style: Style,
+  cells: (result: T) => string[],
+): RowLines<T> {
+  const width = names.reduce((widest, name) => Math.max(widest, textWidth(name)), 0);
+  const all = [{ heading: "case", width }, ...columns];
+  let isEmpty = true;
+  return (name, result) => {
+    const row = "error" in result ? [style.red((result as Failure).error.code)] : cells(result as T);
+    const first = isEmpty ? [style.bold(headings(all))] : [];
+    isEmpty = false;
+    return [...first, tableLine(all, [name, ...row])];
+  };
+}
+
+/** The table of several cases; the errors have columns if a case has a true pose. */
+export function summaryTable(
+  cases: readonly { name: string; hasTruth: boolean }[],
+  style: Style,
+): RowLines<Success | ViewsSuccess> {
+  const hasTruth = cases.some((each) => each.hasTruth);
+  const columns = [
+    ...["conf.", "alt."].map(number),
+    { ...number("scale"), width: 9 },
+    number("s/s_init"),
+    ...metricHeadings,
+    number("time s"),
+    ...(hasTruth ? errorHeadings : []),
+  ];
+  const names = cases.map(({ name }) => name);
+  return tableOf(names, columns, style, (outcome) => {
+    const cells = "views" in outcome ? viewsCells(outcome) : caseCells(outcome);
+    return hasTruth ? [...cells, ...errorCells("views" in outcome ? null : outcome.errors)] : cells;
+  });
 }
 
 /** The table of several evaluations. */
-export class EvaluationSummary {
-  readonly #columns: readonly Column[];
-  readonly #style: Style;
-  #isEmpty = true;
-
-  constructor(cases: readonly { name: string }[], style: Style) {
-    const width = cases.reduce((widest, { name }) => Math.max(widest, textWidth(name)), 0);
-    const metrics = ["IoU", "bound. F", "drift px", "Chamfer mm", "fitness", "MAE mm"].map(number);
-    this.#columns = [{ heading: "case", width }, ...metrics, ...errorColumns];
-    this.#style = style;
-  }
-
-  /** The row of a case; the first one is preceded by the headings. */
-  lines(name: string, result: Evaluation | Failure): string[] {
-    const cells =
-      "error" in result
-        ? [name, this.#style.red(result.error.code)]
-        : [name, ...metricCells(result.metrics), ...errorCells(result.errors)];
-    const lines = [tableLine(this.#columns, cells)];
-    if (this.#isEmpty) lines.unshift(this.#style.bold(headings(this.#columns)));
-    this.#isEmpty = false;
-    return lines;
-  }
+export function evaluationTable(names: readonly string[], style: Style): RowLines<Evaluation> {
+  const cells = ({ metrics, errors }: Evaluation) => [
+    ...metricCells((metric) => metrics[metric]),
+    ...errorCells(errors),
+  ];
+  return tableOf(names, [...metricHeadings, ...errorHeadings], style, cells);
 }
 
-const metricCells = (metrics: Metrics | undefined): string[] => [
-  fixed(metrics?.iou, 3),
-  fixed(metrics?.boundaryF, 3),
-  fixed(metrics?.centerDriftPx, 1),
-  fixed(metrics?.chamferMm, 2),
-  fixed(metrics?.fitness, 3),
-  fixed(metrics?.depthMaeMm, 2),
-];
-
-function row({ name, alignment }: Success): string[] {
+function caseCells({ alignment }: Success): string[] {
   const { scale, metrics, diagnostics } = alignment;
   const { scaleRatio, timingsMs } = diagnostics;
   const certain = "confidence" in alignment ? alignment : null;
   return [
-    name,
     fixed(certain?.confidence, 2),
     certain === null ? "–" : String(certain.alternatives.length),
     significant(scale, 4),
     fixed(scaleRatio, 3),
-    ...metricCells(metrics),
+    ...metricCells((metric) => metrics?.[metric]),
     fixed(timingsMs.total / 1000, 2),
   ];
 }
 
-function viewsRow({ name, views: alignment }: ViewsSuccess): string[] {
+/** Of the metrics, the means over the views that have them. */
+function viewsCells({ views: alignment }: ViewsSuccess): string[] {
   const { confidence, alternatives, scale, views, diagnostics } = alignment;
-  const mean = (metric: "iou" | "boundaryF" | "centerDriftPx" | "chamferMm" | "fitness" | "depthMaeMm") => {
+  const mean = (metric: Metric) => {
     const values = views.flatMap(({ metrics }) => metrics?.[metric] ?? []);
     return values.length === 0 ? null : values.reduce((sum, value) => sum + value, 0) / values.length;
   };
   return [
-    name,
     fixed(confidence, 2),
     String(alternatives.length),
     significant(scale, 4),
     "–",
-    fixed(mean("iou"), 3),
-    fixed(mean("boundaryF"), 3),
-    fixed(mean("centerDriftPx"), 1),
-    fixed(mean("chamferMm"), 2),
-    fixed(mean("fitness"), 3),
-    fixed(mean("depthMaeMm"), 2),
+    ...metricCells(mean),
     fixed(diagnostics.timingsMs.total / 1000, 2),
   ];
 }
@@ -152,7 +138,7 @@ export function viewsDetails({ name, views: alignment, frames, errors }: ViewsSu
 }
 
 function errorCells(errors: PoseErrors | null): string[] {
-  if (errors === null) return errorColumns.map(() => "–");
+  if (errors === null) return errorHeadings.map(() => "–");
   return [
     fixed(100 * errors.scaleError, 1),
     fixed(errors.rotationErrorDeg, 1),
@@ -310,7 +296,7 @@ const warningText = ({ code, message }: Warning, style: Style) => `${style.yello
 export function notes(outcomes: readonly Outcome[], style: Style): string[] {
   return outcomes.flatMap((outcome) =>
     "error" in outcome
-      ? [style.red("failed ") + failureText(outcome)]
+      ? [failedLine(outcome, style)]
       : ("views" in outcome ? outcome.views : outcome.alignment).warnings.map(
           (warning) => `${outcome.name}: ${warningText(warning, style)}`,
         ),

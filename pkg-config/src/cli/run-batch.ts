@@ -9,8 +9,8 @@ import { onInterruption } from "./interruption.js";
 import type { CaseKey } from "./jsonl-file.js";
 import type { Output } from "./output.js";
 import { type PictureFlags, Pictures } from "./pictures.js";
-import { ProgressLine } from "./progress-line.js";
 import { resumedEntries } from "./record.js";
+import { StatusLine } from "./status-line.js";
 
 /** What the only item of a batch shows while it is worked on. */
 export interface Live {
@@ -40,23 +40,43 @@ export async function runBatch<T extends CaseKey>(
 ): Promise<void> {
   const pictures = await Pictures.open(flags);
   const batch = new Batch(tasks.length, output, pictures, flags);
-  const done = new Set<T>();
+  const resumed = new Set<T>();
   if (flags.resume) {
     for await (const { task, name, entry } of resumedEntries(output, tasks)) {
       output.addRecorded(name, entry);
       if (task === undefined) continue;
-      done.add(task);
+      resumed.add(task);
       await work.draw?.(pictures, task, entry, true);
       batch.resume(name, entry);
     }
-    console.error(`resumed: ${done.size} of ${tasks.length} cases are in ${flags.jsonl}`);
+    console.error(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
   }
-  const left = tasks.filter((task) => !done.has(task));
+  const left = tasks.filter((task) => !resumed.has(task));
+  const { workers = "auto" } = flags;
+  // A single item is done on this thread, unless the flags ask for workers.
+  const auto = tasks.length > 1 ? availableParallelism() : 0;
+  const size = Math.min(workers === "auto" ? auto : workers, tasks.length > 1 ? left.length : MAX_WORKERS, MAX_WORKERS);
+  const run = async (aligner: Aligner, task: T): Promise<Done> => {
+    const live = tasks.length > 1 ? undefined : liveOf(task, output);
+    const done = await work.run(aligner, task, live).finally(() => live?.clear());
+    // Before the record: what is there needs no other pictures.
+    await work.draw?.(pictures, task, done.entry, false);
+    return live === undefined ? done : { ...done, rows: [] };
+  };
   const stop = onInterruption(() => batch.interrupt());
+  let aligner: Aligner | undefined;
   try {
-    if (tasks.length > 1) await doMany(left, flags, batch, output, pictures, work);
-    else if (left.length > 0) await doOne(left[0] as T, flags, batch, output, pictures, work);
+    if (left.length > 0) {
+      const own = await createAligner({ workers: size });
+      aligner = own;
+      if (tasks.length > 1) batch.begin(left.length);
+      for await (const done of concurrently(left, size > 1 ? size + READ_AHEAD : 1, (task) => run(own, task))) {
+        batch.add(done);
+        if (output.isClosed) break;
+      }
+    }
   } finally {
+    aligner?.dispose();
     stop();
     batch.clear();
   }
@@ -64,60 +84,18 @@ export async function runBatch<T extends CaseKey>(
   if (batch.hasFailure) process.exitCode = 1;
 }
 
-/** Does the only item, on this thread unless the flags ask for workers. */
-async function doOne<T extends CaseKey>(
-  task: T,
-  flags: BatchFlags,
-  batch: Batch,
-  output: Output,
-  pictures: Pictures,
-  work: Work<T>,
-): Promise<void> {
-  const aligner = await createAligner({ workers: flags.workers === "auto" ? 0 : (flags.workers ?? 0) });
-  const progress = new ProgressLine(process.stderr, 1);
-  progress.begin(task.name);
-  const live: Live = {
-    progress: (state) => progress.update(state),
+/** What the only item of a batch shows, with a line for its progress. */
+function liveOf(task: CaseKey, output: Output): Live & { clear(): void } {
+  const line = new StatusLine(process.stderr);
+  const show = (state: string) => line.show(`[1/1] ${task.name}  ${state}`);
+  show("reading");
+  return {
+    progress: ({ stage, fraction }) => show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`),
     partial: (entry) => output.add(task, entry, false),
     lines(lines) {
-      progress.clear();
+      line.clear();
       output.lines(lines);
     },
+    clear: () => line.clear(),
   };
-  try {
-    const done = await work.run(aligner, task, live).finally(() => progress.clear());
-    await work.draw?.(pictures, task, done.entry, false);
-    batch.add({ ...done, rows: [] });
-  } finally {
-    aligner.dispose();
-  }
-}
-
-/** Does items side by side. Each is read when its turn comes. */
-async function doMany<T extends CaseKey>(
-  tasks: readonly T[],
-  { workers = "auto" }: BatchFlags,
-  batch: Batch,
-  output: Output,
-  pictures: Pictures,
-  work: Work<T>,
-): Promise<void> {
-  if (tasks.length === 0) return;
-  const size = Math.min(workers === "auto" ? availableParallelism() : workers, tasks.length, MAX_WORKERS);
-  const aligner = await createAligner({ workers: size });
-  batch.begin(tasks.length);
-  try {
-    const run = async (task: T) => {
-      const done = await work.run(aligner, task);
-      // Before the record: what is there needs no other pictures.
-      await work.draw?.(pictures, task, done.entry, false);
-      return done;
-    };
-    for await (const done of concurrently(tasks, size === 1 ? 1 : size + READ_AHEAD, run)) {
-      batch.add(done);
-      if (output.isClosed) break;
-    }
-  } finally {
-    aligner.dispose();
-  }
 }

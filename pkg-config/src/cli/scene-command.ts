@@ -14,22 +14,19 @@ import {
 } from "../index.js";
 import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values.js";
-import { isAboutOptions } from "./align-case.js";
+import { errorsOf } from "./align-case.js";
 import type { Done } from "./batch.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
 import { addCaseOptions, type CaseFlags, caseSettings, conventionsHelp, statusHelp } from "./case-options.js";
 import { type FolderToDo, foldersToDo, sceneKind } from "./folders.js";
-import { fixed } from "./number.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { type Failure, failure, failureText, type Outcome, outcomeJson } from "./outcome.js";
+import { type Failure, failedLine, failureOf, failureText, type Outcome, outcomeJson } from "./outcome.js";
 import { Output } from "./output.js";
-import { drawEntry } from "./picture-inputs.js";
-import { addPictureFlags, type PictureFlags } from "./pictures.js";
+import { addPictureFlags, drawEntry, type PictureFlags } from "./pictures.js";
 import { type Live, runBatch } from "./run-batch.js";
 import { addSceneFileFlags, checkSceneFiles, type SceneFileFlags, writeSceneFiles } from "./scene-files.js";
 import type { Style } from "./style.js";
-import { type Column, headings, tableLine } from "./table.js";
-import { UsageError } from "./usage-error.js";
+import { type Column, fixed, headings, tableLine } from "./table.js";
 
 interface SceneFlags extends CaseFlags, PictureFlags, SceneFileFlags, BatchFlags, Readonly<Record<string, unknown>> {
   snap?: boolean;
@@ -141,15 +138,18 @@ async function alignScene(
     const input = { ...scene.input, support } as SceneInput;
     const onProgress = live?.progress;
     const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress }));
-    const errors = await errorsOf(aligner, scene, result);
+    const errors = await Promise.all(
+      result.objects.map((object, i) => {
+        const own = inputOf(scene, i);
+        return object.error === undefined && own !== undefined ? errorsOf(aligner, own, object, scene.truths[i]) : null;
+      }),
+    );
     const outcomes = outcomesOf(result, errors);
     const written = await writeSceneFiles(scene, result, flags);
     return done(sceneJson(result, outcomes), [...lines(key.name, result, outcomes, errors), ...written]);
   } catch (error) {
-    if (error instanceof UsageError) throw error;
-    if (isAboutOptions(error)) throw new UsageError(error.message);
-    const failed = failure(key.name, error);
-    return done(outcomeJson(failed), [style.red("failed ") + failureText(failed)]);
+    const failed = failureOf(key.name, error);
+    return done(outcomeJson(failed), [failedLine(failed, style)]);
   }
 }
 
@@ -158,25 +158,6 @@ async function supportOf(flag: string | undefined): Promise<SceneInput["support"
   if (flag === "none") return null;
   // The core checks the plane.
   return parsedJson("support", await read("support", flag)) as SceneInput["support"];
-}
-
-async function errorsOf(
-  aligner: Aligner,
-  scene: SceneOnDisk,
-  { objects }: SceneResult,
-): Promise<(PoseErrors | null)[]> {
-  const errors: (PoseErrors | null)[] = [];
-  for (const [i, object] of objects.entries()) {
-    const truth = scene.truths[i];
-    const input = inputOf(scene, i);
-    if (object.error !== undefined || truth === null || truth === undefined || input === undefined) {
-      errors.push(null);
-      continue;
-    }
-    const { transform, symmetry } = truth;
-    errors.push((await aligner.evaluate(input, object, { truth: transform, symmetry, layout: false })).errors);
-  }
-  return errors;
 }
 
 /** The input of one object. */

@@ -14,8 +14,8 @@ import { SIMULATOR_DEFAULTS, type SimulatorObject, type SimulatorScene, simulato
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
 import { withoutUndefined } from "../values.js";
-import { fixed } from "./number.js";
 import { number } from "./parse.js";
+import { fixed } from "./table.js";
 import { UsageError } from "./usage-error.js";
 import { checkWritable, makeFolder } from "./writable.js";
 
@@ -50,20 +50,16 @@ export const addSceneFileFlags = (command: Command): Command =>
  * @throws {@link UsageError}
  */
 export function checkSceneFiles({ sceneGlb, mjcf, urdf, usd }: SceneFileFlags, scenes: number): void {
-  const files = { "scene-glb": sceneGlb, mjcf, urdf, usd };
-  const given = Object.entries(files).find(([, path]) => path !== undefined);
-  if (given !== undefined && scenes > 1) throw new UsageError(`--${given[0]} takes a single scene.`);
-  for (const [flag, path] of [
-    ["--scene-glb", sceneGlb],
-    ["--usd", usd],
-  ] as const) {
-    if (path !== undefined) checkWritable(flag, path);
-  }
-  for (const [flag, path] of [
-    ["--mjcf", mjcf],
-    ["--urdf", urdf],
-  ] as const) {
-    if (path !== undefined) makeFolder(flag, path);
+  const outputs = [
+    ["--scene-glb", sceneGlb, checkWritable],
+    ["--mjcf", mjcf, makeFolder],
+    ["--urdf", urdf, makeFolder],
+    ["--usd", usd, checkWritable],
+  ] as const;
+  for (const [flag, path, check] of outputs) {
+    if (path === undefined) continue;
+    if (scenes > 1) throw new UsageError(`${flag} takes a single scene.`);
+    check(flag, path);
   }
 }
 

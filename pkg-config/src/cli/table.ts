@@ -1,4 +1,4 @@
-/** Aligned columns of text. */
+/** Aligned columns of text, and the numbers in them. */
 import { stripVTControlCharacters } from "node:util";
 
 /** A column. Longer cells shift the rest of their row. */
@@ -39,4 +39,19 @@ export const headings = (columns: readonly Column[]) =>
 export function pairs(entries: readonly (readonly [name: string, value: string])[]): string[] {
   const longest = Math.max(...entries.map(([name]) => textWidth(name)));
   return entries.map(([name, value]) => `  ${pad(name, longest, false)}  ${value}`);
+}
+
+/** Formats a number with a fixed number of decimals; a missing one is a dash. */
+export function fixed(value: number | null | undefined, digits: number): string {
+  return value === null || value === undefined ? "–" : value.toFixed(digits);
+}
+
+/** Formats a number with the given significant digits, without an exponent if a few zeros suffice. */
+export function significant(value: number | null | undefined, digits: number): string {
+  if (value === null || value === undefined) return "–";
+  if (value === 0 || !Number.isFinite(value)) return String(value);
+  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  return magnitude < -5 || magnitude > 8
+    ? value.toExponential(digits - 1)
+    : value.toFixed(Math.max(0, digits - 1 - magnitude));
 }

@@ -3,7 +3,6 @@ import { join } from "node:path";
 import { Command } from "commander";
 import { frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
 import { type Aligner, OPTIONS, type Tracker, type TrackOptions } from "../index.js";
-import { isAboutOptions } from "./align-case.js";
 import type { Done } from "./batch.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
 import {
@@ -15,13 +14,12 @@ import {
   statusHelp,
 } from "./case-options.js";
 import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
-import { fixed, significant } from "./number.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { failure, failureText, outcomeJson, trackJson } from "./outcome.js";
+import { failedLine, failureOf, outcomeJson, trackJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { type Live, runBatch } from "./run-batch.js";
 import type { Style } from "./style.js";
-import { type Column, headings, tableLine } from "./table.js";
+import { type Column, fixed, headings, significant, tableLine } from "./table.js";
 import { readTransform } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
@@ -106,7 +104,7 @@ async function trackVideo(
         const { state, confidence, scale, scaleSd } = tracked;
         row.push(state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2));
       } catch (error) {
-        const failed = failure(frame, error, frameFiles);
+        const failed = failureOf(frame, error, frameFiles);
         frames.push({ name: frame, tracked: failed });
         row.push(failed.error.code, "–", "–", "–");
       }
@@ -117,10 +115,8 @@ async function trackVideo(
     }
     return { key, entry: trackJson(frames), rows, remarks: [] };
   } catch (error) {
-    if (error instanceof UsageError) throw error;
-    if (isAboutOptions(error)) throw new UsageError(error.message);
-    const failed = failure(name, error, files);
-    print(style.red("failed ") + failureText(failed));
+    const failed = failureOf(name, error, files);
+    print(failedLine(failed, style));
     return { key, entry: outcomeJson(failed), rows, remarks: [] };
   } finally {
     tracker?.close();

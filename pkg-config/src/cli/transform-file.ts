@@ -1,8 +1,8 @@
 /** Transforms from JSON files. */
 import { read } from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
-import { Sim3AlignError } from "../error.js";
-import { isRecord } from "../values.js";
+import { failure, type Sim3AlignError } from "../error.js";
+import { isRecord, oncePerKey } from "../values.js";
 
 /** The layout of a transform file, for --help. */
 export const transformFileHelp = `
@@ -12,7 +12,9 @@ A transform file is JSON with
   - the output of "sim3align align --json", or a record of --jsonl, from which the entry of the case is read.`;
 
 /** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
-const files = new Map<string, Promise<unknown>>();
+const jsonIn = oncePerKey(async (path: string, argument: string) =>
+  parse(new TextDecoder().decode(await read(argument, path)), argument, path),
+);
 
 /**
  * Reads a transform file as 16 numbers, column-major.
@@ -26,12 +28,7 @@ export async function readTransform(
   name: string,
   frame?: string,
 ): Promise<number[]> {
-  let reading = files.get(path);
-  if (reading === undefined) {
-    reading = read(argument, path).then((bytes) => parse(new TextDecoder().decode(bytes), argument, path));
-    files.set(path, reading);
-  }
-  const json = await reading;
+  const json = await jsonIn(path, argument);
   const invalid = (found: string, expected: string) => invalidTransform(argument, found, expected);
   const own = entryOf(json, name, invalid);
   const { frames } = own as Readonly<Record<string, unknown>>;
@@ -53,16 +50,8 @@ function parse(text: string, argument: string, path: string): unknown {
       }),
     );
   } catch (cause) {
-    throw new Sim3AlignError(
-      {
-        code: "CORRUPT_FILE",
-        argument,
-        found: `${path}: ${(cause as Error).message}`,
-        expected: "JSON",
-        remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',
-      },
-      { cause },
-    );
+    const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
+    throw failure("CORRUPT_FILE", argument, `${path}: ${(cause as Error).message}`, "JSON", remedy, cause);
   }
 }
 
@@ -80,11 +69,6 @@ function entryOf(json: unknown, name: string, invalid: (found: string, expected:
 }
 
 function invalidTransform(argument: string, found: string, expected: string): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "INVALID_TRANSFORM",
-    argument,
-    found,
-    expected,
-    remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',
-  });
+  const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
+  return failure("INVALID_TRANSFORM", argument, found, expected, remedy);
 }

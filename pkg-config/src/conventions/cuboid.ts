@@ -68,11 +68,8 @@ export function toCuboid(box: Pick<ObjectBox, "sizeM" | "centerM" | "rotation">,
   const sides = finiteNumbers("box.sizeM", sizeM, 3, "three finite numbers") as Vector3;
   for (const side of sides) if (side !== 0) positive("box.sizeM", side);
   const [length, height] = [axisOf("options.front", front), axisOf("options.up", up)];
-  oneOf(
-    "options.up",
-    up,
-    front.endsWith(up.slice(-1)) ? meshAxes.filter((axis) => !front.endsWith(axis.slice(-1))) : meshAxes,
-  );
+  const isParallel = front.endsWith(up.slice(-1));
+  oneOf("options.up", up, isParallel ? meshAxes.filter((axis) => !front.endsWith(axis.slice(-1))) : meshAxes);
   const [fx, fy, fz] = length;
   const [ux, uy, uz] = height;
   const left: Vector3 = [uy * fz - uz * fy, uz * fx - ux * fz, ux * fy - uy * fx];

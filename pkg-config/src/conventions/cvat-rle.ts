@@ -1,9 +1,9 @@
 /** Masks in CVAT's format: run lengths along the rows of the bounding box of the mask. */
-import { describe } from "../error.js";
+import { describe, failure } from "../error.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import { filledRuns } from "../formats/runs.js";
 import type { PixelArray } from "../input/types.js";
-import { failure, flattened, isRecord, whole } from "../values.js";
+import { flattened, isRecord, whole } from "../values.js";
 
 /** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */
 export interface CvatMaskElement {
@@ -59,13 +59,8 @@ function fromPoints(points: unknown): BoxRuns {
   }
   if (numbers.length < 5) {
     const remedy = "Pass the points of a shape of type mask.";
-    throw failure(
-      "WRONG_LENGTH",
-      "mask",
-      `${numbers.length} numbers`,
-      "run lengths and the four numbers of the box",
-      remedy,
-    );
+    const expected = "run lengths and the four numbers of the box";
+    throw failure("WRONG_LENGTH", "mask", `${numbers.length} numbers`, expected, remedy);
   }
   const [left, top, right, bottom] = numbers.splice(-4);
   const [x, y] = [whole("mask.left", left, 0), whole("mask.top", top, 0)];

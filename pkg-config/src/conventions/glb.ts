@@ -1,10 +1,10 @@
 /** Export of placed meshes, and placement of existing GLB files. */
 import { checkAttached } from "../attached.js";
-import { describe } from "../error.js";
+import { describe, failure } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import { isBuffer } from "../kinds.js";
 import type { Sim3Like } from "../sim3.js";
-import { failure, isRecord, isTypedArray, oneOf, optionsOf, wrongKind } from "../values.js";
+import { isRecord, isTypedArray, oneOf, optionsOf, wrongKind } from "../values.js";
 import { inFrame } from "./frames.js";
 import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
 import type { GltfParts } from "./merged-gltf.js";

@@ -1,8 +1,8 @@
 /** Validation of meshes in arrays. */
 import { checkAttached } from "../attached.js";
-import { describe } from "../error.js";
+import { describe, failure } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
-import { failure, isTypedArray, record, wrongKind } from "../values.js";
+import { isTypedArray, record, type Vector3, wrongKind } from "../values.js";
 
 /** A triangle mesh whose indices are in range. */
 export interface Mesh {
@@ -25,13 +25,8 @@ export function meshOf(argument: string, mesh: unknown): Mesh {
   const count = positions.length / 3;
   if (count === 0) throw failure("EMPTY_MESH", argument, "no vertex", "triangles", "Pass a mesh.");
   if (!Number.isInteger(count)) {
-    throw failure(
-      "WRONG_LENGTH",
-      named,
-      `${positions.length} numbers`,
-      "x, y, z per vertex",
-      "Pass three numbers per vertex.",
-    );
+    const remedy = "Pass three numbers per vertex.";
+    throw failure("WRONG_LENGTH", named, `${positions.length} numbers`, "x, y, z per vertex", remedy);
   }
   const wrong = positions.findIndex((number) => !Number.isFinite(number));
   if (wrong >= 0) {
@@ -57,6 +52,12 @@ export function meshOf(argument: string, mesh: unknown): Mesh {
     throw failure("INDEX_OUT_OF_RANGE", namedIndices, describe(outside), `indices below ${count}`, "Check the mesh.");
   }
   return { positions, indices };
+}
+
+/** The vertex at a corner of a triangle: corners are numbered through all triangles. */
+export function vertexAt({ positions, indices }: Mesh, corner: number): Vector3 {
+  const place = 3 * (indices === null ? corner : (indices[corner] ?? 0));
+  return [positions[place] ?? 0, positions[place + 1] ?? 0, positions[place + 2] ?? 0];
 }
 
 /** Number of triangles. */

@@ -2,7 +2,7 @@
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
 import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values.js";
-import { type Mesh, meshOf } from "./mesh.js";
+import { type Mesh, meshOf, triangleCount, vertexAt } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";
 import { type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";
 import { moved, similarityOf } from "./similarity.js";
@@ -64,13 +64,11 @@ export function objectDimensions(mesh: MeshArrays, transform: Sim3Like, options:
 }
 
 /** The bounds of the vertices along the rows of a matrix. */
-function extent({ positions, indices }: Mesh, rows: Matrix3): { low: Vector3; high: Vector3 } {
+function extent(mesh: Mesh, rows: Matrix3): { low: Vector3; high: Vector3 } {
   const low: Vector3 = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY];
   const high: Vector3 = [Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY];
-  const count = indices?.length ?? positions.length / 3;
-  for (let i = 0; i < count; i++) {
-    const place = 3 * (indices === null ? i : (indices[i] ?? 0));
-    const point = turned(rows, [positions[place] ?? 0, positions[place + 1] ?? 0, positions[place + 2] ?? 0]);
+  for (let i = 0; i < 3 * triangleCount(mesh); i++) {
+    const point = turned(rows, vertexAt(mesh, i));
     for (const k of [0, 1, 2] as const) {
       if (point[k] < low[k]) low[k] = point[k];
       if (point[k] > high[k]) high[k] = point[k];

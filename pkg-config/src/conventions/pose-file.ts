@@ -1,7 +1,8 @@
 /** Pose files: `gt.json` of a case, an annotation, or a saved result. */
+import { failure } from "../error.js";
 import { isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { Sim3 } from "../sim3.js";
-import { failure, isRecord } from "../values.js";
+import { isRecord } from "../values.js";
 import { fromBop } from "./bop.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 

@@ -1,21 +1,16 @@
 /** The principal axes of a mesh's surface. */
 
 import type { Vector3 } from "../values.js";
-import { type Mesh, triangleCount } from "./mesh.js";
+import { type Mesh, triangleCount, vertexAt } from "./mesh.js";
 import { column, determinant, entry, fromColumns, type Matrix3, product, transposed } from "./rotation.js";
 
 /** The covariance of the surface, weighted by area, independent of the distribution of vertices. */
 function covariance(mesh: Mesh): Matrix3 {
-  const { positions, indices } = mesh;
-  const vertex = (corner: number): Vector3 => {
-    const place = 3 * (indices === null ? corner : (indices[corner] ?? 0));
-    return [positions[place] ?? 0, positions[place + 1] ?? 0, positions[place + 2] ?? 0];
-  };
   let area = 0;
   const sum: Vector3 = [0, 0, 0];
   const squares = new Float64Array(9);
   for (let t = 0; t < triangleCount(mesh); t++) {
-    const corners = [vertex(3 * t), vertex(3 * t + 1), vertex(3 * t + 2)] as const;
+    const corners = [vertexAt(mesh, 3 * t), vertexAt(mesh, 3 * t + 1), vertexAt(mesh, 3 * t + 2)] as const;
     const [a, b, c] = corners;
     const [u, v] = [b.map((x, k) => x - (a[k] ?? 0)), c.map((x, k) => x - (a[k] ?? 0))] as [Vector3, Vector3];
     const weight = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
@@ -37,19 +32,16 @@ function covariance(mesh: Mesh): Matrix3 {
   }) as unknown as Matrix3;
 }
 
+/** The planes of the rotations: each pair of axes. */
+const planes = [[0, 1] as const, [0, 2] as const, [1, 2] as const] as const;
+
 /** The eigenvectors as columns, by Jacobi rotations; right-handed. */
 export function principalAxes(mesh: Mesh): Matrix3 {
   let matrix = covariance(mesh);
   let axes: Matrix3 = [1, 0, 0, 0, 1, 0, 0, 0, 1];
   // Three planes per sweep; the off-diagonal entries shrink quadratically.
   for (let step = 0; step < 36; step++) {
-    const [p, q] = (
-      [
-        [0, 1],
-        [0, 2],
-        [1, 2],
-      ] as const
-    )[(step % 3) as 0];
+    const [p, q] = planes[(step % 3) as 0];
     const off = entry(matrix, p, q);
     if (off === 0) continue;
     const theta = (entry(matrix, q, q) - entry(matrix, p, p)) / (2 * off);

@@ -1,5 +1,5 @@
 /** Resizes and crops images together with their intrinsics. */
-import { describe } from "../error.js";
+import { describe, failure } from "../error.js";
 import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
 import {
   type DepthPixels,
@@ -13,7 +13,7 @@ import {
   sizeOf,
 } from "../formats/pixels.js";
 import type { PinholeCamera, PixelArray } from "../input/types.js";
-import { failure, optionsOf, record, whole } from "../values.js";
+import { optionsOf, record, whole } from "../values.js";
 
 /** A region of an image, in integer pixels. */
 export interface PixelBox extends ImageSize {

@@ -1,6 +1,7 @@
 /** Layouts of SAM 3D Objects. */
+import { failure } from "../error.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { failure, finiteNumbers, flattened, oneOf, optionsOf, record, type Vector3, vector3 } from "../values.js";
+import { finiteNumbers, flattened, oneOf, optionsOf, record, type Vector3, vector3 } from "../values.js";
 import { turnTo } from "./frames.js";
 import {
   type Matrix3,

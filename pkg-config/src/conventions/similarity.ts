@@ -1,17 +1,8 @@
 /** Conversions and operations of similarity transforms. */
 import { checkAttached } from "../attached.js";
-import { describe } from "../error.js";
+import { describe, failure } from "../error.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
-import {
-  failure,
-  finiteNumbers,
-  flattened,
-  isRecord,
-  isTypedArray,
-  type Vector3,
-  vector3,
-  wrongKind,
-} from "../values.js";
+import { finiteNumbers, flattened, isRecord, isTypedArray, type Vector3, vector3, wrongKind } from "../values.js";
 import {
   determinant,
   entry,
@@ -171,13 +162,8 @@ export function applyToPoints<T extends Float32Array | Float64Array>(transform: 
   }
   checkAttached("points", points);
   if (points.length % 3 !== 0) {
-    throw failure(
-      "WRONG_LENGTH",
-      "points",
-      `${points.length} numbers`,
-      "x, y, z per point",
-      "Pass three numbers per point.",
-    );
+    const remedy = "Pass three numbers per point.";
+    throw failure("WRONG_LENGTH", "points", `${points.length} numbers`, "x, y, z per point", remedy);
   }
   const result = points.slice() as T;
   const { scale, rotation, translation } = similarity;

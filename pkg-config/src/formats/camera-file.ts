@@ -1,6 +1,6 @@
 /** Camera files of data sets and drivers: sim3align, BOP, ROS, RealSense and Open3D. */
-import { describe, invalidArgument } from "../error.js";
-import { failure, isRecord } from "../values.js";
+import { describe, failure, invalidArgument } from "../error.js";
+import { isRecord } from "../values.js";
 import { isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";
@@ -119,17 +119,14 @@ function sceneEntry(
   // In BOP, ids have no leading zeros, unlike file names.
   const short = (text: string) => text.replace(/^0+/, "");
   const matches = ([key]: [string, unknown]) => key === id || short(key) === short(id ?? "");
-  const found = id === undefined ? (ids.length === 1 ? entries[0] : undefined) : entries.find(matches);
-  if (found !== undefined) return found[1];
+  const image = id === undefined ? (ids.length === 1 ? entries[0] : undefined) : entries.find(matches);
+  if (image !== undefined) return image[1];
   const sorted = ids.sort((a, b) => a.length - b.length || (a < b ? -1 : 1));
   const more = sorted.length > 20 ? `, … (${sorted.length} in all)` : "";
-  throw failure(
-    "INVALID_ARGUMENT",
-    `${names.options}imageId`,
-    id === undefined ? "no image id for a file of several images" : JSON.stringify(id),
-    `one of ${sorted.slice(0, 20).join(", ")}${more}`,
-    "Pass the id of the image of the depth map.",
-  );
+  const found = id === undefined ? "no image id for a file of several images" : JSON.stringify(id);
+  const expected = `one of ${sorted.slice(0, 20).join(", ")}${more}`;
+  const remedy = "Pass the id of the image of the depth map.";
+  throw failure("INVALID_ARGUMENT", `${names.options}imageId`, found, expected, remedy);
 }
 
 function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefined, names: CameraFileNames): Pinhole {

@@ -1,7 +1,7 @@
 /** Pinhole intrinsics from four numbers, a matrix, or a field of view. */
-import { describe, invalidArgument } from "../error.js";
+import { describe, failure, invalidArgument } from "../error.js";
 import type { CameraInput } from "../input/types.js";
-import { failure, finiteNumbers, flattened, record } from "../values.js";
+import { finiteNumbers, flattened, record } from "../values.js";
 import type { ImageSize } from "./pixels.js";
 
 /** A camera with given intrinsics. */

@@ -1,7 +1,9 @@
 /** Images: pixels and their size. */
+
 import { checkAttached } from "../attached.js";
+import { failure } from "../error.js";
 import type { PixelArray } from "../input/types.js";
-import { failure, isTypedArray, record, whole, wrongKind } from "../values.js";
+import { isTypedArray, record, whole, wrongKind } from "../values.js";
 
 /** The size of an image in pixels. */
 export interface ImageSize {
@@ -29,13 +31,8 @@ export function sizeOf(argument: string, size: unknown): ImageSize {
   const [width, height] = [whole(`${argument}.width`, given.width, 1), whole(`${argument}.height`, given.height, 1)];
   if (width * height <= MAX_PIXELS) return { width, height };
   const expected = `at most ${MAX_PIXELS} pixels (8192 × 8192)`;
-  throw failure(
-    "INVALID_ARGUMENT",
-    argument,
-    `${width} × ${height} pixels`,
-    expected,
-    "Check the order of the numbers.",
-  );
+  const remedy = "Check the order of the numbers.";
+  throw failure("INVALID_ARGUMENT", argument, `${width} × ${height} pixels`, expected, remedy);
 }
 
 /** Validates an image: its array type, and the number of its values. */
@@ -58,13 +55,8 @@ export function checkCount(argument: string, count: number, { width, height }: I
   if (count === width * height * channels) return;
   const perPixel = channels === 1 ? "" : ` × ${channels}`;
   const expected = `${width} × ${height}${perPixel} = ${width * height * channels}`;
-  throw failure(
-    "WRONG_LENGTH",
-    argument,
-    `${count} values`,
-    expected,
-    "Pass the size of the image that the values belong to.",
-  );
+  const remedy = "Pass the size of the image that the values belong to.";
+  throw failure("WRONG_LENGTH", argument, `${count} values`, expected, remedy);
 }
 
 /** The array types of masks and depth maps. */

@@ -1,6 +1,5 @@
 /** Masks from run lengths: background, object, background, … */
-import { describe } from "../error.js";
-import { failure } from "../values.js";
+import { describe, failure } from "../error.js";
 
 /**
  * Decodes alternating runs: 0 in the first run, 1 in the second, and so on.

@@ -1,6 +1,6 @@
 /** Files as bytes, and detection of their type. */
 import { checkAttached } from "../attached.js";
-import { describe, invalidArgument, messageOf, Sim3AlignError } from "../error.js";
+import { describe, failure, invalidArgument, messageOf } from "../error.js";
 import type { Formats, LoadFormats } from "../formats-module.js";
 import { isBuffer, isKind, isTypedArray } from "../kinds.js";
 
@@ -26,10 +26,7 @@ export async function fileBytes(argument: string, value: unknown): Promise<Uint8
   } catch (cause) {
     const found = `a ${describe(value)} that cannot be read: ${messageOf(cause)}`;
     const remedy = "The file may have been changed or removed: select it again.";
-    throw new Sim3AlignError(
-      { code: "FILE_NOT_FOUND", argument, found, expected: "a file that can be read", remedy },
-      { cause },
-    );
+    throw failure("FILE_NOT_FOUND", argument, found, "a file that can be read", remedy, cause);
   }
 }
 

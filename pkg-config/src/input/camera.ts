@@ -43,12 +43,8 @@ function statedCamera(camera: unknown): Camera {
   const other = Object.keys(camera).find((name) => !cameraProperties.includes(name));
   if (other !== undefined) {
     const isFile = isRecord(camera[other]) || fileProperties.includes(other);
-    throw invalidArgument(
-      "camera",
-      camera,
-      forms,
-      isFile ? fileRemedy : `Rename or omit \`${other}\`; lengths are in pixels.`,
-    );
+    const remedy = isFile ? fileRemedy : `Rename or omit \`${other}\`; lengths are in pixels.`;
+    throw invalidArgument("camera", camera, forms, remedy);
   }
   const { width, height, depthScale, warnings } = camera as Partial<ImageSize> & Record<string, unknown>;
   checkSides("camera.", { width, height });

@@ -1,5 +1,5 @@
 /** Converts depth maps and point maps to arrays with their size. */
-import { invalidArgument, Sim3AlignError } from "../error.js";
+import { failure, invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { callReader, fileBytes } from "./bytes.js";
@@ -37,13 +37,9 @@ export async function readDepth(
   const bytes = await fileBytes("depth", depth);
   if (bytes === null) throw wrongKind("depth", depth, depthKinds, "Float32Array");
   if (bytes === depth && bytes.length === (size.width ?? 0) * (size.height ?? 0) && bytes.length > 0) {
-    throw new Sim3AlignError({
-      code: "EIGHT_BIT_DEPTH",
-      argument: "depth",
-      found: `a Uint8Array of ${size.width} × ${size.height} values`,
-      expected: depthKinds,
-      remedy: "256 levels are a visualisation of depth: pass the depth map itself.",
-    });
+    const found = `a Uint8Array of ${size.width} × ${size.height} values`;
+    const remedy = "256 levels are a visualisation of depth: pass the depth map itself.";
+    throw failure("EIGHT_BIT_DEPTH", "depth", found, depthKinds, remedy);
   }
   const file = await callReader(
     formats,
@@ -95,11 +91,7 @@ export function checkSides(prefix: string, size: { width?: unknown; height?: unk
 function checkStatedSize(argument: string, actual: { width: number; height: number }, stated: StatedSize): void {
   const { width = actual.width, height = actual.height } = stated;
   if (width === actual.width && height === actual.height) return;
-  throw new Sim3AlignError({
-    code: "SIZE_MISMATCH",
-    argument,
-    found: `${actual.width} × ${actual.height} pixels`,
-    expected: `${width} × ${height}, the width and height of the input`,
-    remedy: `Omit width and height: ${argument} has its own.`,
-  });
+  const expected = `${width} × ${height}, the width and height of the input`;
+  const remedy = `Omit width and height: ${argument} has its own.`;
+  throw failure("SIZE_MISMATCH", argument, `${actual.width} × ${actual.height} pixels`, expected, remedy);
 }

@@ -1,9 +1,9 @@
 /** Meshes from arrays or mesh files. */
 
-import { invalidArgument } from "../error.js";
+import { failure, invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import type { ColorSamples, CoreMesh } from "../prepared-mesh.js";
-import { failure, isRecord, isTypedArray, oneOf, record, stringsIn, withoutUndefined, wrongKind } from "../values.js";
+import { isRecord, isTypedArray, oneOf, record, stringsIn, withoutUndefined, wrongKind } from "../values.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
 import type { MeshFile } from "./types.js";

@@ -1,7 +1,7 @@
 /** The photo of an input. */
-import { invalidArgument } from "../error.js";
+import { failure, invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
-import { failure, isRecord, isTypedArray, wrongKind } from "../values.js";
+import { isRecord, isTypedArray, wrongKind } from "../values.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { type Photo, photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";
@@ -41,11 +41,7 @@ function pixels(owner: "" | "image.", data: Bytes, { width, height }: StatedSize
   const channels = channelsOf(data, size);
   if (channels !== undefined) return photoOf(data, channels, size.width, size.height);
   const pixels = size.width * size.height;
-  throw failure(
-    "WRONG_LENGTH",
-    owner === "" ? "image" : "image.data",
-    `${data.length} values`,
-    `${3 * pixels} or ${4 * pixels}, RGB or RGBA for ${width} × ${height} pixels`,
-    "Pass { data, width, height } for a photo of another size than the depth map.",
-  );
+  const expected = `${3 * pixels} or ${4 * pixels}, RGB or RGBA for ${width} × ${height} pixels`;
+  const remedy = "Pass { data, width, height } for a photo of another size than the depth map.";
+  throw failure("WRONG_LENGTH", owner === "" ? "image" : "image.data", `${data.length} values`, expected, remedy);
 }

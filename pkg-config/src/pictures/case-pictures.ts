@@ -41,13 +41,8 @@ export async function drawCase(shot: Shot, pose: Matrix, alternatives: readonly 
     mesh: shaded(mesh, view, view.camera(shot.camera)),
     residual: residual({ mask: masked, measured, mesh }, view, limitM),
   };
-  const small = new View(
-    THUMBNAIL.width,
-    THUMBNAIL.height,
-    (view.zoom * THUMBNAIL.width) / view.width,
-    view.left,
-    view.top,
-  );
+  const zoom = (view.zoom * THUMBNAIL.width) / view.width;
+  const small = new View(THUMBNAIL.width, THUMBNAIL.height, zoom, view.left, view.top);
   const smallGround = ground(shot, small);
   for (const [k, other] of alternatives.entries()) {
     const drawn = await shot.render(small, other);

@@ -1,5 +1,5 @@
 /** Reads a scene: the view once, and a mask per object. */
-import { describe, invalidArgument, renamed, Sim3AlignError } from "../error.js";
+import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../error.js";
 import { nearest } from "../formats/pixels.js";
 import type { LoadFormats } from "../formats-module.js";
 import { readMask } from "../input/mask.js";
@@ -7,7 +7,7 @@ import { readPhoto } from "../input/photo.js";
 import { classNames as inputClassNames, readView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
 import type { ClassNames } from "../snapshot.js";
-import { checkNames, failure, isRecord, isTypedArray, withoutUndefined } from "../values.js";
+import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
 import type { KnownOfObject, SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */

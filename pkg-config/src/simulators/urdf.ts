@@ -55,19 +55,14 @@ export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): TextFiles
     gravity: [0, 0, -9.81],
     bodies: hasGround ? [floor, ...entries] : entries,
     withoutCollision: overlappingPairs(bodies),
-    camera:
-      camera === null
-        ? null
-        : {
-            position: camera.position,
-            quaternion: camera.rotation,
-            fovYDeg: camera.fovYDeg,
-            width: camera.width,
-            height: camera.height,
-          },
+    camera: camera === null ? null : viewOf(camera),
   };
   files["scene.json"] = `${JSON.stringify(scene, null, 2)}\n`;
   return files;
+}
+
+function viewOf({ position, rotation, fovYDeg, width, height }: SimulatorScene["camera"] & object) {
+  return { position, quaternion: rotation, fovYDeg, width, height };
 }
 
 const contact = `<contact><lateral_friction value="0.8"/><rolling_friction value="0.001"/><spinning_friction value="0.002"/></contact>`;

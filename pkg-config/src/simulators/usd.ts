@@ -9,8 +9,12 @@ const tuple = (numbers: ArrayLike<number>) => `(${spaced(numbers).replaceAll(" "
 /** Quaternions of USD begin with w. */
 const quaternion = (xyzw: ArrayLike<number>) => tuple(wxyzFromXyzw(xyzw));
 
-/** Reach of the ground, metres. */
+/** Reach of the ground, metres, and its colour. */
 const REACH = 5;
+const GREY = [0.75, 0.77, 0.79];
+
+/** The schemas of surfaces that collide. */
+const COLLIDER = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"];
 
 /**
  * A scene as the text of a USD file (`.usda`): metres, z up, rigid bodies with mass and convex colliders, the ground, and
@@ -32,22 +36,9 @@ export function toUsd({ bodies, hasGround, camera }: SimulatorScene): string {
 }`,
   ];
   if (hasGround) {
-    const corners = [
-      [-REACH, -REACH, 0],
-      [REACH, -REACH, 0],
-      [REACH, REACH, 0],
-      [-REACH, REACH, 0],
-    ].flat();
-    const square = { positions: corners, indices: [0, 1, 2, 0, 2, 3] };
-    prims.push(
-      mesh(
-        "ground",
-        square,
-        [0.75, 0.77, 0.79],
-        ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"],
-        [`uniform token physics:approximation = "none"`],
-      ),
-    );
+    const positions = [...[-REACH, -REACH, 0], ...[REACH, -REACH, 0], ...[REACH, REACH, 0], ...[-REACH, REACH, 0]];
+    const square = { positions, indices: [0, 1, 2, 0, 2, 3] };
+    prims.push(mesh("ground", square, GREY, COLLIDER, [`uniform token physics:approximation = "none"`]));
   }
   if (camera !== null) {
     // Apertures are in tenths of a unit.
@@ -98,15 +89,8 @@ function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
     ...(isFixed ? [] : mass),
     ...(filtered.length > 0 ? [`rel physics:filteredPairs = [${filtered.join(", ")}]`] : []),
   ].map((line) => `    ${line}\n`);
-  const colliders = parts.map((part, k) =>
-    mesh(
-      `collider_${k}`,
-      part,
-      colour,
-      ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"],
-      [`uniform token physics:approximation = "convexHull"`, `uniform token purpose = "guide"`],
-    ),
-  );
+  const hull = [`uniform token physics:approximation = "convexHull"`, `uniform token purpose = "guide"`];
+  const colliders = parts.map((part, k) => mesh(`collider_${k}`, part, colour, COLLIDER, hull));
   return `def Xform "${name}"${applied(schemas)}
 {
 ${properties.join("")}${placement(position, rotation)}

@@ -1,8 +1,9 @@
 /** three.js cameras that match a pinhole camera. */
 
+import { failure } from "../error.js";
 import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
-import { failure, positive } from "../values.js";
+import { positive } from "../values.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
 /** The image size, and the near and far planes. */

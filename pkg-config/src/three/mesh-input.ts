@@ -1,8 +1,8 @@
 /** Meshes from three.js objects. */
 
-import { describe } from "../error.js";
+import { describe, failure } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
-import { failure, finiteNumbers, oneOf } from "../values.js";
+import { finiteNumbers, oneOf } from "../values.js";
 import { surfaceSamples } from "./surface-samples.js";
 import { type Texels, texelsOf } from "./texels.js";
 import { type AttributeLike, type GeometryLike, isObject, type MeshTree, type PlacedObject } from "./types.js";
@@ -72,13 +72,8 @@ export function meshInputFromThree(
     throw failure("INVALID_ARGUMENT", "source", describe(source), "a BufferGeometry or an Object3D", remedy);
   }
   if (arrays.indices.length === 0) {
-    throw failure(
-      "EMPTY_MESH",
-      "source",
-      "no triangle",
-      "a mesh with triangles",
-      "Pass an object that contains meshes.",
-    );
+    const remedy = "Pass an object that contains meshes.";
+    throw failure("EMPTY_MESH", "source", "no triangle", "a mesh with triangles", remedy);
   }
   const mesh = { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
   if (!arrays.isColored || arrays.isUnknown) return mesh;
@@ -103,15 +98,8 @@ function appendTree(arrays: Arrays, tree: MeshTree, frame: "object" | "world") {
     if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local, found.material);
     const { array } = found.instanceMatrix as { array: ArrayLike<number> };
     for (let i = 0; i < (found.count as number); i++) {
-      append(
-        arrays,
-        found.geometry,
-        product(
-          local,
-          Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0),
-        ),
-        found.material,
-      );
+      const instance = Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0);
+      append(arrays, found.geometry, product(local, instance), found.material);
     }
   });
 }

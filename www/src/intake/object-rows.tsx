@@ -11,6 +11,7 @@ import { Picture } from "../ui/picture.js";
 import { FieldFiles } from "./cards.js";
 import { change } from "./draft.js";
 import { Problems, problemsFor } from "./problem-list.js";
+import { meshExtensions, resourceExtensions } from "./roles.js";
 
 /** Width and height of a thumbnail in pixels. */
 const SIZE = 112;
@@ -33,7 +34,7 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
           <FieldFiles
             field="mesh"
             title="Meshes"
-            accept=".glb,.gltf,.obj,.ply,.stl,.bin,.mtl"
+            accept={[...meshExtensions, ...resourceExtensions].map((ending) => `.${ending}`).join()}
             isWrong={isWrong("mesh")}
             multiple
           />

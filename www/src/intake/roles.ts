@@ -2,9 +2,9 @@
 import { baseName, extension, type NamedFile } from "../load/files.js";
 import type { Role, Typed } from "../load/inputs.js";
 
-const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
+export const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
 const photoExtensions = ["jpg", "jpeg", "webp"];
-const resourceExtensions = ["bin", "mtl"];
+export const resourceExtensions = ["bin", "mtl"];
 
 /** Whether a name contains one of the words, between characters that are no letters. */
 const says = (name: string, words: string) => new RegExp(`(^|[^a-z])(${words})(s?)([^a-z]|$)`).test(name);
