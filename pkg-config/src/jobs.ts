@@ -9,7 +9,7 @@ import { resolveFrame, resolveViews } from "./input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
-import type { JointAligner, LoadJoint } from "./joint-module.js";
+import type { JointAligner, LoadJoint, Placed } from "./joint-module.js";
 import type { LoadRegistrar, Registrar } from "./registration-module.js";
 import {
   type AlignResult,
@@ -21,7 +21,6 @@ import {
   type ViewsAlignment,
   withWarnings,
 } from "./results.js";
-import type { Known, Placed } from "./scene/steps.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { Glue, LoadedModule } from "./wasm-module.js";
 
@@ -38,8 +37,8 @@ export type Job =
   | { method: "register"; data: Clouds; options: object }
   | { method: "estimateSim3"; data: Clouds; options: object };
 
-/** An object of a scene, the pixels of the others and, once it is known, what they have told. */
-export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; known?: Known | undefined };
+/** An object of a scene, the pixels of the others, and the plan of the scene, which only the joint module reads. */
+export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; plan?: Uint8Array | undefined; index: number };
 
 /** The result of each call. */
 export interface Results {
@@ -106,10 +105,10 @@ export async function perform(
       return withWarnings(result, warnings);
     }
     case "place": {
-      const { others, known, ...own } = job.data;
+      const { others, plan, index, ...own } = job.data;
       const { core: input, warnings } = await resolveInput(own, formats, job.meshId);
       const observed = others === undefined ? input : { ...input, others };
-      const begin = (j: JointAligner) => j.beginPlace(observed, options, known, listener);
+      const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener);
       const placed = await runTask(await joint(), begin, observed, slices);
       if (placed.alignment === undefined) return placed;
       // The camera belongs to the scene, which reports its warnings.

@@ -12,16 +12,19 @@ use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::random::Random;
 use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
+use sim3align::pauses::{Pauses, finished};
 use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::{AlignOptions, Quality};
+use sim3align::precise::searched::start::Findings;
 use sim3align::progress::Silent;
-use sim3align::report::{Alignment, Effort};
+use sim3align::report::Alignment;
 use sim3align::scene::layers::{extremes, layer, volumes};
 use sim3align::scene::local::View;
-use sim3align::scene::placement::{Body, Placement, found_of};
+use sim3align::scene::placement::{Body, Placement};
+use sim3align::scene::plan::{Next, Plan};
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::{RestsOn, SupportChoice, find_support};
-use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_alone, align_scene};
+use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene, place};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::shapes::{cuboid, mapped};
@@ -193,18 +196,26 @@ fn one_object_without_support_is_align() {
     assert_eq!(object.alignment.diagnostics.score, expected.diagnostics.score);
 }
 
+fn alone(observation: &Observation, object: &SceneObject<'_>) -> Placement {
+    let placed = place(observation, &object.mesh, object.options.clone(), None, &mut Silent, &Pauses::none());
+    finished(placed).unwrap().0
+}
+
+/// What is written of numbers tells them apart to the bit.
 #[wasm_bindgen_test(unsupported = test)]
-fn candidates_survive_as_numbers() {
+fn plans_survive_as_bytes() {
     let things = &things()[..1];
-    let scene = scene_of(things, SupportChoice::None, false);
-    let observation = Observation::new(scene.depth.clone(), scene.objects[0].mask.clone(), camera()).unwrap();
-    let placement: Placement = align_alone(&observation, &scene.objects[0], &mut Silent).unwrap();
-    let copies = found_of(&placement.numbers());
-    assert_eq!(copies.len(), placement.found.len());
-    for (copy, found) in copies.iter().zip(&placement.found) {
-        assert_eq!(copy.pose, found.pose);
-        assert_eq!(copy.score, found.score);
-        assert_eq!((copy.converged, copy.renders), (found.converged, found.renders));
+    let Scene { depth, objects, .. } = scene_of(things, SupportChoice::Auto, false);
+    let observation = Observation::new(depth.clone(), objects[0].mask.clone(), camera()).unwrap();
+    let taken = union_of(WIDTH, HEIGHT, [&objects[0].mask].into_iter());
+    let view = View { depth, camera: camera(), taken, choice: SupportChoice::Auto, seed: 0 };
+    let placements = vec![Some(alone(&observation, &objects[0])), None];
+    let Ok(Next::Round(plan)) = Plan::default().next(placements, false, || Ok(view)) else { panic!("no second round") };
+    let bytes = postcard::to_allocvec(&plan).unwrap();
+    let copy: Plan = postcard::from_bytes(&bytes).unwrap();
+    assert_eq!(format!("{copy:?}"), format!("{plan:?}"));
+    for end in [0, 1, bytes.len() / 2, bytes.len() - 1] {
+        assert!(postcard::from_bytes::<Plan>(&bytes[..end]).is_err(), "{end}");
     }
 }
 
@@ -253,11 +264,8 @@ fn placed(thing: &Thing, too_high: f64) -> Placement {
     let points = thing.mesh.positions().iter().map(|p| vec3(&camera_from_mesh.apply(vector3(*p)))).collect();
     let layer = Rc::new(layer(&thing.mesh, &camera_from_mesh, &camera(), [WIDTH, HEIGHT]));
     Placement {
-        found: Vec::new(),
-        effort: Effort::Fast,
-        renders: 0,
-        confidence: 0.9,
-        camera_from_mesh,
+        findings: Findings { confidence: 0.9, ..Findings::default() },
+        camera_from_mesh: (&camera_from_mesh).into(),
         body: Body { points, layer, along: None },
     }
 }
@@ -272,12 +280,12 @@ fn objects_tell_by_how_much_the_depth_map_misplaces_the_floor() {
     for floor_m in [-0.008, 0.0, 0.008] {
         let (depth, masks) = seen(&things, &[], floor_m, 0.001);
         let taken = union_of(WIDTH, HEIGHT, masks.iter());
-        let seen = View { depth: &depth, camera: &camera(), taken: &taken, seed: 0 };
+        let seen = View { depth, camera: camera(), taken, choice: SupportChoice::Auto, seed: 0 };
         // The last one may have been found 2 cm too high.
         for too_high in [0.0, 0.02] {
             let placements: Vec<_> =
                 things.iter().zip([0.0, 0.0, too_high]).map(|(thing, high)| Some(placed(thing, high))).collect();
-            let (support, grounds) = find_support(&seen, &SupportChoice::Auto, &placements);
+            let (support, grounds) = find_support(&seen, &placements);
             let support = support.unwrap();
             for ground in grounds.into_iter().flatten() {
                 assert_eq!(ground.on, RestsOn::Support);
@@ -297,7 +305,7 @@ fn the_space_of_an_object_is_that_of_its_alignment() {
     let scene = scene_of(things, SupportChoice::None, false);
     let object = &scene.objects[0];
     let observation = Observation::new(scene.depth.clone(), object.mask.clone(), camera()).unwrap();
-    let placement: Placement = align_alone(&observation, object, &mut Silent).unwrap();
+    let placement = alone(&observation, object);
     let mut alignment = align(&observation, &things[0].mesh, &options(), &mut Silent).unwrap();
     let normal = DVec3::NEG_Y;
     let body = |alignment: &Alignment| {
@@ -305,7 +313,7 @@ fn the_space_of_an_object_is_that_of_its_alignment() {
     };
     assert_eq!(body(&alignment).layer, placement.body.layer);
     // Turned over and moved away from the camera.
-    let mut turned = placement.camera_from_mesh;
+    let mut turned = Similarity::from_column_major(&placement.camera_from_mesh.matrix).unwrap();
     turned.rotation *= Rotation3::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI);
     turned.translation.z += 0.1;
     alignment.camera_from_mesh = (&turned).into();

@@ -6,6 +6,7 @@
 use std::rc::Rc;
 
 use glam::{DQuat, DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::rotations::exp;
@@ -35,7 +36,7 @@ pub struct Ground {
 
 /// Another object: for every pixel of a part of the image, where the line of sight enters and leaves it, metres; 0 and 0
 /// where it does not meet the object.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// First column and row.
     pub origin: [usize; 2],

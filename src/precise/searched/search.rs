@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use glam::DQuat;
+use serde::{Deserialize, Serialize};
 
 use super::coarse::{Candidate, Coarse};
 use super::ranking::{Scored, distinct};
@@ -50,7 +51,7 @@ pub struct Search {
 }
 
 /// A candidate in its current state.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Found {
     /// The pose.
     pub pose: CropPose,
