@@ -21,8 +21,8 @@ use crate::precise::options::AlignOptions;
 use crate::precise::scored::prior::Prior;
 use crate::precise::scored::score::NOISE;
 use crate::precise::searched::recipe::SURE;
+use crate::precise::searched::refine::Found;
 use crate::precise::searched::rounds::Rounds;
-use crate::precise::searched::search::Found;
 use crate::progress::{Host, Stopwatch};
 
 /// What a search knows beforehand.

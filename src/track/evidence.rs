@@ -12,7 +12,7 @@ use crate::precise::drawn::mesh_pyramid::MeshPyramid;
 use crate::precise::drawn::pose::{CropPose, MeshFrame};
 use crate::precise::observed::clean::CleanObservation;
 use crate::precise::scored::appearance::PhotoCells;
-use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::recipe::{FINE, SearchSettings};
 use crate::precise::searched::search::Search;
 use crate::views::predicted_mask::with_predicted_mask;
 
@@ -77,8 +77,8 @@ fn evidence(
     let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
     search.equivalence = mesh.equivalence(&Symmetry::Auto)?;
     let photo = whole.photo.as_ref();
-    let photo = photo.map(|photo| PhotoCells::new(photo, region, search.observation.image, &search.fine));
-    Ok((search.fine.mask_cells > 0).then_some(Evidence { search, photo }))
+    let photo = photo.map(|photo| PhotoCells::new(photo, region, search.observation.image, search.grid(FINE)));
+    Ok((search.grid(FINE).mask_cells > 0).then_some(Evidence { search, photo }))
 }
 
 /// A part of a frame, and where it lies in the photo.

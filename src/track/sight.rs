@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use glam::Vec3;
+use glam::{DQuat, Vec3};
 
 use super::detection::Lead;
 use super::evidence::{Evidence, of_mask, of_pose};
@@ -12,13 +12,12 @@ use crate::precise::drawn::mesh_pyramid::MeshPyramid;
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::render::Canvas;
 use crate::precise::scored::score::Score;
-use crate::precise::searched::recipe::SearchSettings;
-use crate::precise::searched::recipe::{FINE, MIDDLE};
+use crate::precise::searched::cascade::Subject;
+use crate::precise::searched::recipe::{FINE, MIDDLE, SearchSettings, TRACKED};
+use crate::precise::searched::refine::Found;
 use crate::precise::searched::refine::Refiner;
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::search::Search;
 
-/// Steps of the refinement on the middle and on the fine grid.
-const STEPS: [usize; 2] = [7, 6];
 /// Times that the mask of a frame without one is predicted.
 const PREDICTIONS: usize = 3;
 
@@ -95,23 +94,44 @@ impl Sight {
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
     fn refined(&self, search: &Search, poses: &[CropPose], by_depth: bool) -> Option<Found> {
-        let grid = search.grid(MIDDLE);
-        if grid.mask_cells == 0 {
+        if search.grid(MIDDLE).mask_cells == 0 {
             return None;
         }
-        let mut objective = search.objective(MIDDLE, &grid);
-        if by_depth {
+        let stages = if by_depth { &TRACKED[..2] } else { &TRACKED[..] };
+        AtItsSize { search, by_depth }.cascade(stages, poses.to_vec()).first().copied()
+    }
+}
+
+/// Poses in a frame, refined at the size that they have.
+struct AtItsSize<'a> {
+    search: &'a Search,
+    /// Whether depth alone judges.
+    by_depth: bool,
+}
+
+impl Subject for AtItsSize<'_> {
+    type Pose = CropPose;
+    type Score = Score;
+
+    fn rotation(pose: &CropPose) -> DQuat {
+        pose.rotation
+    }
+
+    fn total(score: &Score) -> f32 {
+        score.total
+    }
+
+    fn refined(&mut self, grid: usize, steps: usize, poses: &[CropPose]) -> Vec<Found> {
+        let mut objective = self.search.objective(grid);
+        if self.by_depth {
             objective.scoring.weights = objective.scoring.weights.of_depth_alone();
         }
-        let canvas = &mut Canvas::default();
-        let scored = poses.iter().map(|pose| (objective.score(canvas, pose).total, *pose));
-        let (_, best) = scored.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
-        let middle = Refiner { objective, lock_scale: true }.refine(canvas, best, STEPS[0]);
-        if by_depth {
-            return Some(middle.into());
-        }
-        let fine = Refiner { objective: search.objective(FINE, &search.fine), lock_scale: true };
-        Some(fine.refine(canvas, middle.pose, STEPS[1]).into())
+        let (refiner, canvas) = (Refiner { objective, lock_scale: true }, &mut Canvas::default());
+        let refined = |pose: &CropPose| match steps {
+            0 => Found::of(*pose, objective.score(canvas, pose)),
+            _ => refiner.refine(canvas, *pose, steps),
+        };
+        poses.iter().map(refined).collect()
     }
 }
 
@@ -123,9 +143,9 @@ pub fn agreement(score: &Score) -> f32 {
 /// The share of the silhouette, inside the image, that the mask covers.
 fn visible(search: &Search, pose: &CropPose) -> f32 {
     let canvas = &mut Canvas::default();
-    let objective = search.objective(FINE, &search.fine);
+    let objective = search.objective(FINE);
     objective.score(canvas, pose);
-    let drawn = canvas.inverse_depth.iter().zip(&search.fine.mask).filter(|(w, _)| **w > 0.0);
+    let drawn = canvas.inverse_depth.iter().zip(&search.grid(FINE).mask).filter(|(w, _)| **w > 0.0);
     let (all, seen) = drawn.fold((0u32, 0u32), |(all, seen), (_, mask)| (all + 1, seen + u32::from(*mask)));
     seen as f32 / all.max(1) as f32
 }

@@ -34,8 +34,9 @@ use crate::precise::scored::objective::Objective;
 use crate::precise::scored::prior::Prior;
 use crate::precise::scored::score::{NOISE, Score};
 use crate::precise::searched::recipe::FINE;
+use crate::precise::searched::refine::Found;
 use crate::precise::searched::refine::Refiner;
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::search::Search;
 use crate::progress::Host;
 use crate::report::Effort;
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
@@ -285,7 +286,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let (conditioning, _) = search.conditioning(&found.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
-                .map(|held| precise::scored::conditioning::Conditioning { scale: scale_sd.min(held.scale), ..held });
+                .map(|own| precise::scored::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
             sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
@@ -326,14 +327,14 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if !self.size.wants(found.pose.rotation) {
             return;
         }
-        let objective = search.objective(FINE, &search.fine);
+        let objective = search.objective(FINE);
         let objective = Objective { prior: self.prior, ..objective };
         let free = Refiner { objective, lock_scale: false }.refine(&mut Canvas::default(), found.pose, STEPS[0]);
         if let Some(evidence) = SizeEvidence::at(objective, &free.pose, silhouette_error) {
             self.size.add(found.pose.rotation, evidence);
         }
         if let Some((log_scale, _)) = self.size.value() {
-            *found = refine_at(objective, found.pose, log_scale, STEPS[1]).into();
+            *found = refine_at(objective, found.pose, log_scale, STEPS[1]);
         }
     }
 

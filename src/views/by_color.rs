@@ -1,10 +1,10 @@
 //! Colour in views with known camera poses: of the turns whose shape is within noise in all views together, the one that
 //! agrees best with all photos.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::joint::Joint;
-use super::known::{Hypothesis, Part, Ranked, grids, level};
+use super::known::{Ranked, Views};
 use super::world_pose::WorldPose;
 use crate::geometry::rotations::exp;
 use crate::geometry::surface_colors::SurfaceColors;
@@ -14,24 +14,38 @@ use crate::precise::judged::lookalikes::{Likeness, Lookalike, ROLLS, among};
 use crate::precise::scored::appearance::{Appearance, PhotoCells};
 use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::score::{NOISE, Score};
-use crate::precise::searched::recipe::{COARSE, FINE, FINEST, MIDDLE};
-use crate::precise::searched::search::Found;
-
-/// Steps of the refinement of a lookalike, and of the pose that colour chose.
-const STEPS: [usize; 2] = [4, 6];
+use crate::precise::searched::ranking::Scored;
+use crate::precise::searched::recipe::{COARSE, COLORED, FINE};
+use crate::precise::searched::refine::Found;
 
 /// Correlation above which a photo agrees no better.
 const SURE_AGREEMENT: f64 = 0.99;
 
 /// The views and their photos.
-#[derive(Clone, Copy)]
 pub struct Photos<'a> {
     /// The views that are used.
-    pub parts: &'a [Part<'a>],
+    pub views: Views<'a>,
     /// The photo of each, on the fine grid of its search.
     pub photos: &'a [Option<PhotoCells>],
     /// The colours of the mesh.
     pub colors: &'a SurfaceColors,
+}
+
+/// A pose with its mean score on the coarse grids.
+#[derive(Clone, Copy)]
+struct Turned {
+    pose: WorldPose,
+    total: f32,
+}
+
+impl Scored for Turned {
+    fn rotation(&self) -> DQuat {
+        self.pose.rotation
+    }
+
+    fn total(&self) -> f32 {
+        self.total
+    }
 }
 
 /// A pose whose shape is within noise of the best one.
@@ -47,28 +61,26 @@ impl Photos<'_> {
     /// Judges the turns of the best of the `ranked` poses. Returns the judgment, whose poses are those in the first view,
     /// and the chosen pose, if it is not the first. `None` if nothing can be compared.
     pub fn judge(
-        &self,
+        &mut self,
         ranked: &[Ranked],
         conditioning: Option<&Conditioning>,
-        lock_scale: bool,
-        renders: &mut usize,
     ) -> Option<(Judgment, Option<Ranked>)> {
         let best = ranked.first()?;
-        let alike = self.lookalikes(best, ranked, lock_scale, renders)?;
-        let (middle, fine) = (grids(self.parts, MIDDLE), grids(self.parts, FINE));
-        let mut rough = level(self.parts, &middle, MIDDLE, lock_scale);
-        let mut joint = level(self.parts, &fine, FINE, lock_scale);
+        let alike = self.lookalikes(best, ranked)?;
+        let [rough, polish] = COLORED;
+        let mut joint = self.views.level(FINE);
+        let mut rough_joint = self.views.level(rough.grid);
         let first = self.compare(&mut joint, best, None)?;
         let shape = first.shape;
         let look = Look::new(first.look.agreement, 0.0);
         let mut compared = vec![Compared { look, ..first }];
         for Lookalike { mut pose, likeness } in alike {
             if likeness == Likeness::Rough {
-                let refined = rough.refine(pose, STEPS[0]);
-                *renders += refined.renders;
+                let refined = rough_joint.refine(pose, rough.steps);
+                self.views.renders += refined.renders;
                 pose = refined.pose;
             }
-            *renders += 1;
+            self.views.renders += 1;
             let other = self.compare(&mut joint, &Ranked { pose, ..best.clone() }, Some(shape));
             compared.extend(other.filter(|other| likeness == Likeness::Equal || other.shape >= shape - NOISE));
         }
@@ -80,20 +92,17 @@ impl Photos<'_> {
         let is_changed = choice.chosen != 0;
         let mut chosen = compared[choice.chosen].ranked.clone();
         if is_changed {
-            let finest = grids(self.parts, FINEST);
-            let polished = level(self.parts, &finest, FINEST, lock_scale).refine(chosen.pose, STEPS[1]);
-            *renders += polished.renders;
-            chosen.pose = polished.pose;
+            chosen.pose = self.views.polished(&polish, chosen.pose);
         }
-        let part = self.parts.first()?;
-        let loosest = || conditioning.map(|held| held.rotation).filter(|(deviation, _)| *deviation >= LOOSE);
+        let part = self.views.parts.first()?;
+        let loosest = || conditioning.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= LOOSE);
         let axis = part.search.equivalence.free_axis(chosen.pose.rotation).or_else(|| loosest().map(|(_, axis)| axis));
         let rolled = axis.filter(|_| choice.is_used).and_then(|axis| self.roll(&mut joint, &chosen, axis));
         let gain = rolled.map_or(0.0, |(_, gain)| gain);
         if let Some((pose, _)) = rolled {
             chosen.pose = pose;
         }
-        let first = self.parts.first()?;
+        let first = self.views.parts.first()?;
         let seen = |ranked: &Ranked| {
             let score = Score { total: ranked.score.total, ..Score::default() };
             Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
@@ -106,23 +115,16 @@ impl Photos<'_> {
     }
 
     /// The turns that look about like the best pose in all views, on the coarse grid.
-    fn lookalikes(
-        &self,
-        best: &Ranked,
-        ranked: &[Ranked],
-        lock_scale: bool,
-        renders: &mut usize,
-    ) -> Option<Vec<Lookalike<WorldPose>>> {
-        let (part, seen) = self.parts.iter().find_map(|part| Some((part, part.camera.see(&best.pose)?)))?;
+    fn lookalikes(&mut self, best: &Ranked, ranked: &[Ranked]) -> Option<Vec<Lookalike<WorldPose>>> {
+        let (part, seen) = self.views.parts.iter().find_map(|part| Some((part, part.camera.see(&best.pose)?)))?;
         let turned = part.search.mesh.turns.about_axes(&seen, ROLLS);
         let turned = turned.iter().map(|turned| part.camera.place(turned));
-        let coarse = grids(self.parts, COARSE);
-        let mut joint = level(self.parts, &coarse, COARSE, lock_scale);
-        let mut mean = |pose: &WorldPose| joint.score(pose).total / self.parts.len() as f32;
+        let mut joint = self.views.level(COARSE);
+        let mut mean = |pose: &WorldPose| joint.score(pose).total / self.views.parts.len() as f32;
         let score = mean(&best.pose);
         let poses: Vec<WorldPose> = ranked.iter().skip(1).map(|other| other.pose).chain(turned).collect();
-        *renders += poses.len();
-        let scored = poses.into_iter().map(|pose| Hypothesis { pose, total: mean(&pose) });
+        self.views.renders += poses.len();
+        let scored = poses.into_iter().map(|pose| Turned { pose, total: mean(&pose) });
         let equal = part.search.equivalence.others(seen.rotation, ROLLS);
         let equal = equal.into_iter().map(|turn| part.camera.place(&part.search.mesh.turns.turned(&seen, turn)));
         Some(among(best.pose.rotation, score, scored, equal, |scored| scored.pose, |pose| pose.rotation))
@@ -131,15 +133,15 @@ impl Photos<'_> {
     /// Renders a pose in all views, whose shape is compared with `shape`; `None` if no colours can be compared.
     fn compare(&self, joint: &mut Joint<'_>, ranked: &Ranked, shape: Option<f32>) -> Option<Compared> {
         let score = joint.score(&ranked.pose);
-        let own = score.total / self.parts.len() as f32;
+        let own = score.total / self.views.parts.len() as f32;
         let appearances: Vec<Option<Appearance>> = self
             .photos
             .iter()
-            .zip(self.parts)
+            .zip(&self.views.parts)
             .enumerate()
             .map(|(k, (photo, part))| {
                 part.camera.see(&ranked.pose)?;
-                photo.as_ref()?.compare(joint.canvas(k), self.colors, &part.search.mesh.frame, &part.search.fine)
+                photo.as_ref()?.compare(joint.canvas(k), self.colors, &part.search.mesh.frame, part.search.grid(FINE))
             })
             .collect();
         let look = Look::new(joint_agreement(&appearances)?, own - shape.unwrap_or(0.0));
@@ -148,7 +150,7 @@ impl Photos<'_> {
 
     /// The pose rolled about an axis to where its colours agree best, and the gain.
     fn roll(&self, joint: &mut Joint<'_>, chosen: &Ranked, axis: DVec3) -> Option<(WorldPose, f64)> {
-        let part = self.parts.iter().find(|part| part.camera.see(&chosen.pose).is_some())?;
+        let part = self.views.parts.iter().find(|part| part.camera.see(&chosen.pose).is_some())?;
         let rolled = |angle: f64| {
             let rotation = exp(axis * angle) * chosen.pose.rotation;
             let seen = part.camera.see(&chosen.pose)?;

@@ -8,7 +8,7 @@ use crate::precise::scored::conditioning::{DAMPING, DROP, covariance, deviation}
 use crate::precise::scored::objective::Objective;
 use crate::precise::scored::prior::Prior;
 use crate::precise::scored::score::Weights;
-use crate::precise::searched::refine::{Refined, Refiner};
+use crate::precise::searched::refine::{Found, Refiner};
 
 /// Standard deviation of the size due to errors that all masks have in common, relative.
 pub const SILHOUETTE_ERROR: f64 = 0.01;
@@ -147,7 +147,7 @@ fn value(view: &[SizeEvidence], size: f64) -> (f64, Option<usize>) {
 }
 
 /// A pose refined at a given scale.
-pub fn refine_at(objective: Objective<'_>, pose: CropPose, log_scale: f64, steps: usize) -> Refined {
+pub fn refine_at(objective: Objective<'_>, pose: CropPose, log_scale: f64, steps: usize) -> Found {
     let bounds = [libm::exp(log_scale); 2];
     let objective = Objective { prior: Prior { scale: Some(bounds), ..objective.prior }, ..objective };
     // At the depth of the surface, so that a change of the size moves the centre.

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::View;
 use super::by_color::Photos;
 use super::joint::JointScore;
-use super::known::{Part, Ranked, contradicts, join, on_fine_grids, rank, with_fused_size};
+use super::known::{Part, Ranked, Views};
 use super::predicted_mask::with_predicted_mask;
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
 use super::searched_view::SearchedView;
@@ -22,10 +22,11 @@ use crate::precise::judged::confidence::confidence;
 use crate::precise::no_candidate;
 use crate::precise::observed::clean::CleanObservation;
 use crate::precise::scored::appearance::PhotoCells;
-use crate::precise::scored::conditioning::{Conditioning, covariance, deviation, hold_roll, widest};
+use crate::precise::scored::conditioning::{Conditioning, covariance, deviation, fix_roll, widest};
 use crate::precise::scored::score::{NOISE, Score};
-use crate::precise::searched::recipe::SURE;
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::recipe::{FINE, SURE};
+use crate::precise::searched::refine::Found;
+use crate::precise::searched::search::Search;
 use crate::report::{Alternative, Sim3};
 
 /// Times that the mask of a view without one is predicted.
@@ -36,81 +37,101 @@ const PREDICTIONS: usize = 2;
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose is in front of a camera and overlaps a mask.
 pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &PreparedMesh<'_>) -> Result<Summary> {
-    let lock_scale = searched.first().is_some_and(|view| view.search().settings.lock_scale);
     let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
-    let own = |view: &SearchedView| view.found().first().map(|found| found.pose);
-    let parts: Vec<Part<'_>> = searched
-        .iter()
-        .map(|view| Part { index: view.index, search: view.search(), camera: view.camera, own: own(view) })
-        .collect();
-    let hypotheses: Vec<WorldPose> = searched
-        .iter()
-        .flat_map(|view| {
-            let poses = view.found().iter().map(|found| found.pose).chain(view.candidates.iter().copied());
-            poses.map(|pose| view.camera.place(&pose))
-        })
-        .collect();
-    let (mut ranked, mut renders) = join(&parts, &hypotheses, lock_scale);
-    renders += searched.iter().map(|view| view.search().renders).sum::<usize>();
+    let parts: Vec<Part<'_>> = searched.iter().map(SearchedView::part).collect();
+    let mut used = Views {
+        lock_scale: parts.first().is_some_and(|part| part.search.settings.lock_scale),
+        renders: parts.iter().map(|part| part.search.renders).sum(),
+        parts: parts.clone(),
+    };
+    let mut ranked = used.join(searched.iter().flat_map(SearchedView::hypotheses).collect());
 
     // The views that the best pose contradicts are left out.
-    let best = ranked.first().ok_or_else(no_candidate)?;
+    let scores = &ranked.first().ok_or_else(no_candidate)?.score.views;
+    let agrees = |(part, score): (&Part<'_>, &Score)| parts.len() == 1 || !part.contradicts(score.total);
+    let agrees: Vec<bool> = parts.iter().zip(scores).map(agrees).collect();
     let mut roles = vec![ViewRole::Blind; views.len()];
-    let mut used: Vec<Part<'_>> = Vec::new();
-    for ((part, view), score) in parts.iter().zip(searched).zip(&best.score.views) {
-        let is_used = parts.len() == 1 || !contradicts(part, score.total);
-        roles[view.index] = if is_used { ViewRole::Used } else { ViewRole::Contradicting };
-        used.extend(is_used.then_some(*part));
+    for (part, agrees) in parts.iter().zip(&agrees) {
+        roles[part.index] = if *agrees { ViewRole::Used } else { ViewRole::Contradicting };
     }
-    if used.len() < parts.len() {
-        ranked = rank(&used, &poses(&ranked), lock_scale, &mut renders);
+    if agrees.contains(&false) {
+        used.parts = parts.iter().zip(&agrees).filter(|(_, agrees)| **agrees).map(|(part, _)| *part).collect();
+        ranked = used.rank(&ranked);
     }
 
     // Views without a mask: it follows from the pose, and the pose from it.
     let mut unmasked: Vec<(usize, Search)> = Vec::new();
     for _ in 0..PREDICTIONS {
-        let Some(best) = ranked.first() else { break };
-        if used.is_empty() || views.iter().all(|view| view.frame.mask.is_some()) {
+        let (Some(best), Some(first)) = (ranked.first(), used.parts.first()) else { break };
+        if views.iter().all(|view| view.frame.mask.is_some()) {
             break;
         }
-        unmasked = predicted(&best.pose, views, &cameras, used[0].search);
+        unmasked = predicted(&best.pose, views, &cameras, first.search);
         let mut all = used.clone();
-        all.extend(unmasked.iter().map(|(k, search)| Part { index: *k, search, camera: cameras[*k], own: None }));
-        ranked = rank(&all, &poses(&ranked), lock_scale, &mut renders);
+        all.parts.extend(unmasked.iter().map(|(k, search)| unmasked_part(*k, search, &cameras)));
+        ranked = all.rank(&ranked);
+        used.renders = all.renders;
     }
-    for (k, search) in &unmasked {
-        roles[*k] = ViewRole::Used;
-        used.push(Part { index: *k, search, camera: cameras[*k], own: None });
-    }
-    let mut fused = None;
+    used.parts.extend(unmasked.iter().map(|(k, search)| unmasked_part(*k, search, &cameras)));
+    unmasked.iter().for_each(|(k, _)| roles[*k] = ViewRole::Used);
+
+    let mut size_sd = None;
     if let Some(best) = ranked.first_mut()
-        && used.len() > 1
-        && !lock_scale
-        && let Some((pose, sd)) = with_fused_size(&used, best.pose, &mut renders)
+        && used.parts.len() > 1
+        && !used.lock_scale
+        && let Some((pose, sd)) = used.fused_size(best.pose)
     {
         best.pose = pose;
-        fused = Some(sd);
+        size_sd = Some(sd);
     }
-    let mut joint = on_fine_grids(&used, lock_scale);
-    let mut held = |best: &Ranked| {
+    let verdict = verdict(&mut used, ranked, size_sd, views, mesh)?;
+    let shown = |k: usize| {
+        let part = parts.iter().chain(&used.parts).find(|part| part.index == k)?;
+        Some(part.search.score(&part.camera.see(&verdict.best.pose)?))
+    };
+    let shown: Vec<Score> = (0..views.len()).map(|k| shown(k).unwrap_or_default()).collect();
+    summary(verdict, &used, views, &cameras, roles, shown)
+}
+
+/// The best pose, and how far it can be trusted.
+struct Verdict {
+    best: Ranked,
+    conditioning: Option<Conditioning>,
+    color: Option<Judgment>,
+    /// Probability that the pose is right, by shape alone.
+    by_shape: f64,
+    /// Other poses, in the camera of the first view.
+    others: Vec<Alternative>,
+}
+
+/// The verdict on the `ranked` poses. `size_sd` is the standard deviation of the size, where it does not follow from the score.
+fn verdict(
+    used: &mut Views<'_>,
+    mut ranked: Vec<Ranked>,
+    size_sd: Option<f64>,
+    views: &[View],
+    mesh: &PreparedMesh<'_>,
+) -> Result<Verdict> {
+    let first = *used.parts.first().ok_or_else(no_candidate)?;
+    let mut joint = used.on_fine_grids();
+    let mut conditioned = |best: &Ranked| {
         let score = joint.score(&best.pose);
         let mut equations = joint.equations(&best.pose, &score);
-        let free_axis = used.first().and_then(|part| part.search.equivalence.free_axis(best.pose.rotation));
-        free_axis.into_iter().for_each(|axis| hold_roll(&mut equations, axis));
-        let held = conditioning(&equations, &best.pose)
-            .map(|held| Conditioning { scale: fused.unwrap_or(held.scale), ..held });
-        (score, held)
+        let free_axis = first.search.equivalence.free_axis(best.pose.rotation);
+        free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
+        let own = conditioning(&equations, &best.pose);
+        (score, own.map(|own| Conditioning { scale: size_sd.unwrap_or(own.scale), ..own }))
     };
-    let (mut score, mut conditioning) = held(ranked.first().ok_or_else(no_candidate)?);
-    let is_size_known = lock_scale || fused.is_some();
-    let judged = by_color(&used, views, mesh, (&ranked, conditioning.as_ref()), is_size_known, &mut renders);
+    let (mut score, mut conditioning) = conditioned(ranked.first().ok_or_else(no_candidate)?);
+    let is_size_known = used.lock_scale || size_sd.is_some();
+    let judged = by_color(used, views, mesh, (&ranked, conditioning.as_ref()), is_size_known);
     if let Some((_, Some(chosen))) = &judged {
-        (score, conditioning) = held(chosen);
+        (score, conditioning) = conditioned(chosen);
         ranked.insert(0, chosen.clone());
     }
     let color = judged.map(|(judgment, _)| judgment);
-    let (Some(best), Some(first)) = (ranked.first(), used.first()) else { return Err(no_candidate()) };
-    let mut others = other_poses(&ranked, first);
+    let best = ranked.first().ok_or_else(no_candidate)?;
+    let mut others = other_poses(&ranked, &first);
     let sum = Found {
         pose: first.camera.see(&best.pose).ok_or_else(no_candidate)?,
         score: mean_score(&score, best.score.total),
@@ -127,74 +148,76 @@ pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &PreparedMesh<'
     if color.as_ref().is_some_and(|color| color.is_used) {
         add_rivals(&mut others, &sum, rivals(true), first.search);
     }
-    let confidence = by_shape * color.as_ref().map_or(1.0, |color| color.certainty);
+    Ok(Verdict { best: best.clone(), conditioning, color, by_shape, others })
+}
+
+/// The result, with the role of each view and its score.
+fn summary(
+    verdict: Verdict,
+    used: &Views<'_>,
+    views: &[View],
+    cameras: &[PlacedCamera],
+    roles: Vec<ViewRole>,
+    shown: Vec<Score>,
+) -> Result<Summary> {
+    let Verdict { best, conditioning, color, by_shape, others } = verdict;
+    let first = used.parts.first().ok_or_else(no_candidate)?;
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
-    let shown = |k: usize| {
-        let part = parts.iter().zip(searched).find(|(_, view)| view.index == k).map(|(part, _)| *part);
-        let part = part.or_else(|| {
-            let (_, search) = unmasked.iter().find(|(index, _)| *index == k)?;
-            Some(Part { index: k, search, camera: cameras[k], own: None })
-        })?;
-        Some(part.search.score(&part.camera.see(&best.pose)?))
+    let confidence = by_shape * color.as_ref().map_or(1.0, |color| color.certainty);
+    let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
+        let world_from_camera = cameras[k].world_from_camera();
+        SummaryView {
+            camera_from_mesh: world_from_camera.inverse().compose(&world_from_mesh),
+            confidence,
+            role,
+            world_from_camera,
+            rotation_sd_deg: Some(0.0),
+            position_sd_m: Some(0.0),
+            score,
+            color: color.as_ref().filter(|_| views[k].frame.photo.is_some()).map(|color| color.report),
+        }
     };
-    let views = (0..views.len())
-        .map(|k| {
-            let world_from_camera = cameras[k].world_from_camera();
-            SummaryView {
-                camera_from_mesh: world_from_camera.inverse().compose(&world_from_mesh),
-                confidence,
-                role: roles[k],
-                world_from_camera,
-                rotation_sd_deg: Some(0.0),
-                position_sd_m: Some(0.0),
-                score: shown(k).unwrap_or_default(),
-                color: color.as_ref().filter(|_| views[k].frame.photo.is_some()).map(|color| color.report),
-            }
-        })
-        .collect();
     Ok(Summary {
         world_from_mesh,
         world: WorldFrame::Given,
         confidence,
         is_sure: by_shape >= SURE,
         alternatives: others.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
-        uncertainty: conditioning.map(|held| WorldUncertainty {
-            scale: held.scale,
-            rotation_deg: held.rotation.0.to_degrees(),
-            rotation_axis: held.rotation.1.to_array(),
+        uncertainty: conditioning.map(|own| WorldUncertainty {
+            scale: own.scale,
+            rotation_deg: own.rotation.0.to_degrees(),
+            rotation_axis: own.rotation.1.to_array(),
             free_axis: first.search.equivalence.free_axis(best.pose.rotation).map(|axis| axis.to_array()),
-            position_m: held.lateral_m,
+            position_m: own.lateral_m,
         }),
-        views,
+        views: roles.into_iter().zip(shown).enumerate().map(of_view).collect(),
         score: f64::from(best.score.total),
         converged: best.converged,
-        renders,
+        renders: used.renders,
         effort: first.search.settings.effort,
     })
 }
 
 /// What colour says of the best pose; `None` without colours.
 fn by_color(
-    used: &[Part<'_>],
+    used: &mut Views<'_>,
     views: &[View],
     mesh: &PreparedMesh<'_>,
     (ranked, conditioning): (&[Ranked], Option<&Conditioning>),
     lock_scale: bool,
-    renders: &mut usize,
 ) -> Option<(Judgment, Option<Ranked>)> {
     let colors = mesh.colors()?;
     let photo = |part: &Part<'_>| views[part.index].frame.photo.as_ref().map(|photo| cells(photo, part.search));
-    let photos: Vec<Option<PhotoCells>> = used.iter().map(photo).collect();
+    let photos: Vec<Option<PhotoCells>> = used.parts.iter().map(photo).collect();
     photos.iter().flatten().next()?;
-    Photos { parts: used, photos: &photos, colors }.judge(ranked, conditioning, lock_scale, renders)
+    let mut photos = Photos { views: Views { lock_scale, ..used.clone() }, photos: &photos, colors };
+    let judged = photos.judge(ranked, conditioning);
+    used.renders = photos.views.renders;
+    judged
 }
 
 fn camera(view: &View) -> PlacedCamera {
     view.world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
-}
-
-fn poses(ranked: &[Ranked]) -> Vec<WorldPose> {
-    ranked.iter().map(|ranked| ranked.pose).collect()
 }
 
 /// The evidence of the views without a mask, where the pose predicts one with enough readings.
@@ -212,11 +235,15 @@ fn predicted(pose: &WorldPose, views: &[View], cameras: &[PlacedCamera], like: &
         let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), like.settings);
         search.assume(like.prior);
         search.equivalence = like.equivalence.clone();
-        if search.fine.mask_cells > 0 {
+        if search.grid(FINE).mask_cells > 0 {
             evidence.push((k, search));
         }
     }
     evidence
+}
+
+fn unmasked_part<'a>(index: usize, search: &'a Search, cameras: &[PlacedCamera]) -> Part<'a> {
+    Part { index, search, camera: cameras[index], own: None }
 }
 
 /// The conditioning of a world pose; its positions are those of the centre of the mesh along the least determined axis.

@@ -89,15 +89,15 @@ impl Ascent for Joint<'_> {
     type Pose = WorldPose;
     type Score = JointScore;
 
-    fn held(&self, mut pose: WorldPose) -> WorldPose {
+    fn allowed(&self, mut pose: WorldPose) -> WorldPose {
         let Some(view) = self.views.first() else { return pose };
-        let held = view.objective.prior.held(CropPose {
+        let bounded = view.objective.prior.bounded(CropPose {
             rotation: pose.rotation,
             size: pose.log_scale,
             place: glam::DVec2::ZERO,
             distance: 0.0,
         });
-        pose.log_scale = held.size;
+        pose.log_scale = bounded.size;
         pose
     }
 

@@ -1,6 +1,7 @@
 //! The search in one view, whose poses are hypotheses for all.
 
-use super::world_pose::PlacedCamera;
+use super::known::Part;
+use super::world_pose::{PlacedCamera, WorldPose};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
@@ -10,10 +11,10 @@ use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::judged::color::{Judgment, judgment};
 use crate::precise::options::AlignOptions;
-use crate::precise::searched::recipe::FIRST_REFINEMENT;
-use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::recipe::{FIRST_REFINEMENT, SearchSettings};
+use crate::precise::searched::refine::Found;
 use crate::precise::searched::rounds::Rounds;
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::search::Search;
 use crate::precise::searched::start;
 use crate::progress::Stopwatch;
 
@@ -67,6 +68,18 @@ impl SearchedView {
             self.rounds.found.insert(0, chosen);
         }
         self.color = Some(judgment);
+    }
+
+    /// The view as one of several.
+    pub fn part(&self) -> Part<'_> {
+        let own = self.found().first().map(|found| found.pose);
+        Part { index: self.index, search: self.search(), camera: self.camera, own }
+    }
+
+    /// The poses in the world that the search has found or refined once.
+    pub fn hypotheses(&self) -> impl Iterator<Item = WorldPose> {
+        let poses = self.found().iter().map(|found| found.pose).chain(self.candidates.iter().copied());
+        poses.map(|pose| self.camera.place(&pose))
     }
 
     /// The poses that the search has found, best first.

@@ -12,14 +12,14 @@ use crate::precise::judged::confidence::sureness;
 use crate::precise::no_candidate;
 use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::objective::Objective;
-use crate::precise::searched::recipe::{FINE, FINEST, SURE};
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::recipe::{COMMON_SIZE, FINE, SURE};
+use crate::precise::searched::refine::Found;
+use crate::precise::searched::search::Search;
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
 const NEAR: f32 = 0.35;
-/// Poses of a view tried at the common size, and the steps of their refinement on the fine and the finest grid.
+/// Poses of a view tried at the common size.
 const TRIED: usize = 5;
-const STEPS: [usize; 2] = [14, 8];
 /// Number of other poses of a view that its lead is measured against.
 const RIVALS: usize = 8;
 /// Times that the size follows from the poses that were refined at the size before.
@@ -37,6 +37,7 @@ pub struct CommonSize {
 
 /// Finds the common size; `None` if no view has a pose.
 pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
+    let [rank, polish] = COMMON_SIZE;
     let mut renders = 0;
     let likely: Vec<Vec<Found>> = searched.iter().map(likely).collect();
     let evidence: Vec<Vec<SizeEvidence>> = searched
@@ -60,10 +61,10 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
                 let tried = if round == 0 { likely[k].clone() } else { vec![poses[k]] };
                 let refined = tried.into_iter().map(|found| {
                     let own = found.pose.size + found.pose.distance;
-                    let refined =
-                        refine_at(fine(view.search()), found.pose, if agrees[k] { size } else { own }, STEPS[0]);
+                    let at = if agrees[k] { size } else { own };
+                    let refined = refine_at(view.search().objective(rank.grid), found.pose, at, rank.steps);
                     renders += refined.renders;
-                    Found::from(refined)
+                    refined
                 });
                 best_of(refined)
             })
@@ -77,11 +78,11 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     let views = searched.iter().zip(poses).zip(agrees).map(|((view, found), agrees)| {
         let own = found.pose.size + found.pose.distance;
         let search = view.search();
-        let grid = search.grid(FINEST);
-        let refined = refine_at(search.objective(FINEST, &grid), found.pose, if agrees { size } else { own }, STEPS[1]);
+        let refined =
+            refine_at(search.objective(polish.grid), found.pose, if agrees { size } else { own }, polish.steps);
         renders += refined.renders;
         // The score stays that of the fine grid, because scores of different grids are not comparable.
-        (Found { score: search.score(&refined.pose), renders: 0, ..refined.into() }, agrees)
+        (Found { score: search.score(&refined.pose), renders: 0, ..refined }, agrees)
     });
     let views = views.collect();
     Some(CommonSize { sd, views, renders })
@@ -96,7 +97,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     let effort = searched.first().map_or_else(Default::default, |view| view.search().settings.effort);
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
     let mut views: Vec<SummaryView> = Vec::new();
-    let mut held: Vec<Option<Conditioning>> = Vec::new();
+    let mut conditioned: Vec<Option<Conditioning>> = Vec::new();
     let mut least: f64 = 1.0;
     for (view, (found, agrees)) in searched.iter().zip(&common.views) {
         let search = view.search();
@@ -126,18 +127,18 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             score: found.score,
             color: color.map(|color| color.report),
         });
-        held.push(conditioning);
+        conditioned.push(conditioning);
     }
     let world_from_mesh = views[first].camera_from_mesh;
     for (k, view) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
         let relative = world_from_mesh.compose(&view.camera_from_mesh.inverse());
         view.world_from_camera = Similarity { scale: 1.0, ..relative };
         let sd = |part: fn(&Conditioning) -> f64| {
-            let (a, b) = (held[first].as_ref().map(part)?, held[k].as_ref().map(part)?);
+            let (a, b) = (conditioned[first].as_ref().map(part)?, conditioned[k].as_ref().map(part)?);
             Some((a * a + b * b).sqrt())
         };
-        let turn = sd(|held| held.rotation.0);
-        let moved = sd(|held| held.lateral_m.max(held.distance_m));
+        let turn = sd(|own| own.rotation.0);
+        let moved = sd(|own| own.lateral_m.max(own.distance_m));
         view.rotation_sd_deg = turn.map(f64::to_degrees);
         view.position_sd_m = turn.zip(moved).map(|(turn, moved)| {
             // The camera swings about the object as far as the rotation of the object is uncertain.
@@ -148,12 +149,12 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     let used = || views.iter().filter(|view| view.role == ViewRole::Used);
     let confidence = used().map(|view| view.confidence).fold(1.0, f64::min);
     let free_axis = searched[first].search().equivalence.free_axis(common.views[first].0.pose.rotation);
-    let uncertainty = held[first].map(|held| WorldUncertainty {
+    let uncertainty = conditioned[first].map(|own| WorldUncertainty {
         scale: common.sd,
-        rotation_deg: held.rotation.0.to_degrees(),
-        rotation_axis: held.rotation.1.to_array(),
+        rotation_deg: own.rotation.0.to_degrees(),
+        rotation_axis: own.rotation.1.to_array(),
         free_axis: free_axis.map(|axis| axis.to_array()),
-        position_m: held.lateral_m.max(held.distance_m),
+        position_m: own.lateral_m.max(own.distance_m),
     });
     Ok(Summary {
         world_from_mesh,
@@ -183,5 +184,5 @@ fn best_of(found: impl Iterator<Item = Found>) -> Option<Found> {
 }
 
 fn fine(search: &Search) -> Objective<'_> {
-    search.objective(FINE, &search.fine)
+    search.objective(FINE)
 }

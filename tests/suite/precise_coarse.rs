@@ -150,7 +150,7 @@ fn a_pose_goes_to_the_distance_of_the_depths() {
         let bounds = [0.9, 1.1].map(|factor| factor * truth.scale_translation().0);
         let prior = Prior { scale: Some(bounds), up: None };
         let held = scene.coarse(prior).at_its_distance(&mut canvas, start);
-        assert_eq!(held.pose, prior.held(found.pose), "seed {seed}");
+        assert_eq!(held.pose, prior.bounded(found.pose), "seed {seed}");
         if held.pose != found.pose {
             let expected = scene.coarse(prior).objective.score(&mut other, &held.pose);
             assert_eq!(held.score, expected, "seed {seed}: another size is another picture");

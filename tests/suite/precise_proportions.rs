@@ -206,5 +206,5 @@ fn a_fit_in_proportion_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
     let prior = Prior { scale: Some(bounds), up: None };
     let objective = Objective { prior, ..free };
     let held = Refiner { objective, lock_scale: false }.refine_in_proportion(&mut canvas, start, 20, &surface);
-    assert!(prior.holds(&held.pose), "the truth is below: {held:?}");
+    assert!(prior.is_at_bound(&held.pose), "the truth is below: {held:?}");
 }

@@ -9,7 +9,7 @@ use sim3align::precise::drawn::pose::{CropPose, MeshFrame, Step};
 use sim3align::precise::drawn::render::{Canvas, Model};
 use sim3align::precise::observed::clean::CleanObservation;
 use sim3align::precise::observed::grid::CropGrid;
-use sim3align::precise::scored::conditioning::{Conditioning, covariance, hold_roll};
+use sim3align::precise::scored::conditioning::{Conditioning, covariance, fix_roll};
 use sim3align::precise::scored::objective::Objective;
 use sim3align::precise::scored::prior::Prior;
 use sim3align::precise::scored::score::{Score, Scoring, Weights};
@@ -294,7 +294,7 @@ fn a_refinement_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
         let held = Refiner { objective: Objective { prior, ..free }, lock_scale: false }.refine(&mut canvas, start, 20);
         let scale = libm::exp(log_scale(&held.pose));
         assert!((bounds[0] * (1.0 - 1e-12)..=bounds[1]).contains(&scale), "seed {seed}: {scale} in {bounds:?}");
-        assert!(prior.holds(&held.pose), "seed {seed}: the truth is below");
+        assert!(prior.is_at_bound(&held.pose), "seed {seed}: the truth is below");
     }
 }
 
@@ -371,7 +371,7 @@ fn the_axis_held_least_is_that_of_a_bodys_revolution() {
     assert!((found.rotation.0 / (0.02f64 / 1e-3).sqrt() - 1.0).abs() < 1e-4, "{found:?}");
 
     // A symmetry that makes this turn meaningless leaves the other two, and all else as it is.
-    hold_roll(&mut equations, turn.z_axis);
+    fix_roll(&mut equations, turn.z_axis);
     let up_to_roll = Conditioning::new(&covariance(&equations).unwrap(), &held_at);
     assert!((up_to_roll.rotation.0 / (0.02f64 / 10.0).sqrt() - 1.0).abs() < 1e-4, "{up_to_roll:?}");
     assert!((up_to_roll.scale / found.scale - 1.0).abs() < 1e-4, "{up_to_roll:?}");

@@ -9,8 +9,9 @@ use sim3align::precise::drawn::pose::{CropPose, MeshFrame};
 use sim3align::precise::drawn::turns::TURNS;
 use sim3align::precise::observed::clean::CleanObservation;
 use sim3align::precise::searched::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task as Kind};
+use sim3align::precise::searched::refine::Found;
 use sim3align::precise::searched::rounds::Rounds;
-use sim3align::precise::searched::search::{Found, Search};
+use sim3align::precise::searched::search::Search;
 use sim3align::report::Effort;
 use wasm_bindgen_test::wasm_bindgen_test;
 

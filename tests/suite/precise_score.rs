@@ -188,15 +188,15 @@ fn bounds_of_the_scale_hold_at_the_same_distance() {
         let low = libm::exp(draw.between(-4.0, 2.0));
         let bounds = [low, low * if seed % 4 == 0 { 1.0 } else { draw.between(1.0, 5.0) }];
         let prior = Prior { scale: Some(bounds), up: None };
-        let held = prior.held(any);
+        let held = prior.bounded(any);
         let expected = scale_of(&any).clamp(bounds[0], bounds[1]);
         assert!((scale_of(&held) / expected - 1.0).abs() < 1e-12, "seed {seed}: {} for {expected}", scale_of(&held));
         assert_eq!((held.rotation, held.place, held.distance), (any.rotation, any.place, any.distance), "seed {seed}");
         let was_inside = (bounds[0]..=bounds[1]).contains(&scale_of(&any));
         assert!(!was_inside || held == any, "seed {seed}: moved within its bounds");
-        assert_eq!(prior.holds(&held), bounds[0] < bounds[1] && !was_inside, "seed {seed}");
-        assert_eq!(Prior::default().held(any), any, "seed {seed}");
-        assert!(!Prior::default().holds(&any), "seed {seed}");
+        assert_eq!(prior.is_at_bound(&held), bounds[0] < bounds[1] && !was_inside, "seed {seed}");
+        assert_eq!(Prior::default().bounded(any), any, "seed {seed}");
+        assert!(!Prior::default().is_at_bound(&any), "seed {seed}");
     }
 }
 

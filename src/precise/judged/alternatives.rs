@@ -4,7 +4,8 @@ use super::color::Rival;
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawn::equivalence::{DIFFERENT, Equivalence};
 use crate::precise::scored::score::NOISE;
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::refine::Found;
+use crate::precise::searched::search::Search;
 use crate::report::Alternative;
 
 /// Score below an unsure best pose down to which poses are alternatives. It is wrong more often than others, and the right pose

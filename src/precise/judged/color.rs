@@ -23,18 +23,17 @@ use crate::precise::drawn::render::Canvas;
 use crate::precise::observed::clean::CleanObservation;
 use crate::precise::scored::appearance::{Appearance, PhotoCells};
 use crate::precise::scored::score::{NOISE, Score};
-use crate::precise::searched::recipe::{FINE, FINEST, MIDDLE, SearchSettings};
+use crate::precise::searched::recipe::{COLORED, FINE, SearchSettings};
+use crate::precise::searched::refine::Found;
 use crate::precise::searched::refine::Refiner;
 use crate::precise::searched::rounds::Rounds;
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::search::Search;
 use crate::report::{ColorReport, Effort};
 
 /// Contrast between two poses, relative to the noise, from which on they look different.
 pub const DIFFERENT: f64 = 2.0;
 /// Minimum rotation between poses that are rivals, radians.
 const RIVAL: f64 = 0.35;
-/// Steps of the refinement of a lookalike, and of the pose that colour chose.
-const STEPS: [usize; 2] = [4, 6];
 /// Standard deviation of a rotation, radians, from which on colour refines it.
 pub const LOOSE: f64 = 0.05;
 
@@ -115,16 +114,16 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, p
     let search = &rounds.search;
     let mut canvas = Canvas::default();
     let look_at = |canvas: &mut Canvas, pose: CropPose| {
-        let score = search.objective(FINE, &search.fine).score(canvas, &pose);
-        Some((score, photo.compare(canvas, colors, &search.mesh.frame, &search.fine)?))
+        let score = search.objective(FINE).score(canvas, &pose);
+        Some((score, photo.compare(canvas, colors, &search.mesh.frame, search.grid(FINE))?))
     };
     let Some(best) = rounds.found.first() else { return Vec::new() };
     let Some((of_best, appearance)) = look_at(&mut canvas, best.pose) else { return Vec::new() };
     let look = Look::new(appearance.agreement, 0.0);
     let score = Score { total: best.score.total, ..of_best };
     let mut list = vec![Compared { found: Found { score, ..*best }, appearance, look }];
-    let middle = search.grid(MIDDLE);
-    let refiner = Refiner { objective: search.objective(MIDDLE, &middle), lock_scale: search.settings.lock_scale };
+    let [rough, _] = COLORED;
+    let refiner = Refiner { objective: search.objective(rough.grid), lock_scale: search.settings.lock_scale };
     for Lookalike { pose, likeness } in lookalikes(rounds) {
         let is_rough = likeness == Likeness::Rough;
         // A turn of the best pose doubles its error. What the search has found near the turn is more accurate.
@@ -132,7 +131,7 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, p
         let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
         let pose = match known {
             Some(found) => found.pose,
-            None if is_rough => refiner.refine(&mut canvas, pose, STEPS[0]).pose,
+            None if is_rough => refiner.refine(&mut canvas, pose, rough.steps).pose,
             None => pose,
         };
         let is_compared = |other: &Compared| other.found.pose == pose || is_rough && is_near(&other.found.pose, &pose);
@@ -168,15 +167,14 @@ pub fn roll(
     pose: CropPose,
     loose: f64,
 ) -> Option<(CropPose, f64)> {
-    let loosest =
-        || search.conditioning(&pose).0.map(|held| held.rotation).filter(|(deviation, _)| *deviation >= loose);
+    let loosest = || search.conditioning(&pose).0.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= loose);
     let axis = search.equivalence.free_axis(pose.rotation).or_else(|| loosest().map(|(_, axis)| axis))?;
     let rolled = |angle: f64| search.mesh.turns.turned(&pose, exp(axis * angle) * pose.rotation);
     let mut canvas = Canvas::default();
-    let objective = search.objective(FINE, &search.fine);
+    let objective = search.objective(FINE);
     let (angle, gain) = best_roll(|angle| {
         let score = objective.score(&mut canvas, &rolled(angle));
-        let appearance = photo.compare(&canvas, colors, &search.mesh.frame, &search.fine);
+        let appearance = photo.compare(&canvas, colors, &search.mesh.frame, search.grid(FINE));
         appearance.map_or(f64::NEG_INFINITY, |a| Look::new(a.agreement, score.total).total)
     })?;
     Some((rolled(angle), gain))
@@ -246,19 +244,18 @@ pub fn agreement(
 /// The correlation of the colours of a pose with the photo; `None` if nothing can be compared.
 pub fn agreement_at(search: &Search, photo: &PhotoCells, colors: &SurfaceColors, pose: &CropPose) -> Option<f64> {
     let mut canvas = Canvas::default();
-    search.objective(FINE, &search.fine).score(&mut canvas, pose);
-    Some(photo.compare(&canvas, colors, &search.mesh.frame, &search.fine)?.agreement)
+    search.objective(FINE).score(&mut canvas, pose);
+    Some(photo.compare(&canvas, colors, &search.mesh.frame, search.grid(FINE))?.agreement)
 }
 
 /// The photo on the fine grid of a search in the whole depth map.
 pub fn cells(photo: &Photo, search: &Search) -> PhotoCells {
-    PhotoCells::new(photo, &PhotoRegion::WHOLE, search.observation.image, &search.fine)
+    PhotoCells::new(photo, &PhotoRegion::WHOLE, search.observation.image, search.grid(FINE))
 }
 
 /// A pose refined on the finest grid.
 fn polished(rounds: &Rounds, pose: CropPose) -> CropPose {
-    let search = &rounds.search;
-    let finest = search.grid(FINEST);
-    let refiner = Refiner { objective: search.objective(FINEST, &finest), lock_scale: search.settings.lock_scale };
-    refiner.refine_in_proportion(&mut Canvas::default(), pose, STEPS[1], &search.mesh.surface).pose
+    let (search, [_, polish]) = (&rounds.search, COLORED);
+    let refiner = Refiner { objective: search.objective(polish.grid), lock_scale: search.settings.lock_scale };
+    refiner.refine_in_proportion(&mut Canvas::default(), pose, polish.steps, &search.mesh.surface).pose
 }

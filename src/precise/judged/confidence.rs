@@ -8,7 +8,7 @@
 use super::choice::SHAPE;
 use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::score::NOISE;
-use crate::precise::searched::search::Found;
+use crate::precise::searched::refine::Found;
 use crate::report::Alternative;
 
 /// Intercept and coefficients of the regression: overlap, depth, outline, the margin relative to [`NOISE`], and the
@@ -31,7 +31,7 @@ pub(crate) fn confidence(best: &Found, alternatives: &[Alternative], conditionin
 
 /// The same, given the lead over the next best placement, of which no more than [`NOISE`] counts.
 pub(crate) fn sureness(best: &Found, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
-    let Some(held) = conditioning else { return 0.0 };
+    let Some(conditioning) = conditioning else { return 0.0 };
     let margin = lead.min(f64::from(NOISE));
     let log = |x: f64, [low, high]: [f64; 2]| libm::log(x.max(low).min(high));
     let features = [
@@ -39,8 +39,8 @@ pub(crate) fn sureness(best: &Found, lead: f64, conditioning: Option<&Conditioni
         f64::from(best.score.depth),
         f64::from(best.score.outline),
         margin.max(0.0) / f64::from(NOISE),
-        log(held.scale, SCALE),
-        log(held.rotation.0.to_degrees(), ROTATION_DEG),
+        log(conditioning.scale, SCALE),
+        log(conditioning.rotation.0.to_degrees(), ROTATION_DEG),
     ];
     let logit = features.iter().zip(SLOPES).map(|(x, slope)| x * slope).sum::<f64>() + INTERCEPT;
     1.0 / (1.0 + libm::exp(-logit))

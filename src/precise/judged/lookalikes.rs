@@ -47,8 +47,7 @@ pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike<CropPose>> {
     let search = &rounds.search;
     let Some((best, others)) = rounds.found.split_first() else { return Vec::new() };
     let mut canvas = Canvas::default();
-    let grid = search.grid(COARSE);
-    let objective = search.objective(COARSE, &grid);
+    let objective = search.objective(COARSE);
     let score = objective.score(&mut canvas, &best.pose).total;
     let turns = &search.mesh.turns;
     let turned = turns.about_axes(&best.pose, ROLLS);

@@ -54,7 +54,7 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
-        clamped: search.is_held(&best.pose),
+        clamped: search.is_at_bound(&best.pose),
         converged: best.converged,
         residual_m,
     };

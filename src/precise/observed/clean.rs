@@ -20,8 +20,37 @@ const PIN_HOLE: f64 = 0.01;
 /// down to the second value, only if they are near.
 const COMPONENT: f64 = 0.2;
 const ISLAND: f64 = 0.04;
-/// Maximum distance of a small component, relative to the longer side of the mask.
-const ISLAND_REACH: f64 = 0.25;
+/// Maximum distance of a small component: relative to the longer side of the mask, and pixels more.
+const ISLAND_REACH: [f64; 2] = [0.25, 4.0];
+/// Maximum difference in depth between a component and the largest one, relative to the width of that: of a small
+/// component, and of a large one, which a hand or a pole may have split from a long object.
+const ISLAND_DEPTH: [f64; 2] = [1.0, 2.5];
+/// Depth margin of an occluder: relative to the diagonal of the object, which generated meshes miss by some percent, and to
+/// its distance, for the noise of the sensor.
+const OCCLUDER: [f64; 2] = [0.02, 0.005];
+/// Margin by which what other objects show is put nearer, relative to that of an occluder.
+const OTHER_MARGIN: f64 = 1.5;
+/// Widths of a rim without readings that count, pixels: relative to the square root of the mask's area, for the blur of depth
+/// networks, whose inputs are about 400 pixels wide, and the least and the most of it; then one pixel.
+const RIM_WIDTH: f64 = 0.011;
+const RIM_WIDTHS: [f64; 2] = [2.0, 4.0];
+/// Share of the mask that must remain without each of these rims, and the number of readings.
+const INNER_SHARES: [f64; 2] = [0.3, 0.2];
+const INNER_READINGS: usize = 32;
+/// Depth of the window with the most readings, relative to the width of the object, and its least relative depth.
+const WINDOW_DEPTH: f64 = 1.2;
+const LEAST_WINDOW: f64 = 0.1;
+/// Deviation from the median depth beyond which a reading is not of the object: relative to its width, or in robust standard
+/// deviations of its depths, whichever is more.
+const FAR: [f64; 2] = [WINDOW_DEPTH, 5.0];
+/// Range of the depths around a reading from which on it lies on an edge, where sensors mix near and far: relative to the
+/// width of the object, and to its distance. If less than this share of the readings is left without them, they stay.
+const EDGE: [f64; 2] = [0.06, 0.006];
+const SMOOTH_SHARE: [usize; 2] = [3, 10];
+/// Standard deviations in a median absolute deviation of a normal distribution.
+const MAD: f64 = 1.4826;
+/// Share of the points excluded at either end of each axis.
+const TAIL: f64 = 0.005;
 /// Minimum depth step behind the object for the depth map to show the outline: relative to the width of the object,
 /// which excludes the slope of rounded edges, and relative to its depth.
 const RIM_JUMP: [f64; 2] = [0.15, 0.01];
@@ -83,13 +112,13 @@ impl CleanObservation {
 
     /// Depth margin at which the scene hides the mesh, metres.
     pub fn occluder_m(&self) -> f64 {
-        0.02 * self.diagonal_m + 0.005 * self.median_m
+        OCCLUDER[0] * self.diagonal_m + OCCLUDER[1] * self.median_m
     }
 
     /// Lets what other objects show hide the mesh without the margin that free space needs: there, a surface at the
     /// same depth is theirs, and the mesh is free space only if it is clearly nearer.
     fn put_behind(&mut self, others: &[bool]) {
-        let nearer = (1.5 * self.occluder_m()) as f32;
+        let nearer = (OTHER_MARGIN * self.occluder_m()) as f32;
         for ((scene, other), outline) in self.scene.iter_mut().zip(others).zip(&self.outline) {
             if *other && *outline > 0.0 && *scene > 0.0 {
                 *scene = (*scene - nearer).max(1e-3 * *scene);
@@ -195,7 +224,7 @@ impl Crop {
         let extent_px = longer_side(&bounds_of(&main, self.width, |set| *set));
         let largest_m = median_depth(largest);
         let extent_m = largest_m.map_or(f64::INFINITY, |z| extent_px * z / self.camera.fx);
-        let reach = ISLAND_REACH * extent_px + 4.0;
+        let reach = ISLAND_REACH[0] * extent_px + ISLAND_REACH[1];
         let distances = squared_distances(&main, self.width, self.height);
         let bridged = others.map(|others| self.bridged(&main, others));
         let kept = components.iter().filter(|c| {
@@ -203,7 +232,7 @@ impl Crop {
             let bridged = || bridged.as_ref().is_some_and(|b| c.pixels().any(|i| b[i]));
             let near = || bridged() || c.pixels().any(|i| f64::from(distances[i]) <= reach * reach);
             let apart_m = median_depth(c).zip(largest_m).map_or(0.0, |(a, b)| (a - b).abs());
-            let at_depth = apart_m <= if large { 2.5 } else { 1.0 } * extent_m;
+            let at_depth = apart_m <= ISLAND_DEPTH[usize::from(large)] * extent_m;
             at_depth && (large || (area(c) >= ISLAND * area(largest) && near()))
         });
         self.mask = self.mask_of(kept);
@@ -231,12 +260,12 @@ impl Crop {
         let inner = self.inner_readings(&pixels, &outline);
         let (median, spread) = self.densest_window(&inner, extent_px);
         let extent_m = extent_px / self.camera.fx * median;
-        let reach = (1.2 * extent_m).max(5.0 * spread);
+        let reach = (FAR[0] * extent_m).max(FAR[1] * spread);
         let is_near = |i: &usize| (f64::from(self.scene[*i]) - median).abs() < reach;
         let near: Vec<usize> = inner.into_iter().filter(is_near).collect();
-        let jump = (0.06 * extent_m + 0.006 * median) as f32;
+        let jump = (EDGE[0] * extent_m + EDGE[1] * median) as f32;
         let smooth: Vec<usize> = near.iter().copied().filter(|i| self.range_around(*i) <= jump).collect();
-        let trusted = if 10 * smooth.len() > 3 * near.len() { smooth } else { near };
+        let trusted = if SMOOTH_SHARE[1] * smooth.len() > SMOOTH_SHARE[0] * near.len() { smooth } else { near };
         let mut depth = vec![0.0; self.scene.len()];
         trusted.iter().for_each(|&i| depth[i] = self.scene[i]);
         let median_m = quantile(trusted.iter().map(|&i| self.scene[i]), 0.5).map_or(median, f64::from);
@@ -261,13 +290,12 @@ impl Crop {
     /// Those of the mask's pixels that have a reading, excluding its rim if enough remain.
     fn inner_readings(&self, pixels: &[usize], outline: &[f32]) -> Vec<usize> {
         let count = pixels.len() as f64;
-        // Two pixels, and more for images larger than the input of depth networks.
-        let two = (0.011 * count.sqrt()).clamp(2.0, 4.0);
-        for (rim, share) in [(two, 0.3), (1.0, 0.2), (0.0, 0.0)] {
+        let wide = (RIM_WIDTH * count.sqrt()).clamp(RIM_WIDTHS[0], RIM_WIDTHS[1]);
+        for (rim, share) in [(wide, INNER_SHARES[0]), (1.0, INNER_SHARES[1]), (0.0, 0.0)] {
             let inner = || pixels.iter().copied().filter(|i| 0.5 - f64::from(outline[*i]) > rim);
             let readings: Vec<usize> = inner().filter(|i| self.scene[*i] > 0.0).collect();
             let enough = inner().count() as f64 >= share * count;
-            if (enough && readings.len() >= 32) || rim == 0.0 {
+            if (enough && readings.len() >= INNER_READINGS) || rim == 0.0 {
                 return readings;
             }
         }
@@ -281,7 +309,7 @@ impl Crop {
         let mut keys: Vec<u64> = inner.iter().step_by(step).map(|&i| order::pack(self.scene[i], 0)).collect();
         order::sort(&mut keys);
         let depths: Vec<f32> = keys.into_iter().map(order::value_of).collect();
-        let deep = 1.0 + (1.2 * extent_px / self.camera.fx).max(0.1) as f32;
+        let deep = 1.0 + (WINDOW_DEPTH * extent_px / self.camera.fx).max(LEAST_WINDOW) as f32;
         let (mut best, mut end) = (0..0, 0);
         for (start, &z) in depths.iter().enumerate() {
             while end < depths.len() && depths[end] <= z * deep {
@@ -294,7 +322,7 @@ impl Crop {
         let window = &depths[best];
         let median = window.get(window.len() / 2).copied().unwrap_or(1.0);
         let spread = quantile(window.iter().map(|z| (z - median).abs()), 0.5).unwrap_or(0.0);
-        (f64::from(median), 1.4826 * f64::from(spread))
+        (f64::from(median), MAD * f64::from(spread))
     }
 
     /// Range of the depths of a pixel and its eight neighbours.
@@ -322,7 +350,7 @@ impl Crop {
             .collect();
         let side = |axis: usize| {
             let at = |q| quantile(points.iter().map(|p| p[axis]), q).map_or(0.0, f64::from);
-            at(0.995) - at(0.005)
+            at(1.0 - TAIL) - at(TAIL)
         };
         (0..3).map(|axis| side(axis) * side(axis)).sum::<f64>().sqrt()
     }

@@ -52,7 +52,7 @@ pub fn covariance<const N: usize>(equations: &NormalEquationsOf<N>) -> Option<[[
 }
 
 /// Holds the roll about an axis, in the camera frame, of a pose whose first three parameters are its rotation.
-pub fn hold_roll<const N: usize>(equations: &mut NormalEquationsOf<N>, axis: DVec3) {
+pub fn fix_roll<const N: usize>(equations: &mut NormalEquationsOf<N>, axis: DVec3) {
     let weight = 2.0 * DROP / (FIXED * FIXED);
     let row = |x: f64| (axis * (x * weight)).to_array();
     equations.add_block(&[row(axis.x), row(axis.y), row(axis.z)], [0.0; 3]);

@@ -41,7 +41,7 @@ impl Prior {
     }
 
     /// The pose with its scale within the bounds, at the same distance.
-    pub fn held(&self, pose: CropPose) -> CropPose {
+    pub fn bounded(&self, pose: CropPose) -> CropPose {
         let Some(bounds) = self.scale else { return pose };
         let [low, high] = bounds.map(libm::log);
         let scale = pose.size + pose.distance;
@@ -53,7 +53,7 @@ impl Prior {
     }
 
     /// Whether a pose is at a bound of a scale that is not fixed.
-    pub fn holds(&self, pose: &CropPose) -> bool {
+    pub fn is_at_bound(&self, pose: &CropPose) -> bool {
         let scale = pose.size + pose.distance;
         self.scale.is_some_and(|[low, high]| {
             low < high && [low, high].iter().any(|bound| (libm::log(*bound) - scale).abs() < 1e-9)

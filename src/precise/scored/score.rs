@@ -13,6 +13,9 @@ use crate::report::ScoreTerms;
 /// much.
 pub const NOISE: f32 = 0.15;
 
+/// Share of a silhouette outside the grid at which its cost would be infinite: a little above 1, so that it stays finite.
+const LOST: f32 = 1.05;
+
 /// Weights of the terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
@@ -205,7 +208,7 @@ impl Scoring {
         let [both, extra, hidden, unknown] = [both, extra, hidden, unknown].map(|cells| cells as f32);
         let drawn = both + extra + hidden + unknown;
         // Silhouette outside the grid must have a cost; otherwise, the scale would grow without limit.
-        let lost = canvas.lost / (1.05 - canvas.lost) * drawn;
+        let lost = canvas.lost / (LOST - canvas.lost) * drawn;
         let unseen = self.weights.occluded * hidden + unknown_weight * unknown;
         let union = mask_cells + extra + unseen + lost;
         let coverage = both / mask_cells.max(1.0);

@@ -1,5 +1,7 @@
 //! Levenberg-Marquardt ascent on a score that is bounded by a quadratic at every pose.
 
+use serde::{Deserialize, Serialize};
+
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::precise::drawn::pose::Step;
 
@@ -11,7 +13,7 @@ pub trait Ascent<const N: usize = PARAMETERS> {
     type Score;
 
     /// The pose that the prior allows.
-    fn held(&self, pose: Self::Pose) -> Self::Pose;
+    fn allowed(&self, pose: Self::Pose) -> Self::Pose;
 
     /// Renders a pose and scores it.
     fn score(&mut self, pose: &Self::Pose) -> Self::Score;
@@ -28,6 +30,7 @@ pub trait Ascent<const N: usize = PARAMETERS> {
 }
 
 /// The result of an ascent.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Summit<P, S> {
     /// The pose.
     pub pose: P,
@@ -37,6 +40,13 @@ pub struct Summit<P, S> {
     pub renders: usize,
     /// Whether the ascent converged: the last step hardly increased the score, or no step would.
     pub converged: bool,
+}
+
+impl<P, S> Summit<P, S> {
+    /// A pose that was scored as it is.
+    pub fn of(pose: P, score: S) -> Self {
+        Self { pose, score, renders: 1, converged: false }
+    }
 }
 
 /// Initial damping, and its factors after an accepted and after a rejected step.
@@ -57,15 +67,15 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
     pose: A::Pose,
     iterations: usize,
 ) -> Summit<A::Pose, A::Score> {
-    let pose = problem.held(pose);
+    let pose = problem.allowed(pose);
     let score = problem.score(&pose);
-    let mut best = Summit { pose, score, renders: 1, converged: false };
+    let mut best = Summit::of(pose, score);
     let mut equations = problem.equations(&best.pose, &best.score);
     let mut damping = DAMPING[0];
     for _ in 0..iterations {
         let Some(step) = equations.solve(damping) else { break };
         let Some(next) = problem.moved(&best.pose, step) else { break };
-        let next = problem.held(next);
+        let next = problem.allowed(next);
         let score = problem.score(&next);
         best.renders += 1;
         let gain = A::total(&score) - A::total(&best.score);

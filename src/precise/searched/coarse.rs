@@ -75,7 +75,7 @@ impl Coarse<'_> {
         canvas.draw(model, &pose, grid);
         let stretch = median_of_positive(&ratios(canvas, grid)).unwrap_or(1.0);
         let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
-        let pose = prior.held(distant);
+        let pose = prior.bounded(distant);
         // Unlike the silhouette, the surroundings depend on the distance.
         if (pose.size - distant.size).abs() > 1e-3 || surroundings.is_some() {
             return Candidate { pose, score: self.objective.score(canvas, &pose) };

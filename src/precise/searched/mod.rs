@@ -5,6 +5,7 @@
 //! and workers must not change a bit of the result.
 
 pub mod ascent;
+pub mod cascade;
 pub mod coarse;
 pub mod efforts;
 pub mod proportions;

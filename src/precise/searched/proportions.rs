@@ -8,13 +8,13 @@
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::ascent::{Ascent, Summit, ascend};
-use super::refine::{Refined, Refiner};
+use super::refine::{Found, OnGrid, Refiner};
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::geometry::rotations::exp;
 use crate::geometry::surface::SurfaceMoments;
 use crate::precise::drawn::pose::{CropPose, Step};
 use crate::precise::drawn::render::Canvas;
-use crate::precise::scored::conditioning::{Covariance, DROP, covariance, hold_roll};
+use crate::precise::scored::conditioning::{Covariance, DROP, covariance, fix_roll};
 use crate::precise::scored::score::Score;
 
 /// Number of parameters of E.
@@ -121,8 +121,8 @@ impl Stretched {
                 moved.x_axis.y - moved.y_axis.x,
             );
             let even = (moved + moved.transpose()) * 0.5;
-            let held = DMat3::from_diagonal(DVec3::splat((1.0 + ROLL) * trace(&even))) - even;
-            let turn = held.inverse() * turn;
+            let inertia = DMat3::from_diagonal(DVec3::splat((1.0 + ROLL) * trace(&even))) - even;
+            let turn = inertia.inverse() * turn;
             if !turn.is_finite() {
                 break;
             }
@@ -133,18 +133,12 @@ impl Stretched {
     }
 }
 
-/// A fit on one grid, whose last render is on the canvas.
-struct OnGrid<'a, 'c> {
-    refiner: &'a Refiner<'a>,
-    canvas: &'c mut Canvas,
-}
-
 impl Ascent<ALL> for OnGrid<'_, '_> {
     type Pose = Stretched;
     type Score = Score;
 
-    fn held(&self, at: Stretched) -> Stretched {
-        Stretched { pose: self.refiner.objective.prior.held(at.pose), ..at }
+    fn allowed(&self, at: Stretched) -> Stretched {
+        Stretched { pose: self.refiner.objective.prior.bounded(at.pose), ..at }
     }
 
     fn score(&mut self, at: &Stretched) -> Score {
@@ -195,7 +189,7 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
 impl Refiner<'_> {
     /// The covariance of the similarity that [`Refiner::refine_in_proportion`] results in, at the last render, which was of
     /// `pose`: the proportions are free within their prior, or those of the mesh if `is_exact`. The roll about `free_axis`
-    /// (camera frame) is held. `None` if the image constrains nothing.
+    /// (camera frame) is fixed. `None` if the image constrains nothing.
     pub fn covariance(
         &self,
         canvas: &mut Canvas,
@@ -206,12 +200,13 @@ impl Refiner<'_> {
     ) -> Option<Covariance> {
         if is_exact {
             let mut equations = self.equations(canvas, score, pose);
-            free_axis.into_iter().for_each(|axis| hold_roll(&mut equations, axis));
+            free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
             return covariance(&equations);
         }
         let stretched = |proportions| Stretched { pose: *pose, proportions };
-        let mut equations = OnGrid { refiner: self, canvas }.equations(&stretched(Proportions::default()), score);
-        free_axis.into_iter().for_each(|axis| hold_roll(&mut equations, axis));
+        let at = stretched(Proportions::default());
+        let mut equations = Ascent::<ALL>::equations(&mut OnGrid { refiner: self, canvas }, &at, score);
+        free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
         let of_all = covariance(&equations)?;
         // The change of the nearest similarity with each parameter.
         let mut changes = [[0.0; PARAMETERS]; ALL];
@@ -246,16 +241,16 @@ impl Refiner<'_> {
         pose: CropPose,
         iterations: usize,
         surface: &SurfaceMoments,
-    ) -> Refined {
+    ) -> Found {
         if self.lock_scale {
             return self.refine(canvas, pose, iterations);
         }
         let start = Stretched { pose, proportions: Proportions::default() };
         let Summit { pose, score, renders, converged } =
-            ascend(&mut OnGrid { refiner: self, canvas }, start, iterations);
+            ascend::<ALL, _>(&mut OnGrid { refiner: self, canvas }, start, iterations);
         // At a bound of the scale, it stays there.
-        let is_held = self.objective.prior.holds(&pose.pose);
-        let nearest = self.objective.prior.held(pose.nearest(surface, is_held));
-        Refined { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
+        let is_at_bound = self.objective.prior.is_at_bound(&pose.pose);
+        let nearest = self.objective.prior.bounded(pose.nearest(surface, is_at_bound));
+        Found { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
     }
 }

@@ -1,5 +1,6 @@
 //! The recipe of the search: grids and rounds for each effort.
 
+use super::cascade::Stage;
 use crate::precise::drawn::turns::TURNS;
 use crate::precise::observed::clean::CleanObservation;
 pub use crate::precise::observed::resolution::{COARSE, FINE, FINEST, GRIDS, Grid, MIDDLE, SIEVE};
@@ -89,6 +90,26 @@ const LIMITED_TURNS: [usize; 2] = [6, 6];
 
 /// Work and poses kept of the rounds of a look for rivals, which ends with them.
 const LOOK: [[usize; 2]; 4] = [[300, 40], [1, 6], [4, 3], [5, 0]];
+
+/// Hypotheses of several views with known camera poses: every one of them coarsely; then the best, and turns of the best of
+/// these.
+pub const JOINT: [Stage; 2] =
+    [Stage { grid: COARSE, steps: 0, keep: 16, apart: 0.21 }, Stage { grid: MIDDLE, steps: 6, keep: 4, apart: 0.105 }];
+/// Their ranking, whose scores are those of the result, and the refinement of the best one.
+pub const JOINT_RANKING: Stage = Stage { grid: FINE, steps: 12, keep: usize::MAX, apart: 0.105 };
+/// See [`JOINT_RANKING`].
+pub const JOINT_POLISH: Stage = Stage::of_one(FINEST, 8);
+/// Poses of one view at the size that all views have in common, whose camera poses are not known.
+pub const COMMON_SIZE: [Stage; 2] = [Stage::of_one(FINE, 14), Stage::of_one(FINEST, 8)];
+/// Poses that are expected of a tracked object, at its size.
+pub const TRACKED: [Stage; 3] = [Stage::of_one(MIDDLE, 0), Stage::of_one(MIDDLE, 7), Stage::of_one(FINE, 6)];
+/// Lookalikes whose colours are compared, and the pose that colour chooses.
+pub const COLORED: [Stage; 2] = [Stage::of_one(MIDDLE, 4), Stage::of_one(FINEST, 6)];
+
+/// Distance between two outlines that halves their agreement, cells.
+const OUTLINE_CELLS: f32 = 2.0;
+/// Least and most factor by which a work budget scales a search.
+const SCALING: [f64; 2] = [0.02, 20.0];
 
 /// Minimum number of rotations of a search whose work is limited.
 pub const MIN_ROTATIONS: usize = 60;
@@ -192,7 +213,7 @@ impl SearchSettings {
         let turn = &mut within.rounds[TURNING];
         (turn.work, turn.keep) = (turn.work.min(LIMITED_TURNS[0]), turn.keep.min(LIMITED_TURNS[1]));
         let turns = within.cost_of_turns();
-        let share = ((budget - turns) / (within.cost() - turns)).clamp(0.02, 20.0);
+        let share = ((budget - turns) / (within.cost() - turns)).clamp(SCALING[0], SCALING[1]);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
         within.rounds[0].work = scaled(self.rotations(), MIN_ROTATIONS);
         for (round, least) in within.rounds.iter_mut().zip([30, 6, 3, 2]) {
@@ -211,7 +232,7 @@ impl SearchSettings {
             weights,
             depth_m: (depth_error * clean.diagonal_m) as f32,
             occluder_m: if self.occlusion { occluder_m as f32 } else { f32::INFINITY },
-            outline_cells: 2.0,
+            outline_cells: OUTLINE_CELLS,
         }
     }
 }

@@ -4,9 +4,10 @@
 //! from above by a quadratic with curvature ρ′(e)/e (iteratively reweighted least squares), so that a Gauss-Newton step
 //! on these quadratics increases the score. The score decides whether a step is accepted.
 
-use glam::Vec3;
+use glam::{DQuat, Vec3};
 
 use super::ascent::{Ascent, Summit, ascend, limited};
+use super::ranking::Scored;
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::precise::drawn::pose::{CropPose, Step};
 use crate::precise::drawn::render::Canvas;
@@ -21,17 +22,17 @@ pub struct Refiner<'a> {
     pub lock_scale: bool,
 }
 
-/// The result of a refinement.
-#[derive(Debug, Clone, Copy)]
-pub struct Refined {
-    /// The pose.
-    pub pose: CropPose,
-    /// Its score.
-    pub score: Score,
-    /// Number of renders.
-    pub renders: usize,
-    /// Whether the refinement converged: the last step hardly increased the score, or no step would.
-    pub converged: bool,
+/// A pose that was found, with its score, finally on the fine grid.
+pub type Found = Summit<CropPose, Score>;
+
+impl Scored for Found {
+    fn rotation(&self) -> DQuat {
+        self.pose.rotation
+    }
+
+    fn total(&self) -> f32 {
+        self.score.total
+    }
 }
 
 /// Minimum magnitude of residuals, in units of their scale, because a loss like |e| has no finite curvature at 0.
@@ -41,17 +42,17 @@ const MIN_OUTLINE_CELLS: f32 = 0.5;
 const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
 /// A refinement on one grid, whose last render is on the canvas.
-struct OnGrid<'a, 'c> {
-    refiner: &'a Refiner<'a>,
-    canvas: &'c mut Canvas,
+pub(super) struct OnGrid<'a, 'c> {
+    pub(super) refiner: &'a Refiner<'a>,
+    pub(super) canvas: &'c mut Canvas,
 }
 
 impl Ascent for OnGrid<'_, '_> {
     type Pose = CropPose;
     type Score = Score;
 
-    fn held(&self, pose: CropPose) -> CropPose {
-        self.refiner.objective.prior.held(pose)
+    fn allowed(&self, pose: CropPose) -> CropPose {
+        self.refiner.objective.prior.bounded(pose)
     }
 
     fn score(&mut self, pose: &CropPose) -> Score {
@@ -73,10 +74,8 @@ impl Ascent for OnGrid<'_, '_> {
 
 impl Refiner<'_> {
     /// Refines `pose` in at most `iterations` steps.
-    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Refined {
-        let Summit { pose, score, renders, converged } =
-            ascend(&mut OnGrid { refiner: self, canvas }, pose, iterations);
-        Refined { pose, score, renders, converged }
+    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Found {
+        ascend::<PARAMETERS, _>(&mut OnGrid { refiner: self, canvas }, pose, iterations)
     }
 
     /// A pose after a step, limited to the range in which the quadratic is valid; `None` if it is not finite.
@@ -87,7 +86,7 @@ impl Refiner<'_> {
         }
         let step = limited(step);
         let next = pose.moved(&step);
-        let is_finite = step.iter().all(|x| x.is_finite()) && self.objective.prior.held(next).is_finite();
+        let is_finite = step.iter().all(|x| x.is_finite()) && self.objective.prior.bounded(next).is_finite();
         is_finite.then_some(next)
     }
 

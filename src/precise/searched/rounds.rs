@@ -7,15 +7,15 @@ use glam::DQuat;
 use super::coarse::Coarse;
 use super::ranking::{best_of, distinct_up_to};
 use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
+use super::refine::Found;
 use super::refine::Refiner;
-use super::search::{Found, Search};
+use super::search::Search;
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::render::Canvas;
 use crate::precise::observed::anchors::{Anchor, anchors};
-use crate::precise::observed::grid::CropGrid;
 
 /// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
 const FAR: f32 = 0.8;
@@ -40,8 +40,6 @@ pub struct Rounds {
     pub found: Vec<Found>,
     /// Index of the current round.
     index: usize,
-    /// The grid of the current round, unless it is the fine grid of the search.
-    grid: CropGrid,
     /// The rotations of the first round, if they are not those of the rotation grid.
     rotations: Vec<DQuat>,
     /// Sizes and positions tried for each rotation.
@@ -61,7 +59,7 @@ impl Rounds {
     pub fn new(mut search: Search, initial: Option<CropPose>, global: bool) -> Self {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
         let anchors = if global && search.settings.anchors {
-            anchors(&search.grid(COARSE), search.settings.occlusion)
+            anchors(search.grid(COARSE), search.settings.occlusion)
         } else {
             vec![Anchor::AS_IT_IS]
         };
@@ -69,7 +67,6 @@ impl Rounds {
         Self {
             found: Vec::new(),
             index,
-            grid: search.grid(search.settings.rounds[index].grid),
             rotations: Vec::new(),
             anchors,
             poses: if global { Vec::new() } else { around.clone() },
@@ -132,9 +129,10 @@ impl Rounds {
         settings.max_load * (self.tasks() * per_task * (grid.cells + grid.triangles)) as u64
     }
 
-    /// Whether the mask has no cell on the grid of the first round or on the fine one.
-    pub fn shows_no_mask(&self) -> bool {
-        self.grid.mask_cells == 0 || self.search.fine.mask_cells == 0
+    /// Whether the mask has a cell on the grid of the current round and on the fine one.
+    pub fn shows_mask(&self) -> bool {
+        let of_round = self.round().map_or(FINE, |round| round.grid);
+        [of_round, FINE].into_iter().all(|grid| self.search.grid(grid).mask_cells > 0)
     }
 
     /// The current round; `None` after the end of the search.
@@ -181,8 +179,7 @@ impl Rounds {
     /// The results of the tasks of a round, in order, of as many as its allowance is enough for.
     async fn outcomes(&self, round: Round, allowance: u64, pauses: &Pauses) -> Result<Vec<Found>, TooLong> {
         let search = &self.search;
-        let grid = if round.grid == FINE { &search.fine } else { &self.grid };
-        let objective = search.objective(round.grid, grid);
+        let objective = search.objective(round.grid);
         let coarse = Coarse { objective, median_m: search.observation.median_m };
         let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
         let mut canvas = Canvas::default();
@@ -205,11 +202,11 @@ impl Rounds {
                             steps = 0;
                         }
                     }
-                    outcomes.push(refiner.refine(&mut canvas, pose, steps).into());
+                    outcomes.push(refiner.refine(&mut canvas, pose, steps));
                 }
                 Task::Fit => {
                     let (pose, surface) = (self.poses[task], &search.mesh.surface);
-                    outcomes.push(refiner.refine_in_proportion(&mut canvas, pose, round.work, surface).into());
+                    outcomes.push(refiner.refine_in_proportion(&mut canvas, pose, round.work, surface));
                 }
             }
             if round.task != Task::Rotate && canvas.work > allowance {
@@ -283,12 +280,6 @@ impl Rounds {
         }
         if self.index == FIRST_REFINEMENT {
             self.poses.splice(0..0, core::mem::take(&mut self.others));
-        }
-        if let Some(next) = self.search.settings.rounds.get(self.index)
-            && next.grid != round.grid
-            && next.grid != FINE
-        {
-            self.grid = self.search.grid(next.grid);
         }
     }
 

@@ -1,14 +1,12 @@
 //! A search: the observation and the mesh, prepared for rendering on every grid.
 
+use core::cell::OnceCell;
 use std::rc::Rc;
-
-use glam::DQuat;
-use serde::{Deserialize, Serialize};
 
 use super::coarse::{Candidate, Coarse};
 use super::ranking::{Scored, distinct};
-use super::recipe::{COARSE, FINE, SearchSettings};
-use super::refine::{Refined, Refiner};
+use super::recipe::{COARSE, FINE, GRIDS, SearchSettings};
+use super::refine::{Found, Refiner};
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawn::equivalence::Equivalence;
 use crate::precise::drawn::mesh_pyramid::MeshPyramid;
@@ -46,51 +44,22 @@ pub struct Search {
     surroundings: Option<Surroundings>,
     /// Which poses of the mesh are equivalent.
     pub equivalence: Rc<Equivalence>,
-    /// The fine grid, on which the final poses are compared.
-    pub fine: Rc<CropGrid>,
-}
-
-/// A candidate in its current state.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Found {
-    /// The pose.
-    pub pose: CropPose,
-    /// Its score, finally on the fine grid.
-    pub score: Score,
-    /// Whether its refinement converged.
-    pub converged: bool,
-    /// Number of renders for it.
-    pub renders: usize,
-}
-
-impl Scored for Found {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.score.total
-    }
+    /// The evidence on every grid, on first use.
+    grids: Rc<[OnceCell<CropGrid>; GRIDS]>,
 }
 
 impl From<Candidate> for Found {
     fn from(Candidate { pose, score }: Candidate) -> Self {
-        Self { pose, score, converged: false, renders: 1 }
-    }
-}
-
-impl From<Refined> for Found {
-    fn from(Refined { pose, score, renders, converged }: Refined) -> Self {
-        Self { pose, score, converged, renders }
+        Self::of(pose, score)
     }
 }
 
 impl Search {
-    /// Prepares the fine grid.
+    /// A search without a prior, surroundings or a symmetry.
     pub fn new(observation: Rc<CleanObservation>, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
         Self {
             mesh,
-            fine: Rc::new(CropGrid::new(&observation, settings.grids[FINE].cells)),
+            grids: Rc::default(),
             observation,
             renders: 0,
             settings,
@@ -100,17 +69,17 @@ impl Search {
         }
     }
 
-    /// Another search for the same object, without its surroundings.
-    pub(crate) fn again(&self, settings: SearchSettings) -> Self {
+    /// A look for rivals of a pose, without the surroundings of the object: a search on the same grids.
+    pub(crate) fn look(&self) -> Self {
         Self {
             mesh: Rc::clone(&self.mesh),
             observation: Rc::clone(&self.observation),
             renders: 0,
-            settings,
+            settings: self.settings.look(),
             prior: self.prior,
             surroundings: None,
             equivalence: Rc::clone(&self.equivalence),
-            fine: Rc::clone(&self.fine),
+            grids: Rc::clone(&self.grids),
         }
     }
 
@@ -126,8 +95,7 @@ impl Search {
 
     /// A pose and its neighbourhood: rotated about every axis, at its own distance and at that of the depths.
     pub(crate) fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
-        let grid = self.grid(COARSE);
-        let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
+        let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
         let mut near: Vec<Candidate> = Vec::new();
         for angle in [0.0, NEIGHBORHOOD[0], NEIGHBORHOOD[1]] {
@@ -154,8 +122,7 @@ impl Search {
         let rolled = mesh.turns.about_axes(best, ROLLS);
         let turned: Vec<CropPose> =
             poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)).collect();
-        let grid = self.grid(COARSE);
-        let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
+        let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
         let mut tried: Vec<Candidate> =
             rolled.iter().chain(&turned).map(|pose| stage.at_its_distance(&mut canvas, *pose)).collect();
@@ -169,17 +136,17 @@ impl Search {
         distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
     }
 
-    /// The evidence on one of the grids; see also `fine`.
-    pub fn grid(&self, grid: usize) -> CropGrid {
-        CropGrid::new(&self.observation, self.settings.grids[grid].cells)
+    /// The evidence on the grid with this index.
+    pub fn grid(&self, index: usize) -> &CropGrid {
+        self.grids[index].get_or_init(|| CropGrid::new(&self.observation, self.settings.grids[index].cells))
     }
 
     /// The objective on the grid with this index.
-    pub fn objective<'a>(&'a self, index: usize, grid: &'a CropGrid) -> Objective<'a> {
+    pub fn objective(&self, index: usize) -> Objective<'_> {
         let scoring = self.settings.scoring(&self.observation, index);
         Objective {
             model: &self.mesh.models[index],
-            grid,
+            grid: self.grid(index),
             scoring,
             prior: self.prior,
             surroundings: self.surroundings.as_ref(),
@@ -192,24 +159,24 @@ impl Search {
     }
 
     /// Whether a pose is at a bound of a scale that is not fixed.
-    pub fn is_held(&self, pose: &CropPose) -> bool {
-        self.prior.holds(pose)
+    pub fn is_at_bound(&self, pose: &CropPose) -> bool {
+        self.prior.is_at_bound(pose)
     }
 
     /// The score of any pose on the fine grid.
     pub fn score(&self, pose: &CropPose) -> Score {
-        self.objective(FINE, &self.fine).score(&mut Canvas::default(), pose)
+        self.objective(FINE).score(&mut Canvas::default(), pose)
     }
 
     /// The part of a score that the image gives.
     pub fn by_image(&self, score: &Score) -> f32 {
         let weights = &self.settings.weights;
-        weights.factor(score, &self.fine) * weights.agreement(score)
+        weights.factor(score, self.grid(FINE)) * weights.agreement(score)
     }
 
     /// The conditioning of a pose by the image alone.
     pub fn conditioning_by_image(&self, pose: &CropPose) -> Option<Conditioning> {
-        let objective = Objective { surroundings: None, ..self.objective(FINE, &self.fine) };
+        let objective = Objective { surroundings: None, ..self.objective(FINE) };
         self.conditioning_by(objective, pose).0
     }
 
@@ -220,7 +187,7 @@ impl Search {
 
     /// The conditioning of a pose, up to the symmetry of the mesh, and the root mean square of its depth residuals, metres.
     pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
-        self.conditioning_by(self.objective(FINE, &self.fine), pose)
+        self.conditioning_by(self.objective(FINE), pose)
     }
 
     fn conditioning_by(&self, objective: Objective<'_>, pose: &CropPose) -> (Option<Conditioning>, f64) {
@@ -232,9 +199,10 @@ impl Search {
         let free_axis = self.equivalence.free_axis(pose.rotation);
         let covariance = refiner.covariance(&mut canvas, &score, pose, proportions, free_axis);
         let conditioning = covariance.map(|covariance| Conditioning::new(&covariance, pose));
-        let upright = |held: Conditioning| match self.equivalence.is_sphere() {
-            true => Conditioning { rotation: (0.0, held.rotation.1), ..held },
-            false => held,
+        // A sphere has no rotation that could be wrong.
+        let upright = |own: Conditioning| match self.equivalence.is_sphere() {
+            true => Conditioning { rotation: (0.0, own.rotation.1), ..own },
+            false => own,
         };
         (conditioning.map(upright), depth_rms_m)
     }

@@ -6,8 +6,9 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 
 use super::recipe::{SURE, SearchSettings, Task};
+use super::refine::Found;
 use super::rounds::Rounds;
-use super::search::{Found, Search};
+use super::search::Search;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::rotations::super_fibonacci;
@@ -50,7 +51,7 @@ pub fn begin(
     let search = prepared(observation, clean, mesh, options, settings, stages)?;
     let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame, INITIAL)).transpose()?;
     let mut rounds = Rounds::new(search, initial, options.search == SearchScope::Global);
-    if rounds.shows_no_mask() {
+    if !rounds.shows_mask() {
         return Err(degenerate_mask(format!("{} pixels in a line, or apart", rounds.search.observation.pixels)));
     }
     if let Some(previous) = previous {
@@ -65,7 +66,7 @@ pub fn begin(
 pub fn look(rounds: &Rounds) -> Option<Rounds> {
     let best = rounds.found.first()?;
     let search = &rounds.search;
-    let again = search.again(search.settings.look());
+    let again = search.look();
     let count = again.settings.rotations();
     let rotations = (0..count).map(|i| super_fibonacci(i, count));
     let rotations =
