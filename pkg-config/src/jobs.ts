@@ -24,35 +24,30 @@ import {
 import { isTypedArray, wrongKind } from "./values.js";
 import type { Glue, LoadedModule } from "./wasm-module.js";
 
-/** A call. `data` contains all large arrays; `options` are in the form of the core. */
-export type Job =
-  | { method: "align"; data: AlignInput; options: object; meshId?: number | undefined }
-  | { method: "place"; data: PlaceInput; options: object; meshId?: number | undefined }
-  | { method: "alignViews"; data: ViewsInput; options: object; meshId?: number | undefined }
-  | { method: "openTracker"; data: { mesh: MeshInput }; options: object; tracker: number; meshId?: number | undefined }
-  | { method: "trackFrame"; data: FrameInput; options: object; tracker: number }
-  | { method: "correctTrack"; data: { pose: unknown; frame: unknown }; options: object; tracker: number }
-  | { method: "evaluate"; data: AlignInput; options: object; transform: unknown; meshId?: number | undefined }
-  | { method: "prepareMesh"; data: { mesh: MeshInput }; options: object; meshId: number }
-  | { method: "register"; data: Clouds; options: object }
-  | { method: "estimateSim3"; data: Clouds; options: object };
+/** The calls: their data, which contain all large arrays, what else they are given, and their results. */
+interface Calls {
+  align: { data: AlignInput; meshId?: number | undefined; result: AlignResult };
+  place: { data: PlaceInput; meshId?: number | undefined; result: Placed };
+  alignViews: { data: ViewsInput; meshId?: number | undefined; result: ViewsAlignment };
+  openTracker: { data: { mesh: MeshInput }; tracker: number; meshId?: number | undefined; result: undefined };
+  trackFrame: { data: FrameInput; tracker: number; result: TrackedFrame };
+  correctTrack: { data: { pose: unknown; frame: unknown }; tracker: number; result: CorrectedFrame[] };
+  evaluate: { data: AlignInput; transform: unknown; meshId?: number | undefined; result: Evaluation };
+  prepareMesh: { data: { mesh: MeshInput }; meshId: number; result: MeshAndWarnings };
+  register: { data: Clouds; result: Registration };
+  estimateSim3: { data: Clouds; result: Registration };
+}
+
+type JobOf<M extends keyof Calls> = { method: M; options: object } & Omit<Calls[M], "result">;
+
+/** A call as data; `options` are in the form of the core. */
+export type Job = { [M in keyof Calls]: JobOf<M> }[keyof Calls];
+
+/** The result of each call. */
+export type Results = { [M in keyof Calls]: Calls[M]["result"] };
 
 /** An object of a scene, the pixels of the others, and the plan of the scene, which only the joint module reads. */
 export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; plan?: Uint8Array | undefined; index: number };
-
-/** The result of each call. */
-export interface Results {
-  align: AlignResult;
-  place: Placed;
-  alignViews: ViewsAlignment;
-  openTracker: undefined;
-  trackFrame: TrackedFrame;
-  correctTrack: CorrectedFrame[];
-  evaluate: Evaluation;
-  prepareMesh: MeshAndWarnings;
-  register: Registration;
-  estimateSim3: Registration;
-}
 
 /** The modules that run jobs. Others than the core are loaded when a job needs them. */
 export interface Modules {

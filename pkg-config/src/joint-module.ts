@@ -3,6 +3,7 @@ import type { CoreListener, Task } from "./core.js";
 import type { Alignment, Contact, CorrectedFrame, Sim3, TrackedFrame, ViewsAlignment } from "./generated/types.js";
 import type { CoreFrame, CoreInput, CoreViews } from "./input/core-input.js";
 import type { CoreMesh } from "./prepared-mesh.js";
+import type { Support } from "./scene/types.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
 
 /** An object of a scene, aligned in one of its rounds. */
@@ -16,8 +17,8 @@ export interface Placed {
 /** The poses of the objects of a scene, `null` for one that could not be aligned, and what they stand on. */
 export interface Arrangement {
   plan?: undefined;
-  objects: ((Pick<Alignment, keyof Sim3> & { contact: Contact }) | null)[];
-  support: { normal: [number, number, number]; d: number; confidence: number } | null;
+  objects: ((Sim3 & { contact: Contact }) | null)[];
+  support: Support | null;
 }
 
 /** The functions of the module. They validate their arguments and throw errors with codes. */

@@ -1,17 +1,18 @@
 //! The plan of a scene: rounds in which every object is aligned by itself, and what each round tells the next.
 
+use core::ops::ControlFlow;
 use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
 
 use super::contact::{Contact, contacts};
 use super::local::View;
-use super::placement::{Body, Placement};
+use super::placement::Placement;
 use super::plane::Plane;
 use super::support::{Ground, Support, find_support};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::pinhole::Pinhole;
-use crate::precise::scored::surroundings::Neighbourhood;
+use crate::precise::scored::surroundings::{Floor, Neighbourhood};
 use crate::precise::searched::start::Told;
 use crate::report::Sim3;
 
@@ -21,31 +22,20 @@ const SOLID: f64 = 0.5;
 /// What is known before a round. Its objects can be aligned in any order, side by side, and in other threads: none needs
 /// more than the plan and its own input.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub enum Plan {
-    /// Nothing: each object is aligned alone.
-    #[default]
-    Alone,
-    /// Each object is aligned with what the others have told.
-    Together(Known),
+pub struct Plan {
+    /// `None` before the first round: each object is aligned alone.
+    known: Option<Known>,
 }
 
 /// What the objects have told.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Known {
+struct Known {
     camera: Pinhole,
     placements: Vec<Option<Placement>>,
     support: Option<Plane>,
     /// Of the support.
-    confidence: f64,
+    confidence: Option<f64>,
     grounds: Vec<Option<Ground>>,
-}
-
-/// What follows from a round.
-pub enum Next {
-    /// Another one.
-    Round(Plan),
-    /// The end.
-    Done(Arrangement),
 }
 
 /// The poses of the objects of a scene, and what they stand on.
@@ -73,17 +63,18 @@ impl Plan {
     /// # Errors
     /// [`missing`] for an object that could not be aligned.
     pub fn told(&self, object: usize) -> Result<Option<Told<'_>>> {
-        let Self::Together(Known { placements, grounds, .. }) = self else { return Ok(None) };
+        let Some(Known { placements, grounds, .. }) = &self.known else { return Ok(None) };
         let own = placements.get(object).and_then(Option::as_ref).ok_or_else(missing)?;
-        let ground = grounds.get(object).copied().flatten().map(|ground| ground.known());
+        let ground = grounds.get(object).copied().flatten();
+        let floor = |Ground { plane, gap_m, .. }| Floor { normal: plane.normal, offset_m: plane.d, gap_m };
         let others = placements.iter().enumerate().filter(|(k, _)| *k != object).filter_map(|(_, p)| p.as_ref());
         // A body that is probably elsewhere takes no space.
         let layers = others.filter(|p| p.findings.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
-        Ok(Some(Told { findings: &own.findings, known: Neighbourhood { ground, layers } }))
+        Ok(Some(Told { findings: &own.findings, known: Neighbourhood { ground: ground.map(floor), layers } }))
     }
 
-    /// What follows from the placements of a round, one per object: `None` for an object that could not be aligned, which
-    /// stays out of the rounds that follow. With `snap`, objects are put exactly onto what they touch.
+    /// Another round or the end, from the placements of a round, one per object: `None` for an object that could not be
+    /// aligned, which stays out of the rounds that follow. With `snap`, objects are put exactly onto what they touch.
     ///
     /// # Errors
     /// Those of `view`, which is only called if it is needed.
@@ -92,35 +83,27 @@ impl Plan {
         placements: Vec<Option<Placement>>,
         snap: bool,
         view: impl FnOnce() -> Result<View>,
-    ) -> Result<Next> {
-        Ok(match self {
-            Self::Alone => Next::Round(Self::Together(Known::of(placements, &view()?))),
-            Self::Together(known) => Next::Done(known.arrangement(placements, snap)),
-        })
-    }
-}
-
-impl Known {
-    fn of(placements: Vec<Option<Placement>>, view: &View) -> Self {
-        let (support, grounds) = find_support(view, &placements);
-        let confidence = support.map_or(0.0, |support| support.confidence);
-        Self { camera: view.camera, placements, support: support.map(|support| support.plane), confidence, grounds }
-    }
-
-    fn arrangement(&self, placements: Vec<Option<Placement>>, snap: bool) -> Arrangement {
-        let Self { camera, support, confidence, grounds, .. } = self;
+    ) -> Result<ControlFlow<Arrangement, Self>> {
+        let Some(Known { camera, support, confidence, grounds, .. }) = &self.known else {
+            let view = view()?;
+            let (found, grounds) = find_support(&view, &placements);
+            let (support, confidence) = found.map(|found| (found.plane, found.confidence)).unzip();
+            let known = Known { camera: view.camera, placements, support, confidence, grounds };
+            return Ok(ControlFlow::Continue(Self { known: Some(known) }));
+        };
         let split = |placement: Option<Placement>| placement.map(|p| (p.camera_from_mesh, p.body)).unzip();
-        let (poses, bodies): (Vec<Option<Sim3>>, Vec<Option<Body>>) = placements.into_iter().map(split).unzip();
+        let (poses, bodies): (Vec<_>, Vec<_>) = placements.into_iter().map(split).unzip();
         let contacts = contacts(&bodies, grounds, support.as_ref(), camera, snap);
-        let objects = poses.into_iter().zip(contacts).zip(grounds).map(|((pose, contact), ground)| {
+        let arranged = |((pose, contact), ground): ((Option<Sim3>, Option<Contact>), &Option<Ground>)| {
             let (mut camera_from_mesh, contact) = pose.zip(contact)?;
             if let Some(ground) = ground {
                 move_by(&mut camera_from_mesh, (ground.plane.normal * contact.snapped_m).to_array());
             }
             Some(Arranged { camera_from_mesh, contact })
-        });
-        let support = support.map(|plane| Support { plane, confidence: *confidence });
-        Arrangement { objects: objects.collect(), support }
+        };
+        let objects = poses.into_iter().zip(contacts).zip(grounds).map(arranged).collect();
+        let support = support.zip(*confidence).map(|(plane, confidence)| Support { plane, confidence });
+        Ok(ControlFlow::Break(Arrangement { objects, support }))
     }
 }
 

@@ -56,13 +56,6 @@ pub struct Ground {
     pub on: RestsOn,
 }
 
-impl Ground {
-    /// What a search is told of it: see [`Neighbourhood::ground`](crate::precise::scored::surroundings::Neighbourhood::ground).
-    pub fn known(&self) -> (DVec3, f64, f64) {
-        (self.plane.normal, self.plane.d, self.gap_m)
-    }
-}
-
 /// Gap that halves the credit of the contact: metres, metres per metre of depth, and relative to the size of the object.
 const GAP: [f64; 3] = [0.002, 0.003, 0.015];
 /// Least credit of all objects for a plane that is the support.

@@ -1,9 +1,11 @@
 //! The alignment of a scene: the rounds of its [`Plan`], one object after the other, and the alignment of one object.
 
+use core::ops::ControlFlow;
+
 use super::contact::Contact;
 use super::local::View;
 use super::placement::Placement;
-use super::plan::{Arrangement, Next, Plan, missing};
+use super::plan::{Arrangement, Plan, missing};
 use super::planes::union_of;
 use super::support::{Support, SupportChoice};
 use crate::align::search::{Request, Search};
@@ -89,8 +91,8 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
             round.push(placement);
         }
         match plan.next(round, *snap, view)? {
-            Next::Round(next) => plan = next,
-            Next::Done(arrangement) => break arrangement,
+            ControlFlow::Continue(next) => plan = next,
+            ControlFlow::Break(arrangement) => break arrangement,
         }
     };
     let Arrangement { objects, support } = arrangement;
@@ -147,7 +149,7 @@ pub fn place<'a>(
             return Ok((Placement::new(&searched, observation).ok_or_else(missing)?, None));
         };
         let clouds = search.clouds().await?;
-        let normal = told.known.ground.map(|(normal, ..)| normal);
+        let normal = told.known.ground.map(|floor| floor.normal);
         let searched = search.search_among(told).await?;
         let placement = Placement::new(&searched, observation).ok_or_else(missing)?;
         let colors = search.colors(&searched).await;

@@ -1,5 +1,6 @@
 //! Scenes: boxes on a floor, on one another and in the air.
 
+use core::ops::ControlFlow;
 use std::rc::Rc;
 
 use glam::{DVec3, Vec3};
@@ -18,10 +19,11 @@ use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::precise::searched::start::Findings;
 use sim3align::progress::Silent;
 use sim3align::report::Alignment;
+use sim3align::scene::contact::Contact;
 use sim3align::scene::layers::{extremes, layer, volumes};
 use sim3align::scene::local::View;
 use sim3align::scene::placement::{Body, Placement};
-use sim3align::scene::plan::{Next, Plan};
+use sim3align::scene::plan::Plan;
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::{RestsOn, SupportChoice, find_support};
 use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene, place};
@@ -122,6 +124,10 @@ fn pose(scene: &SceneAlignment, i: usize) -> Similarity {
     Similarity::from_column_major(&placed.alignment.camera_from_mesh.matrix).unwrap()
 }
 
+fn contacts(scene: &SceneAlignment) -> Vec<Contact> {
+    scene.objects.iter().map(|object| object.as_ref().unwrap().contact.clone()).collect()
+}
+
 /// Two wedges on the floor, one on top of another, and one in the air.
 fn things() -> Vec<Thing> {
     vec![
@@ -141,7 +147,7 @@ fn what_stands_lies_and_hangs_is_told_apart() {
     let up = view().rotation * Vector3::new(0.0, -1.0, 0.0);
     assert!(support.plane.normal.dot(DVec3::from_array(up.into())) > 0.9999, "{support:?}");
     assert!((support.plane.d + up.dot(&view().translation)).abs() < 0.002, "{support:?}");
-    let contacts: Vec<_> = aligned.objects.iter().map(|o| o.as_ref().unwrap().contact.clone()).collect();
+    let contacts = contacts(&aligned);
     let rests: Vec<_> = contacts.iter().map(|contact| contact.rests_on).collect();
     assert_eq!(rests[0], Some(RestsOn::Support), "{contacts:?}");
     assert_eq!(rests[1], Some(RestsOn::Support), "{contacts:?}");
@@ -210,7 +216,9 @@ fn plans_survive_as_bytes() {
     let taken = union_of(WIDTH, HEIGHT, [&objects[0].mask].into_iter());
     let view = View { depth, camera: camera(), taken, choice: SupportChoice::Auto, seed: 0 };
     let placements = vec![Some(alone(&observation, &objects[0])), None];
-    let Ok(Next::Round(plan)) = Plan::default().next(placements, false, || Ok(view)) else { panic!("no second round") };
+    let Ok(ControlFlow::Continue(plan)) = Plan::default().next(placements, false, || Ok(view)) else {
+        panic!("no second round")
+    };
     let bytes = postcard::to_allocvec(&plan).unwrap();
     let copy: Plan = postcard::from_bytes(&bytes).unwrap();
     assert_eq!(format!("{copy:?}"), format!("{plan:?}"));
@@ -243,7 +251,7 @@ fn a_board_that_only_the_depth_map_shows_is_a_level() {
     for snap in [false, true] {
         let scene = scene_with(&things, seen(&things, &boards, 0.0, 0.002), SupportChoice::Auto, snap);
         let aligned = align_scene(&scene, &mut Silent).unwrap();
-        let contacts: Vec<_> = aligned.objects.iter().map(|o| o.as_ref().unwrap().contact.clone()).collect();
+        let contacts = contacts(&aligned);
         assert_eq!(contacts[0].rests_on, Some(RestsOn::Support), "{contacts:?}");
         assert_eq!(contacts[1].rests_on, Some(RestsOn::Level), "{contacts:?}");
         // Over the board, not over the floor, which is 12 cm below.

@@ -2,6 +2,7 @@
 //! which only hands them on, so that objects can be aligned by different workers.
 
 use core::cell::RefCell;
+use core::ops::ControlFlow;
 
 use glam::DVec3;
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
@@ -22,7 +23,7 @@ use sim3align::pauses::{Pauses, Task};
 use sim3align::report::Alignment;
 use sim3align::scene::local::View;
 use sim3align::scene::placement::Placement;
-use sim3align::scene::plan::{Next, Plan, missing};
+use sim3align::scene::plan::{Plan, missing};
 use sim3align::scene::plane::Plane;
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::SupportChoice;
@@ -75,8 +76,8 @@ pub fn plan_scene(scene: &JsValue, plan: &JsValue, placements: &Array) -> core::
         plan.next(placements, of(scene, "snap").is_truthy(), || view(scene))
     };
     match run().map_err(|error| to_js(&error))? {
-        Next::Round(plan) => Ok(object([("plan", packed(&plan)?)])),
-        Next::Done(arrangement) => answer(Ok(arrangement)),
+        ControlFlow::Continue(plan) => Ok(object([("plan", packed(&plan)?)])),
+        ControlFlow::Break(arrangement) => answer(Ok(arrangement)),
     }
 }
 

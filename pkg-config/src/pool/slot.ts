@@ -62,10 +62,6 @@ class Greeting {
   }
 }
 
-/** Whether a job may end so; `hasResult` is missing if there is no job. */
-const isOf = ({ result, error }: { result?: unknown; error?: unknown }, hasResult: boolean | undefined): boolean =>
-  hasResult !== undefined && (error !== undefined || (typeof result === "object" && result !== null) === hasResult);
-
 /** A slot for a worker. */
 export class WorkerSlot {
   readonly #setup: WorkerSetup;
@@ -199,9 +195,7 @@ export class WorkerSlot {
   }
 
   #receive(message: unknown, port: Port): void {
-    const { hasResult } = this.#pending ?? {};
-    const isAnswer = isReply(message) && (message.type !== "done" || isOf(message, hasResult));
-    if (!isAnswer) {
+    if (!isReply(message, this.#pending?.hasResult)) {
       this.end(new WorkerLost("a message that worker.js does not send"));
     } else if (message.type === "ready") {
       this.#greeting?.hear();
