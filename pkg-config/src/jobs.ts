@@ -88,21 +88,15 @@ export async function perform(
   switch (job.method) {
     case "align": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
-      if (isOfPaper(options)) {
-        const module = await registrar();
-        checkAttached("input", input);
-        return withWarnings(
-          module.call((m) => m.alignPaper(input, options, listener), withoutInput),
-          warnings,
-        );
-      }
-      const result = await runTask(core, (c) => c.beginAlign(input, options, listener), input, slices);
+      const result = isOfPaper(options)
+        ? called(await registrar(), (r) => r.alignPaper(input, options, listener), input)
+        : await runTask(core, (c) => c.beginAlign(input, options, listener), input, slices);
       return withWarnings(result, warnings);
     }
     case "place": {
       const { others, plan, index, ...own } = job.data;
       const { core: input, warnings } = await resolveInput(own, formats, job.meshId);
-      const observed = others === undefined ? input : { ...input, others };
+      const observed = { ...input, others };
       const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener);
       const placed = await runTask(await joint(), begin, observed, slices);
       if (placed.alignment === undefined) return placed;
@@ -141,12 +135,8 @@ export async function perform(
     }
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
-      // Files are read while the thread does other work, which may take the memory away.
-      checkAttached("input", input);
-      return withWarnings(
-        core.call((c) => c.evaluate(input, job.transform, options), withoutInput),
-        warnings,
-      );
+      const evaluation = called(core, (c) => c.evaluate(input, job.transform, options), input);
+      return withWarnings(evaluation, warnings);
     }
     case "prepareMesh": {
       const { mesh, warnings } = await readMesh(job.data.mesh, formats, true);
@@ -167,6 +157,12 @@ export async function perform(
       return runTask(await registrar(), begin, job.data, slices);
     }
   }
+}
+
+/** Calls a module with an input that has been read. Meanwhile, the thread may have lost its memory to another one. */
+function called<G extends Glue, T>(module: LoadedModule<G>, work: (glue: G) => T, input: object): T {
+  checkAttached("input", input);
+  return module.call(work, withoutInput);
 }
 
 /** How a task runs. */

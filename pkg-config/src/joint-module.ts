@@ -24,7 +24,7 @@ export interface Arrangement {
 /** The functions of the module. They validate their arguments and throw errors with codes. */
 export interface JointAligner extends Glue {
   beginPlace(
-    input: CoreInput & { others?: Uint8Array },
+    input: CoreInput & { others: Uint8Array | undefined },
     options: object,
     plan: Uint8Array | undefined,
     object: number,
