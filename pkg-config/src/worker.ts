@@ -53,9 +53,10 @@ class WorkerHost {
 
   async #run({ job, wantsProgress, returnData }: Request & { type: "job" }): Promise<void> {
     const data = returnData ? job.data : undefined;
-    const before = await this.#instances();
+    const instances = async () => (await this.#caching()).map((module) => module?.instance);
+    const before = await instances();
     const answer = await this.#performed(job, wantsProgress);
-    const after = await this.#instances();
+    const after = await instances();
     const emptied = caches.filter((_, i) => before[i] !== undefined && before[i] !== after[i]);
     try {
       this.#post({ ...answer, data, emptied }, buffersOf(data));
@@ -67,11 +68,6 @@ class WorkerHost {
   /** The module of each cache of meshes, if it is loaded. */
   #caching(): Promise<(LoadedModule<Core | JointAligner> | undefined)[]> {
     return Promise.all([this.#core, this.#joint].map((module) => module?.loading?.catch(() => undefined)));
-  }
-
-  /** The numbers of the current instances of {@link #caching}. */
-  async #instances(): Promise<(number | undefined)[]> {
-    return (await this.#caching()).map((module) => module?.instance);
   }
 
   async #performed(job: Job, wantsProgress: boolean): Promise<Reply & { type: "done" }> {

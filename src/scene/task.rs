@@ -114,13 +114,10 @@ fn observation_of(depth: &DepthMap, camera: &Pinhole, masks: &[&Mask], object: u
     if masks.len() < 2 {
         return Ok(observation);
     }
-    let mut others = Image::filled(depth.width(), depth.height(), 0u8);
-    for (_, mask) in masks.iter().enumerate().filter(|(k, _)| *k != object) {
-        for (other, pixel) in others.data_mut().iter_mut().zip(mask.data()) {
-            *other |= u8::from(*pixel != 0);
-        }
-    }
-    observation.with_others(others)
+    let others = || masks.iter().enumerate().filter(|(k, _)| *k != object).map(|(_, mask)| mask.data());
+    let is_other = |i| others().any(|mask| mask.get(i).is_some_and(|pixel| *pixel != 0));
+    let pixels = (0..mask.data().len()).map(|i| u8::from(is_other(i))).collect();
+    observation.with_others(Image::new("mask", depth.width(), depth.height(), pixels)?)
 }
 
 /// Aligns an object alone or with what it is told. Returns what the others need to know of it and, once it has been told
