@@ -10,7 +10,7 @@ use std::rc::Rc;
 
 use crate::error::{Error, ErrorCode, Result};
 
-/// Where a call may pause, and how much work it has left. Results depend on the work, and not on pauses.
+/// The pause points of a call, and the work that it has left. Results depend on the work, never on the pauses.
 pub struct Pauses {
     clock: fn() -> f64,
     until: Cell<f64>,

@@ -47,8 +47,8 @@ pub struct Alternative {
     pub score: f64,
     /// The angle between its rotation and the alignment's, in degrees, 0 to 180.
     pub turn_deg: f64,
-    /// By how much its colours agree less with the photo than the alignment's, as a difference of correlations; present
-    /// where colours were compared.
+    /// The correlation of the alignment's colours with the photo, minus that of this pose; present where colours were
+    /// compared.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "types", ts(optional))]
     pub color_margin: Option<f64>,

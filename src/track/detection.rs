@@ -20,8 +20,8 @@ use crate::precise::observed::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
 use crate::precise::scored::prior::Prior;
 use crate::precise::scored::score::NOISE;
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::SURE;
-use crate::precise::searched::refine::Found;
 use crate::precise::searched::rounds::Rounds;
 use crate::progress::{Host, Stopwatch};
 

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use glam::{DQuat, Vec3};
+use glam::Vec3;
 
 use super::detection::Lead;
 use super::evidence::{Evidence, of_mask, of_pose};
@@ -13,8 +13,8 @@ use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::render::Canvas;
 use crate::precise::scored::score::Score;
 use crate::precise::searched::cascade::Subject;
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::{FINE, MIDDLE, SearchSettings, TRACKED};
-use crate::precise::searched::refine::Found;
 use crate::precise::searched::refine::Refiner;
 use crate::precise::searched::search::Search;
 
@@ -112,14 +112,6 @@ struct AtItsSize<'a> {
 impl Subject for AtItsSize<'_> {
     type Pose = CropPose;
     type Score = Score;
-
-    fn rotation(pose: &CropPose) -> DQuat {
-        pose.rotation
-    }
-
-    fn total(score: &Score) -> f32 {
-        score.total
-    }
 
     fn refined(&mut self, grid: usize, steps: usize, poses: &[CropPose]) -> Vec<Found> {
         let mut objective = self.search.objective(grid);

@@ -1,7 +1,7 @@
 //! Colour in views with known camera poses: of the turns whose shape is within noise in all views together, the one that
 //! agrees best with all photos.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 
 use super::joint::Joint;
 use super::known::{Ranked, Views};
@@ -14,9 +14,8 @@ use crate::precise::judged::lookalikes::{Likeness, Lookalike, ROLLS, among};
 use crate::precise::scored::appearance::{Appearance, PhotoCells};
 use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::score::{NOISE, Score};
-use crate::precise::searched::ranking::Scored;
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::{COARSE, COLORED, FINE};
-use crate::precise::searched::refine::Found;
 
 /// Correlation above which a photo agrees no better.
 const SURE_AGREEMENT: f64 = 0.99;
@@ -29,23 +28,6 @@ pub struct Photos<'a> {
     pub photos: &'a [Option<PhotoCells>],
     /// The colours of the mesh.
     pub colors: &'a SurfaceColors,
-}
-
-/// A pose with its mean score on the coarse grids.
-#[derive(Clone, Copy)]
-struct Turned {
-    pose: WorldPose,
-    total: f32,
-}
-
-impl Scored for Turned {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.total
-    }
 }
 
 /// A pose whose shape is within noise of the best one.
@@ -124,10 +106,10 @@ impl Photos<'_> {
         let score = mean(&best.pose);
         let poses: Vec<WorldPose> = ranked.iter().skip(1).map(|other| other.pose).chain(turned).collect();
         self.views.renders += poses.len();
-        let scored = poses.into_iter().map(|pose| Turned { pose, total: mean(&pose) });
+        let scored = poses.into_iter().map(|pose| Found::of(pose, mean(&pose)));
         let equal = part.search.equivalence.others(seen.rotation, ROLLS);
         let equal = equal.into_iter().map(|turn| part.camera.place(&part.search.mesh.turns.turned(&seen, turn)));
-        Some(among(best.pose.rotation, score, scored, equal, |scored| scored.pose, |pose| pose.rotation))
+        Some(among(best.pose.rotation, score, scored, equal))
     }
 
     /// Renders a pose in all views, whose shape is compared with `shape`; `None` if no colours can be compared.

@@ -8,7 +8,8 @@ use crate::precise::scored::conditioning::{DAMPING, DROP, covariance, deviation}
 use crate::precise::scored::objective::Objective;
 use crate::precise::scored::prior::Prior;
 use crate::precise::scored::score::Weights;
-use crate::precise::searched::refine::{Found, Refiner};
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::refine::Refiner;
 
 /// Standard deviation of the size due to errors that all masks have in common, relative.
 pub const SILHOUETTE_ERROR: f64 = 0.01;

@@ -24,8 +24,8 @@ use crate::precise::observed::clean::CleanObservation;
 use crate::precise::scored::appearance::PhotoCells;
 use crate::precise::scored::conditioning::{Conditioning, covariance, deviation, fix_roll, widest};
 use crate::precise::scored::score::{NOISE, Score};
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::{FINE, SURE};
-use crate::precise::searched::refine::Found;
 use crate::precise::searched::search::Search;
 use crate::report::{Alternative, Sim3};
 

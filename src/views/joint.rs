@@ -6,7 +6,8 @@ use crate::precise::drawn::pose::{CropPose, Step};
 use crate::precise::drawn::render::Canvas;
 use crate::precise::scored::objective::Objective;
 use crate::precise::scored::score::Score;
-use crate::precise::searched::ascent::{Ascent, Summit, ascend, limited};
+use crate::precise::searched::ascent::{Ascent, ascend, limited};
+use crate::precise::searched::ranking::{Found, Total};
 use crate::precise::searched::refine::Refiner;
 
 /// One view of a joint objective.
@@ -46,7 +47,7 @@ impl<'a> Joint<'a> {
     }
 
     /// Refines a pose in at most `iterations` steps.
-    pub fn refine(&mut self, pose: WorldPose, iterations: usize) -> Summit<WorldPose, JointScore> {
+    pub fn refine(&mut self, pose: WorldPose, iterations: usize) -> Found<WorldPose, JointScore> {
         ascend(self, pose, iterations)
     }
 
@@ -85,6 +86,12 @@ impl<'a> Joint<'a> {
     }
 }
 
+impl Total for JointScore {
+    fn total(&self) -> f32 {
+        self.total
+    }
+}
+
 impl Ascent for Joint<'_> {
     type Pose = WorldPose;
     type Score = JointScore;
@@ -103,10 +110,6 @@ impl Ascent for Joint<'_> {
 
     fn score(&mut self, pose: &WorldPose) -> JointScore {
         Joint::score(self, pose)
-    }
-
-    fn total(score: &JointScore) -> f32 {
-        score.total
     }
 
     fn equations(&mut self, pose: &WorldPose, score: &JointScore) -> NormalEquations {

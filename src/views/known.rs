@@ -1,14 +1,12 @@
 //! Views with known camera poses: hypotheses of every view, scored and refined on the evidence of all.
 
-use glam::DQuat;
-
 use super::common_size::{DEPTH_ERROR, SILHOUETTE_ERROR, SizeEvidence, mean};
 use super::joint::{Joint, JointScore, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::render::Canvas;
-use crate::precise::searched::ascent::Summit;
 use crate::precise::searched::cascade::{Stage, Subject};
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::{FINE, JOINT, JOINT_POLISH, JOINT_RANKING};
 use crate::precise::searched::refine::Refiner;
 use crate::precise::searched::search::Search;
@@ -35,7 +33,7 @@ pub struct Part<'a> {
 }
 
 /// A world pose and its score in all views.
-pub type Ranked = Summit<WorldPose, JointScore>;
+pub type Ranked = Found<WorldPose, JointScore>;
 
 /// The views on whose evidence poses are refined.
 #[derive(Clone)]
@@ -60,18 +58,10 @@ impl Subject for Views<'_> {
     type Pose = WorldPose;
     type Score = JointScore;
 
-    fn rotation(pose: &WorldPose) -> DQuat {
-        pose.rotation
-    }
-
-    fn total(score: &JointScore) -> f32 {
-        score.total
-    }
-
     fn refined(&mut self, grid: usize, steps: usize, poses: &[WorldPose]) -> Vec<Ranked> {
         let mut joint = self.level(grid);
         let refined: Vec<Ranked> = match steps {
-            0 => poses.iter().map(|pose| Summit::of(*pose, joint.score(pose))).collect(),
+            0 => poses.iter().map(|pose| Found::of(*pose, joint.score(pose))).collect(),
             _ => poses.iter().map(|pose| joint.refine(*pose, steps)).collect(),
         };
         self.renders += refined.iter().map(|summit| summit.renders).sum::<usize>();

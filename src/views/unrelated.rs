@@ -12,8 +12,8 @@ use crate::precise::judged::confidence::sureness;
 use crate::precise::no_candidate;
 use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::objective::Objective;
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::{COMMON_SIZE, FINE, SURE};
-use crate::precise::searched::refine::Found;
 use crate::precise::searched::search::Search;
 
 /// Score below a view's best at which a pose of it is not tried at the common size.

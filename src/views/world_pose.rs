@@ -7,6 +7,7 @@ use crate::geometry::normal_equations::PARAMETERS;
 use crate::geometry::rotations::{exp, matrix_of, quaternion_of};
 use crate::geometry::similarity::Similarity;
 use crate::precise::drawn::pose::{CropPose, MeshFrame, Step};
+use crate::precise::searched::ranking::Posed;
 
 /// x_world = e^`log_scale`·R·p + `center`, for p in the [`MeshFrame`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,6 +42,12 @@ impl WorldPose {
         let scale = libm::exp(self.log_scale) / frame.diagonal;
         let translation = self.center - self.rotation * frame.center * scale;
         Similarity { scale, rotation: matrix_of(self.rotation), translation: Vector3::from(translation.to_array()) }
+    }
+}
+
+impl Posed for WorldPose {
+    fn rotation(&self) -> DQuat {
+        self.rotation
     }
 }
 

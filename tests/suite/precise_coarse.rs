@@ -11,8 +11,8 @@ use sim3align::precise::observed::grid::CropGrid;
 use sim3align::precise::scored::objective::Objective;
 use sim3align::precise::scored::prior::Prior;
 use sim3align::precise::scored::score::Score;
-use sim3align::precise::searched::coarse::{Candidate, Coarse};
-use sim3align::precise::searched::ranking::{best_of, distinct};
+use sim3align::precise::searched::coarse::Coarse;
+use sim3align::precise::searched::ranking::{Found, best_of, distinct};
 use sim3align::precise::searched::recipe::{COARSE, SearchSettings};
 use sim3align::report::Effort;
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -176,8 +176,8 @@ fn a_prior_counts_in_the_scores_of_the_grid() {
     }
 }
 
-/// Candidates of which many score alike, and many are near one another.
-fn candidates(draw: &mut Draw, count: usize) -> Vec<Candidate> {
+/// Founds of which many score alike, and many are near one another.
+fn candidates(draw: &mut Draw, count: usize) -> Vec<Found> {
     let centers: Vec<_> = (0..5).map(|_| rotation(draw)).collect();
     (0..count)
         .map(|_| {
@@ -185,7 +185,7 @@ fn candidates(draw: &mut Draw, count: usize) -> Vec<Candidate> {
             let near = CropPose { rotation: center, ..pose(draw, 1.0) };
             let step: [f64; 7] = core::array::from_fn(|k| if k < 3 { draw.between(-0.3, 0.3) } else { 0.0 });
             let total = draw.below(12) as f32 / 10.0 - 0.3;
-            Candidate { pose: near.moved(&step), score: Score { total, ..Score::default() } }
+            Found::of(near.moved(&step), Score { total, ..Score::default() })
         })
         .collect()
 }
@@ -197,7 +197,7 @@ fn the_best_come_first_and_equal_ones_as_they_came() {
         let count = draw.below(120);
         let candidates = candidates(draw, count);
         // A stable sort keeps the order of equals.
-        let mut sorted: Vec<&Candidate> = candidates.iter().collect();
+        let mut sorted: Vec<&Found> = candidates.iter().collect();
         sorted.sort_by(|a, b| b.score.total.partial_cmp(&a.score.total).unwrap());
         for keep in [0, 1, 7, count, usize::MAX] {
             let found: Vec<CropPose> = best_of(&candidates, keep).iter().map(|c| c.pose).collect();
@@ -216,14 +216,14 @@ fn distinct_candidates_are_the_best_of_their_surroundings() {
         let ranked = best_of(&candidates, count);
         for (keep, angle) in [(usize::MAX, 0.21), (6, 0.105), (3, 0.5), (usize::MAX, 0.0)] {
             let kept = distinct(candidates.clone(), keep, angle);
-            let mut expected: Vec<Candidate> = Vec::new();
+            let mut expected: Vec<Found> = Vec::new();
             for candidate in &ranked {
-                let is_near = |k: &Candidate| angle_between(k.pose.rotation, candidate.pose.rotation) <= angle;
+                let is_near = |k: &Found| angle_between(k.pose.rotation, candidate.pose.rotation) <= angle;
                 if expected.len() < keep && !expected.iter().any(is_near) {
                     expected.push(*candidate);
                 }
             }
-            let poses = |list: &[Candidate]| list.iter().map(|c| c.pose).collect::<Vec<_>>();
+            let poses = |list: &[Found]| list.iter().map(|c| c.pose).collect::<Vec<_>>();
             assert_eq!(poses(&kept), poses(&expected), "seed {seed}, {keep} of {count}, {angle} rad apart");
         }
     }

@@ -274,6 +274,44 @@ fn a_refinement_climbs_back_to_where_the_observation_was_drawn() {
     }
 }
 
+/// The quadratic bounds the loss of each term, so that its step, or a part of it, must raise the score itself: here with one
+/// term at a time, from poses around the true one.
+#[wasm_bindgen_test(unsupported = test)]
+fn a_step_of_the_quadratic_raises_each_term() {
+    let (model, grid, scoring, truth) = observed();
+    let none = Weights { overlap: 0.0, depth: 0.0, normals: 0.0, outline: 0.0, silhouette: 0.0, ..scoring.weights };
+    let terms = [
+        ("depth", Weights { depth: 1.0, ..none }),
+        ("normals", Weights { normals: 1.0, ..none }),
+        ("outline", Weights { outline: 1.0, ..none }),
+        ("overlap", Weights { overlap: 1.0, silhouette: 1.0, ..none }),
+    ];
+    let mut canvas = Canvas::default();
+    for (term, weights) in terms {
+        let scoring = Scoring { weights, ..scoring };
+        let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+        let refiner = Refiner { objective, lock_scale: false };
+        for seed in 0..12 {
+            let draw = &mut Draw::new(seed);
+            let away: Step = core::array::from_fn(|k| draw.between(-1.0, 1.0) * if k < 3 { 0.1 } else { 0.04 });
+            let start = truth.moved(&away);
+            let score = objective.score(&mut canvas, &start);
+            let step = refiner.equations(&canvas, &score, &start).solve(1e-3).unwrap();
+            // Cells make the score a staircase, on which a part of a step may not be seen.
+            let after = [1.0, 0.5, 0.25, 0.125].map(|part| {
+                let pose = start.moved(&step.map(|x| part * x));
+                objective.score(&mut canvas, &pose).total
+            });
+            let best = after.into_iter().fold(f32::NEG_INFINITY, f32::max);
+            assert!(
+                best > score.total,
+                "{term}, seed {seed}: {} at the start, {after:?} after parts of a step",
+                score.total
+            );
+        }
+    }
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn a_refinement_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
     let (model, grid, scoring, truth) = observed();
@@ -291,10 +329,11 @@ fn a_refinement_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
 
         let bounds = [1.03, 1.1].map(|factor| factor * libm::exp(log_scale(&truth)));
         let prior = Prior { scale: Some(bounds), up: None };
-        let held = Refiner { objective: Objective { prior, ..free }, lock_scale: false }.refine(&mut canvas, start, 20);
-        let scale = libm::exp(log_scale(&held.pose));
+        let bounded =
+            Refiner { objective: Objective { prior, ..free }, lock_scale: false }.refine(&mut canvas, start, 20);
+        let scale = libm::exp(log_scale(&bounded.pose));
         assert!((bounds[0] * (1.0 - 1e-12)..=bounds[1]).contains(&scale), "seed {seed}: {scale} in {bounds:?}");
-        assert!(prior.is_at_bound(&held.pose), "seed {seed}: the truth is below");
+        assert!(prior.is_at_bound(&bounded.pose), "seed {seed}: the truth is below");
     }
 }
 

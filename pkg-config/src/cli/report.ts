@@ -217,9 +217,9 @@ function certainty({ confidence, alternatives, uncertainty, diagnostics }: Align
   ];
 }
 
-function countRows({ diagnostics: { preset, counts } }: AlignResult): Row[] {
+function countRows({ diagnostics: { counts } }: AlignResult): Row[] {
   const points: Row = ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`];
-  if (preset !== "paper") return [points, ["renders", String(counts.renders)]];
+  if ("renders" in counts) return [points, ["renders", String(counts.renders)]];
   return [
     points,
     ["voxels", `${counts.sourceVoxels} and ${counts.targetVoxels}`],

@@ -762,8 +762,8 @@ score: number,
  */
 turnDeg: number, 
 /**
- * By how much its colours agree less with the photo than the alignment's, as a difference of correlations; present
- * where colours were compared.
+ * The correlation of the alignment's colours with the photo, minus that of this pose; present where colours were
+ * compared.
  */
 colorMargin?: number, 
 /**

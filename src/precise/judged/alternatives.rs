@@ -4,12 +4,12 @@ use super::color::Rival;
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawn::equivalence::{DIFFERENT, Equivalence};
 use crate::precise::scored::score::NOISE;
-use crate::precise::searched::refine::Found;
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::search::Search;
 use crate::report::Alternative;
 
-/// Score below an unsure best pose down to which poses are alternatives. It is wrong more often than others, and the right pose
-/// then scores less.
+/// Score below an unsure best pose down to which poses are alternatives: where such a pose is wrong, the right one scores lower
+/// by up to this much.
 pub(crate) const UNSURE: f32 = 3.0 * NOISE;
 /// Maximum number of alternatives that shape tells from the best pose.
 const MOST: usize = 12;

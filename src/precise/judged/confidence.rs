@@ -8,7 +8,7 @@
 use super::choice::SHAPE;
 use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::score::NOISE;
-use crate::precise::searched::refine::Found;
+use crate::precise::searched::ranking::Found;
 use crate::report::Alternative;
 
 /// Intercept and coefficients of the regression: overlap, depth, outline, the margin relative to [`NOISE`], and the

@@ -5,8 +5,7 @@ use glam::DQuat;
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::render::Canvas;
-use crate::precise::searched::coarse::Candidate;
-use crate::precise::searched::ranking::{Scored, best_of};
+use crate::precise::searched::ranking::{Found, Posed, Total, best_of};
 use crate::precise::searched::recipe::COARSE;
 use crate::precise::searched::rounds::Rounds;
 
@@ -52,34 +51,32 @@ pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike<CropPose>> {
     let turns = &search.mesh.turns;
     let turned = turns.about_axes(&best.pose, ROLLS);
     let poses = others.iter().map(|other| other.pose).chain(turned);
-    let scored = poses.map(|pose| Candidate { score: objective.score(&mut canvas, &pose), pose });
+    let scored = poses.map(|pose| Found::of(pose, objective.score(&mut canvas, &pose)));
     let equal = search.equivalence.others(best.pose.rotation, ROLLS);
     let equal = equal.into_iter().map(|rotation| turns.turned(&best.pose, rotation));
-    among(best.pose.rotation, score, scored, equal, |candidate| candidate.pose, |pose| pose.rotation)
+    among(best.pose.rotation, score, scored, equal)
 }
 
 /// Those of `scored` that look about like the best one, whose rotation and score are given, after those that are equivalent
 /// to it. The scores are those of the coarse grid, the mean of all views.
-pub fn among<S: Scored, P: Copy>(
+pub fn among<P: Posed, S: Total>(
     best: DQuat,
     score: f32,
-    scored: impl Iterator<Item = S>,
+    scored: impl Iterator<Item = Found<P, S>>,
     equal: impl Iterator<Item = P>,
-    pose_of: impl Fn(&S) -> P,
-    rotation_of: impl Fn(&P) -> DQuat,
 ) -> Vec<Lookalike<P>> {
-    let likely: Vec<S> = scored.filter(|pose| pose.total() > score - FAR).collect();
+    let likely: Vec<Found<P, S>> = scored.filter(|pose| pose.score.total() > score - FAR).collect();
     let mut alike: Vec<Lookalike<P>> = equal.map(|pose| Lookalike { pose, likeness: Likeness::Equal }).collect();
     let mut kept: Vec<DQuat> = vec![best];
-    kept.extend(alike.iter().map(|equal| rotation_of(&equal.pose)));
+    kept.extend(alike.iter().map(|equal| equal.pose.rotation()));
     let likely = best_of(&likely, likely.len());
     for (apart, likeness) in APART.into_iter().zip([Likeness::Same, Likeness::Rough]) {
         for pose in &likely {
-            let is_near = |other: &DQuat| angle_between(*other, pose.rotation()) < apart;
-            let is_rough = pose.total() < score - SAME;
+            let is_near = |other: &DQuat| angle_between(*other, pose.pose.rotation()) < apart;
+            let is_rough = pose.score.total() < score - SAME;
             if is_rough == (likeness == Likeness::Rough) && kept.len() <= MOST && !kept.iter().any(is_near) {
-                kept.push(pose.rotation());
-                alike.push(Lookalike { pose: pose_of(pose), likeness });
+                kept.push(pose.pose.rotation());
+                alike.push(Lookalike { pose: pose.pose, likeness });
             }
         }
     }

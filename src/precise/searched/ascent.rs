@@ -1,7 +1,6 @@
 //! Levenberg-Marquardt ascent on a score that is bounded by a quadratic at every pose.
 
-use serde::{Deserialize, Serialize};
-
+use super::ranking::{Found, Total};
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::precise::drawn::pose::Step;
 
@@ -10,7 +9,7 @@ pub trait Ascent<const N: usize = PARAMETERS> {
     /// A pose.
     type Pose: Copy;
     /// Its score.
-    type Score;
+    type Score: Total;
 
     /// The pose that the prior allows.
     fn allowed(&self, pose: Self::Pose) -> Self::Pose;
@@ -18,35 +17,12 @@ pub trait Ascent<const N: usize = PARAMETERS> {
     /// Renders a pose and scores it.
     fn score(&mut self, pose: &Self::Pose) -> Self::Score;
 
-    /// The number to maximise.
-    fn total(score: &Self::Score) -> f32;
-
     /// The quadratic at the last render, which had this pose and this score.
     fn equations(&mut self, pose: &Self::Pose, score: &Self::Score) -> NormalEquationsOf<N>;
 
     /// The pose after the minimiser of the quadratic, limited to the range in which that is valid; `None` if the result
     /// is not finite.
     fn moved(&self, pose: &Self::Pose, step: [f64; N]) -> Option<Self::Pose>;
-}
-
-/// The result of an ascent.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Summit<P, S> {
-    /// The pose.
-    pub pose: P,
-    /// Its score.
-    pub score: S,
-    /// Number of poses rendered.
-    pub renders: usize,
-    /// Whether the ascent converged: the last step hardly increased the score, or no step would.
-    pub converged: bool,
-}
-
-impl<P, S> Summit<P, S> {
-    /// A pose that was scored as it is.
-    pub fn of(pose: P, score: S) -> Self {
-        Self { pose, score, renders: 1, converged: false }
-    }
 }
 
 /// Initial damping, and its factors after an accepted and after a rejected step.
@@ -66,10 +42,10 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
     problem: &mut A,
     pose: A::Pose,
     iterations: usize,
-) -> Summit<A::Pose, A::Score> {
+) -> Found<A::Pose, A::Score> {
     let pose = problem.allowed(pose);
     let score = problem.score(&pose);
-    let mut best = Summit::of(pose, score);
+    let mut best = Found::of(pose, score);
     let mut equations = problem.equations(&best.pose, &best.score);
     let mut damping = DAMPING[0];
     for _ in 0..iterations {
@@ -78,7 +54,7 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
         let next = problem.allowed(next);
         let score = problem.score(&next);
         best.renders += 1;
-        let gain = A::total(&score) - A::total(&best.score);
+        let gain = score.total() - best.score.total();
         if gain > 0.0 {
             (best.pose, best.score) = (next, score);
             best.converged = gain < SMALL_GAIN;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec2, Vec3};
 use wide::f32x4;
 
-use super::ranking::Scored;
+use super::ranking::Found;
 use crate::geometry::order::median_of_positive;
 use crate::precise::drawn::lanes::{LANES, first, four};
 use crate::precise::drawn::pose::CropPose;
@@ -11,29 +11,9 @@ use crate::precise::drawn::render::Canvas;
 use crate::precise::observed::anchors::Anchor;
 use crate::precise::observed::grid::CropGrid;
 use crate::precise::scored::objective::Objective;
-use crate::precise::scored::score::Score;
 
 /// Iterations of the fit of a perspective box; each gains an order of magnitude.
 const BOX_ROUNDS: usize = 3;
-
-/// A pose and its score.
-#[derive(Debug, Clone, Copy)]
-pub struct Candidate {
-    /// The pose.
-    pub pose: CropPose,
-    /// Its score on the grid on which it was found.
-    pub score: Score,
-}
-
-impl Scored for Candidate {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.score.total
-    }
-}
 
 /// The search over rotations on one grid.
 pub struct Coarse<'a> {
@@ -51,7 +31,7 @@ impl Coarse<'_> {
         outermost: &[Vec3],
         rotation: DQuat,
         anchors: &[Anchor],
-        candidates: &mut Vec<Candidate>,
+        candidates: &mut Vec<Found>,
     ) {
         let (fitted, sides) = self.fit_box(outermost, rotation);
         let [[left, right], [top, bottom]] = self.objective.grid.bounds;
@@ -70,7 +50,7 @@ impl Coarse<'_> {
     }
 
     /// Renders a pose once, and moves it to the distance that fits the depths; the silhouette does not change.
-    pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
+    pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Found {
         let Objective { model, grid, scoring, prior, surroundings } = &self.objective;
         canvas.draw(model, &pose, grid);
         let stretch = median_of_positive(&ratios(canvas, grid)).unwrap_or(1.0);
@@ -78,11 +58,11 @@ impl Coarse<'_> {
         let pose = prior.bounded(distant);
         // Unlike the silhouette, the surroundings depend on the distance.
         if (pose.size - distant.size).abs() > 1e-3 || surroundings.is_some() {
-            return Candidate { pose, score: self.objective.score(canvas, &pose) };
+            return Found::of(pose, self.objective.score(canvas, &pose));
         }
         let mut score = scoring.score(canvas, model, grid, stretch);
         score.total += prior.score(&pose);
-        Candidate { pose, score }
+        Found::of(pose, score)
     }
 
     /// Size and position at which the perspective box of the rotated mesh matches that of the mask: equal centres,

@@ -7,8 +7,9 @@
 
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
-use super::ascent::{Ascent, Summit, ascend};
-use super::refine::{Found, OnGrid, Refiner};
+use super::ascent::{Ascent, ascend};
+use super::ranking::Found;
+use super::refine::{OnGrid, Refiner};
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::geometry::rotations::exp;
 use crate::geometry::surface::SurfaceMoments;
@@ -148,10 +149,6 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
         score
     }
 
-    fn total(score: &Score) -> f32 {
-        score.total
-    }
-
     fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquationsOf<ALL> {
         let canvas = &*self.canvas;
         let to_mesh: Mat3 = canvas.rotation.transpose();
@@ -246,7 +243,7 @@ impl Refiner<'_> {
             return self.refine(canvas, pose, iterations);
         }
         let start = Stretched { pose, proportions: Proportions::default() };
-        let Summit { pose, score, renders, converged } =
+        let Found { pose, score, renders, converged } =
             ascend::<ALL, _>(&mut OnGrid { refiner: self, canvas }, start, iterations);
         // At a bound of the scale, it stays there.
         let is_at_bound = self.objective.prior.is_at_bound(&pose.pose);

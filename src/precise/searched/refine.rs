@@ -4,10 +4,10 @@
 //! from above by a quadratic with curvature ρ′(e)/e (iteratively reweighted least squares), so that a Gauss-Newton step
 //! on these quadratics increases the score. The score decides whether a step is accepted.
 
-use glam::{DQuat, Vec3};
+use glam::Vec3;
 
-use super::ascent::{Ascent, Summit, ascend, limited};
-use super::ranking::Scored;
+use super::ascent::{Ascent, ascend, limited};
+use super::ranking::Found;
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::precise::drawn::pose::{CropPose, Step};
 use crate::precise::drawn::render::Canvas;
@@ -20,19 +20,6 @@ pub struct Refiner<'a> {
     pub objective: Objective<'a>,
     /// Whether the size of the object is fixed, which couples the distance and the size in the image.
     pub lock_scale: bool,
-}
-
-/// A pose that was found, with its score, finally on the fine grid.
-pub type Found = Summit<CropPose, Score>;
-
-impl Scored for Found {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.score.total
-    }
 }
 
 /// Minimum magnitude of residuals, in units of their scale, because a loss like |e| has no finite curvature at 0.
@@ -57,10 +44,6 @@ impl Ascent for OnGrid<'_, '_> {
 
     fn score(&mut self, pose: &CropPose) -> Score {
         self.refiner.objective.score(self.canvas, pose)
-    }
-
-    fn total(score: &Score) -> f32 {
-        score.total
     }
 
     fn equations(&mut self, pose: &CropPose, score: &Score) -> NormalEquations {

@@ -5,9 +5,8 @@
 use glam::DQuat;
 
 use super::coarse::Coarse;
-use super::ranking::{best_of, distinct_up_to};
+use super::ranking::{Found, best_of, distinct_up_to};
 use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
-use super::refine::Found;
 use super::refine::Refiner;
 use super::search::Search;
 use crate::geometry::rotations::super_fibonacci;
@@ -183,16 +182,15 @@ impl Rounds {
         let coarse = Coarse { objective, median_m: search.observation.median_m };
         let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
         let mut canvas = Canvas::default();
-        let (mut outcomes, mut tried) = (Vec::new(), Vec::new());
+        let mut outcomes = Vec::new();
         for task in 0..self.tasks() {
             match round.task {
                 Task::Rotate => {
                     let rotation = self.rotations.get(task).copied();
                     let rotation = rotation.unwrap_or_else(|| super_fibonacci(task, round.work));
-                    coarse.try_anchors(&mut canvas, &search.mesh.outermost, rotation, &self.anchors, &mut tried);
-                    outcomes.extend(tried.drain(..).map(Found::from));
+                    coarse.try_anchors(&mut canvas, &search.mesh.outermost, rotation, &self.anchors, &mut outcomes);
                 }
-                Task::Place => outcomes.push(coarse.at_its_distance(&mut canvas, self.poses[task]).into()),
+                Task::Place => outcomes.push(coarse.at_its_distance(&mut canvas, self.poses[task])),
                 Task::Turn | Task::Refine => {
                     let (mut pose, mut steps) = (self.poses[task], round.work);
                     if round.task == Task::Turn {

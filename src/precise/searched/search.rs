@@ -3,10 +3,10 @@
 use core::cell::OnceCell;
 use std::rc::Rc;
 
-use super::coarse::{Candidate, Coarse};
-use super::ranking::{Scored, distinct};
+use super::coarse::Coarse;
+use super::ranking::{Found, distinct};
 use super::recipe::{COARSE, FINE, GRIDS, SearchSettings};
-use super::refine::{Found, Refiner};
+use super::refine::Refiner;
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawn::equivalence::Equivalence;
 use crate::precise::drawn::mesh_pyramid::MeshPyramid;
@@ -46,12 +46,6 @@ pub struct Search {
     pub equivalence: Rc<Equivalence>,
     /// The evidence on every grid, on first use.
     grids: Rc<[OnceCell<CropGrid>; GRIDS]>,
-}
-
-impl From<Candidate> for Found {
-    fn from(Candidate { pose, score }: Candidate) -> Self {
-        Self::of(pose, score)
-    }
 }
 
 impl Search {
@@ -97,7 +91,7 @@ impl Search {
     pub(crate) fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
         let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
-        let mut near: Vec<Candidate> = Vec::new();
+        let mut near: Vec<Found> = Vec::new();
         for angle in [0.0, NEIGHBORHOOD[0], NEIGHBORHOOD[1]] {
             for axis in 0..6 {
                 let mut step = [0.0; 7];
@@ -124,14 +118,14 @@ impl Search {
             poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)).collect();
         let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
-        let mut tried: Vec<Candidate> =
+        let mut tried: Vec<Found> =
             rolled.iter().chain(&turned).map(|pose| stage.at_its_distance(&mut canvas, *pose)).collect();
         for pose in turned {
             stage.try_anchors(&mut canvas, &mesh.outermost, pose.rotation, anchors, &mut tried);
         }
         self.renders += tried.len();
         let is_new =
-            |turned: &Candidate| poses.iter().all(|pose| angle_between(pose.rotation, turned.rotation()) > APART);
+            |turned: &Found| poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > APART);
         let tried = tried.into_iter().filter(is_new).collect();
         distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
     }

@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use serde::{Deserialize, Serialize};
 
+use super::ranking::Found;
 use super::recipe::{SURE, SearchSettings, Task};
-use super::refine::Found;
 use super::rounds::Rounds;
 use super::search::Search;
 use crate::error::{Error, ErrorCode, Result};
