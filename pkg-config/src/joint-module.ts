@@ -17,7 +17,7 @@ export interface Placed {
 /** The poses of the objects of a scene, `null` for one that could not be aligned, and what they stand on. */
 export interface Arrangement {
   plan?: undefined;
-  objects: ((Sim3 & { contact: Contact }) | null)[];
+  objects: ((Pick<Sim3, "translation" | "matrix"> & { contact: Contact }) | null)[];
   support: Support | null;
 }
 

@@ -1,11 +1,11 @@
 //! Poses as results state them.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::geometry::similarity::Similarity;
 
 /// A similarity y = s·R·x + t in the forms that applications use.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Sim3 {

@@ -20,15 +20,15 @@ use crate::precise::scored::surroundings::Layer;
 use crate::precise::searched::recipe::SearchSettings;
 use crate::precise::searched::rounds::Rounds;
 use crate::precise::searched::start::Findings;
-use crate::report::{Alignment, Sim3};
+use crate::report::Alignment;
 
 /// What the alignment of an object tells.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Placement {
     /// What its search has found.
     pub findings: Findings,
-    /// The pose.
-    pub camera_from_mesh: Sim3,
+    /// The matrix of the pose, see [`Sim3`](crate::report::Sim3).
+    pub camera_from_mesh: [f64; 16],
     /// The space that the object takes in this pose.
     pub body: Body,
 }
@@ -96,7 +96,7 @@ impl Placement {
                 renders: search.renders,
                 confidence: searched.confidence(),
             },
-            camera_from_mesh: (&pose.similarity(&search.mesh.frame)).into(),
+            camera_from_mesh: pose.similarity(&search.mesh.frame).to_column_major(),
             body: Body::new(&search.mesh, &pose, observation),
         })
     }
@@ -113,14 +113,15 @@ impl Placement {
         observation: &Observation,
         normal: Option<DVec3>,
     ) -> Result<Self> {
-        let camera_from_mesh = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
-        if self.camera_from_mesh != alignment.camera_from_mesh
+        let matrix = alignment.camera_from_mesh.matrix;
+        let camera_from_mesh = Similarity::from_column_major(&matrix)?;
+        if self.camera_from_mesh != matrix
             && let Some(pyramid) = mesh.pyramid(&SearchSettings::from(self.findings.effort).grids)
             && let Some(pose) = CropPose::of_similarity(&camera_from_mesh, &pyramid.frame)
         {
             self.body = Body::new(&pyramid, &pose, observation);
         }
-        self.camera_from_mesh = alignment.camera_from_mesh.clone();
+        self.camera_from_mesh = matrix;
         if let Some(normal) = normal {
             self.body = self.body.measured(mesh.mesh(), &camera_from_mesh, normal);
         }

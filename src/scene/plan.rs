@@ -14,7 +14,6 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::pinhole::Pinhole;
 use crate::precise::scored::surroundings::{Floor, Neighbourhood};
 use crate::precise::searched::start::Told;
-use crate::report::Sim3;
 
 /// Confidence from which on an object takes space.
 const SOLID: f64 = 0.5;
@@ -47,12 +46,13 @@ pub struct Arrangement {
     pub support: Option<Support>,
 }
 
-/// An object in its final pose.
+/// An object in its final pose: contacts move it, and do not turn it.
 #[derive(Debug, Serialize)]
 pub struct Arranged {
-    /// The pose.
-    #[serde(flatten)]
-    pub camera_from_mesh: Sim3,
+    /// The translation of its pose, metres.
+    pub translation: [f64; 3],
+    /// The matrix of its pose.
+    pub matrix: [f64; 16],
     /// What the object rests on.
     pub contact: Contact,
 }
@@ -94,25 +94,17 @@ impl Plan {
         let split = |placement: Option<Placement>| placement.map(|p| (p.camera_from_mesh, p.body)).unzip();
         let (poses, bodies): (Vec<_>, Vec<_>) = placements.into_iter().map(split).unzip();
         let contacts = contacts(&bodies, grounds, support.as_ref(), camera, snap);
-        let arranged = |((pose, contact), ground): ((Option<Sim3>, Option<Contact>), &Option<Ground>)| {
-            let (mut camera_from_mesh, contact) = pose.zip(contact)?;
-            if let Some(ground) = ground {
-                move_by(&mut camera_from_mesh, (ground.plane.normal * contact.snapped_m).to_array());
+        let arranged = |((pose, contact), ground): ((Option<[f64; 16]>, Option<Contact>), &Option<Ground>)| {
+            let (mut matrix, contact) = pose.zip(contact)?;
+            if let Some(ground) = ground.filter(|_| contact.snapped_m != 0.0) {
+                let shift = ground.plane.normal * contact.snapped_m;
+                matrix[12..].iter_mut().zip(shift.to_array()).for_each(|(x, shift)| *x += shift);
             }
-            Some(Arranged { camera_from_mesh, contact })
+            Some(Arranged { translation: [matrix[12], matrix[13], matrix[14]], matrix, contact })
         };
         let objects = poses.into_iter().zip(contacts).zip(grounds).map(arranged).collect();
         let support = support.zip(*confidence).map(|(plane, confidence)| Support { plane, confidence });
         Ok(ControlFlow::Break(Arrangement { objects, support }))
-    }
-}
-
-/// Moves a pose, metres. Its rotation and its scale stay the same to the bit.
-fn move_by(camera_from_mesh: &mut Sim3, shift: [f64; 3]) {
-    let Sim3 { translation, matrix, .. } = camera_from_mesh;
-    for (axis, shift) in shift.into_iter().enumerate().filter(|(_, shift)| *shift != 0.0) {
-        translation[axis] += shift;
-        matrix[12 + axis] += shift;
     }
 }
 

@@ -5,7 +5,7 @@ use core::ops::ControlFlow;
 use super::contact::Contact;
 use super::local::View;
 use super::placement::Placement;
-use super::plan::{Arrangement, Plan, missing};
+use super::plan::{Arranged, Arrangement, Plan, missing};
 use super::planes::union_of;
 use super::support::{Support, SupportChoice};
 use crate::align::search::{Request, Search};
@@ -18,7 +18,7 @@ use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::precise::searched::start::Told;
 use crate::progress::Host;
-use crate::report::Alignment;
+use crate::report::{Alignment, Sim3};
 
 /// A scene: one depth map, and the objects in it.
 pub struct Scene<'m> {
@@ -97,9 +97,9 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
     };
     let Arrangement { objects, support } = arrangement;
     let objects = aligned.into_iter().zip(objects).map(|(alignment, arranged)| {
-        let (alignment, arranged) = alignment?.zip(arranged).ok_or_else(missing)?;
-        let alignment = Alignment { camera_from_mesh: arranged.camera_from_mesh, ..alignment };
-        Ok(PlacedObject { alignment, contact: arranged.contact })
+        let (alignment, Arranged { translation, matrix, contact }) = alignment?.zip(arranged).ok_or_else(missing)?;
+        let camera_from_mesh = Sim3 { translation, matrix, ..alignment.camera_from_mesh };
+        Ok(PlacedObject { alignment: Alignment { camera_from_mesh, ..alignment }, contact })
     });
     Ok(SceneAlignment { objects: objects.collect(), support })
 }

@@ -203,8 +203,8 @@ fn one_object_without_support_is_align() {
 }
 
 fn alone(observation: &Observation, object: &SceneObject<'_>) -> Placement {
-    let placed = place(observation, &object.mesh, object.options.clone(), None, &mut Silent, &Pauses::none());
-    finished(placed).unwrap().0
+    let (mut host, pauses) = (Silent, Pauses::none());
+    finished(place(observation, &object.mesh, object.options.clone(), None, &mut host, &pauses)).unwrap().0
 }
 
 /// What is written of numbers tells them apart to the bit.
@@ -273,7 +273,7 @@ fn placed(thing: &Thing, too_high: f64) -> Placement {
     let layer = Rc::new(layer(&thing.mesh, &camera_from_mesh, &camera(), [WIDTH, HEIGHT]));
     Placement {
         findings: Findings { confidence: 0.9, ..Findings::default() },
-        camera_from_mesh: (&camera_from_mesh).into(),
+        camera_from_mesh: camera_from_mesh.to_column_major(),
         body: Body { points, layer, along: None },
     }
 }
@@ -321,7 +321,7 @@ fn the_space_of_an_object_is_that_of_its_alignment() {
     };
     assert_eq!(body(&alignment).layer, placement.body.layer);
     // Turned over and moved away from the camera.
-    let mut turned = Similarity::from_column_major(&placement.camera_from_mesh.matrix).unwrap();
+    let mut turned = Similarity::from_column_major(&placement.camera_from_mesh).unwrap();
     turned.rotation *= Rotation3::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI);
     turned.translation.z += 0.1;
     alignment.camera_from_mesh = (&turned).into();
