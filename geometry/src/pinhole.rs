@@ -1,6 +1,7 @@
 //! The pinhole camera in OpenCV's convention.
 
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use super::angle::sin_cos;
 use crate::error::{Error, ErrorCode, Result};
@@ -14,7 +15,7 @@ const HALF_VIEW: [f64; 2] = [8.7e-5, 114.6];
 
 /// A pinhole camera: x right, y down, z forward; pixel centres at integer indices,
 /// so that u = fx·x/z + cx is the centre of column u for whole u.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pinhole {
     /// Focal length along u, in pixels.
     pub fx: f64,

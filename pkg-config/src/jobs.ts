@@ -9,7 +9,7 @@ import { resolveFrame, resolveViews } from "./input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
-import type { JointAligner, LoadJoint } from "./joint-module.js";
+import type { JointAligner, LoadJoint, Placed } from "./joint-module.js";
 import type { LoadRegistrar, Registrar } from "./registration-module.js";
 import {
   type AlignResult,
@@ -21,39 +21,33 @@ import {
   type ViewsAlignment,
   withWarnings,
 } from "./results.js";
-import type { Known, Placed } from "./scene/steps.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { Glue, LoadedModule } from "./wasm-module.js";
 
-/** A call. `data` contains all large arrays; `options` are in the form of the core. */
-export type Job =
-  | { method: "align"; data: AlignInput; options: object; meshId?: number | undefined }
-  | { method: "place"; data: PlaceInput; options: object; meshId?: number | undefined }
-  | { method: "alignViews"; data: ViewsInput; options: object; meshId?: number | undefined }
-  | { method: "openTracker"; data: { mesh: MeshInput }; options: object; tracker: number; meshId?: number | undefined }
-  | { method: "trackFrame"; data: FrameInput; options: object; tracker: number }
-  | { method: "correctTrack"; data: { pose: unknown; frame: unknown }; options: object; tracker: number }
-  | { method: "evaluate"; data: AlignInput; options: object; transform: unknown; meshId?: number | undefined }
-  | { method: "prepareMesh"; data: { mesh: MeshInput }; options: object; meshId: number }
-  | { method: "register"; data: Clouds; options: object }
-  | { method: "estimateSim3"; data: Clouds; options: object };
+/** The calls: their data, which contain all large arrays, what else they are given, and their results. */
+interface Calls {
+  align: { data: AlignInput; meshId?: number | undefined; result: AlignResult };
+  place: { data: PlaceInput; meshId?: number | undefined; result: Placed };
+  alignViews: { data: ViewsInput; meshId?: number | undefined; result: ViewsAlignment };
+  openTracker: { data: { mesh: MeshInput }; tracker: number; meshId?: number | undefined; result: undefined };
+  trackFrame: { data: FrameInput; tracker: number; result: TrackedFrame };
+  correctTrack: { data: { pose: unknown; frame: unknown }; tracker: number; result: CorrectedFrame[] };
+  evaluate: { data: AlignInput; transform: unknown; meshId?: number | undefined; result: Evaluation };
+  prepareMesh: { data: { mesh: MeshInput }; meshId: number; result: MeshAndWarnings };
+  register: { data: Clouds; result: Registration };
+  estimateSim3: { data: Clouds; result: Registration };
+}
 
-/** An object of a scene, the pixels of the others and, once it is known, what they have told. */
-export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; known?: Known | undefined };
+type JobOf<M extends keyof Calls> = { method: M; options: object } & Omit<Calls[M], "result">;
+
+/** A call as data; `options` are in the form of the core. */
+export type Job = { [M in keyof Calls]: JobOf<M> }[keyof Calls];
 
 /** The result of each call. */
-export interface Results {
-  align: AlignResult;
-  place: Placed;
-  alignViews: ViewsAlignment;
-  openTracker: undefined;
-  trackFrame: TrackedFrame;
-  correctTrack: CorrectedFrame[];
-  evaluate: Evaluation;
-  prepareMesh: MeshAndWarnings;
-  register: Registration;
-  estimateSim3: Registration;
-}
+export type Results = { [M in keyof Calls]: Calls[M]["result"] };
+
+/** An object of a scene, the pixels of the others, and the plan of the scene, which only the joint module reads. */
+export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; plan?: Uint8Array | undefined; index: number };
 
 /** The modules that run jobs. Others than the core are loaded when a job needs them. */
 export interface Modules {
@@ -94,22 +88,16 @@ export async function perform(
   switch (job.method) {
     case "align": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
-      if (isOfPaper(options)) {
-        const module = await registrar();
-        checkAttached("input", input);
-        return withWarnings(
-          module.call((m) => m.alignPaper(input, options, listener), withoutInput),
-          warnings,
-        );
-      }
-      const result = await runTask(core, (c) => c.beginAlign(input, options, listener), input, slices);
+      const result = isOfPaper(options)
+        ? called(await registrar(), (r) => r.alignPaper(input, options, listener), input)
+        : await runTask(core, (c) => c.beginAlign(input, options, listener), input, slices);
       return withWarnings(result, warnings);
     }
     case "place": {
-      const { others, known, ...own } = job.data;
+      const { others, plan, index, ...own } = job.data;
       const { core: input, warnings } = await resolveInput(own, formats, job.meshId);
-      const observed = others === undefined ? input : { ...input, others };
-      const begin = (j: JointAligner) => j.beginPlace(observed, options, known, listener);
+      const observed = { ...input, others };
+      const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener);
       const placed = await runTask(await joint(), begin, observed, slices);
       if (placed.alignment === undefined) return placed;
       // The camera belongs to the scene, which reports its warnings.
@@ -147,12 +135,8 @@ export async function perform(
     }
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
-      // Files are read while the thread does other work, which may take the memory away.
-      checkAttached("input", input);
-      return withWarnings(
-        core.call((c) => c.evaluate(input, job.transform, options), withoutInput),
-        warnings,
-      );
+      const evaluation = called(core, (c) => c.evaluate(input, job.transform, options), input);
+      return withWarnings(evaluation, warnings);
     }
     case "prepareMesh": {
       const { mesh, warnings } = await readMesh(job.data.mesh, formats, true);
@@ -173,6 +157,12 @@ export async function perform(
       return runTask(await registrar(), begin, job.data, slices);
     }
   }
+}
+
+/** Calls a module with an input that has been read. Meanwhile, the thread may have lost its memory to another one. */
+function called<G extends Glue, T>(module: LoadedModule<G>, work: (glue: G) => T, input: object): T {
+  checkAttached("input", input);
+  return module.call(work, withoutInput);
 }
 
 /** How a task runs. */

@@ -1,21 +1,40 @@
 /** The joint module: the WebAssembly module with `alignScene`, `alignViews` and `track`. */
 import type { CoreListener, Task } from "./core.js";
-import type { CorrectedFrame, TrackedFrame, ViewsAlignment } from "./generated/types.js";
+import type { Alignment, Contact, CorrectedFrame, Sim3, TrackedFrame, ViewsAlignment } from "./generated/types.js";
 import type { CoreFrame, CoreInput, CoreViews } from "./input/core-input.js";
 import type { CoreMesh } from "./prepared-mesh.js";
-import type { Contacts, Known, Placed, Placement, Supported } from "./scene/steps.js";
+import type { Support } from "./scene/types.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
+
+/** An object of a scene, aligned in one of its rounds. */
+export interface Placed {
+  /** What it tells the next round; only the module reads it. */
+  placement: Uint8Array;
+  /** In the last round. */
+  alignment?: Alignment;
+}
+
+/** The poses of the objects of a scene, `null` for one that could not be aligned, and what they stand on. */
+export interface Arrangement {
+  plan?: undefined;
+  objects: ((Pick<Sim3, "translation" | "matrix"> & { contact: Contact }) | null)[];
+  support: Support | null;
+}
 
 /** The functions of the module. They validate their arguments and throw errors with codes. */
 export interface JointAligner extends Glue {
   beginPlace(
-    input: CoreInput & { others?: Uint8Array },
+    input: CoreInput & { others: Uint8Array | undefined },
     options: object,
-    known: Known | undefined,
+    plan: Uint8Array | undefined,
+    object: number,
     onProgress: CoreListener | undefined,
   ): Task<Placed>;
-  sceneSupport(view: object, placements: (Placement | null)[], support: unknown, seed: number): Supported;
-  sceneContacts(view: object, placements: (Placement | null)[], supported: Supported, snap: boolean): Contacts;
+  planScene(
+    scene: object,
+    plan: Uint8Array | undefined,
+    placements: (Uint8Array | null)[],
+  ): { plan: Uint8Array } | Arrangement;
   beginAlignViews(input: CoreViews, options: object, onProgress: CoreListener | undefined): Task<ViewsAlignment>;
   openTracker(id: number, input: { mesh: CoreMesh }, options: object): void;
   trackFrame(id: number, frame: CoreFrame, onProgress: CoreListener | undefined): TrackedFrame;

@@ -58,6 +58,11 @@ export class WasmModule<G extends Glue> {
     return this.#compiling;
   }
 
+  /** The module, if it has been asked for. */
+  get loading(): Promise<LoadedModule<G>> | undefined {
+    return this.#loading;
+  }
+
   /** Loads the module. Only the `source` of the first successful call is used. */
   load(source?: LazySource): Promise<LoadedModule<G>> {
     if (this.#loading === undefined) {
@@ -83,7 +88,8 @@ export class WasmModule<G extends Glue> {
     try {
       return await work();
     } catch (cause) {
-      throw notLoaded(this.#name, cause);
+      // A worker is told why its module could not be loaded.
+      throw cause instanceof Sim3AlignError ? cause : notLoaded(this.#name, cause);
     }
   }
 }

@@ -2,7 +2,7 @@
 import type { Core } from "./core.js";
 import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Formats } from "./formats-module.js";
-import { type MeshCache, perform } from "./jobs.js";
+import { type Job, type MeshCache, perform } from "./jobs.js";
 import type { JointAligner } from "./joint-module.js";
 import type { LazyName, Reply, Request } from "./pool/protocol.js";
 import { buffersOf } from "./pool/transfer.js";
@@ -18,16 +18,10 @@ const caches: readonly MeshCache[] = ["core", "joint"];
 
 type Post = (message: Reply, transfer?: ArrayBuffer[]) => void;
 
-interface LazyModule<G extends Glue> {
-  load(): Promise<LoadedModule<G>>;
-  /** The module, if a job has needed it. */
-  loading(): Promise<LoadedModule<G>> | undefined;
-}
-
 /** Loads the modules and runs the jobs of one worker. */
 class WorkerHost {
   readonly #post: Post;
-  #core: Promise<LoadedModule<Core>> | undefined;
+  #core: WasmModule<Core> | undefined;
   readonly #formats = this.#lazy<Formats>("formats", formatsGlue);
   readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
   readonly #joint = this.#lazy<JointAligner>("joint", jointGlue as unknown as JointAligner);
@@ -46,7 +40,9 @@ class WorkerHost {
   }
 
   #start(core: WebAssembly.Module): void {
-    this.#core = this.#loadCore(core);
+    this.#core = new WasmModule<Core>("core", core, () => coreGlue as unknown as Core);
+    // The failure surfaces at the first job.
+    this.#core.load().catch(() => {});
     this.#post({ type: "ready" });
   }
 
@@ -55,44 +51,41 @@ class WorkerHost {
     this.#post({ type: "unreadable" });
   }
 
-  async #run(request: Request & { type: "job" }): Promise<void> {
-    const data = request.returnData ? request.job.data : undefined;
-    const answer = await this.#answer(request);
+  async #run({ job, wantsProgress, returnData }: Request & { type: "job" }): Promise<void> {
+    const data = returnData ? job.data : undefined;
+    const instances = async () => (await this.#caching()).map((module) => module?.instance);
+    const before = await instances();
+    const answer = await this.#performed(job, wantsProgress);
+    const after = await instances();
+    const emptied = caches.filter((_, i) => before[i] !== undefined && before[i] !== after[i]);
     try {
-      this.#post({ ...answer, data }, buffersOf(data));
+      this.#post({ ...answer, data, emptied }, buffersOf(data));
     } catch (error) {
       this.#post({ type: "done", error: partsOf(internalError(error)) });
     }
   }
 
-  async #answer(request: Request & { type: "job" }): Promise<Reply & { type: "done" }> {
-    const before = await this.#instances();
-    const answer = await this.#performed(request);
-    const after = await this.#instances();
-    return {
-      ...answer,
-      emptied: caches.filter((cache) => before[cache] !== undefined && before[cache] !== after[cache]),
-    };
+  /** The module of each cache of meshes, if it is loaded. */
+  #caching(): Promise<(LoadedModule<Core | JointAligner> | undefined)[]> {
+    return Promise.all([this.#core, this.#joint].map((module) => module?.loading?.catch(() => undefined)));
   }
 
-  /** The numbers of the current instances of the modules that cache meshes, of those that are loaded. */
-  async #instances(): Promise<Partial<Record<MeshCache, number>>> {
-    const [core, joint] = await Promise.all(
-      [this.#core, this.#joint.loading()].map((it) => it?.catch(() => undefined)),
-    );
-    return { ...(core && { core: core.instance }), ...(joint && { joint: joint.instance }) };
-  }
-
-  async #performed({ job, wantsProgress }: Request & { type: "job" }): Promise<Reply & { type: "done" }> {
+  async #performed(job: Job, wantsProgress: boolean): Promise<Reply & { type: "done" }> {
     const listener = (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
       this.#post({ type: "progress", stage, fraction, best });
     try {
-      const core = await this.#core?.catch((error) => {
+      const core = await this.#core?.load().catch((error) => {
         // The pool replaces a worker with an internal error; this one would fail forever.
         throw internalError(error);
       });
       if (core === undefined) throw new Error("no core");
-      const modules = { core, formats: this.#formats.load, registrar: this.#registrar.load, joint: this.#joint.load };
+      const [formats, registrar, joint] = [this.#formats, this.#registrar, this.#joint];
+      const modules = {
+        core,
+        formats: () => formats.load(),
+        registrar: () => registrar.load(),
+        joint: () => joint.load(),
+      };
       return { type: "done", result: await perform(job, modules, wantsProgress ? listener : undefined) };
     } catch (error) {
       return { type: "done", error: partsOf(error instanceof Sim3AlignError ? error : internalError(error)) };
@@ -100,31 +93,16 @@ class WorkerHost {
   }
 
   async #dropMesh(id: number): Promise<void> {
-    // If the core could not be loaded, the next job fails.
-    (await this.#core?.catch(() => undefined))?.call((core) => core.dropMesh(id));
-    (await this.#joint.loading()?.catch(() => undefined))?.call((joint) => joint.dropMesh(id));
+    for (const module of await this.#caching()) module?.call((glue) => glue.dropMesh(id));
   }
 
-  #loadCore(module: WebAssembly.Module): Promise<LoadedModule<Core>> {
-    const core = new WasmModule<Core>("core", module, () => coreGlue as unknown as Core).load();
-    // The failure surfaces at the first job.
-    core.catch(() => {});
-    return core;
-  }
-
-  /** A module that is loaded when a job first needs it; after a failure, the next job tries again. */
-  #lazy<G extends Glue>(name: LazyName, glue: G): LazyModule<G> {
-    let loading: Promise<LoadedModule<G>> | undefined;
-    const load = () => {
-      if (loading === undefined) {
-        loading = this.#request(name).then((module) => new WasmModule<G>(name, module, () => glue).load());
-        loading.catch(() => {
-          loading = undefined;
-        });
-      }
-      return loading;
-    };
-    return { load, loading: () => loading };
+  /** A module that is loaded when a job first needs it. */
+  #lazy<G extends Glue>(name: LazyName, glue: G): WasmModule<G> {
+    return new WasmModule<G>(
+      name,
+      () => this.#request(name),
+      () => glue,
+    );
   }
 
   /** Asks the pool for a compiled module. The worker runs one job at a time, and so asks for one at a time. */

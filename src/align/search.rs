@@ -21,35 +21,17 @@ use crate::precise::options::AlignOptions;
 use crate::precise::scored::conditioning::DROP;
 use crate::precise::scored::surroundings::Neighbourhood;
 use crate::precise::searched::efforts;
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::SURE;
-use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::recipe::{SURE, SearchSettings};
 use crate::precise::searched::rounds::Rounds;
-use crate::precise::searched::start;
-use crate::precise::searched::start::Told;
+use crate::precise::searched::start::{self, Findings, Told};
 use crate::progress::{Host, Stopwatch};
-use crate::report::{Alignment, Effort, PreciseDiagnostics, SearchCounts, Solution};
+use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
 
 /// What is asked for: the options, validated, and what follows from them.
 pub struct Request {
     options: AlignOptions,
     efforts: Vec<SearchSettings>,
     setup: Setup,
-}
-
-/// What another alignment of the same input has found, and what has become known of its surroundings since.
-#[derive(Debug, Clone, Default)]
-pub struct Given {
-    /// The poses, best first.
-    pub found: Vec<Found>,
-    /// The effort of the search that found them.
-    pub effort: Effort,
-    /// Number of images that it drew.
-    pub renders: usize,
-    /// The probability that the best pose is right.
-    pub confidence: f64,
-    /// The surroundings.
-    pub known: Neighbourhood,
 }
 
 /// The alignment of one object.
@@ -174,12 +156,14 @@ impl<'a> Search<'a> {
         Err(precise::no_candidate())
     }
 
-    /// Searches among given poses, with what is known of the surroundings.
+    /// Searches among the poses that another search of the object has found, with what has become known of its
+    /// surroundings since.
     ///
     /// # Errors
     /// As [`Search::search`].
-    pub async fn search_among(&mut self, given: &Given) -> Result<Searched> {
-        let mut rounds = self.among(given, None)?;
+    pub async fn search_among(&mut self, told: Told<'_>) -> Result<Searched> {
+        let given = told.findings;
+        let mut rounds = self.among(told, None)?;
         self.pauses.here().await;
         start::run(&mut rounds, &efforts::share(0, 1), self.pauses, &mut self.stages).await;
         let mut searched = Searched::new(rounds)?;
@@ -189,20 +173,18 @@ impl<'a> Search<'a> {
         let is_contradicted = searched.confidence() < CONTRADICTION * given.confidence;
         if is_contradicted || leaves_image(given, &searched.rounds) {
             // Tables, undersides and neighbours are as inaccurate as the object: what its image shows, wins.
-            let alone = Given { known: Neighbourhood::default(), ..given.clone() };
-            searched = Searched::new(self.among(&alone, Some(&searched.rounds))?)?;
+            let alone = Told { findings: given, known: Neighbourhood::default() };
+            searched = Searched::new(self.among(alone, Some(&searched.rounds))?)?;
         }
         Ok(searched)
     }
 
     /// The search among given poses, before its first round; `before` is an earlier one of the same object.
-    fn among(&mut self, given: &Given, before: Option<&Rounds>) -> Result<Rounds> {
+    fn among(&mut self, told: Told<'_>, before: Option<&Rounds>) -> Result<Rounds> {
         let Request { options, efforts, .. } = self.request;
-        let is_sure = given.confidence >= SURE;
-        let settings = efforts.iter().find(|settings| settings.effort == given.effort);
-        let settings = settings.ok_or_else(precise::no_candidate)?.again(is_sure);
+        let settings = efforts.iter().find(|settings| settings.effort == told.findings.effort);
+        let settings = settings.ok_or_else(precise::no_candidate)?.again(told.findings.is_sure());
         let clean = before.map(|rounds| rounds.search.observation.clone());
-        let told = Told { found: &given.found, renders: given.renders, is_sure, known: given.known.clone() };
         start::resume(self.observation, self.mesh, clean, told, options, &settings, &mut self.stages)
     }
 
@@ -234,7 +216,7 @@ impl<'a> Search<'a> {
 }
 
 /// Whether the surroundings have moved the pose that the object has alone farther than its image allows.
-fn leaves_image(given: &Given, rounds: &Rounds) -> bool {
+fn leaves_image(given: &Findings, rounds: &Rounds) -> bool {
     let (Some(alone), Some(now)) = (given.found.first(), rounds.found.first()) else { return false };
     let search = &rounds.search;
     let loss = search.by_image(&alone.score) - search.by_image(&now.score);

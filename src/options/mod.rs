@@ -64,13 +64,14 @@ macro_rules! choices {
         }
     ) => {
         $(#[doc = $type_doc])*
-        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+        #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
         #[cfg_attr(feature = "types", derive(ts_rs::TS))]
         pub enum $type {
             $(
                 $(#[doc = $doc])*
                 $(#[default $($default)?])?
                 #[cfg_attr(feature = "types", ts(rename = $name))]
+                #[serde(rename = $name)]
                 $variant,
             )+
         }
@@ -96,12 +97,6 @@ macro_rules! choices {
                     _ => return false,
                 }
                 true
-            }
-        }
-
-        impl serde::Serialize for $type {
-            fn serialize<S: serde::Serializer>(&self, serializer: S) -> core::result::Result<S::Ok, S::Error> {
-                serializer.serialize_str($crate::options::Choice::name(self))
             }
         }
     };

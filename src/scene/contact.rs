@@ -1,6 +1,6 @@
 //! Contact: what rests on what, and by how much it misses or enters it.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::layers::volumes;
 use super::placement::Body;
@@ -16,6 +16,7 @@ pub struct Contact {
     /// What it rests on: `"support"`, the index of another object, `"level"` for a level surface at another height that
     /// the depth map shows, such as a shelf or a box without a mesh, or `null` if it touches none of them.
     #[cfg_attr(feature = "types", ts(type = "\"support\" | \"level\" | number | null"))]
+    #[serde(serialize_with = "by_name")]
     pub rests_on: Option<RestsOn>,
     /// Height of its lowest point over what is below it, in metres; negative where it enters it. `null` without a
     /// support.
@@ -24,6 +25,15 @@ pub struct Contact {
     pub shared_volume: f64,
     /// How far `snap` has moved it along the normal of the support, in metres.
     pub snapped_m: f64,
+}
+
+fn by_name<S: Serializer>(rests_on: &Option<RestsOn>, serializer: S) -> Result<S::Ok, S::Error> {
+    match rests_on {
+        None => serializer.serialize_none(),
+        Some(RestsOn::Support) => serializer.serialize_str("support"),
+        Some(RestsOn::Level) => serializer.serialize_str("level"),
+        Some(RestsOn::Object(index)) => serializer.serialize_u32(*index as u32),
+    }
 }
 
 /// Largest gap of an object that touches what is below it: metres, and relative to its size.

@@ -4,19 +4,22 @@ use glam::{DVec2, DVec3};
 
 use super::placement::Body;
 use super::plane::Plane;
+use super::support::SupportChoice;
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::order::median;
 use crate::geometry::pinhole::Pinhole;
 
-/// The images that the support is found in.
-#[derive(Debug, Clone, Copy)]
-pub struct View<'a> {
+/// The images that the support is found in, and what is known of it.
+#[derive(Debug, Clone)]
+pub struct View {
     /// The depth map.
-    pub depth: &'a DepthMap,
+    pub depth: DepthMap,
     /// Its camera.
-    pub camera: &'a Pinhole,
+    pub camera: Pinhole,
     /// The pixels of all objects, and their rims.
-    pub taken: &'a Mask,
+    pub taken: Mask,
+    /// What is known of the support.
+    pub choice: SupportChoice,
     /// Seed of the draws.
     pub seed: u64,
 }
@@ -42,7 +45,7 @@ pub fn touch_m(body: &Body) -> f64 {
 }
 
 /// How far the readings around a body are over the plane.
-pub fn bend(view: &View<'_>, plane: &Plane, body: &Body) -> f64 {
+pub fn bend(view: &View, plane: &Plane, body: &Body) -> f64 {
     let limit = MAX_BEND[0] + MAX_BEND[1] * body.depth_m();
     let mut heights = Vec::new();
     around(view, body, |point| {
@@ -58,7 +61,7 @@ pub fn bend(view: &View<'_>, plane: &Plane, body: &Body) -> f64 {
 }
 
 /// Visits the readings of the scene in the band around a body.
-fn around(view: &View<'_>, body: &Body, mut visit: impl FnMut(DVec3)) {
+fn around(view: &View, body: &Body, mut visit: impl FnMut(DVec3)) {
     let layer = &body.layer;
     let (width, height) = (view.depth.width(), view.depth.height());
     let rows = layer.spans.len() / layer.width.max(1);
@@ -77,7 +80,7 @@ fn around(view: &View<'_>, body: &Body, mut visit: impl FnMut(DVec3)) {
 
 /// The height over the support of the level surface that a body is nearer to than to the support, if the depth map shows
 /// one below it.
-pub fn level_below(view: &View<'_>, plane: &Plane, body: &Body) -> Option<f64> {
+pub fn level_below(view: &View, plane: &Plane, body: &Body) -> Option<f64> {
     let size = body.diameter();
     let low = body.extent(plane)[0];
     let tolerance = 1.5 * touch_m(body);

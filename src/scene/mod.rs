@@ -9,6 +9,7 @@ pub mod contact;
 pub mod layers;
 pub mod local;
 pub mod placement;
+pub mod plan;
 pub mod plane;
 pub mod planes;
 pub mod support;

@@ -1,27 +1,17 @@
 //! Planes in the camera frame.
 
 use glam::{DMat3, DVec3};
-use serde::Serialize;
-use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 
 /// A plane n·x + d = 0 in the camera frame, metres. n is a unit vector that points to the side of the objects.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Plane {
     /// n.
     pub normal: DVec3,
     /// d, metres.
     pub d: f64,
-}
-
-impl Serialize for Plane {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut fields = serializer.serialize_struct("Plane", 2)?;
-        fields.serialize_field("normal", &self.normal.to_array())?;
-        fields.serialize_field("d", &self.d)?;
-        fields.end()
-    }
 }
 
 impl Plane {

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use glam::{DVec3, Vec3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::layers::extremes_along;
 use super::local::{View, bend, level_below, touch_m};
@@ -35,7 +35,7 @@ pub struct Support {
 }
 
 /// What an object rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RestsOn {
     /// The support.
     Support,
@@ -45,18 +45,8 @@ pub enum RestsOn {
     Object(usize),
 }
 
-impl Serialize for RestsOn {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Support => serializer.serialize_str("support"),
-            Self::Level => serializer.serialize_str("level"),
-            Self::Object(index) => serializer.serialize_u32(*index as u32),
-        }
-    }
-}
-
 /// What an object may stand on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ground {
     /// The plane near the object: depth maps are bent.
     pub plane: Plane,
@@ -64,13 +54,6 @@ pub struct Ground {
     pub gap_m: f64,
     /// What it belongs to.
     pub on: RestsOn,
-}
-
-impl Ground {
-    /// What a search is told of it: see [`Neighbourhood::ground`](crate::precise::scored::surroundings::Neighbourhood::ground).
-    pub fn known(&self) -> (DVec3, f64, f64) {
-        (self.plane.normal, self.plane.d, self.gap_m)
-    }
 }
 
 /// Gap that halves the credit of the contact: metres, metres per metre of depth, and relative to the size of the object.
@@ -91,16 +74,12 @@ const FARTHEST_M: f64 = 0.03;
 const UNSURE: f64 = 0.3;
 
 /// The support, and what each object may stand on.
-pub fn find_support(
-    view: &View<'_>,
-    choice: &SupportChoice,
-    placements: &[Option<Placement>],
-) -> (Option<Support>, Vec<Option<Ground>>) {
-    let support = match choice {
+pub fn find_support(view: &View, placements: &[Option<Placement>]) -> (Option<Support>, Vec<Option<Ground>>) {
+    let support = match &view.choice {
         SupportChoice::None => None,
         SupportChoice::Plane(plane) => Some(Support { plane: *plane, confidence: 1.0 }),
         SupportChoice::Auto => {
-            let planes = find_planes(view.depth, view.camera, view.taken, view.seed);
+            let planes = find_planes(&view.depth, &view.camera, &view.taken, view.seed);
             chosen(&planes, placements)
         }
     };
@@ -129,11 +108,11 @@ pub fn find_support(
 /// The plane that most objects stand on.
 fn chosen(planes: &[FoundPlane], placements: &[Option<Placement>]) -> Option<Support> {
     let objects = placements.iter().flatten();
-    let all: f64 = objects.clone().map(|p| 0.2 + p.confidence).sum();
+    let all: f64 = objects.clone().map(|p| 0.2 + p.findings.confidence).sum();
     let credit = |found: &FoundPlane| {
         let touching = |p: &Placement| {
             let gap = p.body.extent(&found.plane)[0] / (touch_m(&p.body));
-            (0.2 + p.confidence) / (1.0 + gap * gap)
+            (0.2 + p.findings.confidence) / (1.0 + gap * gap)
         };
         let up = found.plane.normal.dot(DVec3::NEG_Y).max(0.0);
         // A plane that more of the scene lies on is more likely the one that objects stand on.
@@ -160,7 +139,7 @@ fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> 
         let gap = p.body.extent(plane)[0];
         let noise = OFFSET[1] + OFFSET[2] * p.body.diameter();
         // A half turn that shape does not tell makes a pose uncertain, but not its height.
-        (gap.abs() < FARTHEST_M).then_some((gap, noise, UNSURE + (1.0 - UNSURE) * p.confidence))
+        (gap.abs() < FARTHEST_M).then_some((gap, noise, UNSURE + (1.0 - UNSURE) * p.findings.confidence))
     };
     let gaps: Vec<(f64, f64, f64)> = planes.iter().zip(placements).filter_map(gap).collect();
     let loss = |offset: f64| {

@@ -1,24 +1,24 @@
-//! The steps of a scene: each object alone, the support, each object with what the others have told.
+//! The alignment of a scene: the rounds of its [`Plan`], one object after the other, and the alignment of one object.
 
-use std::rc::Rc;
+use core::ops::ControlFlow;
 
-use super::contact::{Contact, contacts};
+use super::contact::Contact;
 use super::local::View;
-use super::placement::{Body, Placement};
+use super::placement::Placement;
+use super::plan::{Arranged, Arrangement, Plan, missing};
 use super::planes::union_of;
-use super::support::{Ground, Support, SupportChoice, find_support};
-use crate::align::search::{Given, Request, Search};
+use super::support::{Support, SupportChoice};
+use crate::align::search::{Request, Search};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
-use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed, finished};
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::scored::surroundings::Neighbourhood;
+use crate::precise::searched::start::Told;
 use crate::progress::Host;
-use crate::report::Alignment;
+use crate::report::{Alignment, Sim3};
 
 /// A scene: one depth map, and the objects in it.
 pub struct Scene<'m> {
@@ -64,164 +64,94 @@ pub struct SceneAlignment {
     pub support: Option<Support>,
 }
 
-/// Aligns the objects of a scene, one after the other.
+/// Aligns the objects of a scene, one after the other. Errors of one object are in its place of the result.
 ///
 /// # Errors
-/// [`ErrorCode::SizeMismatch`](crate::error::ErrorCode::SizeMismatch) for masks of another size than the depth map.
-/// Errors of one object are in its place of the result.
+/// Those of [`Plan::next`].
 pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignment> {
-    let masks = masks_of(scene);
-    let observation = |i: usize| observation_of(&scene.depth, &scene.camera, &masks, i);
-    let objects = scene.objects.iter().enumerate();
-    let found = objects.map(|(i, object)| align_alone(&observation(i)?, object, host)).collect();
-    align_placed(scene, found, host)
-}
-
-/// [`alone`] without pauses.
-///
-/// # Errors
-/// As there.
-pub fn align_alone(observation: &Observation, object: &SceneObject<'_>, host: &mut dyn Host) -> Result<Placement> {
-    finished(alone(observation, &object.mesh, object.options.clone(), host, &Pauses::none()))
-}
-
-/// Aligns the objects of a scene with what each has found alone.
-///
-/// # Errors
-/// Those of [`align_scene`].
-pub fn align_placed(scene: &Scene<'_>, found: Vec<Result<Placement>>, host: &mut dyn Host) -> Result<SceneAlignment> {
-    let Scene { depth, camera, objects, .. } = scene;
-    let masks = masks_of(scene);
-    let observation = |i: usize| observation_of(depth, camera, &masks, i);
-    let (placements, failures): (Vec<_>, Vec<_>) =
-        found.into_iter().map(|f| f.map_or_else(|e| (None, Some(e)), |p| (Some(p), None))).unzip();
-    let taken = union_of(depth.width(), depth.height(), masks.iter().copied());
-    let seed = objects.first().map_or(0, |object| u64::from(object.options.seed));
-    let view = View { depth, camera, taken: &taken, seed };
-    let (support, grounds) = find_support(&view, &scene.support, &placements);
-
-    let mut bodies: Vec<Option<Body>> = Vec::new();
-    let mut aligned: Vec<Result<Alignment>> = Vec::new();
-    for (i, failure) in failures.into_iter().enumerate() {
-        let run = || {
-            let Some(placement) = &placements[i] else { return Err(failure.unwrap_or_else(missing)) };
-            let (observation, SceneObject { mesh, options, .. }) = (observation(i)?, &objects[i]);
-            let given = placement.given(neighbourhood(i, &placements, &grounds));
-            finished(together(&observation, mesh, options.clone(), &given, host, &Pauses::none()))
-        };
-        let (alignment, body) = match run() {
-            Ok((alignment, placement)) => (Ok(alignment), Some(placement.body)),
-            Err(error) => (Err(error), None),
-        };
-        aligned.push(alignment);
-        bodies.push(body);
-    }
-    let plane = support.as_ref().map(|support| &support.plane);
-    let contacts = contacts(&bodies, &grounds, plane, camera, scene.snap);
-    let objects = aligned.into_iter().zip(contacts).zip(&grounds).map(|((alignment, contact), ground)| {
-        let (mut alignment, contact) = (alignment?, contact.ok_or_else(missing)?);
-        if let Some(ground) = ground.filter(|_| contact.snapped_m != 0.0) {
-            let mut pose = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
-            pose.translation += nalgebra::Vector3::from((ground.plane.normal * contact.snapped_m).to_array());
-            alignment.camera_from_mesh = (&pose).into();
+    let Scene { depth, camera, objects, occluders, support, snap } = scene;
+    let masks: Vec<&Mask> = objects.iter().map(|object| &object.mask).chain(occluders).collect();
+    let view = || {
+        let taken = union_of(depth.width(), depth.height(), masks.iter().copied());
+        let seed = objects.first().map_or(0, |object| u64::from(object.options.seed));
+        Ok(View { depth: depth.clone(), camera: *camera, taken, choice: *support, seed })
+    };
+    let mut plan = Plan::default();
+    let mut aligned: Vec<Result<Option<Alignment>>> = vec![Ok(None); objects.len()];
+    let arrangement = loop {
+        let mut round = Vec::new();
+        for (k, SceneObject { mesh, options, .. }) in objects.iter().enumerate() {
+            let mut place = || {
+                aligned[k].clone()?;
+                let observation = observation_of(depth, camera, &masks, k)?;
+                finished(place(&observation, mesh, options.clone(), plan.told(k)?, host, &Pauses::none()))
+            };
+            let (placement, alignment) = place().map_or_else(|error| (None, Err(error)), |(p, a)| (Some(p), Ok(a)));
+            aligned[k] = alignment;
+            round.push(placement);
         }
-        Ok(PlacedObject { alignment, contact })
+        match plan.next(round, *snap, view)? {
+            ControlFlow::Continue(next) => plan = next,
+            ControlFlow::Break(arrangement) => break arrangement,
+        }
+    };
+    let Arrangement { objects, support } = arrangement;
+    let objects = aligned.into_iter().zip(objects).map(|(alignment, arranged)| {
+        let (alignment, Arranged { translation, matrix, contact }) = alignment?.zip(arranged).ok_or_else(missing)?;
+        let camera_from_mesh = Sim3 { translation, matrix, ..alignment.camera_from_mesh };
+        Ok(PlacedObject { alignment: Alignment { camera_from_mesh, ..alignment }, contact })
     });
     Ok(SceneAlignment { objects: objects.collect(), support })
-}
-
-fn masks_of<'s>(scene: &'s Scene<'_>) -> Vec<&'s Mask> {
-    scene.objects.iter().map(|object| &object.mask).chain(&scene.occluders).collect()
 }
 
 /// The observation of an object, with the pixels of all others.
 ///
 /// # Errors
 /// Those of [`Observation::new`].
-pub fn observation_of(depth: &DepthMap, camera: &Pinhole, masks: &[&Mask], object: usize) -> Result<Observation> {
+fn observation_of(depth: &DepthMap, camera: &Pinhole, masks: &[&Mask], object: usize) -> Result<Observation> {
     let Some(mask) = masks.get(object) else { return Err(missing()) };
     let observation = Observation::new(depth.clone(), (*mask).clone(), *camera)?;
     if masks.len() < 2 {
         return Ok(observation);
     }
-    let mut others = Image::filled(depth.width(), depth.height(), 0u8);
-    for (_, mask) in masks.iter().enumerate().filter(|(k, _)| *k != object) {
-        for (other, pixel) in others.data_mut().iter_mut().zip(mask.data()) {
-            *other |= u8::from(*pixel != 0);
-        }
-    }
-    observation.with_others(others)
+    let others = || masks.iter().enumerate().filter(|(k, _)| *k != object).map(|(_, mask)| mask.data());
+    let is_other = |i| others().any(|mask| mask.get(i).is_some_and(|pixel| *pixel != 0));
+    let pixels = (0..mask.data().len()).map(|i| u8::from(is_other(i))).collect();
+    observation.with_others(Image::new("mask", depth.width(), depth.height(), pixels)?)
 }
 
-/// Aligns an object alone, and returns what the others need to know: the poses that shape leaves, with that first which
-/// the photo chooses.
+/// Aligns an object alone or with what it is told. Returns what the others need to know of it and, once it has been told
+/// something, its alignment.
 ///
 /// # Errors
 /// As [`align`](crate::align::align).
-pub fn alone<'a>(
+pub fn place<'a>(
     observation: &'a Observation,
     mesh: &'a PreparedMesh<'_>,
     options: AlignOptions,
+    told: Option<Told<'a>>,
     host: &'a mut dyn Host,
     pauses: &'a Pauses,
-) -> Boxed<'a, Result<Placement>> {
+) -> Boxed<'a, Result<(Placement, Option<Alignment>)>> {
     boxed(async move {
         let request = Request::new(options)?;
         let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
-        let mut searched = search.search().await?;
-        let colors = search.colors(&searched).await;
-        if let Some(chosen) = colors.and_then(|colors| colors.chosen) {
-            searched.rounds.found.insert(0, chosen);
-        }
-        Placement::new(&searched, observation).ok_or_else(missing)
-    })
-}
-
-/// What an object is told about the others.
-pub fn neighbourhood(object: usize, placements: &[Option<Placement>], grounds: &[Option<Ground>]) -> Neighbourhood {
-    let ground = grounds.get(object).copied().flatten().map(|ground| ground.known());
-    let others = placements.iter().enumerate().filter(|(k, _)| *k != object).filter_map(|(_, p)| p.as_ref());
-    // A body that is probably elsewhere takes no space.
-    let layers = others.filter(|p| p.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
-    Neighbourhood { ground, layers }
-}
-
-/// Confidence from which on an object takes space.
-const SOLID: f64 = 0.5;
-
-/// Aligns an object with what the others have told. Returns what they need to know of it now, too.
-///
-/// # Errors
-/// As [`align`](crate::align::align).
-pub fn together<'a>(
-    observation: &'a Observation,
-    mesh: &'a PreparedMesh<'_>,
-    options: AlignOptions,
-    given: &'a Given,
-    host: &'a mut dyn Host,
-    pauses: &'a Pauses,
-) -> Boxed<'a, Result<(Alignment, Placement)>> {
-    boxed(async move {
-        let request = Request::new(options)?;
-        let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
+        let Some(told) = told else {
+            let mut searched = search.search().await?;
+            let colors = search.colors(&searched).await;
+            // Of the poses that shape leaves, that first which the photo chooses.
+            if let Some(chosen) = colors.and_then(|colors| colors.chosen) {
+                searched.rounds.found.insert(0, chosen);
+            }
+            return Ok((Placement::new(&searched, observation).ok_or_else(missing)?, None));
+        };
         let clouds = search.clouds().await?;
-        let searched = search.search_among(given).await?;
+        let normal = told.known.ground.map(|floor| floor.normal);
+        let searched = search.search_among(told).await?;
         let placement = Placement::new(&searched, observation).ok_or_else(missing)?;
         let colors = search.colors(&searched).await;
         let alignment = search.finish(clouds, searched, colors.as_ref())?;
-        let normal = given.known.ground.map(|(normal, ..)| normal);
         let placement = placement.in_pose_of(&alignment, mesh, observation, normal)?;
-        Ok((alignment, placement))
+        Ok((placement, Some(alignment)))
     })
-}
-
-/// The error for a step without what the one before should have left.
-pub fn missing() -> crate::error::Error {
-    crate::error::Error::new(
-        crate::error::ErrorCode::Internal,
-        "scene",
-        "an object without a pose",
-        "a pose of every object",
-        "Please report this.",
-    )
 }

@@ -1,14 +1,19 @@
 //! Scenes: boxes on a floor, on one another and in the air.
 
+use core::ops::ControlFlow;
 use std::rc::Rc;
 
 use sim3align::align::align;
+use sim3align::pauses::{Pauses, finished};
+use sim3align::precise::searched::start::Findings;
+use sim3align::scene::contact::Contact;
 use sim3align::scene::layers::{extremes, layer, volumes};
 use sim3align::scene::local::View;
-use sim3align::scene::placement::{Body, Placement, found_of};
+use sim3align::scene::placement::{Body, Placement};
+use sim3align::scene::plan::Plan;
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::{RestsOn, SupportChoice, find_support};
-use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_alone, align_scene};
+use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene, place};
 
 use super::shapes::{cuboid, mapped};
 
@@ -106,6 +111,10 @@ fn pose(scene: &SceneAlignment, i: usize) -> Similarity {
     pose_of(&scene.objects[i].as_ref().unwrap().alignment.camera_from_mesh)
 }
 
+fn contacts(scene: &SceneAlignment) -> Vec<Contact> {
+    scene.objects.iter().map(|object| object.as_ref().unwrap().contact.clone()).collect()
+}
+
 /// Two wedges on the floor, one on top of another, and one in the air.
 fn things() -> Vec<Thing> {
     vec![
@@ -125,7 +134,7 @@ fn what_stands_lies_and_hangs_is_told_apart() {
     let up = view().rotation * Vector3::new(0.0, -1.0, 0.0);
     assert!(support.plane.normal.dot(DVec3::from_array(up.into())) > 0.9999, "{support:?}");
     assert!((support.plane.d + up.dot(&view().translation)).abs() < 0.002, "{support:?}");
-    let contacts: Vec<_> = aligned.objects.iter().map(|o| o.as_ref().unwrap().contact.clone()).collect();
+    let contacts = contacts(&aligned);
     let rests: Vec<_> = contacts.iter().map(|contact| contact.rests_on).collect();
     assert_eq!(rests[0], Some(RestsOn::Support), "{contacts:?}");
     assert_eq!(rests[1], Some(RestsOn::Support), "{contacts:?}");
@@ -180,18 +189,28 @@ fn one_object_without_support_is_align() {
     assert_eq!(object.alignment.diagnostics.score, expected.diagnostics.score);
 }
 
+fn alone(observation: &Observation, object: &SceneObject<'_>) -> Placement {
+    let (mut host, pauses) = (Silent, Pauses::none());
+    finished(place(observation, &object.mesh, object.options.clone(), None, &mut host, &pauses)).unwrap().0
+}
+
+/// What is written of numbers tells them apart to the bit.
 #[wasm_bindgen_test(unsupported = test)]
-fn candidates_survive_as_numbers() {
+fn plans_survive_as_bytes() {
     let things = &things()[..1];
-    let scene = scene_of(things, SupportChoice::None, false);
-    let observation = Observation::new(scene.depth.clone(), scene.objects[0].mask.clone(), camera()).unwrap();
-    let placement: Placement = align_alone(&observation, &scene.objects[0], &mut Silent).unwrap();
-    let copies = found_of(&placement.numbers());
-    assert_eq!(copies.len(), placement.found.len());
-    for (copy, found) in copies.iter().zip(&placement.found) {
-        assert_eq!(copy.pose, found.pose);
-        assert_eq!(copy.score, found.score);
-        assert_eq!((copy.converged, copy.renders), (found.converged, found.renders));
+    let Scene { depth, objects, .. } = scene_of(things, SupportChoice::Auto, false);
+    let observation = Observation::new(depth.clone(), objects[0].mask.clone(), camera()).unwrap();
+    let taken = union_of(WIDTH, HEIGHT, [&objects[0].mask].into_iter());
+    let view = View { depth, camera: camera(), taken, choice: SupportChoice::Auto, seed: 0 };
+    let placements = vec![Some(alone(&observation, &objects[0])), None];
+    let Ok(ControlFlow::Continue(plan)) = Plan::default().next(placements, false, || Ok(view)) else {
+        panic!("no second round")
+    };
+    let bytes = postcard::to_allocvec(&plan).unwrap();
+    let copy: Plan = postcard::from_bytes(&bytes).unwrap();
+    assert_eq!(format!("{copy:?}"), format!("{plan:?}"));
+    for end in [0, 1, bytes.len() / 2, bytes.len() - 1] {
+        assert!(postcard::from_bytes::<Plan>(&bytes[..end]).is_err(), "{end}");
     }
 }
 
@@ -219,7 +238,7 @@ fn a_board_that_only_the_depth_map_shows_is_a_level() {
     for snap in [false, true] {
         let scene = scene_with(&things, seen(&things, &boards, 0.0, 0.002), SupportChoice::Auto, snap);
         let aligned = align_scene(&scene, &mut Silent).unwrap();
-        let contacts: Vec<_> = aligned.objects.iter().map(|o| o.as_ref().unwrap().contact.clone()).collect();
+        let contacts = contacts(&aligned);
         assert_eq!(contacts[0].rests_on, Some(RestsOn::Support), "{contacts:?}");
         assert_eq!(contacts[1].rests_on, Some(RestsOn::Level), "{contacts:?}");
         // Over the board, not over the floor, which is 12 cm below.
@@ -240,11 +259,8 @@ fn placed(thing: &Thing, too_high: f64) -> Placement {
     let points = thing.mesh.positions().iter().map(|p| vec3(&camera_from_mesh.apply(vector3(*p)))).collect();
     let layer = Rc::new(layer(&thing.mesh, &camera_from_mesh, &camera(), [WIDTH, HEIGHT]));
     Placement {
-        found: Vec::new(),
-        effort: Effort::Fast,
-        renders: 0,
-        confidence: 0.9,
-        camera_from_mesh,
+        findings: Findings { confidence: 0.9, ..Findings::default() },
+        camera_from_mesh: camera_from_mesh.to_column_major(),
         body: Body { points, layer, along: None },
     }
 }
@@ -259,12 +275,12 @@ fn objects_tell_by_how_much_the_depth_map_misplaces_the_floor() {
     for floor_m in [-0.008, 0.0, 0.008] {
         let (depth, masks) = seen(&things, &[], floor_m, 0.001);
         let taken = union_of(WIDTH, HEIGHT, masks.iter());
-        let seen = View { depth: &depth, camera: &camera(), taken: &taken, seed: 0 };
+        let seen = View { depth, camera: camera(), taken, choice: SupportChoice::Auto, seed: 0 };
         // The last one may have been found 2 cm too high.
         for too_high in [0.0, 0.02] {
             let placements: Vec<_> =
                 things.iter().zip([0.0, 0.0, too_high]).map(|(thing, high)| Some(placed(thing, high))).collect();
-            let (support, grounds) = find_support(&seen, &SupportChoice::Auto, &placements);
+            let (support, grounds) = find_support(&seen, &placements);
             let support = support.unwrap();
             for ground in grounds.into_iter().flatten() {
                 assert_eq!(ground.on, RestsOn::Support);
@@ -284,7 +300,7 @@ fn the_space_of_an_object_is_that_of_its_alignment() {
     let scene = scene_of(things, SupportChoice::None, false);
     let object = &scene.objects[0];
     let observation = Observation::new(scene.depth.clone(), object.mask.clone(), camera()).unwrap();
-    let placement: Placement = align_alone(&observation, object, &mut Silent).unwrap();
+    let placement = alone(&observation, object);
     let mut alignment = align(&observation, &things[0].mesh, &options(), &mut Silent).unwrap();
     let normal = DVec3::NEG_Y;
     let body = |alignment: &Alignment| {
@@ -292,7 +308,7 @@ fn the_space_of_an_object_is_that_of_its_alignment() {
     };
     assert_eq!(body(&alignment).layer, placement.body.layer);
     // Turned over and moved away from the camera.
-    let mut turned = placement.camera_from_mesh;
+    let mut turned = Similarity::from_column_major(&placement.camera_from_mesh).unwrap();
     turned.rotation *= Rotation3::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI);
     turned.translation.z += 0.1;
     alignment.camera_from_mesh = (&turned).into();

@@ -8,8 +8,8 @@ type NodeWorker = import("node:worker_threads").Worker;
 /** The pool's end of the connection to a worker. */
 export interface Port {
   post(message: Request, transfer?: ArrayBuffer[]): void;
-  /** Sets whether the worker keeps the process alive. */
-  hold(isHeld: boolean): void;
+  /** Sets whether the worker keeps the process alive: while it is busy. */
+  keepAlive(isBusy: boolean): void;
   terminate(): void;
 }
 
@@ -21,35 +21,29 @@ export interface PortEvents {
 }
 
 /** Connects to a worker. */
-export function portOf(worker: WorkerLike, events: PortEvents): Port {
-  return "on" in worker ? portOfNode(worker as NodeWorker, events) : portOfWeb(worker as Worker, events);
-}
-
-function portOfNode(worker: NodeWorker, { onMessage, onFailure }: PortEvents): Port {
-  worker.on("message", onMessage);
-  worker.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
-  worker.on("messageerror", () => onFailure("a message that could not be read"));
-  worker.on("exit", (code) => onFailure(`termination with exit code ${code}`));
-  worker.unref?.();
+export function portOf(worker: WorkerLike, { onMessage, onFailure }: PortEvents): Port {
+  const node = "on" in worker ? (worker as NodeWorker) : undefined;
+  const unreadable = () => onFailure("a message that could not be read");
+  if (node !== undefined) {
+    node.on("message", onMessage);
+    node.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
+    node.on("messageerror", unreadable);
+    node.on("exit", (code) => onFailure(`termination with exit code ${code}`));
+    node.unref?.();
+  } else {
+    const web = worker as Worker;
+    web.addEventListener("message", ({ data }) => onMessage(data));
+    web.addEventListener("error", (event) => {
+      // Otherwise, error handlers of the page would report it as unhandled.
+      event.preventDefault();
+      onFailure(event.message || "a script that could not be loaded");
+    });
+    web.addEventListener("messageerror", unreadable);
+  }
   return {
     post: (message, transfer = []) => worker.postMessage(message, transfer),
-    hold: (isHeld) => (isHeld ? worker.ref?.() : worker.unref?.()),
+    keepAlive: (isBusy) => (isBusy ? node?.ref?.() : node?.unref?.()),
     terminate: () => void worker.terminate(),
-  };
-}
-
-function portOfWeb(worker: Worker, { onMessage, onFailure }: PortEvents): Port {
-  worker.addEventListener("message", ({ data }) => onMessage(data));
-  worker.addEventListener("error", (event) => {
-    // Otherwise, error handlers of the page would report it as unhandled.
-    event.preventDefault();
-    onFailure(event.message || "a script that could not be loaded");
-  });
-  worker.addEventListener("messageerror", () => onFailure("a message that could not be read"));
-  return {
-    post: (message, transfer = []) => worker.postMessage(message, transfer),
-    hold: () => {},
-    terminate: () => worker.terminate(),
   };
 }
 

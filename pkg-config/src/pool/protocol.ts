@@ -33,9 +33,14 @@ export type Reply =
   | { type: "done"; result: unknown; data?: unknown; error?: undefined; emptied?: readonly MeshCache[] }
   | { type: "done"; error: ErrorParts; data?: unknown; emptied?: readonly MeshCache[] };
 
-/** Whether a message is one of this package's `worker.js`: a worker of the caller may run another script. */
-export function isReply(message: unknown): message is Reply {
+/**
+ * Whether a message is one of this package's `worker.js`: a worker of the caller may run another script.
+ * @param hasResult whether the result of the running job is an object; `undefined` if there is no job
+ */
+export function isReply(message: unknown, hasResult: boolean | undefined): message is Reply {
   if (!isRecord(message)) return false;
-  if (message.type !== "done") return ["ready", "progress", "needs-module", "unreadable"].includes(`${message.type}`);
-  return message.error === undefined ? "result" in message : isCoded(message.error);
+  const { type, result, error } = message;
+  if (type !== "done") return ["ready", "progress", "needs-module", "unreadable"].includes(`${type}`);
+  if (hasResult === undefined || error !== undefined) return hasResult !== undefined && isCoded(error);
+  return "result" in message && (typeof result === "object" && result !== null) === hasResult;
 }

@@ -62,10 +62,6 @@ class Greeting {
   }
 }
 
-/** Whether a job may end so; `hasResult` is missing if there is no job. */
-const isOf = ({ result, error }: { result?: unknown; error?: unknown }, hasResult: boolean | undefined): boolean =>
-  hasResult !== undefined && (error !== undefined || (typeof result === "object" && result !== null) === hasResult);
-
 /** A slot for a worker. */
 export class WorkerSlot {
   readonly #setup: WorkerSetup;
@@ -115,12 +111,12 @@ export class WorkerSlot {
     const { startMs } = this.#setup;
     const found = `no answer for ${startMs} ms, which \`workerStartMs\` allows`;
     const timer = setTimeout(() => this.#isCurrent(port) && this.end(new WorkerLost(found)), startMs);
-    port.hold(true);
+    port.keepAlive(true);
     try {
       await this.#greeting?.heard;
     } finally {
       clearTimeout(timer);
-      port.hold(false);
+      port.keepAlive(false);
     }
   }
 
@@ -145,7 +141,7 @@ export class WorkerSlot {
         } catch (cause) {
           throw new Unsendable("a message that cannot be sent", { cause });
         }
-        port.hold(true);
+        port.keepAlive(true);
         if (mesh !== undefined && !this.#meshes.has(mesh.id)) this.#meshes.set(mesh.id, new Set());
       });
       const isKept = mesh !== undefined && this.#isCurrent(port) && !answer.emptied?.includes(mesh.cache);
@@ -153,7 +149,7 @@ export class WorkerSlot {
       return answer;
     } finally {
       this.#pending = undefined;
-      port.hold(false);
+      port.keepAlive(false);
       for (const id of this.#dropped.splice(0)) this.dropMesh(id);
     }
   }
@@ -199,9 +195,7 @@ export class WorkerSlot {
   }
 
   #receive(message: unknown, port: Port): void {
-    const { hasResult } = this.#pending ?? {};
-    const isAnswer = isReply(message) && (message.type !== "done" || isOf(message, hasResult));
-    if (!isAnswer) {
+    if (!isReply(message, this.#pending?.hasResult)) {
       this.end(new WorkerLost("a message that worker.js does not send"));
     } else if (message.type === "ready") {
       this.#greeting?.hear();
@@ -224,7 +218,7 @@ export class WorkerSlot {
     }
   }
 
-  /** Forgets what these caches held: the next jobs bring their meshes again. */
+  /** Forgets what was in these caches: the next jobs bring their meshes again. */
   #forget(emptied: readonly MeshCache[] = []): void {
     for (const caches of this.#meshes.values()) for (const cache of emptied) caches.delete(cache);
   }

@@ -3,6 +3,7 @@
 
 use glam::{DQuat, DVec2, DVec3};
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
@@ -40,7 +41,7 @@ impl MeshFrame {
 ///
 /// The mask determines size and place, the depth determines the distance. A change of the distance alone does not
 /// change the silhouette.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CropPose {
     /// R.
     pub rotation: DQuat,

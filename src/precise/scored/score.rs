@@ -1,5 +1,6 @@
 //! Score: how well a rendered pose explains mask, free space and depth.
 
+use serde::{Deserialize, Serialize};
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
@@ -84,7 +85,7 @@ pub enum Background {
 }
 
 /// A score and its terms, each from 0 to 1.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// The weighted sum.
     pub total: f32,

@@ -6,6 +6,7 @@
 use std::rc::Rc;
 
 use glam::{DQuat, DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::rotations::exp;
@@ -35,7 +36,7 @@ pub struct Ground {
 
 /// Another object: for every pixel of a part of the image, where the line of sight enters and leaves it, metres; 0 and 0
 /// where it does not meet the object.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// First column and row.
     pub origin: [usize; 2],
@@ -45,12 +46,22 @@ pub struct Layer {
     pub spans: Vec<[f32; 2]>,
 }
 
+/// The plane that an object may stand on, as far as it does not depend on the mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct Floor {
+    /// See [`Ground`].
+    pub normal: DVec3,
+    /// See [`Ground`].
+    pub offset_m: f64,
+    /// See [`Ground`].
+    pub gap_m: f64,
+}
+
 /// What is known of the surroundings of an object, before its search.
 #[derive(Debug, Clone, Default)]
 pub struct Neighbourhood {
-    /// The plane that it may stand on, n·x + d = 0 with n towards the object, and the gap that halves the credit of the
-    /// contact, metres.
-    pub ground: Option<(DVec3, f64, f64)>,
+    /// What it may stand on.
+    pub ground: Option<Floor>,
     /// The other objects, at the size of the whole image.
     pub layers: Vec<Rc<Layer>>,
 }
@@ -216,7 +227,7 @@ fn firmness(rest: &Rest) -> f64 {
 impl Surroundings {
     /// The surroundings of a mesh and its observation.
     pub fn new(known: Neighbourhood, mesh: &MeshPyramid, observation: &CleanObservation) -> Self {
-        let ground = known.ground.map(|(normal, offset_m, gap_m)| Ground {
+        let ground = known.ground.map(|Floor { normal, offset_m, gap_m }| Ground {
             normal,
             offset_m,
             gap_m,

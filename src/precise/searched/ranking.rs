@@ -1,6 +1,7 @@
 //! Ranking: the best candidates, and the best distinct ones.
 
 use glam::DQuat;
+use serde::{Deserialize, Serialize};
 
 use crate::geometry::order;
 use crate::precise::drawn::equivalence::Equivalence;
@@ -38,7 +39,7 @@ impl Total for f32 {
 }
 
 /// A pose that was found, and its score, finally on the fine grid.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Found<P = CropPose, S = Score> {
     /// The pose.
     pub pose: P,

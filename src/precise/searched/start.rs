@@ -3,8 +3,10 @@
 use core::ops::Range;
 use std::rc::Rc;
 
+use serde::{Deserialize, Serialize};
+
 use super::ranking::Found;
-use super::recipe::{SearchSettings, Task};
+use super::recipe::{SURE, SearchSettings, Task};
 use super::rounds::Rounds;
 use super::search::Search;
 use crate::error::{Error, ErrorCode, Result};
@@ -22,6 +24,7 @@ use crate::precise::options::{AlignOptions, Quality, SearchScope};
 use crate::precise::scored::prior::Prior;
 use crate::precise::scored::surroundings::{Neighbourhood, Surroundings};
 use crate::progress::{Stage, Stopwatch};
+use crate::report::Effort;
 
 /// Rotation from the best pose from which on rivals are looked for, radians.
 const ELSEWHERE: f64 = 0.5;
@@ -86,15 +89,31 @@ pub fn has_rival(rounds: &mut Rounds, look: &Rounds) -> bool {
     !rivals.is_empty()
 }
 
-/// What another search has told.
-pub struct Told<'a> {
-    /// The poses that it has found, best first.
-    pub found: &'a [Found],
-    /// The number of its renders.
+/// What a search has found, for a later one of the same object.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Findings {
+    /// The poses, best first.
+    pub found: Vec<Found>,
+    /// Its effort.
+    pub effort: Effort,
+    /// Number of images that it drew.
     pub renders: usize,
-    /// Whether it was sure of its best pose.
-    pub is_sure: bool,
-    /// What is known of the surroundings of the object.
+    /// The probability that the best pose is right.
+    pub confidence: f64,
+}
+
+impl Findings {
+    /// Whether the search was sure of its best pose.
+    pub fn is_sure(&self) -> bool {
+        self.confidence >= SURE
+    }
+}
+
+/// What is told to a later search of the same object.
+pub struct Told<'a> {
+    /// What the earlier one has found.
+    pub findings: &'a Findings,
+    /// What has become known of the surroundings of the object since.
     pub known: Neighbourhood,
 }
 
@@ -108,20 +127,22 @@ pub fn resume(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
     clean: Option<Rc<CleanObservation>>,
-    Told { found, renders, is_sure, known }: Told<'_>,
+    Told { findings, known }: Told<'_>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
     let mut search = prepared(observation, clean, mesh, options, settings, stages)?;
-    search.renders = renders;
+    let Findings { found, renders, .. } = findings;
+    search.renders = *renders;
     if known.is_empty() {
-        return Ok(Rounds::ended(search, found.to_vec()));
+        return Ok(Rounds::ended(search, found.clone()));
     }
     let surroundings = Surroundings::new(known, &search.mesh, &search.observation);
     let put_down: Vec<CropPose> = found.iter().take(PUT_DOWN).flat_map(|f| surroundings.put_down(&f.pose)).collect();
     // Where the search was unsure, the ground leaves few rotations.
-    let standing = if is_sure || options.search == SearchScope::Local { Vec::new() } else { surroundings.standing() };
+    let standing =
+        if findings.is_sure() || options.search == SearchScope::Local { Vec::new() } else { surroundings.standing() };
     search.surround(surroundings);
     let mut rounds =
         if standing.is_empty() { Rounds::new(search, None, false) } else { Rounds::among(search, standing) };

@@ -1,0 +1,120 @@
+//! The plan of a scene: rounds in which every object is aligned by itself, and what each round tells the next.
+
+use core::ops::ControlFlow;
+use std::rc::Rc;
+
+use serde::{Deserialize, Serialize};
+
+use super::contact::{Contact, contacts};
+use super::local::View;
+use super::placement::Placement;
+use super::plane::Plane;
+use super::support::{Ground, Support, find_support};
+use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::pinhole::Pinhole;
+use crate::precise::scored::surroundings::{Floor, Neighbourhood};
+use crate::precise::searched::start::Told;
+
+/// Confidence from which on an object takes space.
+const SOLID: f64 = 0.5;
+
+/// What is known before a round. Its objects can be aligned in any order, side by side, and in other threads: none needs
+/// more than the plan and its own input.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Plan {
+    /// `None` before the first round: each object is aligned alone.
+    known: Option<Known>,
+}
+
+/// What the objects have told.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct Known {
+    camera: Pinhole,
+    placements: Vec<Option<Placement>>,
+    support: Option<Plane>,
+    /// Of the support.
+    confidence: Option<f64>,
+    grounds: Vec<Option<Ground>>,
+}
+
+/// The poses of the objects of a scene, and what they stand on.
+#[derive(Debug, Serialize)]
+pub struct Arrangement {
+    /// Each object; `None` for one that could not be aligned.
+    pub objects: Vec<Option<Arranged>>,
+    /// What they stand on.
+    pub support: Option<Support>,
+}
+
+/// An object in its final pose: contacts move it, and do not turn it.
+#[derive(Debug, Serialize)]
+pub struct Arranged {
+    /// The translation of its pose, metres.
+    pub translation: [f64; 3],
+    /// The matrix of its pose.
+    pub matrix: [f64; 16],
+    /// What the object rests on.
+    pub contact: Contact,
+}
+
+impl Plan {
+    /// What an object is told in this round: what it has found itself, and what surrounds it. `None` if it is aligned alone.
+    ///
+    /// # Errors
+    /// [`missing`] for an object that could not be aligned.
+    pub fn told(&self, object: usize) -> Result<Option<Told<'_>>> {
+        let Some(Known { placements, grounds, .. }) = &self.known else { return Ok(None) };
+        let own = placements.get(object).and_then(Option::as_ref).ok_or_else(missing)?;
+        let ground = grounds.get(object).copied().flatten();
+        let floor = |Ground { plane, gap_m, .. }| Floor { normal: plane.normal, offset_m: plane.d, gap_m };
+        let others = placements.iter().enumerate().filter(|(k, _)| *k != object).filter_map(|(_, p)| p.as_ref());
+        // A body that is probably elsewhere takes no space.
+        let layers = others.filter(|p| p.findings.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
+        Ok(Some(Told { findings: &own.findings, known: Neighbourhood { ground: ground.map(floor), layers } }))
+    }
+
+    /// Another round or the end, from the placements of a round, one per object: `None` for an object that could not be
+    /// aligned, which stays out of the rounds that follow. With `snap`, objects are put exactly onto what they touch.
+    ///
+    /// # Errors
+    /// Those of `view`, which is only called if it is needed.
+    pub fn next(
+        &self,
+        placements: Vec<Option<Placement>>,
+        snap: bool,
+        view: impl FnOnce() -> Result<View>,
+    ) -> Result<ControlFlow<Arrangement, Self>> {
+        let Some(Known { camera, support, confidence, grounds, .. }) = &self.known else {
+            let view = view()?;
+            let (found, grounds) = find_support(&view, &placements);
+            let (support, confidence) = found.map(|found| (found.plane, found.confidence)).unzip();
+            let known = Known { camera: view.camera, placements, support, confidence, grounds };
+            return Ok(ControlFlow::Continue(Self { known: Some(known) }));
+        };
+        let split = |placement: Option<Placement>| placement.map(|p| (p.camera_from_mesh, p.body)).unzip();
+        let (poses, bodies): (Vec<_>, Vec<_>) = placements.into_iter().map(split).unzip();
+        let contacts = contacts(&bodies, grounds, support.as_ref(), camera, snap);
+        let arranged = |((pose, contact), ground): ((Option<[f64; 16]>, Option<Contact>), &Option<Ground>)| {
+            let (mut matrix, contact) = pose.zip(contact)?;
+            if let Some(ground) = ground.filter(|_| contact.snapped_m != 0.0) {
+                let shift = ground.plane.normal * contact.snapped_m;
+                matrix[12..].iter_mut().zip(shift.to_array()).for_each(|(x, shift)| *x += shift);
+            }
+            Some(Arranged { translation: [matrix[12], matrix[13], matrix[14]], matrix, contact })
+        };
+        let objects = poses.into_iter().zip(contacts).zip(grounds).map(arranged).collect();
+        let support = support.zip(*confidence).map(|(plane, confidence)| Support { plane, confidence });
+        Ok(ControlFlow::Break(Arrangement { objects, support }))
+    }
+}
+
+/// The error for a step without what the one before should have left.
+pub fn missing() -> Error {
+    Error::new(
+        ErrorCode::Internal,
+        "scene",
+        "an object without a pose",
+        "a pose of every object",
+        "Please report this.",
+    )
+}
