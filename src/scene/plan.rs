@@ -94,17 +94,23 @@ impl Plan {
         let split = |placement: Option<Placement>| placement.map(|p| (p.camera_from_mesh, p.body)).unzip();
         let (poses, bodies): (Vec<_>, Vec<_>) = placements.into_iter().map(split).unzip();
         let contacts = contacts(&bodies, grounds, support.as_ref(), camera, snap);
-        let arranged = |((pose, contact), ground): ((Option<[f64; 16]>, Option<Contact>), &Option<Ground>)| {
-            let (mut matrix, contact) = pose.zip(contact)?;
-            if let Some(ground) = ground.filter(|_| contact.snapped_m != 0.0) {
-                let shift = ground.plane.normal * contact.snapped_m;
-                matrix[12..].iter_mut().zip(shift.to_array()).for_each(|(x, shift)| *x += shift);
-            }
-            Some(Arranged { translation: [matrix[12], matrix[13], matrix[14]], matrix, contact })
-        };
-        let objects = poses.into_iter().zip(contacts).zip(grounds).map(arranged).collect();
+        let mut objects = Vec::with_capacity(grounds.len());
+        for ((pose, contact), ground) in poses.into_iter().zip(contacts).zip(grounds) {
+            objects.push(pose.zip(contact).map(|(pose, contact)| Arranged::new(pose, contact, ground.as_ref())));
+        }
         let support = support.zip(*confidence).map(|(plane, confidence)| Support { plane, confidence });
         Ok(ControlFlow::Break(Arrangement { objects, support }))
+    }
+}
+
+impl Arranged {
+    /// An object with this pose, moved along the normal of its ground onto what it touches.
+    fn new(mut matrix: [f64; 16], contact: Contact, ground: Option<&Ground>) -> Self {
+        if let Some(ground) = ground.filter(|_| contact.snapped_m != 0.0) {
+            let shift = ground.plane.normal * contact.snapped_m;
+            matrix[12..].iter_mut().zip(shift.to_array()).for_each(|(x, shift)| *x += shift);
+        }
+        Self { translation: [matrix[12], matrix[13], matrix[14]], matrix, contact }
     }
 }
 
