@@ -1,5 +1,5 @@
 /** Loading and calling one WebAssembly module. */
-import { failure, internalError, isCoded, isExhausted, outOfMemory, type Sim3AlignError } from "./error.js";
+import { failure, internalError, isCoded, isExhausted, outOfMemory, Sim3AlignError } from "./error.js";
 import type { CompiledModule, LazySource, WasmSource } from "./platform.js";
 import { Queue } from "./queue.js";
 import { isKind } from "./values.js";
