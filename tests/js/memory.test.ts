@@ -91,7 +91,7 @@ test("a heap stays while calls wait for it", async () => {
   const during: number[] = [];
   const onProgress = () => during.push(glue.initSync().memory.buffer.byteLength);
   await Promise.all([aligner.align(input, quick), aligner.align(input, { ...quick, onProgress })]);
-  assert.deepEqual([...new Set(during)], [LARGE]);
+  assert.ok(during.length > 0 && during.every((bytes) => bytes >= LARGE), `${during}`);
   assert.ok((await bytesOf("core")) < LARGE / 4);
 });
 

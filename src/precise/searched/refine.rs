@@ -1,8 +1,10 @@
 //! Refinement: Levenberg-Marquardt over all seven parameters, on quadratic bounds of the terms of the score.
 //!
-//! Every term of the score is a sum of robust losses ρ(e) of a residual e; at the present residuals each is bounded
-//! from above by a quadratic with curvature ρ′(e)/e (iteratively reweighted least squares), so that a Gauss-Newton step
-//! on these quadratics increases the score. The score decides whether a step is accepted.
+//! The terms of the score are sums of robust losses ρ(e) of a residual e. At the present residuals, each loss is bounded from
+//! above by a quadratic with curvature ρ′(e)/e (iteratively reweighted least squares). Three things are approximate: depths
+//! are residuals along the normal of the mesh, so that their weight contains its squared cosine; the outline and the
+//! overlap move along the gradient of the distance to the observed outline; and normals turn where they are, although a
+//! curved surface that turns shows another normal there. The score therefore decides whether a step is accepted.
 
 use glam::Vec3;
 
