@@ -10,6 +10,7 @@ pub mod cpu_time;
 mod draws;
 pub mod files;
 pub mod fuzz;
+pub mod monocular;
 pub mod names;
 pub mod outlines;
 pub mod parallel;

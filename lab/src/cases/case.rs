@@ -13,8 +13,8 @@ use super::scene::{Scene, put_down, turned_axis};
 use super::sensor;
 use super::split::in_two;
 use super::streams::{
-    COLOR_STREAM, EDGE_STREAM, GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM,
-    SENSOR_STREAM,
+    COLOR_STREAM, EDGE_STREAM, GENERATOR_STREAM, MASK_STREAM, MONOCULAR_STREAM, OBJECT_STREAM, READINGS_STREAM,
+    SCENE_STREAM, SENSOR_STREAM,
 };
 use super::texture::paint;
 use super::tier::{CaseSet, Class, OutlineErrors, Tier};
@@ -53,7 +53,7 @@ pub struct EvaluationCase {
     pub class: Class,
     /// What it shows: the family's name, or the mesh file's.
     pub family: String,
-    /// The source of its depth map: a [`DepthSource`] by name, or `"monocular"` or `"sensor"`.
+    /// The source of its depth map: a [`DepthSource`] by name, or `"monocular"`, `"sensor"` or `"exact"`.
     pub depth: &'static str,
     /// The source of its mask: `"network-mask"`, `"annotated-mask"` or `"uniform-mask"`.
     pub mask: &'static str,
@@ -109,6 +109,7 @@ impl EvaluationSet {
                 CaseSet::General | CaseSet::Dilated => seed,
                 CaseSet::Sensors => mixed([seed, SENSOR_STREAM]),
                 CaseSet::Colors => mixed([seed, COLOR_STREAM]),
+                CaseSet::Monocular => mixed([seed, MONOCULAR_STREAM]),
             };
             self.draw(index, seed)
         })
@@ -127,9 +128,13 @@ impl EvaluationSet {
         let errors = self.classes.outlines();
         let mut segmented = Segmented::draw(&scene, (tier, class), errors, &mut Random::new(seed, MASK_STREAM))?;
         let random = &mut Random::new(seed, READINGS_STREAM);
-        let has_edges = errors == OutlineErrors::Measured && class.has_measured_edges();
-        let mut edge_random = has_edges.then(|| Random::new(seed, EDGE_STREAM));
-        let mut readings = Readings::draw(&scene, object.diagonal(), (tier, class), random, edge_random.as_mut())?;
+        let mut readings = if self.classes == CaseSet::Monocular {
+            Readings::exact(&scene)?
+        } else {
+            let has_edges = errors == OutlineErrors::Measured && class.has_measured_edges();
+            let mut edge_random = has_edges.then(|| Random::new(seed, EDGE_STREAM));
+            Readings::draw(&scene, object.diagonal(), (tier, class), random, edge_random.as_mut())?
+        };
         if readings.missing > tier.pick(0.1, 0.25, 0.4) {
             return Ok(None);
         }

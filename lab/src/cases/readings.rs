@@ -13,7 +13,7 @@ pub struct Readings {
     pub depth: DepthMap,
     /// Ratio of measured to true metres.
     pub bias: f64,
-    /// `"monocular"` or `"sensor"`.
+    /// `"monocular"`, `"sensor"` or `"exact"`.
     pub kind: &'static str,
     /// What made the edges, if they are as measured.
     pub source: Option<DepthSource>,
@@ -26,6 +26,13 @@ pub struct Readings {
 }
 
 impl Readings {
+    /// What an ideal camera reads.
+    pub fn exact(scene: &Scene) -> Result<Self> {
+        let depth = DepthMap::from_metres(scene.width, scene.height, scene.depth.clone())?;
+        let missing = missing(scene, &scene.depth);
+        Ok(Self { depth, bias: 1.0, kind: "exact", source: None, parameters: Vec::new(), missing, drifts: Vec::new() })
+    }
+
     /// Reads a scene that shows an object of this diagonal, metres. Without `edge_random`, edges are exact.
     pub fn draw(
         scene: &Scene,

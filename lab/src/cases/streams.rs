@@ -17,6 +17,8 @@ pub(crate) const SENSOR_STREAM: u64 = 6;
 pub(crate) const COLOR_STREAM: u64 = 7;
 /// Edges of the depth map.
 pub(crate) const EDGE_STREAM: u64 = 8;
+/// The set of exact depth for depth models.
+pub(crate) const MONOCULAR_STREAM: u64 = 9;
 /// Cluttered scenes: positions of objects and clutter, and the viewpoint.
 pub(crate) const LAYOUT_STREAM: u64 = 17;
 /// Cluttered scenes: number of objects per scene.

@@ -15,6 +15,9 @@ named! {
         Colors = "colors",
         /// The general set with the errors of outlines that it once had ([`OutlineErrors::Uniform`]), for comparisons.
         Dilated = "dilated",
+        /// Exact depth, of which [`Prediction`](crate::monocular::prediction::Prediction) makes what a depth model gives;
+        /// masks and meshes as in the general set.
+        Monocular = "monocular",
     }
 }
 
@@ -148,6 +151,20 @@ const SENSORS: &[Class] = &[
     Class::AnnotatedMask,
 ];
 
+/// Of every tier but the easy one, whose class is [`Class::Plain`].
+const MONOCULAR: &[Class] = &[
+    Class::Plain,
+    Class::Occluded,
+    Class::Thin,
+    Class::Plain,
+    Class::RaggedMask,
+    Class::BorderCut,
+    Class::Plain,
+    Class::MissingPart,
+    Class::Tiny,
+    Class::Warped,
+];
+
 /// Of every tier.
 const COLORS: &[Class] = &[
     Class::Printed,
@@ -165,6 +182,7 @@ impl CaseSet {
     pub fn class(self, index: usize) -> Class {
         let classes = match self {
             Self::General | Self::Dilated => Tier::of(index).pick(EASY, MEDIUM, HARD),
+            Self::Monocular => Tier::of(index).pick(EASY, MONOCULAR, MONOCULAR),
             Self::Sensors => SENSORS,
             Self::Colors => COLORS,
         };

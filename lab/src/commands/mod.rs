@@ -4,6 +4,7 @@ mod arguments;
 mod bench;
 mod cases;
 mod fuzz;
+mod monocular;
 mod outlines;
 mod profile;
 mod registration;
@@ -31,11 +32,12 @@ pub struct Command {
 }
 
 /// All subcommands.
-pub const COMMANDS: [Command; 10] = [
+pub const COMMANDS: [Command; 11] = [
     cases::COMMAND,
     scenes::COMMAND,
     bench::COMMAND,
     together::COMMAND,
+    monocular::COMMAND,
     registration::COMMAND,
     views::COMMAND,
     track::COMMAND,
