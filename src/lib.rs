@@ -6,6 +6,7 @@
 
 pub mod align;
 pub mod bindings;
+pub mod calibrate;
 pub mod evidence;
 pub mod metrics;
 pub mod options;

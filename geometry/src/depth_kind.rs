@@ -1,36 +1,25 @@
 //! What the values of a depth map are.
 
-/// What the values of a depth map are, in the words of the field.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+use serde::Serialize;
+
+/// What the values d of a depth map say of the depth z.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum DepthKind {
-    /// Distances along the optical axis in a known unit: sensors and metric models.
+    /// z = d, in metres.
     #[default]
     Metric,
-    /// Distances along the optical axis times an unknown positive factor.
+    /// z = s·d with an unknown scale s.
     ScaleInvariant,
-    /// Distances along the optical axis times an unknown positive factor, plus an unknown shift.
+    /// z = s·(d + t) with unknown s and t.
     AffineInvariant,
-    /// Inverse distances times an unknown positive factor, plus an unknown shift: near is large.
+    /// z = s / (d + t) with unknown s and t: larger values are nearer.
     AffineInvariantDisparity,
 }
 
 impl DepthKind {
-    /// All kinds, the default first.
-    pub const ALL: [Self; 4] =
-        [Self::Metric, Self::ScaleInvariant, Self::AffineInvariant, Self::AffineInvariantDisparity];
-
-    /// The kind's name in JavaScript and in JSON.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Metric => "metric",
-            Self::ScaleInvariant => "scale-invariant",
-            Self::AffineInvariant => "affine-invariant",
-            Self::AffineInvariantDisparity => "affine-invariant-disparity",
-        }
-    }
-
-    /// The kind of this name; `None` for any other text.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|kind| kind.name() == name)
+    /// Whether the shift t is unknown.
+    pub fn is_affine(self) -> bool {
+        matches!(self, Self::AffineInvariant | Self::AffineInvariantDisparity)
     }
 }

@@ -153,7 +153,7 @@ pub fn resume(
 }
 
 /// A search with its prior, prepared.
-fn prepared(
+pub fn prepared(
     observation: &Observation,
     clean: Option<Rc<CleanObservation>>,
     mesh: &PreparedMesh<'_>,

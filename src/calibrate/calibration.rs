@@ -1,0 +1,79 @@
+//! Calibrations: the numbers of a view that were unknown.
+
+use serde::Serialize;
+
+use super::estimate::Estimate;
+use crate::geometry::depth_kind::DepthKind;
+use crate::geometry::pinhole::Pinhole;
+
+/// The numbers that make a depth map and a camera of a raw view.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Calibration {
+    /// s: see [`DepthKind`].
+    pub scale: f64,
+    /// t, in the unit of the values.
+    pub shift: f64,
+    /// The focal length relative to that of the view's camera.
+    pub focal: f64,
+}
+
+impl Default for Calibration {
+    fn default() -> Self {
+        Self { scale: 1.0, shift: 0.0, focal: 1.0 }
+    }
+}
+
+/// What a depth map and its lens were taken to be. With d for a value of the depth map, the depth z is s·d for metric and
+/// scale-invariant depth, s·(d + t) for affine-invariant depth, s / (d + t) for affine-invariant disparity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct DepthCalibration {
+    /// What the values are.
+    #[cfg_attr(feature = "types", ts(type = "DepthKind"))]
+    pub depth_kind: DepthKind,
+    /// Whether z is in metres: the depth is, or a known length of an object has made it so. Otherwise, all lengths of the
+    /// result are in a unit of their own: that of the values of scale-invariant depth, else the distance of the objects.
+    pub is_metric: bool,
+    /// s.
+    pub scale: f64,
+    /// t, in the unit of the values.
+    pub shift: f64,
+    /// The intrinsics, in pixels of the depth map.
+    #[cfg_attr(feature = "types", ts(type = "Pinhole"))]
+    pub camera: Pinhole,
+    /// Whether the focal length was estimated.
+    pub is_focal_estimated: bool,
+    /// How well these numbers are determined.
+    pub uncertainty: CalibrationUncertainty,
+}
+
+/// Standard deviations of what was estimated; 0 for what was known.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct CalibrationUncertainty {
+    /// Of the distance of the objects that the shift leaves, relative to it: 0.01 is one per cent.
+    pub shift: f64,
+    /// Of the focal length, relative to it.
+    pub focal: f64,
+}
+
+impl DepthCalibration {
+    /// The calibration of a view.
+    pub fn new(
+        depth_kind: DepthKind,
+        calibration: Calibration,
+        camera: Pinhole,
+        estimate: Option<&Estimate>,
+        is_metric: bool,
+    ) -> Self {
+        let Calibration { scale, shift, .. } = calibration;
+        let uncertainty = estimate.map_or_else(CalibrationUncertainty::default, |estimate| CalibrationUncertainty {
+            shift: estimate.shift_deviation,
+            focal: estimate.focal_deviation,
+        });
+        let is_focal_estimated = uncertainty.focal > 0.0;
+        Self { depth_kind, is_metric, scale, shift, camera, is_focal_estimated, uncertainty }
+    }
+}

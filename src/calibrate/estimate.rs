@@ -1,0 +1,245 @@
+//! The estimate of what is unknown of a view: the calibration with which its objects can be explained best.
+//!
+//! A depth map whose shift is wrong is too deep or too flat, and so it is with a focal length that is wrong: the relief of
+//! each object beside its width no longer fits its mesh. Objects are searched with several calibrations, because a
+//! search stands about 15 per cent of wrong relief; from the best one, the score rises to a peak that is found by
+//! refining the poses alone.
+
+use super::calibration::Calibration;
+use super::profile::{Pictured, Subject};
+use super::raw_view::{Focal, RawView};
+use super::unknowns::{Reference, Unknowns};
+use crate::error::Result;
+use crate::pauses::Pauses;
+use crate::precise::no_candidate;
+use crate::precise::scored::conditioning::DROP;
+use crate::progress::Stopwatch;
+
+/// Relief of an object beside its width: that of a plate seen from the front, the ratio between neighbours on the grid, and
+/// their number.
+const RELIEFS: (f64, f64, usize) = (0.08, 1.5, 8);
+/// The same for the focal length: steps in standard deviations, to either side, and their largest length.
+const FOCALS: (f64, i32, f64) = (0.7, 3, 0.2);
+/// Steps of the curve around the best point of the grid: their length, and their number to either side.
+const CURVE: (f64, i32) = (0.1, 4);
+/// Times that a curve is continued beyond its end.
+const EXTENSIONS: usize = 3;
+/// Poses that are refined, of the best point of the grid and of either neighbour.
+const POSES: [usize; 2] = [3, 1];
+/// Number of objects on which the estimate rests, those with the most pixels: more would hardly change it.
+const SUBJECTS: usize = 6;
+/// Standard deviation of what no object determines: a depth map without relief.
+const UNDETERMINED: f64 = 1.0;
+
+/// A calibration, and how well it is determined.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// The calibration.
+    pub calibration: Calibration,
+    /// Standard deviation of the depth of the objects that the shift leaves, relative to it.
+    pub shift_deviation: f64,
+    /// Standard deviation of the logarithm of the focal length.
+    pub focal_deviation: f64,
+    /// The best pose of each object; `None` for one that takes no part or has none.
+    pub poses: Vec<Option<Pictured>>,
+}
+
+/// Which number of [`Unknowns`] is varied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Axis {
+    Relief,
+    Focal,
+}
+
+/// The running estimate.
+struct Estimator<'a, 's> {
+    view: &'a RawView,
+    subjects: &'a [Subject<'a>],
+    /// Indices of those on which it rests.
+    used: Vec<usize>,
+    reference: Reference,
+    pauses: &'a Pauses,
+    stages: &'a mut Stopwatch<'s>,
+}
+
+/// A point of the curve: the score of all objects, and the best pose of each.
+#[derive(Clone)]
+struct Sample {
+    at: Unknowns,
+    score: f64,
+    poses: Vec<Option<Pictured>>,
+}
+
+/// Estimates what is unknown of a view.
+///
+/// # Errors
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no object can be found with any calibration, and those of
+/// observations.
+pub async fn estimate(
+    view: &RawView,
+    subjects: &[Subject<'_>],
+    pauses: &Pauses,
+    stages: &mut Stopwatch<'_>,
+) -> Result<Estimate> {
+    let pixels = |k: &usize| subjects.get(*k).map_or(0, |s| s.mask.data().iter().filter(|m| **m != 0).count());
+    let mut used: Vec<usize> = (0..subjects.len()).collect();
+    used.sort_by_key(|k| core::cmp::Reverse(pixels(k)));
+    used.truncate(SUBJECTS);
+    let reference = Reference::of(view, used.iter().filter_map(|k| subjects.get(*k)));
+    let reference = reference.ok_or_else(no_candidate)?;
+    Estimator { view, subjects, used, reference, pauses, stages }.run().await
+}
+
+impl Estimator<'_, '_> {
+    async fn run(mut self) -> Result<Estimate> {
+        let (grid, axis) = self.grid();
+        let mut found = Vec::new();
+        for at in &grid {
+            found.push(self.searched(*at).await?);
+        }
+        let score = |k: usize| {
+            let best = |poses: &Vec<(f64, Pictured)>| poses.first().map_or(0.0, |(score, _)| *score);
+            found[k].iter().map(best).sum::<f64>() - self.cost(grid[k])
+        };
+        let best = (0..grid.len()).fold(0, |best, k| if score(k) > score(best) { k } else { best });
+        if found[best].iter().all(Vec::is_empty) {
+            return Err(no_candidate());
+        }
+        let near = |k: usize, count: usize| {
+            let of = |poses: &Vec<(f64, Pictured)>| poses.iter().take(count).map(|(_, pose)| *pose).collect::<Vec<_>>();
+            found.get(k).map(|found| found.iter().map(of).collect::<Vec<_>>())
+        };
+        let mut poses: Vec<Vec<Pictured>> = vec![Vec::new(); self.used.len()];
+        let [own, others] = POSES;
+        for (k, count) in [(best, own), (best.wrapping_sub(1), others), (best + 1, others)] {
+            for (all, more) in poses.iter_mut().zip(near(k, count).unwrap_or_default()) {
+                all.extend(more);
+            }
+        }
+        let mut deviations = [UNDETERMINED; 2];
+        let mut sample = self.sample(grid[best], &poses).await?;
+        let is_affine = self.view.kind.is_affine();
+        let mut axes: Vec<Axis> = axis.into_iter().collect();
+        if is_affine && self.view.focal != Focal::Known {
+            axes.extend([Axis::Focal, Axis::Relief]);
+        }
+        for axis in axes {
+            let (peak, deviation) = self.peak(axis, sample, &poses).await?;
+            sample = peak;
+            deviations[axis as usize] = deviation;
+        }
+        let calibration = self.reference.calibration(self.view.kind, sample.at);
+        let [relief, focal] = deviations;
+        let mut best = vec![None; self.subjects.len()];
+        for (k, pose) in self.used.iter().zip(sample.poses) {
+            best[*k] = pose;
+        }
+        Ok(Estimate {
+            calibration,
+            shift_deviation: if is_affine { libm::hypot(relief, focal * f64::from(u8::from(self.view.focal != Focal::Known))) } else { 0.0 },
+            focal_deviation: if self.view.focal == Focal::Known { 0.0 } else { focal },
+            poses: best,
+        })
+    }
+
+    /// The calibrations with which the objects are searched, and the axis along which they lie.
+    fn grid(&self) -> (Vec<Unknowns>, Option<Axis>) {
+        let at = |relief: f64, focal: f64| Unknowns { relief, focal };
+        match (self.view.kind.is_affine(), self.view.focal) {
+            (true, _) => {
+                let (least, ratio, count) = RELIEFS;
+                let relief = |k: usize| libm::log(least) + k as f64 * libm::log(ratio);
+                ((0..count).map(|k| at(relief(k), 0.0)).collect(), Some(Axis::Relief))
+            }
+            (false, Focal::Guessed(deviation)) => {
+                let (step, count, longest) = FOCALS;
+                let step = (step * deviation).min(longest);
+                ((-count..=count).map(|k| at(0.0, f64::from(k) * step)).collect(), Some(Axis::Focal))
+            }
+            (false, Focal::Known) => (vec![at(0.0, 0.0)], None),
+        }
+    }
+
+    /// The cost of a focal length far from the guess, in units of the score.
+    fn cost(&self, at: Unknowns) -> f64 {
+        let Focal::Guessed(deviation) = self.view.focal else { return 0.0 };
+        let q = at.focal / deviation;
+        DROP * q * q
+    }
+
+    /// The poses that searches find, by object. Objects without one, such as those with depth that a calibration puts behind
+    /// the camera, have none.
+    async fn searched(&mut self, at: Unknowns) -> Result<Vec<Vec<(f64, Pictured)>>> {
+        let calibration = self.reference.calibration(self.view.kind, at);
+        let mut found = Vec::new();
+        for k in &self.used {
+            let Some(subject) = self.subjects.get(*k) else { continue };
+            let poses = subject.search(self.view, &calibration, self.pauses, self.stages).await;
+            found.push(poses.unwrap_or_default());
+        }
+        Ok(found)
+    }
+
+    /// The score of all objects, refined from these poses.
+    async fn sample(&mut self, at: Unknowns, poses: &[Vec<Pictured>]) -> Result<Sample> {
+        let calibration = self.reference.calibration(self.view.kind, at);
+        let mut sample = Sample { at, score: -self.cost(at), poses: Vec::new() };
+        for (k, poses) in self.used.iter().zip(poses) {
+            let Some(subject) = self.subjects.get(*k) else { continue };
+            let refined = subject.refined(self.view, &calibration, poses, self.stages).ok().flatten();
+            sample.score += refined.as_ref().map_or(0.0, |(score, _)| *score);
+            sample.poses.push(refined.map(|(_, pose)| pose));
+            self.pauses.here().await;
+        }
+        Ok(sample)
+    }
+
+    /// The peak of the score along an axis, and its standard deviation.
+    async fn peak(&mut self, axis: Axis, from: Sample, poses: &[Vec<Pictured>]) -> Result<(Sample, f64)> {
+        let (step, count) = CURVE;
+        let center = from.at;
+        let at = |k: i32| center.moved(axis == Axis::Relief, f64::from(k) * step);
+        let mut curve: Vec<(i32, Sample)> = Vec::new();
+        for k in -count..=count {
+            let sample = if k == 0 { from.clone() } else { self.sample(at(k), poses).await? };
+            curve.push((k, sample));
+        }
+        let top = |curve: &[(i32, Sample)]| {
+            (0..curve.len()).fold(0, |best, k| if curve[k].1.score > curve[best].1.score { k } else { best })
+        };
+        for _ in 0..EXTENSIONS {
+            let best = top(&curve);
+            if best > 1 && best + 2 < curve.len() {
+                break;
+            }
+            if best <= 1 {
+                let k = curve[0].0 - 1;
+                curve.insert(0, (k, self.sample(at(k), poses).await?));
+            } else {
+                let k = curve[curve.len() - 1].0 + 1;
+                curve.push((k, self.sample(at(k), poses).await?));
+            }
+        }
+        let best = top(&curve);
+        let window = &curve[best.saturating_sub(2)..(best + 3).min(curve.len())];
+        let points: Vec<(f64, f64)> = window.iter().map(|(k, sample)| (f64::from(*k - curve[best].0), sample.score)).collect();
+        let Some((offset, curvature)) = parabola(&points) else {
+            return Ok((curve.swap_remove(best).1, UNDETERMINED));
+        };
+        let place = at(curve[best].0).moved(axis == Axis::Relief, offset.clamp(-1.0, 1.0) * step);
+        let peak = self.sample(place, poses).await?;
+        Ok((peak, (DROP / curvature).sqrt() * step))
+    }
+}
+
+/// The peak of the parabola nearest to these points, and its curvature a: y = c − a·(x − peak)²; `None` if it has none.
+fn parabola(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let power = |n: i32| points.iter().map(|(x, _)| x.powi(n)).sum::<f64>();
+    let with = |n: i32| points.iter().map(|(x, y)| y * x.powi(n)).sum::<f64>();
+    let matrix = nalgebra::Matrix3::new(
+        power(0), power(1), power(2), power(1), power(2), power(3), power(2), power(3), power(4),
+    );
+    let solved = matrix.lu().solve(&nalgebra::Vector3::new(with(0), with(1), with(2)))?;
+    let (slope, curve) = (solved[1], solved[2]);
+    (curve < 0.0).then(|| (-0.5 * slope / curve, -curve))
+}

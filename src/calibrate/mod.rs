@@ -1,0 +1,114 @@
+//! Calibration of a view whose depth or lens is not fully known: the shift of a relative depth map, its scale and the focal
+//! length, from the objects in it.
+//!
+//! In: a [`RawView`] and its objects. Out: the depth map and the camera that all other parts take, and how well they are
+//! determined.
+
+pub mod calibration;
+pub mod estimate;
+pub mod profile;
+pub mod raw_view;
+pub mod unknowns;
+
+use calibration::{Calibration, DepthCalibration};
+use estimate::{Estimate, estimate};
+use profile::Subject;
+use raw_view::{Focal, RawView};
+
+use crate::error::Result;
+use crate::geometry::depth_kind::DepthKind;
+use crate::geometry::image::{DepthMap, Mask};
+use crate::geometry::order::median;
+use crate::geometry::pinhole::Pinhole;
+use crate::pauses::Pauses;
+use crate::precise::drawn::pose::MeshFrame;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::options::AlignOptions;
+use crate::precise::scored::prior::Prior;
+use crate::progress::{Host, Stage, Stopwatch};
+
+/// Progress at the start of each stage.
+const PLAN: &[(Stage, f64)] = &[(Stage::Prepare, 0.0), (Stage::Search, 0.0), (Stage::Refine, 0.0)];
+
+/// An object of a view, as it was given.
+pub struct Object<'a> {
+    /// Its pixels.
+    pub mask: &'a Mask,
+    /// The pixels of the others, if there are any.
+    pub others: Option<Mask>,
+    /// Its mesh.
+    pub mesh: &'a PreparedMesh<'a>,
+    /// What is known of it.
+    pub options: &'a AlignOptions,
+}
+
+/// A calibrated view.
+#[derive(Debug, Clone)]
+pub struct Calibrated {
+    /// Its depth: in metres if the calibration is metric.
+    pub depth: DepthMap,
+    /// Its camera.
+    pub camera: Pinhole,
+    /// The calibration.
+    pub calibration: DepthCalibration,
+}
+
+/// Calibrates a view by its objects: at once if nothing is unknown.
+///
+/// # Errors
+/// Those of [`Observation::new`](crate::evidence::observation::Observation::new), of meshes, and
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
+pub async fn calibrate(
+    view: &RawView,
+    objects: &[Object<'_>],
+    host: &mut dyn Host,
+    pauses: &Pauses,
+) -> Result<Calibrated> {
+    let mut stages = Stopwatch::new(host, PLAN);
+    let is_metric = view.kind == DepthKind::Metric;
+    let lengths: Vec<Option<f64>> = objects.iter().map(known_scale).collect();
+    let is_scaled = !is_metric && lengths.iter().any(Option::is_some);
+    if !view.kind.is_affine() && view.focal == Focal::Known && !is_scaled {
+        return Ok(calibrated(view, Calibration::default(), None, is_metric)?);
+    }
+    let subjects: Vec<Subject<'_>> = objects.iter().map(|object| subject(object, is_metric)).collect();
+    let estimate = estimate(view, &subjects, pauses, &mut stages).await?;
+    let factors = lengths.iter().zip(&estimate.poses).filter_map(|(length, pose)| {
+        let (length, pose) = length.as_ref().zip(pose.as_ref())?;
+        Some((length / pose.scale()) as f32)
+    });
+    let factor = if is_metric { None } else { median(factors).map(f64::from) };
+    let calibration = Calibration { scale: estimate.calibration.scale * factor.unwrap_or(1.0), ..estimate.calibration };
+    calibrated(view, calibration, Some(&estimate), is_metric || factor.is_some())
+}
+
+fn calibrated(
+    view: &RawView,
+    calibration: Calibration,
+    estimate: Option<&Estimate>,
+    is_metric: bool,
+) -> Result<Calibrated> {
+    let camera = view.camera(&calibration);
+    Ok(Calibrated {
+        depth: view.depth(&calibration)?,
+        camera,
+        calibration: DepthCalibration::new(view.kind, calibration, camera, estimate, is_metric),
+    })
+}
+
+/// The scale that is known of an object, metres per unit of its normalised mesh.
+fn known_scale(object: &Object<'_>) -> Option<f64> {
+    let frame = MeshFrame::of(object.mesh.mesh());
+    let [low, high] = Prior::of(object.options, object.mesh.mesh(), &frame).scale?;
+    (low == high).then_some(low)
+}
+
+/// An object for the estimate. Lengths in metres are no help while the unit of the depth is unknown.
+fn subject<'a>(object: &Object<'a>, is_metric: bool) -> Subject<'a> {
+    let Object { mask, others, mesh, options } = object;
+    let mut options = (*options).clone();
+    if !is_metric {
+        (options.scale, options.known_extent_m) = Default::default();
+    }
+    Subject { mask, others: others.clone(), mesh, options }
+}

@@ -1,0 +1,120 @@
+//! Profiles: how well an object can be explained with each calibration of its view.
+
+use std::rc::Rc;
+
+use super::calibration::Calibration;
+use super::raw_view::RawView;
+use crate::error::Result;
+use crate::evidence::observation::Observation;
+use crate::geometry::image::Mask;
+use crate::pauses::Pauses;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::observed::clean::CleanObservation;
+use crate::precise::options::AlignOptions;
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::recipe::{FINE, SearchSettings};
+use crate::precise::searched::refine::Refiner;
+use crate::precise::searched::search::Search;
+use crate::precise::searched::start;
+use crate::progress::Stopwatch;
+use crate::report::Effort;
+
+/// Maximum number of steps of a refinement.
+const STEPS: usize = 8;
+
+/// An object of a view.
+pub struct Subject<'a> {
+    /// Its pixels.
+    pub mask: &'a Mask,
+    /// The pixels of the others, if there are any.
+    pub others: Option<Mask>,
+    /// Its mesh.
+    pub mesh: &'a PreparedMesh<'a>,
+    /// What is known of it; in depth that is not metric without any length.
+    pub options: AlignOptions,
+}
+
+/// A pose that does not depend on the distance of the object nor on the focal length: size and place are in pixels, and the
+/// distance is relative to the median depth.
+#[derive(Debug, Clone, Copy)]
+pub struct Pictured {
+    pose: CropPose,
+    focal: f64,
+    median: f64,
+}
+
+impl Subject<'_> {
+    fn observation(&self, view: &RawView, calibration: &Calibration) -> Result<Observation> {
+        let observation =
+            Observation::new(view.depth(calibration)?, self.mask.clone(), view.camera(calibration))?;
+        match &self.others {
+            Some(others) => observation.with_others(others.clone()),
+            None => Ok(observation),
+        }
+    }
+
+    fn settings(&self) -> SearchSettings {
+        SearchSettings::from(Effort::Fast)
+    }
+
+    /// The poses that a search finds with a calibration, best first, and their scores.
+    pub async fn search(
+        &self,
+        view: &RawView,
+        calibration: &Calibration,
+        pauses: &Pauses,
+        stages: &mut Stopwatch<'_>,
+    ) -> Result<Vec<(f64, Pictured)>> {
+        let observation = self.observation(view, calibration)?;
+        let mut rounds = start::begin(&observation, self.mesh, None, &self.options, &self.settings(), stages)?;
+        start::run(&mut rounds, &(0.0..1.0), pauses, stages).await;
+        let median = rounds.search.observation.median_m;
+        let pictured = |found: &Found| {
+            (f64::from(found.score.total), Pictured { pose: found.pose, focal: calibration.focal, median })
+        };
+        Ok(rounds.found.iter().map(pictured).collect())
+    }
+
+    /// The best of these poses, refined with a calibration, and its score; `None` without poses.
+    pub fn refined(
+        &self,
+        view: &RawView,
+        calibration: &Calibration,
+        poses: &[Pictured],
+        stages: &mut Stopwatch<'_>,
+    ) -> Result<Option<(f64, Pictured)>> {
+        let observation = self.observation(view, calibration)?;
+        let clean = Rc::new(CleanObservation::new(&observation));
+        let search: Search = start::prepared(&observation, Some(clean), self.mesh, &self.options, &self.settings(), stages)?;
+        let refiner = Refiner { objective: search.objective(FINE), lock_scale: search.settings.lock_scale };
+        let mut canvas = Canvas::default();
+        let median = search.observation.median_m;
+        let refined = poses.iter().map(|pose| {
+            let pose = pose.seen(calibration.focal, median);
+            let found = refiner.refine_in_proportion(&mut canvas, pose, STEPS, &search.mesh.surface);
+            (f64::from(found.score.total), Pictured { pose: found.pose, focal: calibration.focal, median })
+        });
+        Ok(refined.reduce(|best, next| if next.0 > best.0 { next } else { best }))
+    }
+}
+
+impl Pictured {
+    /// The scale, in units of depth with the calibration of the pose per unit of the mesh in its normalised frame.
+    pub fn scale(&self) -> f64 {
+        self.pose.scale_translation().0
+    }
+
+    /// The pose with another calibration.
+    fn seen(&self, focal: f64, median: f64) -> CropPose {
+        let by = self.focal / focal;
+        let Self { pose, .. } = *self;
+        CropPose {
+            size: pose.size + libm::log(by),
+            place: pose.place * by,
+            distance: pose.distance + libm::log(median / self.median),
+            ..pose
+        }
+    }
+}

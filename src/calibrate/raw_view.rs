@@ -1,0 +1,58 @@
+//! Raw views: values of a depth map of any kind, and a camera whose focal length may be a guess.
+
+use super::calibration::Calibration;
+use crate::error::Result;
+use crate::geometry::depth_kind::DepthKind;
+use crate::geometry::image::{DepthMap, Image};
+use crate::geometry::pinhole::Pinhole;
+
+/// Largest depth that a disparity stands for, relative to the scale: a shift may put what is far behind infinity.
+const FARTHEST: f64 = 1e3;
+
+/// What is known of a focal length.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Focal {
+    /// It is known.
+    Known,
+    /// It is a guess with this standard deviation of its logarithm.
+    Guessed(f64),
+}
+
+/// A view as it was given.
+#[derive(Debug, Clone)]
+pub struct RawView {
+    /// The values; those that are not finite are no readings.
+    pub values: Image<f32>,
+    /// What they are.
+    pub kind: DepthKind,
+    /// The camera, of which only the focal length may be a guess.
+    pub camera: Pinhole,
+    /// What is known of that.
+    pub focal: Focal,
+}
+
+impl RawView {
+    /// The depth map of a calibration. Depths that are not positive are no readings.
+    ///
+    /// # Errors
+    /// Those of [`DepthMap::from_metres`].
+    pub fn depth(&self, calibration: &Calibration) -> Result<DepthMap> {
+        let Calibration { scale, shift, .. } = *calibration;
+        let depth = |d: &f32| {
+            let d = f64::from(*d);
+            (match self.kind {
+                DepthKind::Metric | DepthKind::ScaleInvariant => d * scale,
+                DepthKind::AffineInvariant => (d + shift) * scale,
+                DepthKind::AffineInvariantDisparity => scale / (d + shift).max(scale / FARTHEST),
+            }) as f32
+        };
+        let (width, height) = (self.values.width(), self.values.height());
+        DepthMap::from_metres(width, height, self.values.data().iter().map(depth).collect())
+    }
+
+    /// The camera of a calibration.
+    pub fn camera(&self, calibration: &Calibration) -> Pinhole {
+        let Pinhole { fx, fy, .. } = self.camera;
+        Pinhole { fx: fx * calibration.focal, fy: fy * calibration.focal, ..self.camera }
+    }
+}

@@ -1,0 +1,71 @@
+//! Unknowns: the numbers that are estimated, in units that are the same for every depth map.
+
+use super::calibration::Calibration;
+use super::profile::Subject;
+use super::raw_view::RawView;
+use crate::geometry::depth_kind::DepthKind;
+use crate::geometry::image::bounds_of;
+use crate::geometry::order::{median, quantile};
+
+/// The shares of the values of an object between which its relief is measured: its outline may be blurred.
+const RELIEF: [f64; 2] = [0.1, 0.9];
+
+/// Logarithms of the relief of the objects beside their width, ρ, and of the focal length relative to the guess. An object
+/// determines ρ, whatever the focal length is, and the focal length only by its perspective.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unknowns {
+    /// ln ρ; without meaning where the shift is known.
+    pub relief: f64,
+    /// Logarithm of the focal length, relative to the guess.
+    pub focal: f64,
+}
+
+impl Unknowns {
+    /// One of them, changed.
+    pub fn moved(self, relief: bool, by: f64) -> Self {
+        if relief { Self { relief: self.relief + by, ..self } } else { Self { focal: self.focal + by, ..self } }
+    }
+}
+
+/// What [`Unknowns`] refer to.
+#[derive(Debug, Clone, Copy)]
+pub struct Reference {
+    /// The value of the objects, in the median.
+    value: f64,
+    /// Their relief per width, in the unit of the values, with the focal length of the guess.
+    relief: f64,
+}
+
+impl Reference {
+    /// The reference of the objects of a view; `None` without a reading.
+    pub fn of<'a>(view: &RawView, subjects: impl Iterator<Item = &'a Subject<'a>>) -> Option<Self> {
+        let (mut middles, mut reliefs) = (Vec::new(), Vec::new());
+        for Subject { mask, .. } in subjects {
+            let pixels = view.values.data().iter().zip(mask.data());
+            let values = || pixels.clone().filter(|(d, m)| **m != 0 && d.is_finite()).map(|(d, _)| *d);
+            let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0);
+            let side = bounds.iter().map(|[low, high]| high + 1 - low).max()? as f64;
+            let Some([low, high]) = quantile(values(), RELIEF[0]).zip(quantile(values(), RELIEF[1])).map(<[f32; 2]>::from)
+            else {
+                continue;
+            };
+            middles.push(median(values())?);
+            reliefs.push((f64::from(high - low) * view.camera.fx / side) as f32);
+        }
+        let [value, relief] = [median(middles.into_iter())?, median(reliefs.into_iter())?].map(f64::from);
+        (relief > 0.0).then_some(Self { value, relief })
+    }
+
+    /// The calibration. That of a relative depth map has the objects at a distance of 1.
+    pub fn calibration(&self, kind: DepthKind, unknowns: Unknowns) -> Calibration {
+        let focal = libm::exp(unknowns.focal);
+        // d + t at the objects: their relief is ρ · width / focal of it.
+        let value = self.relief * focal / libm::exp(unknowns.relief);
+        let shift = value - self.value;
+        match kind {
+            DepthKind::Metric | DepthKind::ScaleInvariant => Calibration { focal, ..Calibration::default() },
+            DepthKind::AffineInvariant => Calibration { scale: 1.0 / value, shift, focal },
+            DepthKind::AffineInvariantDisparity => Calibration { scale: value, shift, focal },
+        }
+    }
+}
