@@ -8,9 +8,10 @@ use sim3align_lab::cases::case::EvaluationSet;
 use sim3align_lab::cases::tier::CaseSet;
 use sim3align_lab::files::listed;
 use sim3align_lab::monocular::picture::Picture;
+use sim3align_lab::monocular::reading::Treatment;
 use sim3align_lab::monocular::record::Record;
 use sim3align_lab::monocular::row::Row;
-use sim3align_lab::monocular::runs::{Way, run as run_rows};
+use sim3align_lab::monocular::runs::{Settings, Way, run as run_rows};
 use sim3align_lab::monocular::table::report;
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::prelude::*;
@@ -34,7 +35,9 @@ gets wrong. The objects of a scene are aligned each alone, and all together.
   --rows R,…         only these: filled, scaled, scale-invariant, shifted, shifted-metric, disparity, disparity-8,
                      disparity-guessed, bent, blurred, blurred-disparity, mild, focal-wrong, focal-unknown,
                      disparity-focal-unknown
-  --ways W,…         only these, of scenes: alone, together
+  --ways W,…         only these, of scenes: alone, together, one-length (together, with the length of one object)
+  --naive            assumes what is unknown instead of estimating it: no shift, near and far guessed, the focal length
+                     as it is given or of 60° across
   --seed S           seed of the errors of the maps, default 0
   --set-seed S       seed of the generated set and of the generated scenes, default 0
   --quality Q        of `align`
@@ -56,10 +59,14 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
     let (generated, cluttered): (usize, usize) = (arguments.value("generated", 0)?, arguments.value("cluttered", 0)?);
     let cases = folders(&arguments.paths("cases")?, "mesh")?;
     let scenes = folders(&arguments.paths("scenes")?, "objects")?;
-    let rows = arguments.list("rows")?.unwrap_or_else(|| Row::ALL.to_vec());
-    let ways = arguments.list("ways")?.unwrap_or_else(|| Way::ALL.to_vec());
-    let (seed, set_seed) = (arguments.value("seed", 0)?, arguments.value("set-seed", 0)?);
-    let options = option_text::with_quality(arguments.optional("quality")?).map_err(usage)?;
+    let settings = Settings {
+        rows: arguments.list("rows")?.unwrap_or_else(|| Row::ALL.to_vec()),
+        ways: arguments.list("ways")?.unwrap_or_else(|| Way::ALL.to_vec()),
+        treatment: if arguments.flag("naive") { Treatment::Naive } else { Treatment::Estimated },
+        options: option_text::with_quality(arguments.optional("quality")?).map_err(usage)?,
+        seed: arguments.value("seed", 0)?,
+    };
+    let set_seed = arguments.value("set-seed", 0)?;
     let json: Option<PathBuf> = arguments.optional("json")?;
     let threads = arguments.threads("threads")?;
     arguments.end()?;
@@ -84,20 +91,16 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
                 Source::Case(folder) => BenchCase::read(folder)?.into(),
                 Source::Scene(folder) => BenchScene::read(folder)?.into(),
             };
-            let is_scene = matches!(source, Source::Cluttered(_) | Source::Scene(_));
-            let ways: Vec<Way> = ways.iter().copied().filter(|way| *way == Way::Alone || is_scene).collect();
-            run_rows(&picture, &rows, &ways, &options, seed)
+            run_rows(&picture, &settings)
         },
         |done| print_progress(done, sources.len()),
     )?;
     let records: Vec<Record> = records.into_iter().flatten().collect();
-    let ways: Vec<Way> =
-        ways.into_iter().filter(|way| records.iter().any(|record| record.way == way.as_str())).collect();
-    println!("{}", report(&records, &rows, &ways));
+    println!("{}", report(&records, &settings.rows, &settings.ways));
+    let treatment = settings.treatment.as_str();
+    let all = json!({ "treatment": treatment, "seed": settings.seed, "setSeed": set_seed, "records": records });
     match &json {
-        Some(path) => {
-            write_file(path, format!("{}\n", json!({ "seed": seed, "setSeed": set_seed, "records": records })))
-        }
+        Some(path) => write_file(path, format!("{}\n", all)),
         None => Ok(()),
     }
 }

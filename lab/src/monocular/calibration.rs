@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use crate::prelude::*;
-use sim3align_geometry::depth_kind::DepthKind;
 
 /// Scale, shift and focal length: those of the truth, or those that somebody assumed or estimated.
 ///
@@ -25,11 +24,6 @@ impl Calibration {
     /// Depth as it is, in a camera.
     pub fn of_metres(camera: Pinhole) -> Self {
         Self { is_inverse: false, scale: 1.0, shift: 0.0, camera }
-    }
-
-    /// Whether maps of a kind are inverse depth.
-    pub fn inverts(kind: DepthKind) -> bool {
-        kind == DepthKind::AffineInvariantDisparity
     }
 
     /// The depth of a value of the map, metres.

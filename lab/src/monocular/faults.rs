@@ -51,12 +51,16 @@ pub enum FocalFault {
     Unknown,
 }
 
-/// Two waves across the image: factors on depth.
+/// Lengths of the waves of a bend, in widths of the objects. Their amplitudes are as their lengths, so that all are as
+/// steep: errors of networks are smooth.
+const WAVES: [f64; 2] = [4.0, 1.0];
+
+/// Waves across the image: factors on depth.
 #[derive(Debug, Clone)]
 pub struct Bend {
-    /// For each, its length in widths of the objects, its direction and its phase, radians.
-    waves: [[f64; 3]; 2],
-    /// The largest factor of each, less 1.
+    /// For each, its direction and its phase, radians.
+    waves: [[f64; 2]; WAVES.len()],
+    /// The largest factor of all together, less 1.
     amplitude: f64,
 }
 
@@ -77,22 +81,25 @@ impl Faults {
 }
 
 impl Bend {
-    /// A wave of four widths of the objects and one of one width, each of this amplitude.
+    /// Waves whose amplitudes sum to this.
     pub fn draw(amplitude: f64, random: &mut Random) -> Self {
-        Self { waves: [4.0, 1.0].map(|length| [length, TAU * random.uniform(), TAU * random.uniform()]), amplitude }
+        Self { waves: WAVES.map(|_| [TAU * random.uniform(), TAU * random.uniform()]), amplitude }
     }
 
     /// Bends depth, in an image whose objects are so many pixels wide.
     pub fn apply(&self, depth: &mut [f64], width: usize, object_width_px: f64) {
-        let waves = self.waves.map(|[length, direction, phase]| {
-            let frequency = TAU / (length * object_width_px);
-            let (sine, cosine) = libm::sincos(direction);
-            [frequency * cosine, frequency * sine, phase]
-        });
+        let all: f64 = WAVES.iter().sum();
+        let waves: Vec<[f64; 4]> = core::iter::zip(WAVES, self.waves)
+            .map(|(length, [direction, phase])| {
+                let frequency = TAU / (length * object_width_px);
+                let (sine, cosine) = libm::sincos(direction);
+                [frequency * cosine, frequency * sine, phase, self.amplitude * length / all]
+            })
+            .collect();
         for (i, z) in depth.iter_mut().enumerate() {
             let (u, v) = ((i % width) as f64, (i / width) as f64);
-            let sum: f64 = waves.iter().map(|[du, dv, phase]| libm::cos(du * u + dv * v + phase)).sum();
-            *z *= 1.0 + self.amplitude * sum;
+            let sum: f64 = waves.iter().map(|[du, dv, phase, most]| most * libm::cos(du * u + dv * v + phase)).sum();
+            *z *= 1.0 + sum;
         }
     }
 }

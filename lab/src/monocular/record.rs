@@ -49,7 +49,7 @@ pub struct Errors {
 pub struct Record {
     /// The row.
     pub row: &'static str,
-    /// `"alone"` or `"together"`.
+    /// A [`Way`](super::runs::Way) by name.
     pub way: &'static str,
     /// The image.
     pub picture: String,
@@ -59,14 +59,20 @@ pub struct Record {
     pub pose: Option<Sim3>,
     /// Its confidence.
     pub confidence: f64,
-    /// Scale, shift and camera as they were assumed or estimated, and the true ones.
+    /// Scale, shift and camera as they were assumed or estimated.
     pub calibration: Option<Calibration>,
-    /// See `calibration`.
+    /// The true ones.
     pub truth: Calibration,
     /// Errors relative to the truth, if it is known.
     pub errors: Option<Errors>,
     /// Whether the true pose is known.
     pub has_truth: bool,
+    /// Whether sizes are said to be in metres.
+    pub is_metric: bool,
+    /// Standard deviations of shift and focal length, relative, as they were estimated.
+    pub deviations: Option<[f64; 2]>,
+    /// Whether the length of this object was told.
+    pub is_told: bool,
     /// Why there is no pose.
     pub error: Option<String>,
 }

@@ -84,13 +84,13 @@ impl Row {
                 Faults { output: Output::Disparity { bits }, ramp, focal, ..none }
             }
             Self::DisparityGuessed => Faults { output: Output::GuessedDepth { bits: 16 }, ramp, ..none },
-            Self::Bent => Faults { bend: Some(Bend::draw(0.01, random)), ..none },
+            Self::Bent => Faults { bend: Some(Bend::draw(0.02, random)), ..none },
             Self::Blurred => Faults { blur: 1.0 / 40.0, ramp, ..none },
             Self::BlurredDisparity => Faults { blur: 1.0 / 40.0, ramp, is_inverse: true, ..none },
             Self::Mild => Faults {
                 factor: 1.0 + 0.06 * sign(random),
                 shift: 0.04 * sign(random),
-                bend: Some(Bend::draw(0.004, random)),
+                bend: Some(Bend::draw(0.007, random)),
                 blur: 1.0 / 100.0,
                 ramp: 2.0,
                 focal: FocalFault::Wrong(1.0 + 0.05 * sign(random)),

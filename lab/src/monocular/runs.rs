@@ -3,14 +3,14 @@
 use super::calibration::Calibration;
 use super::filling::filled;
 use super::picture::{Picture, Thing};
-use super::prediction::Prediction;
-use super::reading::Reading;
+use super::prediction::{Prediction, guessed_range};
+use super::reading::{Reading, Treatment};
 use super::record::{Errors, Record};
 use super::row::Row;
 use crate::prelude::*;
 use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
-use sim3align::report::{Alignment, Sim3};
+use sim3align::report::Alignment;
 use sim3align::scene::support::SupportChoice;
 use sim3align::scene::task::{Scene, SceneObject, align_scene};
 
@@ -21,103 +21,157 @@ named! {
         Alone = "alone",
         /// All of an image as a scene.
         Together = "together",
+        /// The same with the length of the object that has the most pixels.
+        OneLength = "one-length",
     }
 }
 
-/// The pose of an object in the metric of a calibration, and its confidence.
-type Answer = (Sim3, f64, Calibration);
+/// How images are aligned.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// The rows.
+    pub rows: Vec<Row>,
+    /// The ways of images with several objects; others are aligned alone.
+    pub ways: Vec<Way>,
+    /// What is done about unknowns.
+    pub treatment: Treatment,
+    /// Options of every object.
+    pub options: AlignOptions,
+    /// Seed of the errors of the maps.
+    pub seed: u64,
+}
 
-/// Aligns the objects of an image in several rows and ways.
+/// What was found of an object, and the reading of the map with which it was.
+type Answer = (Alignment, Reading);
+
+/// Aligns the objects of an image in all rows and ways.
 ///
 /// # Errors
 /// Those of [`filled`] and of [`Prediction::of_filled`]. Those of the aligner are in the records.
-pub fn run(picture: &Picture, rows: &[Row], ways: &[Way], options: &AlignOptions, seed: u64) -> Result<Vec<Record>> {
+pub fn run(picture: &Picture, settings: &Settings) -> Result<Vec<Record>> {
     let masks: Vec<&Mask> = picture.objects.iter().map(|object| &object.mask).collect();
     let depth = filled(&picture.depth, &masks)?;
     let mut records = Vec::new();
-    for &row in rows {
-        let prediction = Prediction::of_filled(picture, depth.clone(), row, seed)?;
-        for &way in ways {
+    for &row in &settings.rows {
+        let prediction = Prediction::of_filled(picture, depth.clone(), row, settings.seed)?;
+        for &way in settings.ways.iter().filter(|way| **way == Way::Alone || picture.objects.len() > 1) {
+            let told = if way == Way::OneLength { told(picture) } else { None };
             let answers = match way {
-                Way::Alone => picture.objects.iter().map(|thing| alone(picture, thing, &prediction, options)).collect(),
-                Way::Together => together(picture, &prediction, options),
+                Way::Alone => {
+                    picture.objects.iter().map(|thing| alone(picture, thing, &prediction, settings)).collect()
+                }
+                Way::Together | Way::OneLength => together(picture, &prediction, settings, told),
             };
-            for (thing, answer) in picture.objects.iter().zip(answers) {
-                records.push(record(picture, thing, row, way, &prediction, answer));
+            for (k, (thing, answer)) in picture.objects.iter().zip(answers).enumerate() {
+                let is_told = told.is_some_and(|(told, _)| told == k);
+                let blank = Record {
+                    row: row.as_str(),
+                    way: way.as_str(),
+                    picture: picture.name.clone(),
+                    object: thing.name.clone(),
+                    pose: None,
+                    confidence: 0.0,
+                    calibration: None,
+                    truth: prediction.truth,
+                    errors: None,
+                    has_truth: thing.truth.is_some(),
+                    is_metric: false,
+                    deviations: None,
+                    is_told,
+                    error: None,
+                };
+                records.push(completed(blank, thing, answer));
             }
         }
     }
     Ok(records)
 }
 
-fn alone(picture: &Picture, thing: &Thing, prediction: &Prediction, options: &AlignOptions) -> Result<Answer> {
-    let reading = Reading::naive(prediction)?;
-    let mut observation = Observation::new(reading.depth, thing.mask.clone(), reading.assumed.camera)?;
+/// The object with the most pixels among those of known size, and its length, metres.
+fn told(picture: &Picture) -> Option<(usize, f64)> {
+    let known = picture.objects.iter().enumerate().filter_map(|(k, thing)| {
+        let scale = thing.truth.as_ref()?.camera_from_mesh.scale;
+        let bounds = Bounds::of(thing.mesh.positions())?;
+        let pixels = thing.mask.data().iter().filter(|m| **m != 0).count();
+        Some((pixels, k, scale * f64::from((bounds.max - bounds.min).max_element())))
+    });
+    known.max_by_key(|(pixels, ..)| *pixels).map(|(_, k, length)| (k, length))
+}
+
+fn alone(picture: &Picture, thing: &Thing, prediction: &Prediction, settings: &Settings) -> Result<Answer> {
+    let options = &settings.options;
+    let reading = Reading::new(prediction, settings.treatment, &[(thing, options)])?;
+    let mut observation = Observation::new(reading.depth.clone(), thing.mask.clone(), reading.calibration.camera)?;
     if let Some(photo) = &picture.photo {
         observation = observation.with_photo(photo.clone())?;
     }
     let mesh = PreparedMesh::borrowed(&thing.mesh).with_colors(thing.colors.clone());
     let alignment = align_prepared(&observation, &mesh, Request::new(options.clone())?, &mut Silent)?;
-    Ok(answer(&alignment, reading.assumed))
+    Ok((alignment, reading))
 }
 
-fn together(picture: &Picture, prediction: &Prediction, options: &AlignOptions) -> Vec<Result<Answer>> {
-    let aligned = Reading::naive(prediction).and_then(|reading| {
-        let object = |thing: &Thing| SceneObject {
+fn together(
+    picture: &Picture,
+    prediction: &Prediction,
+    settings: &Settings,
+    told: Option<(usize, f64)>,
+) -> Vec<Result<Answer>> {
+    let options = |k: usize| {
+        let known_extent_m = told.filter(|(told, _)| *told == k).map(|(_, length)| length);
+        AlignOptions { known_extent_m, ..settings.options.clone() }
+    };
+    let options: Vec<AlignOptions> = (0..picture.objects.len()).map(options).collect();
+    let objects: Vec<(&Thing, &AlignOptions)> = picture.objects.iter().zip(&options).collect();
+    let aligned = Reading::new(prediction, settings.treatment, &objects).and_then(|reading| {
+        let object = |(thing, options): &(&Thing, &AlignOptions)| SceneObject {
             mask: thing.mask.clone(),
             mesh: PreparedMesh::new(thing.mesh.clone()),
-            options: options.clone(),
+            options: (*options).clone(),
         };
         let scene = Scene {
-            depth: reading.depth,
-            camera: reading.assumed.camera,
-            objects: picture.objects.iter().map(object).collect(),
+            depth: reading.depth.clone(),
+            camera: reading.calibration.camera,
+            objects: objects.iter().map(object).collect(),
             occluders: Vec::new(),
             support: SupportChoice::Auto,
             snap: false,
         };
-        Ok((align_scene(&scene, &mut Silent)?, reading.assumed))
+        Ok((align_scene(&scene, &mut Silent)?, reading))
     });
     match aligned {
-        Ok((scene, assumed)) => scene.objects.into_iter().map(|o| Ok(answer(&o?.alignment, assumed))).collect(),
+        Ok((scene, reading)) => scene.objects.into_iter().map(|o| Ok((o?.alignment, reading.clone()))).collect(),
         Err(error) => picture.objects.iter().map(|_| Err(error.clone())).collect(),
     }
 }
 
-fn answer(alignment: &Alignment, calibration: Calibration) -> Answer {
-    (alignment.camera_from_mesh.clone(), alignment.confidence, calibration)
+/// The record with its answer.
+fn completed(blank: Record, thing: &Thing, answer: Result<Answer>) -> Record {
+    match answer {
+        Ok((alignment, reading)) => {
+            let pose = alignment.camera_from_mesh;
+            let errors = thing.truth.as_ref().and_then(|truth| {
+                let found = Similarity::from_column_major(&pose.matrix).ok()?;
+                Errors::of(thing, truth, &found, [&of_export(reading.calibration, &blank.truth), &blank.truth]).ok()
+            });
+            Record {
+                errors,
+                pose: Some(pose),
+                confidence: alignment.confidence,
+                calibration: Some(reading.calibration),
+                is_metric: reading.is_metric,
+                deviations: Some(reading.deviations),
+                ..blank
+            }
+        }
+        Err(error) => Record { error: Some(format!("{}: {error}", error.code.as_str())), ..blank },
+    }
 }
 
-fn record(
-    picture: &Picture,
-    thing: &Thing,
-    row: Row,
-    way: Way,
-    prediction: &Prediction,
-    answer: Result<Answer>,
-) -> Record {
-    let mut record = Record {
-        row: row.as_str(),
-        way: way.as_str(),
-        picture: picture.name.clone(),
-        object: thing.name.clone(),
-        pose: None,
-        confidence: 0.0,
-        calibration: None,
-        truth: prediction.truth,
-        errors: None,
-        has_truth: thing.truth.is_some(),
-        error: None,
-    };
-    match answer {
-        Ok((pose, confidence, calibration)) => {
-            record.errors = thing.truth.as_ref().and_then(|truth| {
-                let found = Similarity::from_column_major(&pose.matrix).ok()?;
-                Errors::of(thing, truth, &found, [&calibration, &prediction.truth]).ok()
-            });
-            (record.pose, record.confidence, record.calibration) = (Some(pose), confidence, Some(calibration));
-        }
-        Err(error) => record.error = Some(format!("{}: {error}", error.code.as_str())),
+/// The calibration in terms of the map that the model gave, where somebody made depth of it by a guess of near and far.
+fn of_export(calibration: Calibration, truth: &Calibration) -> Calibration {
+    if truth.is_inverse && !calibration.is_inverse {
+        guessed_range(&Calibration { camera: calibration.camera, ..*truth })
+    } else {
+        calibration
     }
-    record
 }

@@ -16,6 +16,8 @@ const SMALL: [f64; 2] = [0.05, 0.03];
 /// The table of the rows, for each way, and of the sizes of scenes.
 pub fn report(records: &[Record], rows: &[Row], ways: &[Way]) -> String {
     let mut out = String::new();
+    let ways: Vec<Way> =
+        ways.iter().copied().filter(|way| records.iter().any(|record| record.way == way.as_str())).collect();
     for way in ways {
         let _ = writeln!(
             out,
@@ -31,7 +33,7 @@ pub fn report(records: &[Record], rows: &[Row], ways: &[Way]) -> String {
     }
     let _ = writeln!(
         out,
-        "\nStrict: rotation within 10° up to symmetry, apparent size (focal length · scale / distance) within 5 %, centre in the image within 5 % of the apparent diameter; loose: twice that. Errors are medians of magnitudes, of all answered objects: of the shift of the map as a share of the distance, of the focal length, of the size in metres; in brackets, how many are small."
+        "\nStrict: rotation within 10° up to symmetry, apparent size (focal length · scale / distance) within 5 %, centre in the image within 5 % of the apparent diameter; loose: twice that. Errors are medians of magnitudes, of all answered objects: of the shift of the map as a share of the distance, of the focal length, and, where it is said to be in metres, of the size; in brackets, how many are small."
     );
     sizes(&mut out, records, rows);
     out
@@ -49,6 +51,8 @@ fn line(out: &mut String, name: &str, records: &[&Record]) {
         let few = errors.iter().filter(|e| **e <= most).count();
         format!("{} ({})", cell(median(errors.clone()).map(|e| 100.0 * e), 1), percent(few, errors.len()))
     };
+    let metric = records.iter().filter(|r| r.is_metric && !r.is_told);
+    let sizes = metric.filter_map(|r| r.errors.as_ref()).map(|errors| errors.size.abs()).collect();
     let sure: Vec<&&Record> = records.iter().filter(|r| r.confidence >= SURE).collect();
     let right = |tolerance: &Tolerance| sure.iter().filter(|r| r.success(tolerance) == Some(true)).count();
     let _ = writeln!(
@@ -59,7 +63,7 @@ fn line(out: &mut String, name: &str, records: &[&Record]) {
         share(&LOOSE),
         small(|e| e.shift, SMALL[1]),
         small(|e| e.focal, SMALL[0]),
-        cell(median(errors(|e| e.size)).map(|e| 100.0 * e), 1),
+        cell(median(sizes).map(|e| 100.0 * e), 1),
         sure.len(),
         right(&STRICT),
         right(&LOOSE),
