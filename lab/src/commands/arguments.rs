@@ -28,6 +28,16 @@ impl Arguments {
         self.0.len() < before
     }
 
+    /// Whether an option has a value; if so, it is taken out.
+    pub fn take(&mut self, name: &str, value: &str) -> Result<bool, Failure> {
+        let before = self.0.clone();
+        let is_so = self.all(name)?.pop().is_some_and(|text| text == value);
+        if !is_so {
+            self.0 = before;
+        }
+        Ok(is_so)
+    }
+
     /// The texts of an option that may be repeated.
     pub fn all(&mut self, name: &str) -> Result<Vec<String>, Failure> {
         let mut found = Vec::new();

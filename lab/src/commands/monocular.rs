@@ -55,7 +55,8 @@ enum Source {
     Scene(PathBuf),
 }
 
-fn run(arguments: &mut Arguments) -> Result<(), Failure> {
+/// Runs the command.
+pub fn run(arguments: &mut Arguments) -> Result<(), Failure> {
     let (generated, cluttered): (usize, usize) = (arguments.value("generated", 0)?, arguments.value("cluttered", 0)?);
     let cases = folders(&arguments.paths("cases")?, "mesh")?;
     let scenes = folders(&arguments.paths("scenes")?, "objects")?;

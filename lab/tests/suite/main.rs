@@ -10,6 +10,7 @@ mod common;
 mod evaluation;
 mod fuzz;
 mod imported;
+mod monocular;
 mod outlines;
 mod overlay;
 mod real_cases;

@@ -28,7 +28,8 @@ Cases
   --prior P          what made the meshes of the scenes: detailed (default), smooth or both
   --set SET          the generated set: general (default); sensors, with effects of depth sensors and predicted
                      masks; colors, with photos and coloured meshes; or dilated, the general set with masks that are too
-                     large or too small all around and with exact edges of depth
+                     large or too small all around and with exact edges of depth; monocular runs the command of that
+                     name instead, with its options and tables
   --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
