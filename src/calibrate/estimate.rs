@@ -26,6 +26,8 @@ const CURVE: (f64, i32) = (0.1, 4);
 const EXTENSIONS: usize = 3;
 /// Poses that are refined, of the best point of the grid and of either neighbour.
 const POSES: [usize; 2] = [3, 1];
+/// Relief of objects beside their width: median and standard deviation of the logarithm.
+const RELIEF_PRIOR: [f64; 2] = [0.4, 0.6];
 /// Number of objects on which the estimate rests, those with the most pixels: more would hardly change it.
 const SUBJECTS: usize = 6;
 /// Standard deviation of what no object determines: a depth map without relief.
@@ -101,6 +103,11 @@ impl Estimator<'_, '_> {
             let best = |poses: &Vec<(f64, Pictured)>| poses.first().map_or(0.0, |(score, _)| *score);
             found[k].iter().map(best).sum::<f64>() - self.cost(grid[k])
         };
+        if std::env::var("DBG").is_ok() {
+            for k in 0..grid.len() {
+                eprintln!("grid {:?} {:.3} {:?}", grid[k], score(k), found[k].iter().map(|p| p.first().map_or(0.0, |x| (x.0*1000.0).round()/1000.0)).collect::<Vec<_>>());
+            }
+        }
         let best = (0..grid.len()).fold(0, |best, k| if score(k) > score(best) { k } else { best });
         if found[best].iter().all(Vec::is_empty) {
             return Err(no_candidate());
@@ -117,12 +124,13 @@ impl Estimator<'_, '_> {
             }
         }
         let mut deviations = [UNDETERMINED; 2];
-        let mut sample = self.sample(grid[best], &poses).await?;
+        let mut sample = self.sample(grid[best], grid[best], &poses).await?;
         let is_affine = self.view.kind.is_affine();
         let mut axes: Vec<Axis> = axis.into_iter().collect();
         if is_affine && self.view.focal != Focal::Known {
             axes.extend([Axis::Focal, Axis::Relief]);
         }
+        if std::env::var("GAMMA").is_ok() { axes.extend(axes.clone()); }
         for axis in axes {
             let (peak, deviation) = self.peak(axis, sample, &poses).await?;
             sample = peak;
@@ -162,9 +170,16 @@ impl Estimator<'_, '_> {
 
     /// The cost of a focal length far from the guess, in units of the score.
     fn cost(&self, at: Unknowns) -> f64 {
-        let Focal::Guessed(deviation) = self.view.focal else { return 0.0 };
-        let q = at.focal / deviation;
-        DROP * q * q
+        let mut cost = 0.0;
+        if self.view.kind.is_affine() {
+            let q = (at.relief - libm::log(RELIEF_PRIOR[0])) / RELIEF_PRIOR[1];
+            cost += DROP * q * q;
+        }
+        if let Focal::Guessed(deviation) = self.view.focal {
+            let q = at.focal / deviation;
+            cost += DROP * q * q;
+        }
+        cost
     }
 
     /// The poses that searches find, by object. Objects without one, such as those with depth that a calibration puts behind
@@ -181,16 +196,21 @@ impl Estimator<'_, '_> {
     }
 
     /// The score of all objects, refined from these poses.
-    async fn sample(&mut self, at: Unknowns, poses: &[Vec<Pictured>]) -> Result<Sample> {
+    async fn sample(&mut self, at: Unknowns, anchor: Unknowns, poses: &[Vec<Pictured>]) -> Result<Sample> {
         let calibration = self.reference.calibration(self.view.kind, at);
+        let gamma: f64 = std::env::var("GAMMA").ok().and_then(|g| g.parse().ok()).unwrap_or(0.0);
+        let by = if self.view.kind.is_affine() { at.relief - anchor.relief } else { at.focal - anchor.focal };
+        let tolerance = libm::exp(gamma * by);
         let mut sample = Sample { at, score: -self.cost(at), poses: Vec::new() };
         for (k, poses) in self.used.iter().zip(poses) {
             let Some(subject) = self.subjects.get(*k) else { continue };
-            let refined = subject.refined(self.view, &calibration, poses, self.stages).ok().flatten();
+            let refined = subject.refined(self.view, &calibration, poses, tolerance, self.stages).ok().flatten();
             sample.score += refined.as_ref().map_or(0.0, |(score, _)| *score);
+            if std::env::var("DBG").is_ok() { eprint!(" {:.3}", refined.as_ref().map_or(0.0, |(score, _)| *score)); }
             sample.poses.push(refined.map(|(_, pose)| pose));
             self.pauses.here().await;
         }
+        if std::env::var("DBG").is_ok() { eprintln!(" {:?} {:.3}", sample.at, sample.score); }
         Ok(sample)
     }
 
@@ -201,7 +221,7 @@ impl Estimator<'_, '_> {
         let at = |k: i32| center.moved(axis == Axis::Relief, f64::from(k) * step);
         let mut curve: Vec<(i32, Sample)> = Vec::new();
         for k in -count..=count {
-            let sample = if k == 0 { from.clone() } else { self.sample(at(k), poses).await? };
+            let sample = if k == 0 { from.clone() } else { self.sample(at(k), center, poses).await? };
             curve.push((k, sample));
         }
         let top = |curve: &[(i32, Sample)]| {
@@ -214,10 +234,10 @@ impl Estimator<'_, '_> {
             }
             if best <= 1 {
                 let k = curve[0].0 - 1;
-                curve.insert(0, (k, self.sample(at(k), poses).await?));
+                curve.insert(0, (k, self.sample(at(k), center, poses).await?));
             } else {
                 let k = curve[curve.len() - 1].0 + 1;
-                curve.push((k, self.sample(at(k), poses).await?));
+                curve.push((k, self.sample(at(k), center, poses).await?));
             }
         }
         let best = top(&curve);
@@ -227,7 +247,7 @@ impl Estimator<'_, '_> {
             return Ok((curve.swap_remove(best).1, UNDETERMINED));
         };
         let place = at(curve[best].0).moved(axis == Axis::Relief, offset.clamp(-1.0, 1.0) * step);
-        let peak = self.sample(place, poses).await?;
+        let peak = self.sample(place, center, poses).await?;
         Ok((peak, (DROP / curvature).sqrt() * step))
     }
 }

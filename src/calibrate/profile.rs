@@ -83,12 +83,15 @@ impl Subject<'_> {
         view: &RawView,
         calibration: &Calibration,
         poses: &[Pictured],
+        tolerance: f64,
         stages: &mut Stopwatch<'_>,
     ) -> Result<Option<(f64, Pictured)>> {
         let observation = self.observation(view, calibration)?;
         let clean = Rc::new(CleanObservation::new(&observation));
         let search: Search = start::prepared(&observation, Some(clean), self.mesh, &self.options, &self.settings(), stages)?;
-        let refiner = Refiner { objective: search.objective(FINE), lock_scale: search.settings.lock_scale };
+        let mut objective = search.objective(FINE);
+        objective.scoring.depth_m *= tolerance as f32;
+        let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
         let mut canvas = Canvas::default();
         let median = search.observation.median_m;
         let refined = poses.iter().map(|pose| {
