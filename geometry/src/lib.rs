@@ -11,6 +11,7 @@ pub mod clip;
 pub mod cloud;
 pub mod components;
 pub mod decimate;
+pub mod depth_kind;
 pub mod distance_transform;
 pub mod error;
 #[cfg(target_arch = "wasm32")]
