@@ -6,13 +6,18 @@ use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::object::{check_bytes, get, number, required_number, size, to_colors, to_f32s, to_u8s, wrong_type};
+use crate::calibrate::raw_view::{Focal, RawView};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::{Observation, from_point_map};
 use crate::evidence::photo::Photo;
+use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
 use crate::geometry::pinhole::Pinhole;
 use crate::number::number as number_text;
+
+/// Largest standard deviation of the logarithm of a focal length: from a fisheye to a telephoto lens.
+const MAX_FOCAL_DEVIATION: f64 = 1.0;
 
 /// Default metres per unit of integer depth: millimetres.
 const DEFAULT_DEPTH_SCALE: f64 = 0.001;
@@ -46,9 +51,7 @@ pub fn view(input: &JsValue) -> Result<(DepthMap, Pinhole)> {
         let remedy = "Pass { depth, width, height, mask, camera, mesh }.";
         return Err(wrong_type("input", input, "an object", remedy));
     }
-    let missing = |name| wrong_type(name, &JsValue::UNDEFINED, "an integer in pixels", "Pass the image size.");
-    let width = size(input, "width")?.ok_or_else(|| missing("width"))?;
-    let height = size(input, "height")?.ok_or_else(|| missing("height"))?;
+    let (width, height) = size_of(input)?;
     match get(input, "pointMap") {
         Some(points) => {
             let (depth, fitted) = from_point_map(width, height, &to_f32s(&points, "pointMap")?)?;
@@ -62,6 +65,27 @@ pub fn view(input: &JsValue) -> Result<(DepthMap, Pinhole)> {
     }
 }
 
+/// A view whose depth or focal length is not fully known: `{ depth, depthScale?, width, height, camera, depthKind?,
+/// focalDeviation? }`, the last the standard deviation of the logarithm of a focal length that is a guess.
+pub fn raw_view(input: &JsValue) -> Result<RawView> {
+    let kind = match get(input, "depthKind") {
+        None => DepthKind::default(),
+        Some(name) => name.as_string().as_deref().and_then(DepthKind::from_name).ok_or_else(|| {
+            let names = DepthKind::ALL.map(|kind| format!("\"{}\"", kind.name())).join(", ");
+            wrong_type("depthKind", &name, &names, "Say what the depth model returns; omit it for metric depth.")
+        })?,
+    };
+    let (width, height) = size_of(input)?;
+    let values = values(input, width, height, if kind == DepthKind::Metric { DEFAULT_DEPTH_SCALE } else { 1.0 })?;
+    let focal = match number(input, "input", "focalDeviation")? {
+        Some(deviation) if deviation > 0.0 => Focal::Guessed(deviation.min(MAX_FOCAL_DEVIATION)),
+        _ => Focal::Known,
+    };
+    let camera = camera(&get(input, "camera").unwrap_or(JsValue::UNDEFINED))?;
+    camera.check_field_of_view(width, height)?;
+    Ok(RawView { values: Image::new("depth", width, height, values)?, kind, camera, focal })
+}
+
 /// `{ data, width, height }` with a `Uint8Array` of red, green and blue: other forms are resolved in TypeScript.
 fn photo(image: &JsValue) -> Result<Photo> {
     let side = |name| size(image, name).map(Option::unwrap_or_default);
@@ -69,7 +93,19 @@ fn photo(image: &JsValue) -> Result<Photo> {
     Image::new("image", side("width")?, side("height")?, colors)
 }
 
+fn size_of(input: &JsValue) -> Result<(usize, usize)> {
+    let missing = |name| wrong_type(name, &JsValue::UNDEFINED, "an integer in pixels", "Pass the image size.");
+    let width = size(input, "width")?.ok_or_else(|| missing("width"))?;
+    let height = size(input, "height")?.ok_or_else(|| missing("height"))?;
+    Ok((width, height))
+}
+
 fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {
+    DepthMap::from_metres(width, height, values(input, width, height, DEFAULT_DEPTH_SCALE)?)
+}
+
+/// The numbers of a depth map, times its scale; that of integers is `integer_scale` if none is given.
+fn values(input: &JsValue, width: usize, height: usize, integer_scale: f64) -> Result<Vec<f32>> {
     let values = get(input, "depth").unwrap_or(JsValue::UNDEFINED);
     let scale = number(input, "input", "depthScale")?;
     if let Some(scale) = scale
@@ -86,19 +122,19 @@ fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {
     check_bytes(&values, "depth")?;
     if let Some(units) = values.dyn_ref::<Uint16Array>() {
         check_size("depth", width, height, units.length() as usize)?;
-        let scale = scale.unwrap_or(DEFAULT_DEPTH_SCALE);
-        let metres = units.to_vec().into_iter().map(|unit| (f64::from(unit) * scale) as f32).collect();
-        return DepthMap::from_metres(width, height, metres);
+        let scale = scale.unwrap_or(integer_scale);
+        return Ok(units.to_vec().into_iter().map(|unit| (f64::from(unit) * scale) as f32).collect());
     }
     let mut metres = to_f32s(&values, "depth")
         .map_err(|e| e.expecting("a Float32Array (metres) or a Uint16Array (with depthScale)"))?;
     if let Some(scale) = scale {
         metres.iter_mut().for_each(|z| *z = (f64::from(*z) * scale) as f32);
     }
-    DepthMap::from_metres(width, height, metres)
+    Ok(metres)
 }
 
-fn mask(input: &JsValue, width: usize, height: usize) -> Result<Mask> {
+/// The mask of an input.
+pub fn mask(input: &JsValue, width: usize, height: usize) -> Result<Mask> {
     let pixels = to_u8s(&get(input, "mask").unwrap_or(JsValue::UNDEFINED), "mask")?;
     let mask_width = size(input, "maskWidth")?.unwrap_or(width);
     let mask_height = size(input, "maskHeight")?.unwrap_or(height);

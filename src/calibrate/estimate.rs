@@ -20,12 +20,20 @@ use crate::progress::Stopwatch;
 const RELIEFS: (f64, f64, usize) = (0.08, 1.5, 8);
 /// The same for the focal length: steps in standard deviations, to either side, and their largest length.
 const FOCALS: (f64, i32, f64) = (0.7, 3, 0.2);
-/// Steps of the curve around the best point of the grid: their length, and their number to either side.
-const CURVE: (f64, i32) = (0.1, 4);
+/// Steps of a curve: their length, and their number to either side of the best point of the grid, and of the peak of that
+/// curve.
+const STEP: f64 = 0.1;
+const STEPS: [i32; 2] = [4, 2];
 /// Times that a curve is continued beyond its end.
 const EXTENSIONS: usize = 3;
 /// Poses that are refined, of the best point of the grid and of either neighbour.
 const POSES: [usize; 2] = [3, 1];
+/// Power of the relief with which the tolerance for depth grows. With 0, all residuals are taken to be errors of the mesh, and
+/// noise of the depth, which is less in flatter depth, makes flat what is noisy; with 1, to be errors of the depth, and
+/// errors of the mesh make it deep. On real sensors, the biases cancel at about a third.
+const TOLERANCE: f64 = 1.0 / 3.0;
+/// Relief of objects beside their width: median and standard deviation of the logarithm.
+const RELIEF_PRIOR: [f64; 2] = [0.4, 0.6];
 /// Number of objects on which the estimate rests, those with the most pixels: more would hardly change it.
 const SUBJECTS: usize = 6;
 /// Standard deviation of what no object determines: a depth map without relief.
@@ -103,6 +111,11 @@ impl Estimator<'_, '_> {
         };
         let best = (0..grid.len()).fold(0, |best, k| if score(k) > score(best) { k } else { best });
         if found[best].iter().all(Vec::is_empty) {
+            // The reason why there is none.
+            let calibration = self.reference.calibration(self.view.kind, grid[best]);
+            for subject in self.used.iter().filter_map(|k| self.subjects.get(*k)) {
+                subject.search(self.view, &calibration, self.pauses, self.stages).await?;
+            }
             return Err(no_candidate());
         }
         let near = |k: usize, count: usize| {
@@ -117,16 +130,18 @@ impl Estimator<'_, '_> {
             }
         }
         let mut deviations = [UNDETERMINED; 2];
-        let mut sample = self.sample(grid[best], &poses).await?;
+        let mut sample = self.sample(grid[best], grid[best], &poses).await?;
         let is_affine = self.view.kind.is_affine();
         let mut axes: Vec<Axis> = axis.into_iter().collect();
         if is_affine && self.view.focal != Focal::Known {
             axes.extend([Axis::Focal, Axis::Relief]);
         }
         for axis in axes {
-            let (peak, deviation) = self.peak(axis, sample, &poses).await?;
-            sample = peak;
-            deviations[axis as usize] = deviation;
+            for steps in STEPS {
+                let (peak, deviation) = self.peak(axis, sample, &poses, steps).await?;
+                sample = peak;
+                deviations[axis as usize] = deviation;
+            }
         }
         let calibration = self.reference.calibration(self.view.kind, sample.at);
         let [relief, focal] = deviations;
@@ -136,7 +151,11 @@ impl Estimator<'_, '_> {
         }
         Ok(Estimate {
             calibration,
-            shift_deviation: if is_affine { libm::hypot(relief, focal * f64::from(u8::from(self.view.focal != Focal::Known))) } else { 0.0 },
+            shift_deviation: if is_affine {
+                libm::hypot(relief, focal * f64::from(u8::from(self.view.focal != Focal::Known)))
+            } else {
+                0.0
+            },
             focal_deviation: if self.view.focal == Focal::Known { 0.0 } else { focal },
             poses: best,
         })
@@ -162,9 +181,16 @@ impl Estimator<'_, '_> {
 
     /// The cost of a focal length far from the guess, in units of the score.
     fn cost(&self, at: Unknowns) -> f64 {
-        let Focal::Guessed(deviation) = self.view.focal else { return 0.0 };
-        let q = at.focal / deviation;
-        DROP * q * q
+        let mut cost = 0.0;
+        if self.view.kind.is_affine() {
+            let q = (at.relief - libm::log(RELIEF_PRIOR[0])) / RELIEF_PRIOR[1];
+            cost += DROP * q * q;
+        }
+        if let Focal::Guessed(deviation) = self.view.focal {
+            let q = at.focal / deviation;
+            cost += DROP * q * q;
+        }
+        cost
     }
 
     /// The poses that searches find, by object. Objects without one, such as those with depth that a calibration puts behind
@@ -181,12 +207,14 @@ impl Estimator<'_, '_> {
     }
 
     /// The score of all objects, refined from these poses.
-    async fn sample(&mut self, at: Unknowns, poses: &[Vec<Pictured>]) -> Result<Sample> {
+    async fn sample(&mut self, at: Unknowns, anchor: Unknowns, poses: &[Vec<Pictured>]) -> Result<Sample> {
         let calibration = self.reference.calibration(self.view.kind, at);
+        let deeper = if self.view.kind.is_affine() { at.relief - anchor.relief } else { at.focal - anchor.focal };
+        let tolerance = libm::exp(TOLERANCE * deeper);
         let mut sample = Sample { at, score: -self.cost(at), poses: Vec::new() };
         for (k, poses) in self.used.iter().zip(poses) {
             let Some(subject) = self.subjects.get(*k) else { continue };
-            let refined = subject.refined(self.view, &calibration, poses, self.stages).ok().flatten();
+            let refined = subject.refined(self.view, &calibration, poses, tolerance, self.stages).ok().flatten();
             sample.score += refined.as_ref().map_or(0.0, |(score, _)| *score);
             sample.poses.push(refined.map(|(_, pose)| pose));
             self.pauses.here().await;
@@ -194,14 +222,13 @@ impl Estimator<'_, '_> {
         Ok(sample)
     }
 
-    /// The peak of the score along an axis, and its standard deviation.
-    async fn peak(&mut self, axis: Axis, from: Sample, poses: &[Vec<Pictured>]) -> Result<(Sample, f64)> {
-        let (step, count) = CURVE;
+    /// The peak of the score along an axis, and its standard deviation. The tolerance for depth is that of the first point.
+    async fn peak(&mut self, axis: Axis, from: Sample, poses: &[Vec<Pictured>], count: i32) -> Result<(Sample, f64)> {
         let center = from.at;
-        let at = |k: i32| center.moved(axis == Axis::Relief, f64::from(k) * step);
+        let at = |k: i32| center.moved(axis == Axis::Relief, f64::from(k) * STEP);
         let mut curve: Vec<(i32, Sample)> = Vec::new();
         for k in -count..=count {
-            let sample = if k == 0 { from.clone() } else { self.sample(at(k), poses).await? };
+            let sample = if k == 0 { from.clone() } else { self.sample(at(k), center, poses).await? };
             curve.push((k, sample));
         }
         let top = |curve: &[(i32, Sample)]| {
@@ -214,21 +241,22 @@ impl Estimator<'_, '_> {
             }
             if best <= 1 {
                 let k = curve[0].0 - 1;
-                curve.insert(0, (k, self.sample(at(k), poses).await?));
+                curve.insert(0, (k, self.sample(at(k), center, poses).await?));
             } else {
                 let k = curve[curve.len() - 1].0 + 1;
-                curve.push((k, self.sample(at(k), poses).await?));
+                curve.push((k, self.sample(at(k), center, poses).await?));
             }
         }
         let best = top(&curve);
         let window = &curve[best.saturating_sub(2)..(best + 3).min(curve.len())];
-        let points: Vec<(f64, f64)> = window.iter().map(|(k, sample)| (f64::from(*k - curve[best].0), sample.score)).collect();
+        let points: Vec<(f64, f64)> =
+            window.iter().map(|(k, sample)| (f64::from(*k - curve[best].0), sample.score)).collect();
         let Some((offset, curvature)) = parabola(&points) else {
             return Ok((curve.swap_remove(best).1, UNDETERMINED));
         };
-        let place = at(curve[best].0).moved(axis == Axis::Relief, offset.clamp(-1.0, 1.0) * step);
-        let peak = self.sample(place, poses).await?;
-        Ok((peak, (DROP / curvature).sqrt() * step))
+        let place = at(curve[best].0).moved(axis == Axis::Relief, offset.clamp(-1.0, 1.0) * STEP);
+        let peak = self.sample(place, center, poses).await?;
+        Ok((peak, (DROP / curvature).sqrt() * STEP))
     }
 }
 
@@ -237,7 +265,15 @@ fn parabola(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let power = |n: i32| points.iter().map(|(x, _)| x.powi(n)).sum::<f64>();
     let with = |n: i32| points.iter().map(|(x, y)| y * x.powi(n)).sum::<f64>();
     let matrix = nalgebra::Matrix3::new(
-        power(0), power(1), power(2), power(1), power(2), power(3), power(2), power(3), power(4),
+        power(0),
+        power(1),
+        power(2),
+        power(1),
+        power(2),
+        power(3),
+        power(2),
+        power(3),
+        power(4),
     );
     let solved = matrix.lu().solve(&nalgebra::Vector3::new(with(0), with(1), with(2)))?;
     let (slope, curve) = (solved[1], solved[2]);

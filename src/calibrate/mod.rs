@@ -16,6 +16,7 @@ use profile::Subject;
 use raw_view::{Focal, RawView};
 
 use crate::error::Result;
+use crate::evidence::observation::check_mask_size;
 use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::order::median;
@@ -64,12 +65,16 @@ pub async fn calibrate(
     host: &mut dyn Host,
     pauses: &Pauses,
 ) -> Result<Calibrated> {
+    for object in objects {
+        check_mask_size([view.values.width(), view.values.height()], object.mask)?;
+        object.mesh.check()?;
+    }
     let mut stages = Stopwatch::new(host, PLAN);
     let is_metric = view.kind == DepthKind::Metric;
     let lengths: Vec<Option<f64>> = objects.iter().map(known_scale).collect();
     let is_scaled = !is_metric && lengths.iter().any(Option::is_some);
     if !view.kind.is_affine() && view.focal == Focal::Known && !is_scaled {
-        return Ok(calibrated(view, Calibration::default(), None, is_metric)?);
+        return calibrated(view, Calibration::default(), None, is_metric);
     }
     let subjects: Vec<Subject<'_>> = objects.iter().map(|object| subject(object, is_metric)).collect();
     let estimate = estimate(view, &subjects, pauses, &mut stages).await?;

@@ -47,8 +47,7 @@ pub struct Pictured {
 
 impl Subject<'_> {
     fn observation(&self, view: &RawView, calibration: &Calibration) -> Result<Observation> {
-        let observation =
-            Observation::new(view.depth(calibration)?, self.mask.clone(), view.camera(calibration))?;
+        let observation = Observation::new(view.depth(calibration)?, self.mask.clone(), view.camera(calibration))?;
         match &self.others {
             Some(others) => observation.with_others(others.clone()),
             None => Ok(observation),
@@ -83,12 +82,16 @@ impl Subject<'_> {
         view: &RawView,
         calibration: &Calibration,
         poses: &[Pictured],
+        tolerance: f64,
         stages: &mut Stopwatch<'_>,
     ) -> Result<Option<(f64, Pictured)>> {
         let observation = self.observation(view, calibration)?;
         let clean = Rc::new(CleanObservation::new(&observation));
-        let search: Search = start::prepared(&observation, Some(clean), self.mesh, &self.options, &self.settings(), stages)?;
-        let refiner = Refiner { objective: search.objective(FINE), lock_scale: search.settings.lock_scale };
+        let search: Search =
+            start::prepared(&observation, Some(clean), self.mesh, &self.options, &self.settings(), stages)?;
+        let mut objective = search.objective(FINE);
+        objective.scoring.depth_m *= tolerance as f32;
+        let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
         let mut canvas = Canvas::default();
         let median = search.observation.median_m;
         let refined = poses.iter().map(|pose| {

@@ -45,7 +45,8 @@ impl Reference {
             let values = || pixels.clone().filter(|(d, m)| **m != 0 && d.is_finite()).map(|(d, _)| *d);
             let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0);
             let side = bounds.iter().map(|[low, high]| high + 1 - low).max()? as f64;
-            let Some([low, high]) = quantile(values(), RELIEF[0]).zip(quantile(values(), RELIEF[1])).map(<[f32; 2]>::from)
+            let Some([low, high]) =
+                quantile(values(), RELIEF[0]).zip(quantile(values(), RELIEF[1])).map(<[f32; 2]>::from)
             else {
                 continue;
             };

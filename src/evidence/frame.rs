@@ -29,7 +29,7 @@ impl Frame {
     /// [`ErrorCode::FileTooLarge`](crate::error::ErrorCode::FileTooLarge),
     /// [`ErrorCode::InvalidCamera`](crate::error::ErrorCode::InvalidCamera).
     pub fn check(&self) -> Result<()> {
-        self.mask.as_ref().map_or(Ok(()), |mask| check_mask_size(&self.depth, mask))?;
+        self.mask.as_ref().map_or(Ok(()), |mask| check_mask_size([self.depth.width(), self.depth.height()], mask))?;
         check_pixels(&self.depth)?;
         let (width, height) = (self.depth.width(), self.depth.height());
         self.camera.check_field_of_view(width, height)?;

@@ -48,7 +48,7 @@ impl Observation {
     /// [`ErrorCode::NoDepthInMask`], [`ErrorCode::TooFewPoints`], [`ErrorCode::DegenerateMask`],
     /// [`ErrorCode::FlatDepth`].
     pub fn new(mut depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
-        check_mask_size(&depth, &mask)?;
+        check_mask_size([depth.width(), depth.height()], &mask)?;
         check_pixels(&depth)?;
         camera.check_field_of_view(depth.width(), depth.height())?;
         depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
@@ -208,8 +208,7 @@ pub fn degenerate_mask(found: impl Into<crate::error::Text>) -> Error {
 ///
 /// # Errors
 /// [`ErrorCode::SizeMismatch`].
-pub fn check_mask_size(depth: &DepthMap, mask: &Mask) -> Result<()> {
-    let size = [depth.width(), depth.height()];
+pub fn check_mask_size(size: [usize; 2], mask: &Mask) -> Result<()> {
     if [mask.width(), mask.height()] == size {
         return Ok(());
     }

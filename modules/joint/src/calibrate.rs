@@ -1,0 +1,88 @@
+//! Calibrations of views, in steps.
+
+use core::cell::RefCell;
+use std::rc::Rc;
+
+use js_sys::{Array, Float32Array, Function, Object, Reflect};
+use wasm_bindgen::JsValue;
+use wasm_bindgen::prelude::wasm_bindgen;
+
+use sim3align::bindings::answer::answer;
+use sim3align::bindings::error::to_js;
+use sim3align::bindings::host::{JsHost, now_ms};
+use sim3align::bindings::object::{get, to_u8s, wrong_type};
+use sim3align::bindings::{input, mesh, options};
+use sim3align::calibrate::{Calibrated, Object as CalibratedObject, calibrate};
+use sim3align::error::{Error, Result};
+use sim3align::evidence::observation::check_mask_size;
+use sim3align::geometry::image::{Image, Mask};
+use sim3align::pauses::{Pauses, Task};
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::options::AlignOptions;
+
+/// A running calibration.
+#[wasm_bindgen(skip_typescript)]
+pub struct CalibrateTask(RefCell<Task<'static, Calibrated>>);
+
+/// An object that owns its parts.
+struct Owned {
+    mask: Mask,
+    others: Option<Mask>,
+    mesh: Rc<PreparedMesh<'static>>,
+    options: AlignOptions,
+}
+
+/// Begins to calibrate a view: `{ depth, depthScale?, width, height, camera, depthKind?, focalDeviation?, objects: [{ mask, maskWidth?,
+/// maskHeight?, resizeMask?, others?, mesh, options }] }`.
+#[wasm_bindgen(js_name = beginCalibrate, skip_typescript)]
+pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::result::Result<CalibrateTask, JsValue> {
+    let begin = || {
+        let view = input::raw_view(input)?;
+        let size = [view.values.width(), view.values.height()];
+        let objects = get(input, "objects").filter(Array::is_array);
+        let objects =
+            objects.ok_or_else(|| wrong_type("objects", &JsValue::UNDEFINED, "an array", "Pass the objects."))?;
+        let objects: Vec<Owned> =
+            Array::from(&objects).iter().map(|object| owned(&object, size)).collect::<Result<_>>()?;
+        let mut host = JsHost::new(on_progress);
+        Ok(Task::new(Pauses::new(now_ms, None), move |pauses| async move {
+            let borrowed: Vec<CalibratedObject<'_>> = objects
+                .iter()
+                .map(|Owned { mask, others, mesh, options }| CalibratedObject {
+                    mask,
+                    others: others.clone(),
+                    mesh,
+                    options,
+                })
+                .collect();
+            calibrate(&view, &borrowed, &mut host, &pauses).await
+        }))
+    };
+    begin().map(|task| CalibrateTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
+}
+
+fn owned(object: &JsValue, [width, height]: [usize; 2]) -> Result<Owned> {
+    let mask = input::mask(object, width, height)?;
+    check_mask_size([width, height], &mask)?;
+    let others =
+        get(object, "others").map(|others| Image::new("occluders", width, height, to_u8s(&others, "occluders")?));
+    let options = options::precise(&get(object, "options").unwrap_or(JsValue::UNDEFINED))?;
+    Ok(Owned { mask, others: others.transpose()?, mesh: mesh::mesh_of(object)?, options })
+}
+
+#[wasm_bindgen]
+impl CalibrateTask {
+    /// Runs for about `slice_ms` milliseconds. Returns `{ depth, calibration }` when finished, otherwise `undefined`.
+    #[wasm_bindgen(skip_typescript)]
+    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
+        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
+        let Some(Calibrated { depth, calibration, .. }) = done else { return Ok(JsValue::UNDEFINED) };
+        let result = Object::new();
+        let depth: JsValue = Float32Array::from(depth.data()).into();
+        for (name, value) in [("depth", depth), ("calibration", answer(Ok(calibration))?)] {
+            // Setting a property of a new object cannot fail.
+            let _ = Reflect::set(&result, &name.into(), &value);
+        }
+        Ok(result.into())
+    }
+}
