@@ -6,6 +6,9 @@ use super::estimate::Estimate;
 use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::pinhole::Pinhole;
 
+/// Largest depth that a disparity stands for, relative to the scale: a shift may put what is far behind infinity.
+const FARTHEST: f64 = 1e3;
+
 /// The numbers that make a depth map and a camera of a raw view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Calibration {
@@ -20,6 +23,18 @@ pub struct Calibration {
 impl Default for Calibration {
     fn default() -> Self {
         Self { scale: 1.0, shift: 0.0, focal: 1.0 }
+    }
+}
+
+impl Calibration {
+    /// The depth of a value.
+    pub fn depth(&self, kind: DepthKind, value: f64) -> f64 {
+        let Self { scale, shift, .. } = *self;
+        match kind {
+            DepthKind::Metric | DepthKind::ScaleInvariant => value * scale,
+            DepthKind::AffineInvariant => (value + shift) * scale,
+            DepthKind::AffineInvariantDisparity => scale / (value + shift).max(scale / FARTHEST),
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! refining the poses alone.
 
 use super::calibration::Calibration;
+use super::prior::Prior;
 use super::profile::{Pictured, Subject};
 use super::raw_view::{Focal, RawView};
 use super::unknowns::{Reference, Unknowns};
@@ -32,8 +33,6 @@ const POSES: [usize; 2] = [3, 1];
 /// noise of the depth, which is less in flatter depth, makes flat what is noisy; with 1, to be errors of the depth, and
 /// errors of the mesh make it deep. On real sensors, the biases cancel at about a third.
 const TOLERANCE: f64 = 1.0 / 3.0;
-/// Relief of objects beside their width: median and standard deviation of the logarithm.
-const RELIEF_PRIOR: [f64; 2] = [0.4, 0.6];
 /// Number of objects on which the estimate rests, those with the most pixels: more would hardly change it.
 const SUBJECTS: usize = 6;
 /// Standard deviation of what no object determines: a depth map without relief.
@@ -66,6 +65,7 @@ struct Estimator<'a, 's> {
     /// Indices of those on which it rests.
     used: Vec<usize>,
     reference: Reference,
+    prior: Prior<'a>,
     pauses: &'a Pauses,
     stages: &'a mut Stopwatch<'s>,
 }
@@ -95,7 +95,8 @@ pub async fn estimate(
     used.truncate(SUBJECTS);
     let reference = Reference::of(view, used.iter().filter_map(|k| subjects.get(*k)));
     let reference = reference.ok_or_else(no_candidate)?;
-    Estimator { view, subjects, used, reference, pauses, stages }.run().await
+    let prior = Prior::of(view, reference);
+    Estimator { view, subjects, used, reference, prior, pauses, stages }.run().await
 }
 
 impl Estimator<'_, '_> {
@@ -107,7 +108,7 @@ impl Estimator<'_, '_> {
         }
         let score = |k: usize| {
             let best = |poses: &Vec<(f64, Pictured)>| poses.first().map_or(0.0, |(score, _)| *score);
-            found[k].iter().map(best).sum::<f64>() - self.cost(grid[k])
+            found[k].iter().map(best).sum::<f64>() - self.prior.cost(grid[k])
         };
         let best = (0..grid.len()).fold(0, |best, k| if score(k) > score(best) { k } else { best });
         if found[best].iter().all(Vec::is_empty) {
@@ -179,20 +180,6 @@ impl Estimator<'_, '_> {
         }
     }
 
-    /// The cost of a focal length far from the guess, in units of the score.
-    fn cost(&self, at: Unknowns) -> f64 {
-        let mut cost = 0.0;
-        if self.view.kind.is_affine() {
-            let q = (at.relief - libm::log(RELIEF_PRIOR[0])) / RELIEF_PRIOR[1];
-            cost += DROP * q * q;
-        }
-        if let Focal::Guessed(deviation) = self.view.focal {
-            let q = at.focal / deviation;
-            cost += DROP * q * q;
-        }
-        cost
-    }
-
     /// The poses that searches find, by object. Objects without one, such as those with depth that a calibration puts behind
     /// the camera, have none.
     async fn searched(&mut self, at: Unknowns) -> Result<Vec<Vec<(f64, Pictured)>>> {
@@ -211,7 +198,7 @@ impl Estimator<'_, '_> {
         let calibration = self.reference.calibration(self.view.kind, at);
         let deeper = if self.view.kind.is_affine() { at.relief - anchor.relief } else { at.focal - anchor.focal };
         let tolerance = libm::exp(TOLERANCE * deeper);
-        let mut sample = Sample { at, score: -self.cost(at), poses: Vec::new() };
+        let mut sample = Sample { at, score: -self.prior.cost(at), poses: Vec::new() };
         for (k, poses) in self.used.iter().zip(poses) {
             let Some(subject) = self.subjects.get(*k) else { continue };
             let refined = subject.refined(self.view, &calibration, poses, tolerance, self.stages).ok().flatten();

@@ -6,6 +6,7 @@
 
 pub mod calibration;
 pub mod estimate;
+pub mod prior;
 pub mod profile;
 pub mod raw_view;
 pub mod unknowns;
@@ -25,7 +26,7 @@ use crate::pauses::Pauses;
 use crate::precise::drawn::pose::MeshFrame;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::scored::prior::Prior;
+use crate::precise::scored::prior::Prior as ScalePrior;
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Progress at the start of each stage.
@@ -104,7 +105,7 @@ fn calibrated(
 /// The scale that is known of an object, metres per unit of its normalised mesh.
 fn known_scale(object: &Object<'_>) -> Option<f64> {
     let frame = MeshFrame::of(object.mesh.mesh());
-    let [low, high] = Prior::of(object.options, object.mesh.mesh(), &frame).scale?;
+    let [low, high] = ScalePrior::of(object.options, object.mesh.mesh(), &frame).scale?;
     (low == high).then_some(low)
 }
 

@@ -6,9 +6,6 @@ use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::{DepthMap, Image};
 use crate::geometry::pinhole::Pinhole;
 
-/// Largest depth that a disparity stands for, relative to the scale: a shift may put what is far behind infinity.
-const FARTHEST: f64 = 1e3;
-
 /// What is known of a focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Focal {
@@ -37,15 +34,7 @@ impl RawView {
     /// # Errors
     /// Those of [`DepthMap::from_metres`].
     pub fn depth(&self, calibration: &Calibration) -> Result<DepthMap> {
-        let Calibration { scale, shift, .. } = *calibration;
-        let depth = |d: &f32| {
-            let d = f64::from(*d);
-            (match self.kind {
-                DepthKind::Metric | DepthKind::ScaleInvariant => d * scale,
-                DepthKind::AffineInvariant => (d + shift) * scale,
-                DepthKind::AffineInvariantDisparity => scale / (d + shift).max(scale / FARTHEST),
-            }) as f32
-        };
+        let depth = |d: &f32| calibration.depth(self.kind, f64::from(*d)) as f32;
         let (width, height) = (self.values.width(), self.values.height());
         DepthMap::from_metres(width, height, self.values.data().iter().map(depth).collect())
     }
