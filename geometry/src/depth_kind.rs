@@ -36,6 +36,11 @@ impl DepthKind {
         Self::ALL.into_iter().find(|kind| kind.name() == name)
     }
 
+    /// Whether z is in metres.
+    pub fn is_metric(self) -> bool {
+        self == Self::Metric
+    }
+
     /// Whether the shift t is unknown.
     pub fn is_affine(self) -> bool {
         matches!(self, Self::AffineInvariant | Self::AffineInvariantDisparity)

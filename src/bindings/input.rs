@@ -6,6 +6,7 @@ use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::object::{check_bytes, get, number, required_number, size, to_colors, to_f32s, to_u8s, wrong_type};
+use crate::calibrate::frames::RawFrame;
 use crate::calibrate::raw_view::{Focal, RawView};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
@@ -14,6 +15,7 @@ use crate::evidence::photo::Photo;
 use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
 use crate::geometry::pinhole::Pinhole;
+use crate::geometry::similarity::Similarity;
 use crate::number::number as number_text;
 
 /// Largest standard deviation of the logarithm of a focal length: from a fisheye to a telephoto lens.
@@ -40,6 +42,11 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
 /// The depth map, the camera and, if there are any, the mask and the photo of an input.
 pub fn frame(input: &JsValue) -> Result<Frame> {
     let (depth, camera) = view(input)?;
+    frame_of(input, depth, camera)
+}
+
+/// The same with a depth map and a camera that are known already.
+pub fn frame_of(input: &JsValue, depth: DepthMap, camera: Pinhole) -> Result<Frame> {
     let mask = get(input, "mask").map(|_| mask(input, depth.width(), depth.height())).transpose()?;
     let photo = get(input, "image").map(|image| photo(&image)).transpose()?.map(Arc::new);
     Ok(Frame { depth, camera, mask, photo })
@@ -84,6 +91,20 @@ pub fn raw_view(input: &JsValue) -> Result<RawView> {
     let camera = camera(&get(input, "camera").unwrap_or(JsValue::UNDEFINED))?;
     camera.check_field_of_view(width, height)?;
     Ok(RawView { values: Image::new("depth", width, height, values)?, kind, camera, focal })
+}
+
+/// Whether the depth or the focal length of a view is not fully known.
+pub fn is_raw(input: &JsValue) -> bool {
+    let is_metric = |kind: JsValue| kind.as_string().as_deref() == Some(DepthKind::Metric.name());
+    get(input, "focalDeviation").is_some() || get(input, "depthKind").is_some_and(|kind| !is_metric(kind))
+}
+
+/// Such a view with its mask, if it has one, and its camera's pose.
+pub fn raw_frame(input: &JsValue, world_from_camera: Option<Similarity>) -> Result<RawFrame> {
+    let view = raw_view(input)?;
+    let size = [view.values.width(), view.values.height()];
+    let mask = get(input, "mask").map(|_| mask(input, size[0], size[1])).transpose()?;
+    Ok(RawFrame { view, mask, world_from_camera })
 }
 
 /// `{ data, width, height }` with a `Uint8Array` of red, green and blue: other forms are resolved in TypeScript.

@@ -11,6 +11,7 @@ use super::profile::{Pictured, Subject};
 use super::raw_view::{Focal, RawView};
 use super::unknowns::{Reference, Unknowns};
 use crate::error::Result;
+use crate::geometry::depth_kind::DepthKind;
 use crate::pauses::Pauses;
 use crate::precise::no_candidate;
 use crate::precise::scored::conditioning::DROP;
@@ -43,12 +44,24 @@ const UNDETERMINED: f64 = 1.0;
 pub struct Estimate {
     /// The calibration.
     pub calibration: Calibration,
+    /// The unknowns that it follows from.
+    pub unknowns: Unknowns,
+    reference: Reference,
     /// Standard deviation of the depth of the objects that the shift leaves, relative to it.
     pub shift_deviation: f64,
     /// Standard deviation of the logarithm of the focal length.
     pub focal_deviation: f64,
     /// The best pose of each object; `None` for one that takes no part or has none.
     pub poses: Vec<Option<Pictured>>,
+}
+
+impl Estimate {
+    /// Sets the focal length, which other views have determined better: the logarithm of its factor, and its deviation.
+    pub fn set_focal(&mut self, kind: DepthKind, focal: f64, deviation: f64) {
+        self.unknowns.focal = focal;
+        self.focal_deviation = deviation;
+        self.calibration = self.reference.calibration(kind, self.unknowns);
+    }
 }
 
 /// Which number of [`Unknowns`] is varied.
@@ -78,7 +91,15 @@ struct Sample {
     poses: Vec<Option<Pictured>>,
 }
 
-/// Estimates what is unknown of a view.
+/// Where an estimate starts: with poses of its objects that are known already, by object.
+pub struct Start {
+    /// The unknowns.
+    pub at: Unknowns,
+    /// The poses.
+    pub poses: Vec<Vec<Pictured>>,
+}
+
+/// Estimates what is unknown of a view, without a start from searches with several calibrations.
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no object can be found with any calibration, and those of
@@ -86,24 +107,26 @@ struct Sample {
 pub async fn estimate(
     view: &RawView,
     subjects: &[Subject<'_>],
+    start: Option<Start>,
     pauses: &Pauses,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Estimate> {
-    let pixels = |k: &usize| subjects.get(*k).map_or(0, |s| s.mask.data().iter().filter(|m| **m != 0).count());
+    let pixels = |s: &Subject<'_>| s.mask.data().iter().filter(|m| **m != 0).count();
     let mut used: Vec<usize> = (0..subjects.len()).collect();
-    used.sort_by_key(|k| core::cmp::Reverse(pixels(k)));
+    // Those first that tell the unit.
+    used.sort_by_key(|k| subjects.get(*k).map(|s| core::cmp::Reverse((s.has_length, pixels(s)))));
     used.truncate(SUBJECTS);
     let reference = Reference::of(view, used.iter().filter_map(|k| subjects.get(*k)));
     let reference = reference.ok_or_else(no_candidate)?;
     let prior = Prior::of(view, reference);
-    Estimator { view, subjects, used, reference, prior, pauses, stages }.run().await
+    Estimator { view, subjects, used, reference, prior, pauses, stages }.run(start).await
 }
 
 impl Estimator<'_, '_> {
-    async fn run(mut self) -> Result<Estimate> {
-        let (grid, axis) = self.grid();
+    /// The best point of the grid, and the poses from which the score is followed from there, by object.
+    async fn start(&mut self, grid: &[Unknowns]) -> Result<Start> {
         let mut found = Vec::new();
-        for at in &grid {
+        for at in grid {
             found.push(self.searched(*at).await?);
         }
         let score = |k: usize| {
@@ -119,19 +142,26 @@ impl Estimator<'_, '_> {
             }
             return Err(no_candidate());
         }
-        let near = |k: usize, count: usize| {
-            let of = |poses: &Vec<(f64, Pictured)>| poses.iter().take(count).map(|(_, pose)| *pose).collect::<Vec<_>>();
-            found.get(k).map(|found| found.iter().map(of).collect::<Vec<_>>())
-        };
         let mut poses: Vec<Vec<Pictured>> = vec![Vec::new(); self.used.len()];
         let [own, others] = POSES;
         for (k, count) in [(best, own), (best.wrapping_sub(1), others), (best + 1, others)] {
-            for (all, more) in poses.iter_mut().zip(near(k, count).unwrap_or_default()) {
-                all.extend(more);
+            let near = found.get(k).into_iter().flatten();
+            for (all, more) in poses.iter_mut().zip(near) {
+                all.extend(more.iter().take(count).map(|(_, pose)| *pose));
             }
         }
+        Ok(Start { at: grid[best], poses })
+    }
+
+    /// The peak, from a start or, without one, from the grid.
+    async fn run(mut self, start: Option<Start>) -> Result<Estimate> {
+        let (grid, axis) = self.grid();
+        let Start { at, poses } = match start {
+            Some(start) => start,
+            None => self.start(&grid).await?,
+        };
         let mut deviations = [UNDETERMINED; 2];
-        let mut sample = self.sample(grid[best], grid[best], &poses).await?;
+        let mut sample = self.sample(at, at, &poses).await?;
         let is_affine = self.view.kind.is_affine();
         let mut axes: Vec<Axis> = axis.into_iter().collect();
         if is_affine && self.view.focal != Focal::Known {
@@ -152,6 +182,8 @@ impl Estimator<'_, '_> {
         }
         Ok(Estimate {
             calibration,
+            unknowns: sample.at,
+            reference: self.reference,
             shift_deviation: if is_affine {
                 libm::hypot(relief, focal * f64::from(u8::from(self.view.focal != Focal::Known)))
             } else {

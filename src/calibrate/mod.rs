@@ -6,6 +6,7 @@
 
 pub mod calibration;
 pub mod estimate;
+pub mod frames;
 pub mod prior;
 pub mod profile;
 pub mod raw_view;
@@ -78,7 +79,7 @@ pub async fn calibrate(
         return calibrated(view, Calibration::default(), None, is_metric);
     }
     let subjects: Vec<Subject<'_>> = objects.iter().map(|object| subject(object, is_metric)).collect();
-    let estimate = estimate(view, &subjects, pauses, &mut stages).await?;
+    let estimate = estimate(view, &subjects, None, pauses, &mut stages).await?;
     let factors = lengths.iter().zip(&estimate.poses).filter_map(|(length, pose)| {
         let (length, pose) = length.as_ref().zip(pose.as_ref())?;
         Some((length / pose.scale()) as f32)
@@ -116,5 +117,5 @@ fn subject<'a>(object: &Object<'a>, is_metric: bool) -> Subject<'a> {
     if !is_metric {
         (options.scale, options.known_extent_m) = Default::default();
     }
-    Subject { mask, others: others.clone(), mesh, options }
+    Subject { mask, others: others.clone(), mesh, options, has_length: known_scale(object).is_some() }
 }

@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use glam::DVec3;
+
 use super::calibration::Calibration;
 use super::raw_view::RawView;
 use crate::error::Result;
@@ -34,6 +36,8 @@ pub struct Subject<'a> {
     pub mesh: &'a PreparedMesh<'a>,
     /// What is known of it; in depth that is not metric without any length.
     pub options: AlignOptions,
+    /// Whether a length of it is known.
+    pub has_length: bool,
 }
 
 /// A pose that does not depend on the distance of the object nor on the focal length: size and place are in pixels, and the
@@ -107,6 +111,21 @@ impl Pictured {
     /// The scale, in units of depth with the calibration of the pose per unit of the mesh in its normalised frame.
     pub fn scale(&self) -> f64 {
         self.pose.scale_translation().0
+    }
+
+    /// The centre of the mesh, in units of depth with the calibration of the pose.
+    pub fn center(&self) -> DVec3 {
+        self.pose.scale_translation().1
+    }
+
+    /// The same pose, for a view whose guess of the focal length is this many times that of its own.
+    pub fn rebased(self, focal: f64) -> Self {
+        Self { focal: self.focal / focal, ..self }
+    }
+
+    /// The pose with another focal length.
+    pub fn at_focal(self, focal: f64) -> Self {
+        Self { pose: self.seen(focal, self.median), focal, ..self }
     }
 
     /// The pose with another calibration.

@@ -112,6 +112,11 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         })
     }
 
+    /// Its options.
+    pub fn options(&self) -> &TrackOptions {
+        &self.options
+    }
+
     /// The pose in the next frame. A frame without a mask, or with an empty one, is looked at where the object should be.
     ///
     /// # Errors

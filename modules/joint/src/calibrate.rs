@@ -12,6 +12,7 @@ use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
+use sim3align::calibrate::frames::calibrate_views;
 use sim3align::calibrate::{Calibrated, Object as CalibratedObject, calibrate};
 use sim3align::error::{Error, Result};
 use sim3align::evidence::observation::check_mask_size;
@@ -19,6 +20,9 @@ use sim3align::geometry::image::{Image, Mask};
 use sim3align::pauses::{Pauses, Task};
 use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
+use sim3align::views::options::ViewsOptions;
+
+use super::views::{in_view, world_from_camera};
 
 /// A running calibration.
 #[wasm_bindgen(skip_typescript)]
@@ -76,13 +80,60 @@ impl CalibrateTask {
     #[wasm_bindgen(skip_typescript)]
     pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
         let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
-        let Some(Calibrated { depth, calibration, .. }) = done else { return Ok(JsValue::UNDEFINED) };
-        let result = Object::new();
-        let depth: JsValue = Float32Array::from(depth.data()).into();
-        for (name, value) in [("depth", depth), ("calibration", answer(Ok(calibration))?)] {
-            // Setting a property of a new object cannot fail.
-            let _ = Reflect::set(&result, &name.into(), &value);
-        }
-        Ok(result.into())
+        done.map_or(Ok(JsValue::UNDEFINED), |calibrated| result(&calibrated))
     }
+}
+
+/// A running calibration of several views.
+#[wasm_bindgen(skip_typescript)]
+pub struct CalibrateViewsTask(RefCell<Task<'static, Vec<Calibrated>>>);
+
+/// Begins to calibrate several views of an object: `{ mesh, options, views: [{ depth, depthScale?, width, height, camera, depthKind?,
+/// focalDeviation?, mask, cameraToWorld? }] }`.
+#[wasm_bindgen(js_name = beginCalibrateViews, skip_typescript)]
+pub fn begin_calibrate_views(
+    input: &JsValue,
+    on_progress: Option<Function>,
+) -> core::result::Result<CalibrateViewsTask, JsValue> {
+    let begin = || {
+        let options: ViewsOptions =
+            options::options(&get(input, "options").unwrap_or(JsValue::UNDEFINED), &options::OF_LONG_CALLS, |_| None)?;
+        let views = get(input, "views").filter(Array::is_array);
+        let views = views.ok_or_else(|| wrong_type("views", &JsValue::UNDEFINED, "an array", "Pass the views."))?;
+        let frame = |(k, value): (usize, JsValue)| {
+            let read = || input::raw_frame(&value, world_from_camera(&value)?);
+            read().map_err(in_view(k))
+        };
+        let frames = Array::from(&views).iter().enumerate().map(frame).collect::<Result<Vec<_>>>()?;
+        let mesh = mesh::mesh_of(input)?;
+        let mut host = JsHost::new(on_progress);
+        Ok(Task::new(Pauses::new(now_ms, None), move |pauses| async move {
+            calibrate_views(&frames, &mesh, &options.of_one_view(), &mut host, &pauses).await
+        }))
+    };
+    begin().map(|task| CalibrateViewsTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
+}
+
+#[wasm_bindgen]
+impl CalibrateViewsTask {
+    /// Runs for about `slice_ms` milliseconds. Returns an array of `{ depth, calibration }` when finished, otherwise
+    /// `undefined`.
+    #[wasm_bindgen(skip_typescript)]
+    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
+        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
+        let Some(views) = done else { return Ok(JsValue::UNDEFINED) };
+        let views: core::result::Result<Array, JsValue> = views.iter().map(result).collect();
+        views.map(Into::into)
+    }
+}
+
+/// `{ depth, calibration }`.
+fn result(Calibrated { depth, calibration, .. }: &Calibrated) -> core::result::Result<JsValue, JsValue> {
+    let result = Object::new();
+    let depth: JsValue = Float32Array::from(depth.data()).into();
+    for (name, value) in [("depth", depth), ("calibration", answer(Ok(calibration))?)] {
+        // Setting a property of a new object cannot fail.
+        let _ = Reflect::set(&result, &name.into(), &value);
+    }
+    Ok(result.into())
 }

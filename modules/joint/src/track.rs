@@ -3,20 +3,32 @@
 use core::cell::RefCell;
 use std::rc::Rc;
 
-use js_sys::Function;
+use js_sys::{Function, Reflect};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
+use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::JsHost;
 use sim3align::bindings::object::wrong_type;
 use sim3align::bindings::transform::similarity;
 use sim3align::bindings::{input, mesh, options};
+use sim3align::calibrate::Calibrated;
+use sim3align::calibrate::frames::Sequence;
 use sim3align::error::{Error, ErrorCode, Result};
+use sim3align::pauses::{Pauses, finished};
 use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::progress::Silent;
 use sim3align::track::tracker::Tracker;
 
-type Kept = Rc<RefCell<Tracker<Rc<PreparedMesh<'static>>>>>;
+/// A tracker, and the calibrations of its frames.
+struct Tracked {
+    mesh: Rc<PreparedMesh<'static>>,
+    tracker: Tracker<Rc<PreparedMesh<'static>>>,
+    sequence: Sequence,
+}
+
+type Kept = Rc<RefCell<Tracked>>;
 
 thread_local! {
     static TRACKERS: RefCell<Vec<(u32, Kept)>> = const { RefCell::new(Vec::new()) };
@@ -27,8 +39,10 @@ thread_local! {
 pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
     let open = || {
         let options = options::options(options, &options::OF_CALLS, |_| None)?;
-        let tracker = Tracker::new(mesh::mesh_of(input)?, options)?;
-        TRACKERS.with_borrow_mut(|trackers| trackers.push((id, Rc::new(RefCell::new(tracker)))));
+        let mesh = mesh::mesh_of(input)?;
+        let tracker = Tracker::new(mesh.clone(), options)?;
+        let tracked = Tracked { mesh, tracker, sequence: Sequence::default() };
+        TRACKERS.with_borrow_mut(|trackers| trackers.push((id, Rc::new(RefCell::new(tracked)))));
         Ok(())
     };
     answer(open())
@@ -38,11 +52,26 @@ pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> core::result
 #[wasm_bindgen(js_name = trackFrame, skip_typescript)]
 pub fn track_frame(id: u32, frame: &JsValue, on_progress: Option<Function>) -> core::result::Result<JsValue, JsValue> {
     let track = || {
-        let tracker = tracker(id)?;
-        let frame = input::frame(frame)?;
-        tracker.borrow_mut().next(&frame, &mut JsHost::new(on_progress))
+        let tracked = tracker(id)?;
+        let Tracked { mesh, tracker, sequence } = &mut *tracked.borrow_mut();
+        let mut host = JsHost::new(on_progress);
+        if !input::is_raw(frame) {
+            return Ok((tracker.next(&input::frame(frame)?, &mut host)?, None));
+        }
+        let raw = input::raw_frame(frame, None)?;
+        let options = tracker.options().of_detection();
+        let Calibrated { depth, camera, calibration } =
+            finished(sequence.next(&raw, mesh, &options, &mut Silent, &Pauses::none()))?;
+        let found = tracker.next(&input::frame_of(frame, depth, camera)?, &mut host)?;
+        Ok((found, Some(calibration)))
     };
-    answer(track())
+    let (found, calibration) = track().map_err(|error: Error| to_js(&error))?;
+    let result = answer(Ok(found))?;
+    if let Some(calibration) = calibration {
+        // Setting a property of a new object cannot fail.
+        let _ = Reflect::set(&result, &"depthCalibration".into(), &answer(Ok(calibration))?);
+    }
+    Ok(result)
 }
 
 /// Corrects the pose of a frame; see `Tracker.correct` in the TypeScript package.
@@ -55,7 +84,7 @@ pub fn correct_track(id: u32, pose: &JsValue, frame: &JsValue) -> core::result::
         if index.is_none() && !frame.is_undefined() && !frame.is_null() {
             return Err(wrong_type("frame", frame, "the number of a frame", "Pass `frame` of its result."));
         }
-        tracker.borrow_mut().correct(&pose, index)
+        tracker.borrow_mut().tracker.correct(&pose, index)
     };
     answer(correct())
 }

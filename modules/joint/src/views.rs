@@ -13,6 +13,7 @@ use sim3align::bindings::object::{get, wrong_type};
 use sim3align::bindings::transform::similarity;
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
+use sim3align::geometry::similarity::Similarity;
 use sim3align::number::number;
 use sim3align::pauses::Task;
 use sim3align::views::report::ViewsAlignment;
@@ -45,26 +46,33 @@ pub fn begin_align_views(
 
 /// A view, whose errors name it.
 fn view(value: &JsValue, index: usize) -> Result<View> {
-    let read = || {
-        let frame = input::frame(value)?;
-        let pose = get(value, "cameraToWorld").map(|pose| similarity(&pose, "cameraToWorld")).transpose()?;
-        if let Some(pose) = &pose
-            && (pose.scale - 1.0).abs() > RIGID
-        {
-            return Err(Error::new(
-                ErrorCode::InvalidTransform,
-                "cameraToWorld",
-                format!("a scale of {}", number(pose.scale)),
-                "the pose of a camera: a rotation and a translation in metres",
-                "Convert the world to metres, and divide the scale out.",
-            ));
-        }
-        Ok(View { frame, world_from_camera: pose })
-    };
-    read().map_err(|error: Error| {
+    let read = || Ok(View { frame: input::frame(value)?, world_from_camera: world_from_camera(value)? });
+    read().map_err(in_view(index))
+}
+
+/// Names the view of an error.
+pub fn in_view(index: usize) -> impl Fn(Error) -> Error {
+    move |error| {
         let argument = format!("views[{index}].{}", error.argument);
         error.about(argument)
-    })
+    }
+}
+
+/// The pose of the camera of a view, if it is known.
+pub fn world_from_camera(value: &JsValue) -> Result<Option<Similarity>> {
+    let pose = get(value, "cameraToWorld").map(|pose| similarity(&pose, "cameraToWorld")).transpose()?;
+    if let Some(pose) = &pose
+        && (pose.scale - 1.0).abs() > RIGID
+    {
+        return Err(Error::new(
+            ErrorCode::InvalidTransform,
+            "cameraToWorld",
+            format!("a scale of {}", number(pose.scale)),
+            "the pose of a camera: a rotation and a translation in metres",
+            "Convert the world to metres, and divide the scale out.",
+        ));
+    }
+    Ok(pose)
 }
 
 #[wasm_bindgen]
