@@ -1,11 +1,13 @@
 //! What the modules of file readers share: JavaScript's bytes, options, images and errors.
 
-use js_sys::{ArrayBuffer, Object, Reflect, Uint8Array};
+use js_sys::{ArrayBuffer, Float32Array, Object, Reflect, Uint8Array};
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
+use crate::depth::{DepthImage, DepthReadOptions};
 use crate::guard::{MAX_BUFFER_BYTES, too_large};
+use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::Image;
 
@@ -26,8 +28,12 @@ pub fn image<T: Copy>(image: &Image<T>, data: JsValue) -> JsValue {
 }
 
 fn invalid(argument: &str, found: &JsValue, expected: &str, remedy: &str) -> Error {
-    let kind = if found.is_null() { "null".into() } else { found.js_typeof().as_string().unwrap_or_default() };
-    Error::new(ErrorCode::InvalidArgument, argument.to_owned(), kind, expected.to_owned(), remedy.to_owned())
+    let (expected, remedy) = (expected.to_owned(), remedy.to_owned());
+    Error::new(ErrorCode::InvalidArgument, argument.to_owned(), describe(found), expected, remedy)
+}
+
+fn describe(value: &JsValue) -> String {
+    if value.is_null() { "null".into() } else { value.js_typeof().as_string().unwrap_or_default() }
 }
 
 /// The bytes of a byte array (of this realm or another: a worker's, a test runner's) or an `ArrayBuffer`.
@@ -93,6 +99,35 @@ impl<'a> Options<'a> {
             }
         }
     }
+}
+
+/// The options of a reader of depth: `{ depthScale, integerDepthScale, depthKind }`.
+pub fn depth_options(options: &JsValue) -> Result<(DepthReadOptions, DepthKind)> {
+    let options = Options::new(options, &["depthScale", "integerDepthScale", "depthKind"])?;
+    let (depth_scale, integer_depth_scale) = (options.number("depthScale")?, options.number("integerDepthScale")?);
+    let kind = match options.get("depthKind") {
+        None => DepthKind::default(),
+        Some(value) => value.as_string().as_deref().and_then(DepthKind::from_name).ok_or_else(|| {
+            let names = DepthKind::ALL.map(|kind| format!("\"{}\"", kind.name())).join(", ");
+            let found = value.as_string().map_or_else(|| describe(&value), |name| format!("{name:?}"));
+            let remedy = "Leave it out for depth in metres.";
+            Error::new(ErrorCode::InvalidOption, "options.depthKind", found, format!("one of {names}"), remedy)
+        })?,
+    };
+    Ok((DepthReadOptions { depth_scale, integer_depth_scale }, kind))
+}
+
+/// `{ data, width, height, unit, camera }`.
+pub fn depth_image(depth: &DepthImage) -> JsValue {
+    let data = Float32Array::from(depth.values.data()).into();
+    let (width, height) = (depth.values.width() as f64, depth.values.height() as f64);
+    let mut properties =
+        vec![("data", data), ("width", width.into()), ("height", height.into()), ("unit", depth.unit.as_str().into())];
+    if let Some(camera) = &depth.camera {
+        let numbers = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)];
+        properties.push(("camera", object(&numbers.map(|(name, number)| (name, number.into())))));
+    }
+    object(&properties)
 }
 
 /// A plain object `{ code, argument, found, expected, remedy }`, of which the TypeScript package makes its

@@ -5,6 +5,7 @@ use std::io;
 use png::{BitDepth, Decoder, DecodingError, Limits, Transformations};
 
 use crate::cursor::Cursor;
+use crate::exif;
 use crate::guard::{corrupt, pixel_count};
 use crate::orientation::Orientation;
 use crate::reducer::{Reducer, reduced_size};
@@ -182,5 +183,5 @@ pub(crate) fn read_rgb(argument: &'static str, bytes: &[u8], max_pixels: usize) 
             reducer.add(row.first + i * row.step, row.row, color);
         }
     })?;
-    Ok((reducer.finish(argument)?, exif.as_deref().map_or(Orientation::UPRIGHT, Orientation::of_exif)))
+    Ok((reducer.finish(argument)?, exif.as_deref().map(exif::orientation).unwrap_or_default()))
 }

@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 use js_sys::{Array, Float32Array, Reflect, Uint8Array, Uint32Array};
-use sim3align_formats::bindings::{Options, image, object, string, to_bytes, to_js};
+use sim3align_formats::bindings::{Options, depth_image, depth_options, image, object, string, to_bytes, to_js};
 use sim3align_formats::colored_mesh::ColoredMesh;
-use sim3align_formats::depth::{DepthReadOptions, read_depth as depth_from_bytes};
+use sim3align_formats::depth::read_depth_image;
 use sim3align_formats::error::Error;
+use sim3align_formats::exif::read_exif as exif_from_bytes;
 use sim3align_formats::mask::read_mask as mask_from_bytes;
 use sim3align_formats::mesh::{
     MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
@@ -71,14 +72,33 @@ export interface ReadDepthOptions {
   depthScale?: number;
   /** Metres per unit of whole numbers only, where there is no `depthScale`: what a camera file says. */
   integerDepthScale?: number;
+  /** What the values are; `"metric"` by default. */
+  depthKind?: string;
 }
 
 /** A depth map that was read; `width` and `height` in pixels. */
 export interface DepthImage {
-  /** Metres along the optical axis, row by row; 0 is no reading. */
+  /** Row by row: metres along the optical axis, unless `depthKind` says otherwise. */
   data: Float32Array;
   width: number;
   height: number;
+  /** The unit of the values in the file. */
+  unit: string;
+  /** The camera in the file, in pixels. */
+  camera?: { fx: number; fy: number; cx: number; cy: number };
+}
+
+/** EXIF data that were read. */
+export interface Exif {
+  focalLength35mm?: number;
+  focalLengthMm?: number;
+  sensorWidthMm?: number;
+  digitalZoom?: number;
+  make?: string;
+  model?: string;
+  orientation: number;
+  width?: number;
+  height?: number;
 }
 
 /** A mask that was read; `width` and `height` in pixels. */
@@ -95,7 +115,7 @@ export interface MaskImage {
 pub fn read_mesh(
     #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
     #[wasm_bindgen(unchecked_optional_param_type = "ReadMeshOptions")] options: &JsValue,
-) -> core::result::Result<JsValue, JsValue> {
+) -> Result<JsValue, JsValue> {
     let read = || {
         let options = Options::new(options, &["format", "resources", "colors"])?;
         let resources = options.get("resources");
@@ -146,7 +166,7 @@ fn flat(points: &[Vec3]) -> Float32Array {
 #[wasm_bindgen(js_name = externalResources, unchecked_return_type = "ExternalResources")]
 pub fn external_resources(
     #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-) -> core::result::Result<JsValue, JsValue> {
+) -> Result<JsValue, JsValue> {
     let found = to_bytes("mesh", bytes).and_then(|bytes| resources_of(&bytes)).map_err(|error| to_js(&error))?;
     let names = |names: &[String]| names.iter().map(|name| JsValue::from(name.as_str())).collect::<Array>().into();
     Ok(object(&[("shape", names(&found.shape)), ("colors", names(&found.colors))]))
@@ -154,33 +174,46 @@ pub fn external_resources(
 
 /// Reads a PNG or a JPEG as a photo: sRGB colours, turned as the EXIF data say; large ones are reduced.
 #[wasm_bindgen(js_name = readImage, unchecked_return_type = "PhotoImage")]
-pub fn read_image(
-    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-) -> core::result::Result<JsValue, JsValue> {
+pub fn read_image(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
     let photo = to_bytes("image", bytes).and_then(|bytes| read_photo(&bytes)).map_err(|error| to_js(&error))?;
     Ok(image(&photo, Uint8Array::from(photo.data().as_flattened()).into()))
 }
 
-/// Reads a 16-bit grey PNG or a `.npy` array as depth in metres.
+/// Reads the EXIF data of a PNG or a JPEG; a property is missing where they do not state it.
+#[wasm_bindgen(js_name = readExif, unchecked_return_type = "Exif")]
+pub fn read_exif(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
+    let exif = to_bytes("image", bytes).and_then(|bytes| exif_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
+    let numbers = [
+        ("focalLength35mm", exif.focal_length_35mm),
+        ("focalLengthMm", exif.focal_length_mm),
+        ("sensorWidthMm", exif.sensor_width_mm),
+        ("digitalZoom", exif.digital_zoom),
+        ("width", exif.width.map(f64::from)),
+        ("height", exif.height.map(f64::from)),
+    ];
+    let texts = [("make", exif.make), ("model", exif.model)];
+    let mut properties: Vec<(&str, JsValue)> = vec![("orientation", exif.orientation.number().into())];
+    properties.extend(numbers.into_iter().filter_map(|(name, number)| Some((name, number?.into()))));
+    properties.extend(texts.into_iter().filter_map(|(name, text)| Some((name, text?.into()))));
+    Ok(object(&properties))
+}
+
+/// Reads a grey PNG or a `.npy` array as depth.
 #[wasm_bindgen(js_name = readDepth, unchecked_return_type = "DepthImage")]
 pub fn read_depth(
     #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
     #[wasm_bindgen(unchecked_optional_param_type = "ReadDepthOptions")] options: &JsValue,
-) -> core::result::Result<JsValue, JsValue> {
+) -> Result<JsValue, JsValue> {
     let read = || {
-        let options = Options::new(options, &["depthScale", "integerDepthScale"])?;
-        let (depth_scale, integer_depth_scale) = (options.number("depthScale")?, options.number("integerDepthScale")?);
-        depth_from_bytes(&to_bytes("depth", bytes)?, &DepthReadOptions { depth_scale, integer_depth_scale })
+        let (options, kind) = depth_options(options)?;
+        read_depth_image(&to_bytes("depth", bytes)?, &options, kind)
     };
-    let depth = read().map_err(|error| to_js(&error))?;
-    Ok(image(&depth, Float32Array::from(depth.data()).into()))
+    read().map(|depth| depth_image(&depth)).map_err(|error| to_js(&error))
 }
 
 /// Reads a PNG or a `.npy` array as a mask.
 #[wasm_bindgen(js_name = readMask, unchecked_return_type = "MaskImage")]
-pub fn read_mask(
-    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-) -> core::result::Result<JsValue, JsValue> {
+pub fn read_mask(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
     let mask = to_bytes("mask", bytes).and_then(|bytes| mask_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
     Ok(image(&mask, Uint8Array::from(mask.data()).into()))
 }
