@@ -1,12 +1,11 @@
 //! What cameras note in the EXIF data of photos (Exif 2.32, CIPA DC-008).
 
-use std::io;
+use exif::{Error as ExifError, Exif as Fields, In, Reader, Tag, Value};
 
-use exif::{Context, Error as ExifError, Exif as Fields, In, Reader, Tag, Value};
-
-use crate::guard::{beginning, corrupt, unsupported};
+use crate::guard::{beginning, unsupported};
+use crate::jpeg;
 use crate::orientation::Orientation;
-use crate::{jpeg, png};
+use crate::png::{self, PngInfo};
 use sim3align_geometry::error::Result;
 
 /// Millimetres of the units of `FocalPlaneResolutionUnit`: 2 is the inch, its default, 3 the centimetre; cameras also
@@ -40,27 +39,31 @@ pub struct Exif {
 /// none.
 ///
 /// # Errors
-/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat) for other files, and
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile) for a file that ends before its pixels.
+/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat) for other files,
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile).
 pub fn read_exif(bytes: &[u8]) -> Result<Exif> {
-    if !bytes.starts_with(jpeg::MAGIC) && !bytes.starts_with(png::MAGIC) {
+    let tiff = if bytes.starts_with(jpeg::MAGIC) {
+        jpeg::exif("image", bytes)?
+    } else if bytes.starts_with(png::MAGIC) {
+        PngInfo::read("image", bytes)?.exif.map(<[u8]>::to_vec)
+    } else {
         let remedy = "Pass the bytes of the photo as the camera wrote them.";
         return Err(unsupported("image", beginning(bytes), "a PNG or a JPEG", remedy));
-    }
-    match Reader::new().continue_on_error(true).read_from_container(&mut io::Cursor::new(bytes)) {
-        Ok(fields) => Ok(Exif::of(&fields)),
-        Err(ExifError::PartialResult(partial)) => Ok(Exif::of(&partial.into_inner().0)),
-        Err(ExifError::NotFound(_) | ExifError::BlankValue(_)) => Ok(Exif::default()),
-        Err(error) => Err(corrupt("image", format!("a photo whose EXIF data can't be read: {error}"), "EXIF data")),
-    }
+    };
+    Ok(tiff.and_then(fields).as_ref().map(Exif::of).unwrap_or_default())
 }
 
 /// The orientation in EXIF data, from their TIFF header; upright where they state none.
 pub(crate) fn orientation(tiff: &[u8]) -> Orientation {
-    match Reader::new().continue_on_error(true).read_raw(tiff.to_vec()) {
-        Ok(fields) => orientation_of(&fields),
-        Err(ExifError::PartialResult(partial)) => orientation_of(&partial.into_inner().0),
-        Err(_) => Orientation::default(),
+    fields(tiff.to_vec()).as_ref().map(orientation_of).unwrap_or_default()
+}
+
+/// The fields that can be read.
+fn fields(tiff: Vec<u8>) -> Option<Fields> {
+    match Reader::new().continue_on_error(true).read_raw(tiff) {
+        Ok(fields) => Some(fields),
+        Err(ExifError::PartialResult(partial)) => Some(partial.into_inner().0),
+        Err(_) => None,
     }
 }
 
@@ -94,8 +97,7 @@ impl Exif {
 }
 
 fn value(fields: &Fields, tag: Tag) -> Option<&Value> {
-    // The tags of the photo, not those of its thumbnail.
-    debug_assert!(matches!(tag.context(), Context::Tiff | Context::Exif));
+    // Of the photo, not of its thumbnail.
     Some(&fields.get_field(tag, In::PRIMARY)?.value)
 }
 

@@ -68,6 +68,13 @@ pub(crate) fn read(argument: &'static str, bytes: &[u8], max_pixels: usize) -> R
     Ok((reducer.finish(argument)?, orientation))
 }
 
+/// The EXIF data, from their TIFF header.
+pub(crate) fn exif(argument: &'static str, bytes: &[u8]) -> Result<Option<Vec<u8>>> {
+    let mut decoder = Decoder::new(bytes);
+    read_header(argument, &mut decoder)?;
+    Ok(decoder.exif_data().map(<[u8]>::to_vec))
+}
+
 /// Width and height.
 pub(crate) fn size(argument: &'static str, bytes: &[u8]) -> Result<[usize; 2]> {
     let info = read_header(argument, &mut Decoder::new(bytes))?;
