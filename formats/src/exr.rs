@@ -5,6 +5,7 @@ use std::io;
 use exr::block::chunk::TileCoordinates;
 use exr::block::reader::{ChunksReader, Reader};
 use exr::block::{BlockIndex, UncompressedBlock};
+use exr::compression::Compression;
 use exr::math::Vec2;
 use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
@@ -39,6 +40,11 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
     let sample = description.sample_type;
     if description.sampling != Vec2(1, 1) {
         return Err(unsupported("depth", "an EXR with a subsampled channel", "one value per pixel", "Save it again."));
+    }
+    // The library's decoder of B44 overflows on damaged files. It is lossy, so that nobody keeps depth in it.
+    if matches!(header.compression, Compression::B44 | Compression::B44A) {
+        let remedy = "Save it again, with ZIP compression.";
+        return Err(unsupported("depth", "an EXR with B44 compression", "lossless compression", remedy));
     }
     let list = header.channels.clone();
     let is_wanted = |_: &_, _: TileCoordinates, block: BlockIndex| block.layer == layer && block.level == Vec2(0, 0);
