@@ -2,9 +2,9 @@
 
 use std::io;
 
-use exr::block::chunk::TileCoordinates;
+use exr::block::UncompressedBlock;
+use exr::block::lines::LineRef;
 use exr::block::reader::{ChunksReader, Reader};
-use exr::block::{BlockIndex, UncompressedBlock};
 use exr::compression::Compression;
 use exr::math::Vec2;
 use exr::meta::attribute::SampleType;
@@ -46,41 +46,26 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
         let remedy = "Save it again, with ZIP compression.";
         return Err(unsupported("depth", "an EXR with B44 compression", "lossless compression", remedy));
     }
-    let list = header.channels.clone();
-    let is_wanted = |_: &_, _: TileCoordinates, block: BlockIndex| block.layer == layer && block.level == Vec2(0, 0);
-    let chunks = reader.filter_chunks(false, is_wanted).map_err(|error| broken(&error))?;
+    // In the order of the file: the library panics at offsets beyond 32 bits in the table of a damaged one.
+    let chunks = reader.all_chunks(false).map_err(|error| broken(&error))?;
+    let meta = chunks.meta_data().clone();
+    let Some(list) = meta.headers.get(layer).map(|header| &header.channels) else { return Err(no_depth(&[])) };
     // Allocated when the first block has been read, and NaN where there is none.
     let mut values = Vec::new();
-    let insert = |_: &exr::meta::MetaData, block: UncompressedBlock| {
-        values.resize(picture.width * picture.height, f32::NAN);
-        for line in block.lines(&list).filter(|line| line.location.channel == channel) {
-            let Vec2(first, row) = line.location.position;
-            let mut write = |i: usize, value: f32| {
-                if let Some(slot) = picture.place(first + i, row).and_then(|place| values.get_mut(place)) {
-                    *slot = value;
-                }
-            };
-            match sample {
-                SampleType::F16 => {
-                    for (i, value) in line.read_samples::<f16>().enumerate() {
-                        write(i, value?.to_f32());
-                    }
-                }
-                SampleType::F32 => {
-                    for (i, value) in line.read_samples::<f32>().enumerate() {
-                        write(i, value?);
-                    }
-                }
-                SampleType::U32 => {
-                    for (i, value) in line.read_samples::<u32>().enumerate() {
-                        write(i, value? as f32);
-                    }
-                }
-            }
+    for chunk in chunks {
+        let chunk = chunk.map_err(|error| broken(&error))?;
+        if chunk.layer_index != layer {
+            continue;
         }
-        Ok(())
-    };
-    chunks.decompress_sequential(false, insert).map_err(|error| broken(&error))?;
+        let block = UncompressedBlock::decompress_chunk(chunk, &meta, false).map_err(|error| broken(&error))?;
+        if block.index.level != Vec2(0, 0) {
+            continue;
+        }
+        values.resize(picture.width * picture.height, f32::NAN);
+        for line in block.lines(list).filter(|line| line.location.channel == channel) {
+            picture.write(&line, sample, &mut values).map_err(|error| broken(&error))?;
+        }
+    }
     values.resize(picture.width * picture.height, f32::NAN);
     let bits = if sample == SampleType::F16 { 16 } else { 32 };
     let stored = Stored { width: picture.width, height: picture.height, bits, is_integer: sample == SampleType::U32 };
@@ -116,6 +101,34 @@ impl Picture {
         let display = [window.position.0, window.position.1].map(i64::from);
         let offset = [offset[0] - display[0], offset[1] - display[1]];
         Ok(Self { width, height, offset, data: [data_width, data_height] })
+    }
+
+    /// Writes the samples of a line.
+    fn write(&self, line: &LineRef<'_>, sample: SampleType, values: &mut [f32]) -> exr::error::UnitResult {
+        let Vec2(first, row) = line.location.position;
+        let mut write = |i: usize, value: f32| {
+            if let Some(slot) = self.place(first + i, row).and_then(|place| values.get_mut(place)) {
+                *slot = value;
+            }
+        };
+        match sample {
+            SampleType::F16 => {
+                for (i, value) in line.read_samples::<f16>().enumerate() {
+                    write(i, value?.to_f32());
+                }
+            }
+            SampleType::F32 => {
+                for (i, value) in line.read_samples::<f32>().enumerate() {
+                    write(i, value?);
+                }
+            }
+            SampleType::U32 => {
+                for (i, value) in line.read_samples::<u32>().enumerate() {
+                    write(i, value? as f32);
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The index of a stored pixel in the picture, if it is inside.

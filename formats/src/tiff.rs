@@ -17,14 +17,7 @@ const MAX_RATIO: usize = 4096;
 const MAX_ENTRY_BYTES: usize = 1 << 22;
 
 pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
-    let limits = {
-        let mut limits = Limits::default();
-        limits.decoding_buffer_size = 8 * MAX_PIXELS;
-        limits.intermediate_buffer_size = 8 * MAX_PIXELS;
-        limits.ifd_value_size = MAX_ENTRY_BYTES;
-        limits
-    };
-    let mut decoder = Decoder::new(io::Cursor::new(bytes)).map_err(broken)?.with_limits(limits);
+    let mut decoder = Decoder::new(io::Cursor::new(bytes)).map_err(broken)?;
     let (width, height) = decoder.dimensions().map_err(broken)?;
     let (width, height) = (width as usize, height as usize);
     let count = pixel_count("depth", width, height)?;
@@ -50,6 +43,13 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
         let found = format!("{width} × {height} pixels in {} bytes", bytes.len());
         return Err(corrupt("depth", found, "enough bytes for the pixels"));
     }
+    let pixel_bytes = count * bits.div_ceil(8);
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = pixel_bytes;
+    // What a strip or tile says of its size in the file, which it does not exceed.
+    limits.intermediate_buffer_size = pixel_bytes.max(bytes.len());
+    limits.ifd_value_size = MAX_ENTRY_BYTES;
+    let mut decoder = decoder.with_limits(limits);
     let mut stored = Stored { width, height, bits, is_integer: true };
     stored.check_bits(kind, || format!("a TIFF of {bits} bits a pixel"))?;
     let pixels = decoder.read_image().map_err(broken)?;
@@ -88,7 +88,9 @@ fn broken(error: TiffError) -> Error {
             "strips or tiles, uncompressed or with deflate or LZW",
             "Save it again without compression, for example with tifffile.imwrite.",
         ),
-        TiffError::LimitsExceeded => too_large("depth", "a TIFF with too large parts", "at most 512 MB"),
+        TiffError::LimitsExceeded => {
+            too_large("depth", "a TIFF whose parts are larger than their image", "strips or tiles of the image")
+        }
         error => corrupt("depth", format!("a TIFF that can't be decoded: {error}"), "a TIFF image"),
     }
 }

@@ -94,7 +94,7 @@ const reflex: [Fields, Fields] = [
   { make: "Maker", orientation: 1 },
   {
     focalLength: { rational: [50, 1] },
-    planeX: { rational: [6000 * 254, 2240] },
+    planeX: { rational: [6000 * 254, 224] },
     planeUnit: 2,
     pixelX: 6000,
     pixelY: 4000,
