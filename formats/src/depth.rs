@@ -1,10 +1,14 @@
 //! Depth map files.
 
+use crate::depth_files::{self, read_depth_file};
 use crate::guard::{beginning, unsupported};
 use crate::npy::{self, Kind, NpyImage};
 use crate::png::{self, PngInfo};
+use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::DepthMap;
+use sim3align_geometry::image::{DepthMap, Image};
+use sim3align_geometry::number::number;
+use sim3align_geometry::pinhole::Pinhole;
 
 /// Default unit of integer depth in metres: millimetres, as most sensors write them.
 pub const DEFAULT_DEPTH_SCALE: f64 = 0.001;
@@ -19,83 +23,150 @@ pub struct DepthReadOptions {
     pub integer_depth_scale: Option<f64>,
 }
 
-impl DepthReadOptions {
-    fn scale(&self, is_integer: bool) -> Result<f64> {
-        let scale = match (self.depth_scale, is_integer) {
-            (Some(scale), _) => scale,
-            (None, true) => self.integer_depth_scale.unwrap_or(DEFAULT_DEPTH_SCALE),
-            (None, false) => 1.0,
-        };
-        if scale.is_finite() && scale > 0.0 {
-            return Ok(scale);
-        }
-        Err(Error::new(
-            ErrorCode::InvalidOption,
-            "options.depthScale",
-            format!("{scale}"),
-            "a finite number above 0",
-            "Pass metres per unit: 0.001 for millimetres, 0.0002 for TUM RGB-D.",
-        ))
-    }
+/// A depth map from a file.
+#[derive(Debug, Clone)]
+pub struct DepthImage {
+    /// The values: metres for [`DepthKind::Metric`], otherwise as in the file. "No reading" is 0 for metric and
+    /// scale-invariant depth, and NaN for the affine-invariant kinds, whose values may be zero or negative.
+    pub values: Image<f32>,
+    /// The camera in the file, in pixels of the depth map.
+    pub camera: Option<Pinhole>,
+    /// The unit of the values in the file and why it was taken: `metres (float values, assumed)`, `0.0002 m (depthScale)`.
+    pub unit: String,
 }
 
-/// Reads depth in metres: a 16-bit grey PNG, or a `.npy` array (H×W, H×W×1 or 1×H×W) of integers of 16 bits or
-/// more, or floats. Zero, negative, NaN and infinite values become 0, "no reading".
+/// The numbers of a depth file, as its reader passes them on.
+pub(crate) struct Stored {
+    pub width: usize,
+    pub height: usize,
+    /// Bits per value.
+    pub bits: usize,
+    pub is_integer: bool,
+}
+
+/// Reads metric depth in metres from any supported file: those of [`read_depth_image`] and of
+/// [`read_depth_file`]. Zero, negative, NaN and infinite values become 0, "no reading".
+///
+/// # Errors
+/// Those of [`read_depth_image`] and of [`read_depth_file`].
+pub fn read_depth(bytes: &[u8], options: &DepthReadOptions) -> Result<DepthMap> {
+    let read = if depth_files::Format::of(bytes).is_some() { read_depth_file } else { read_depth_image };
+    Ok(read(bytes, options, DepthKind::Metric)?.values)
+}
+
+/// Reads depth from a grey PNG, or from a `.npy` array (H×W, also with further axes of length 1) of integers or floats.
+/// For the affine-invariant kinds, they may have 8 bits; otherwise, they need 16 or more.
 ///
 /// # Errors
 /// [`ErrorCode::EightBitDepth`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::CorruptFile`],
 /// [`ErrorCode::FileTooLarge`], [`ErrorCode::EmptyImage`], [`ErrorCode::InvalidOption`].
-pub fn read_depth(bytes: &[u8], options: &DepthReadOptions) -> Result<DepthMap> {
+pub fn read_depth_image(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     if bytes.starts_with(png::MAGIC) {
-        return read_png(bytes, options.scale(true)?);
+        return read_png(bytes, options, kind);
     }
     if bytes.starts_with(npy::MAGIC) {
-        return read_npy(bytes, options);
+        return read_npy(bytes, options, kind);
     }
     Err(unsupported(
         "depth",
         beginning(bytes),
-        "a 16-bit grey PNG or a .npy array",
+        "a 16-bit grey PNG, a .npy array, or a .npz, .exr, .tiff or .pfm file",
         "Save the depth with numpy.save, or as 16-bit PNG in millimetres.",
     ))
 }
 
-fn read_png(bytes: &[u8], depth_scale: f64) -> Result<DepthMap> {
+fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     let info = PngInfo::read("depth", bytes)?;
-    if info.bit_depth < 16 {
-        let article = if info.bit_depth == 8 { "an" } else { "a" };
-        return Err(eight_bit(format!("{article} {}-bit PNG", info.bit_depth)));
-    }
+    let bits = usize::from(info.bit_depth);
+    let stored = Stored { width: info.width, height: info.height, bits, is_integer: true };
+    let article = if bits == 8 { "an" } else { "a" };
+    stored.check_bits(kind, || format!("{article} {bits}-bit PNG"))?;
     if !info.is_grey {
         return Err(unsupported(
             "depth",
-            "a 16-bit PNG with colour or alpha",
+            format!("a {bits}-bit PNG with colour or alpha"),
             "one grey channel",
             "Pass the raw depth map, not a rendering of it.",
         ));
     }
     let pixels = info.decode("depth", bytes)?;
     let samples = pixels.samples.chunks_exact(pixels.channels.max(1));
-    let metres = samples.map(|pixel| pixel.first().map_or(0.0, |&z| (f64::from(z) * depth_scale) as f32)).collect();
-    DepthMap::from_metres(info.width, info.height, metres)
+    stored.read(options, kind, samples.map(|pixel| pixel.first().map_or(0.0, |&z| f64::from(z))))
 }
 
-fn read_npy(bytes: &[u8], options: &DepthReadOptions) -> Result<DepthMap> {
+fn read_npy(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     let array = NpyImage::read("depth", bytes)?;
-    if array.size == 1 {
-        return Err(eight_bit("an array of 8-bit elements".into()));
-    }
-    let scale = options.scale(array.kind != Kind::Float)?;
-    DepthMap::from_metres(array.width, array.height, array.values().map(|z| (z * scale) as f32).collect())
+    let bits = 8 * array.header().size;
+    let is_integer = array.header().kind != Kind::Float;
+    let stored = Stored { width: array.width, height: array.height, bits, is_integer };
+    stored.check_bits(kind, || "an array of 8-bit elements".into())?;
+    stored.read(options, kind, array.values())
 }
 
-fn eight_bit(found: String) -> Error {
-    Error::new(
-        ErrorCode::EightBitDepth,
-        "depth",
-        found,
-        "16 bits or more a pixel",
-        "256 steps are a picture of the depth (mostly normalised or inverted), not metres: \
-         save the depth itself, with numpy.save or as 16-bit PNG in millimetres.",
-    )
+impl Stored {
+    /// The depth map of these values, row-major, and its unit.
+    pub fn read(
+        &self,
+        options: &DepthReadOptions,
+        kind: DepthKind,
+        values: impl Iterator<Item = f64>,
+    ) -> Result<DepthImage> {
+        let (scale, unit) = self.unit(options, kind)?;
+        let values = values.map(|z| (z * scale) as f32);
+        let (width, height) = (self.width, self.height);
+        let values = match kind {
+            DepthKind::Metric | DepthKind::ScaleInvariant => DepthMap::from_metres(width, height, values.collect())?,
+            DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity => {
+                let values = values.map(|z| if z.is_finite() { z } else { f32::NAN });
+                Image::new("depth", width, height, values.collect())?
+            }
+        };
+        Ok(DepthImage { values, camera: None, unit })
+    }
+
+    /// What a value is multiplied by, and its unit for people. The values of affine-invariant kinds have no unit.
+    fn unit(&self, options: &DepthReadOptions, kind: DepthKind) -> Result<(f64, String)> {
+        let checked = |scale: f64, source: &str| {
+            if scale.is_finite() && scale > 0.0 {
+                return Ok((scale, format!("{} m ({source})", number(scale))));
+            }
+            Err(Error::new(
+                ErrorCode::InvalidOption,
+                "options.depthScale",
+                number(scale),
+                "a finite number above 0",
+                "Pass metres per unit: 0.001 for millimetres, 0.0002 for TUM RGB-D.",
+            ))
+        };
+        let Self { bits, is_integer, .. } = *self;
+        match (kind, options.depth_scale) {
+            (DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity, _) => {
+                Ok((1.0, format!("none ({})", kind.name())))
+            }
+            (_, Some(scale)) => checked(scale, "depthScale"),
+            (DepthKind::ScaleInvariant, None) => Ok((1.0, format!("unknown ({})", kind.name()))),
+            (DepthKind::Metric, None) if !is_integer => Ok((1.0, "metres (float values, assumed)".into())),
+            (DepthKind::Metric, None) => match options.integer_depth_scale {
+                Some(scale) => checked(scale, "camera file"),
+                None => checked(DEFAULT_DEPTH_SCALE, &format!("{bits}-bit integers, assumed")),
+            },
+        }
+    }
+
+    /// Rejects values of 8 bits or less, except for the kinds whose values are often written so.
+    pub fn check_bits(&self, kind: DepthKind, found: impl FnOnce() -> String) -> Result<()> {
+        let is_affine = matches!(kind, DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity);
+        if self.bits > 8 || is_affine {
+            return Ok(());
+        }
+        Err(Error::new(
+            ErrorCode::EightBitDepth,
+            "depth",
+            found(),
+            "16 bits or more a pixel",
+            "256 steps are a picture of the depth (mostly normalised or inverted), not metres: \
+             save the depth itself, with numpy.save or as 16-bit PNG in millimetres. If it is the picture that a \
+             relative model draws, near is bright: pass depthKind \"affine-invariant-disparity\".",
+        ))
+    }
 }

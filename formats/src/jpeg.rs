@@ -2,6 +2,7 @@
 
 use jpeg_decoder::{CodingProcess, Decoder, ImageInfo, PixelFormat};
 
+use crate::exif;
 use crate::guard::{corrupt, pixel_count, too_large, unsupported};
 use crate::orientation::Orientation;
 use crate::reducer::{Reducer, reduced_size};
@@ -63,8 +64,15 @@ pub(crate) fn read(argument: &'static str, bytes: &[u8], max_pixels: usize) -> R
             reducer.add(u, v, to_rgb(pixel));
         }
     }
-    let orientation = decoder.exif_data().map_or(Orientation::UPRIGHT, Orientation::of_exif);
+    let orientation = decoder.exif_data().map(exif::orientation).unwrap_or_default();
     Ok((reducer.finish(argument)?, orientation))
+}
+
+/// The EXIF data, from their TIFF header.
+pub(crate) fn exif(argument: &'static str, bytes: &[u8]) -> Result<Option<Vec<u8>>> {
+    let mut decoder = Decoder::new(bytes);
+    read_header(argument, &mut decoder)?;
+    Ok(decoder.exif_data().map(<[u8]>::to_vec))
 }
 
 /// Width and height.

@@ -3,12 +3,18 @@
 //! Readers take bytes. For malicious input, they return a value or an error, and allocate memory in proportion to the
 //! input or up to a stated limit.
 
+pub use sim3align_geometry::error;
+
 pub mod bindings;
 mod color;
 pub mod colored_mesh;
 mod cursor;
 mod data_uri;
 pub mod depth;
+pub mod depth_files;
+pub mod exif;
+mod exr;
+mod file_camera;
 mod gltf;
 pub mod guard;
 mod jpeg;
@@ -17,9 +23,11 @@ pub mod mesh;
 mod mesh_builder;
 mod mtl;
 mod npy;
+mod npz;
 mod obj;
-mod orientation;
+pub mod orientation;
 mod painted_mesh;
+mod pfm;
 pub mod photo;
 pub mod ply;
 mod ply_header;
@@ -30,3 +38,4 @@ mod stl;
 pub mod text;
 mod texture;
 mod texture_loader;
+mod tiff;

@@ -1,4 +1,4 @@
-//! NumPy `.npy` files, versions 1 to 3: two-dimensional arrays of numbers.
+//! NumPy `.npy` files, versions 1 to 3: arrays of numbers.
 
 use crate::cursor::Cursor;
 use crate::guard::{corrupt, pixel_count, unsupported};
@@ -15,24 +15,20 @@ pub(crate) enum Kind {
     Float,
 }
 
-/// An image-shaped array: H×W, H×W×1 or 1×H×W.
-#[derive(Debug)]
-pub(crate) struct NpyImage<'a> {
-    pub width: usize,
-    pub height: usize,
+/// The header of an array: its type and shape.
+#[derive(Debug, Clone)]
+pub(crate) struct NpyHeader {
     pub kind: Kind,
     /// Bytes per element.
     pub size: usize,
+    pub shape: Vec<usize>,
     big_endian: bool,
     fortran_order: bool,
-    data: &'a [u8],
 }
 
-impl<'a> NpyImage<'a> {
-    /// Reads the header and checks that the data are complete. Rejects sizes above the limit and shapes other than
-    /// those of an image.
-    pub fn read(argument: &'static str, bytes: &'a [u8]) -> Result<Self> {
-        let mut cursor = Cursor::new(argument, bytes);
+impl NpyHeader {
+    /// Reads the header; the elements follow at the cursor.
+    pub fn read(argument: &'static str, cursor: &mut Cursor<'_>) -> Result<Self> {
         if cursor.take(MAGIC.len())? != MAGIC {
             return Err(corrupt(argument, "no NumPy magic number", "a .npy file"));
         }
@@ -55,42 +51,61 @@ impl<'a> NpyImage<'a> {
         let fortran_order = field("fortran_order")?.starts_with("True");
         let shape = shape(field("shape")?)
             .ok_or_else(|| corrupt(argument, ".npy header with a broken shape", "a tuple of whole numbers"))?;
-        let image = match shape.as_slice() {
-            [1, image @ ..] if image.len() == 2 => image,
-            [image @ .., 1] if image.len() == 2 => image,
-            image => image,
-        };
-        let &[height, width] = image else {
-            let found = format!("an array of shape {shape:?}");
-            let remedy = "Pass one image: array[0] of a batch, array[..., 0] of channels.";
-            return Err(unsupported(argument, found, "H × W, H × W × 1 or 1 × H × W", remedy));
-        };
-        let count = pixel_count(argument, width, height)?;
-        let data = cursor.take(count * size)?;
-        Ok(Self { width, height, kind, size, big_endian, fortran_order, data })
+        Ok(Self { kind, size, shape, big_endian, fortran_order })
     }
 
-    /// The elements, row-major, for both storage orders of the file.
-    pub fn values(&self) -> impl Iterator<Item = f64> {
-        (0..self.height).flat_map(move |v| {
-            (0..self.width).map(move |u| {
-                let place = if self.fortran_order { v + u * self.height } else { v * self.width + u };
-                self.value(place)
-            })
-        })
+    /// The shape without leading axes of length 1, and then without trailing ones, down to `axes`: networks write
+    /// batches of one image, and images of one channel.
+    pub fn squeezed(&self, axes: usize) -> &[usize] {
+        let mut shape = self.shape.as_slice();
+        while let [1, rest @ ..] = shape
+            && rest.len() >= axes
+        {
+            shape = rest;
+        }
+        while let [rest @ .., 1] = shape
+            && rest.len() >= axes
+        {
+            shape = rest;
+        }
+        shape
     }
 
-    fn value(&self, place: usize) -> f64 {
+    /// The number of elements; saturates.
+    pub fn count(&self) -> usize {
+        self.shape.iter().fold(1_usize, |count, &side| count.saturating_mul(side))
+    }
+}
+
+/// An array: its header and its elements.
+#[derive(Debug)]
+pub(crate) struct NpyArray<'a> {
+    pub header: NpyHeader,
+    data: &'a [u8],
+}
+
+impl<'a> NpyArray<'a> {
+    /// Reads an array whose elements are complete. The caller limits their number.
+    pub fn read(argument: &'static str, bytes: &'a [u8]) -> Result<Self> {
+        let mut cursor = Cursor::new(argument, bytes);
+        let header = NpyHeader::read(argument, &mut cursor)?;
+        let data = cursor.take(header.count().saturating_mul(header.size))?;
+        Ok(Self { header, data })
+    }
+
+    /// The element at this place of the file.
+    pub fn value(&self, place: usize) -> f64 {
+        let NpyHeader { kind, size, big_endian, .. } = self.header;
         let mut bytes = [0; 8];
-        let element = self.data.get(place * self.size..).and_then(|rest| rest.get(..self.size)).unwrap_or_default();
+        let element = self.data.get(place * size..).and_then(|rest| rest.get(..size)).unwrap_or_default();
         for (to, from) in bytes.iter_mut().zip(element) {
             *to = *from;
         }
-        if self.big_endian {
-            bytes[..self.size.min(8)].reverse();
+        if big_endian {
+            bytes[..size.min(8)].reverse();
         }
         let [a, b, c, d, ..] = bytes;
-        match (self.kind, self.size) {
+        match (kind, size) {
             (Kind::Signed, 1) => f64::from(a as i8),
             (Kind::Signed, 2) => f64::from(i16::from_le_bytes([a, b])),
             (Kind::Signed, 4) => f64::from(i32::from_le_bytes([a, b, c, d])),
@@ -100,6 +115,47 @@ impl<'a> NpyImage<'a> {
             (Kind::Float, _) => f64::from_le_bytes(bytes),
             (Kind::Bool | Kind::Unsigned, _) => u64::from_le_bytes(bytes) as f64,
         }
+    }
+
+    /// The elements in row-major order of an array of these two or three sides, whatever the order of the file.
+    pub fn values(&self, [rows, columns, channels]: [usize; 3]) -> impl Iterator<Item = f64> {
+        (0..rows * columns * channels).map(move |i| {
+            let (row, column, channel) = (i / (columns * channels), i / channels % columns, i % channels);
+            let fortran = row + rows * (column + columns * channel);
+            self.value(if self.header.fortran_order { fortran } else { i })
+        })
+    }
+}
+
+/// An image-shaped array: H×W, also with further axes of length 1 before or after these.
+#[derive(Debug)]
+pub(crate) struct NpyImage<'a> {
+    pub width: usize,
+    pub height: usize,
+    array: NpyArray<'a>,
+}
+
+impl<'a> NpyImage<'a> {
+    /// Reads an array; rejects sizes above the limit and shapes other than those of an image.
+    pub fn read(argument: &'static str, bytes: &'a [u8]) -> Result<Self> {
+        let header = NpyHeader::read(argument, &mut Cursor::new(argument, bytes))?;
+        let &[height, width] = header.squeezed(2) else {
+            let found = format!("an array of shape {:?}", header.shape);
+            let remedy = "Pass one image: array[0] of a batch, array[..., 0] of channels.";
+            return Err(unsupported(argument, found, "H × W, H × W × 1 or 1 × H × W", remedy));
+        };
+        pixel_count(argument, width, height)?;
+        Ok(Self { width, height, array: NpyArray::read(argument, bytes)? })
+    }
+
+    /// The type of the elements.
+    pub fn header(&self) -> &NpyHeader {
+        &self.array.header
+    }
+
+    /// The elements, row-major, for both storage orders of the file.
+    pub fn values(&self) -> impl Iterator<Item = f64> {
+        self.array.values([self.height, self.width, 1])
     }
 }
 

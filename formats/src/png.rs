@@ -5,6 +5,7 @@ use std::io;
 use png::{BitDepth, Decoder, DecodingError, Limits, Transformations};
 
 use crate::cursor::Cursor;
+use crate::exif;
 use crate::guard::{corrupt, pixel_count};
 use crate::orientation::Orientation;
 use crate::reducer::{Reducer, reduced_size};
@@ -26,7 +27,7 @@ const PASSES: [[usize; 4]; 7] =
 
 /// The header of a PNG file.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct PngInfo {
+pub(crate) struct PngInfo<'a> {
     pub width: usize,
     pub height: usize,
     /// Bits per sample: 1, 2, 4, 8 or 16.
@@ -35,6 +36,8 @@ pub(crate) struct PngInfo {
     pub is_grey: bool,
     /// The colour of index 0 of a palette image.
     pub first_palette_colour: Option<[u8; 3]>,
+    /// The EXIF data, from their TIFF header.
+    pub exif: Option<&'a [u8]>,
 }
 
 /// A decoded PNG: interleaved samples of 8 or 16 bits, palettes and small bit depths expanded.
@@ -51,9 +54,9 @@ impl PngPixels {
     }
 }
 
-impl PngInfo {
+impl<'a> PngInfo<'a> {
     /// Reads all chunks, so that truncation is detected even after the pixels.
-    pub fn read(argument: &'static str, bytes: &[u8]) -> Result<Self> {
+    pub fn read(argument: &'static str, bytes: &'a [u8]) -> Result<Self> {
         let mut cursor = Cursor::new(argument, bytes);
         if cursor.take(MAGIC.len())? != MAGIC {
             return Err(corrupt(argument, "no PNG signature", "a PNG image"));
@@ -61,6 +64,7 @@ impl PngInfo {
         let mut header = None;
         let mut first_palette_colour = None;
         let mut compressed_bytes = 0_usize;
+        let mut exif = None;
         loop {
             let length = cursor.u32_be()? as usize;
             let kind: [u8; 4] = cursor.array()?;
@@ -79,6 +83,7 @@ impl PngInfo {
                     return Err(corrupt(argument, format!("a palette of {} bytes", data.len()), "3 bytes per colour"));
                 }
                 (b"PLTE", &[r, g, b, ..]) => first_palette_colour = Some([r, g, b]),
+                (b"eXIf", _) => exif = exif.or(Some(data)),
                 (b"IDAT", _) => compressed_bytes += length,
                 (b"IEND", _) => break,
                 _ => {}
@@ -101,7 +106,7 @@ impl PngInfo {
             return Err(corrupt(argument, found, "enough bytes for the pixels"));
         }
         let first_palette_colour = first_palette_colour.filter(|_| colour == 3);
-        Ok(Self { width, height, bit_depth, is_grey: colour == 0, first_palette_colour })
+        Ok(Self { width, height, bit_depth, is_grey: colour == 0, first_palette_colour, exif })
     }
 
     /// Decodes the pixels of the file with this header.
@@ -123,14 +128,14 @@ impl PngInfo {
         Ok(pixels)
     }
 
-    /// Calls `visit` with each decoded row, or with each row of a pass if the image is interlaced; returns the EXIF data.
+    /// Calls `visit` with each decoded row, or with each row of a pass if the image is interlaced.
     fn each_row(
         &self,
         argument: &'static str,
         bytes: &[u8],
         transformations: Transformations,
         visit: &mut dyn FnMut(PngRow<'_>),
-    ) -> Result<Option<Vec<u8>>> {
+    ) -> Result<()> {
         let broken =
             |error: DecodingError| corrupt(argument, format!("a PNG that can't be decoded: {error}"), "a PNG image");
         let mut decoder = Decoder::new_with_limits(io::Cursor::new(bytes), Limits { bytes: MAX_DECODER_BYTES });
@@ -140,7 +145,6 @@ impl PngInfo {
         let mut reader = decoder.read_info().map_err(broken)?;
         let (color, depth) = reader.output_color_type();
         let (channels, bytes) = (color.samples(), if depth == BitDepth::Sixteen { 2 } else { 1 });
-        let exif = reader.info().exif_metadata.as_ref().map(|exif| exif.to_vec());
         let passes = if reader.info().interlaced { &PASSES[..] } else { &[[0, 0, 1, 1]] };
         for &[first, first_row, step, row_step] in passes.iter().filter(|pass| pass[0] < self.width) {
             for row in (first_row..self.height).step_by(row_step) {
@@ -150,7 +154,7 @@ impl PngInfo {
                 visit(PngRow { row, first, step, channels, bytes, samples: samples.data() });
             }
         }
-        Ok(exif)
+        Ok(())
     }
 }
 
@@ -172,7 +176,7 @@ pub(crate) fn read_rgb(argument: &'static str, bytes: &[u8], max_pixels: usize) 
     let full = [info.width, info.height];
     let mut reducer = Reducer::new(full, 1, reduced_size(full, max_pixels));
     let transformations = Transformations::EXPAND | Transformations::STRIP_16;
-    let exif = info.each_row(argument, bytes, transformations, &mut |row| {
+    info.each_row(argument, bytes, transformations, &mut |row| {
         for (i, pixel) in row.samples.chunks_exact(row.channels).enumerate() {
             let color = match *pixel {
                 [grey] | [grey, _] => [grey; 3],
@@ -182,5 +186,5 @@ pub(crate) fn read_rgb(argument: &'static str, bytes: &[u8], max_pixels: usize) 
             reducer.add(row.first + i * row.step, row.row, color);
         }
     })?;
-    Ok((reducer.finish(argument)?, exif.as_deref().map_or(Orientation::UPRIGHT, Orientation::of_exif)))
+    Ok((reducer.finish(argument)?, info.exif.map(exif::orientation).unwrap_or_default()))
 }

@@ -12,6 +12,11 @@ export interface AlignerOptions {
   /** The formats module, loaded when the first file is passed. Default: `wasm/formats_bg.wasm` next to this script. */
   formatsWasm?: WasmSource | undefined;
   /**
+   * The depth-files module, loaded when a depth map as NPZ, EXR, TIFF or PFM is first passed. Default:
+   * `wasm/depth-files_bg.wasm` next to this script.
+   */
+  depthFilesWasm?: WasmSource | undefined;
+  /**
    * The registration module, loaded when `register`, `estimateSim3` or `preset: "paper"` is first used. Default:
    * `wasm/registration_bg.wasm` next to this script.
    */
@@ -43,6 +48,7 @@ export interface AlignerOptions {
 export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;
+  depthFilesWasm?: LazySource;
   registrationWasm?: LazySource;
   jointWasm?: LazySource;
   workerScript?: string;
@@ -61,6 +67,7 @@ export function checkedOptions<T extends object>(options: T | undefined) {
 const alignerOptions: readonly string[] = [
   "wasm",
   "formatsWasm",
+  "depthFilesWasm",
   "registrationWasm",
   "jointWasm",
   "workers",

@@ -14,6 +14,7 @@ import {
 } from "./aligner-options.js";
 import { checkAttached } from "./attached.js";
 import { coreModule } from "./core.js";
+import { depthFilesModule } from "./depth-files-module.js";
 import { type Call, type Engine, MainThreadEngine, signalsOf } from "./engine.js";
 import { disposed, failure, internalError, Sim3AlignError } from "./error.js";
 import { formatsModule } from "./formats-module.js";
@@ -88,7 +89,7 @@ export class Aligner {
 
   /** @internal */
   static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
-    const { wasm, formatsWasm, registrationWasm, jointWasm, ...given } = {
+    const { wasm, formatsWasm, depthFilesWasm, registrationWasm, jointWasm, ...given } = {
       ...assets,
       ...withoutUndefined(checkedAlignerOptions(options)),
     };
@@ -97,6 +98,7 @@ export class Aligner {
     const modules: Modules = {
       core: await coreModule.load(wasm),
       formats: () => formatsModule.load(formatsWasm),
+      depthFiles: () => depthFilesModule.load(depthFilesWasm),
       registrar: () => registrationModule.load(registrationWasm),
       joint: () => jointModule.load(jointWasm),
     };
@@ -112,6 +114,7 @@ export class Aligner {
       startMs,
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
+      "depth-files": () => depthFilesModule.compile(depthFilesWasm),
       registration: () => registrationModule.compile(registrationWasm),
       joint: () => jointModule.compile(jointWasm),
     };

@@ -29,7 +29,7 @@ export interface Case {
 
 /** File names of each part of a case, in order of preference. */
 export const caseFiles = {
-  depth: ["depth.npy", "depth.png"],
+  depth: ["depth.npy", "depth.png", "depth.npz", "depth.exr", "depth.tiff", "depth.tif", "depth.pfm"],
   mask: ["mask.png", "mask.npy", "mask.json"],
   mesh: ["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"],
   camera: ["camera.json", "scene_camera.json"],

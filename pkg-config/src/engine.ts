@@ -85,12 +85,18 @@ export class MainThreadEngine implements Engine {
         check();
         return module;
       };
-    const { core, formats, registrar, joint } = this.#modules;
+    const { core, formats, depthFiles, registrar, joint } = this.#modules;
     const loadJoint = async () => {
       this.#joint = await joint();
       return this.#joint;
     };
-    const modules = { core, formats: checked(formats), registrar: checked(registrar), joint: checked(loadJoint) };
+    const modules = {
+      core,
+      formats: checked(formats),
+      depthFiles: checked(depthFiles),
+      registrar: checked(registrar),
+      joint: checked(loadJoint),
+    };
     const slices = { sliceMs: SLICE_MS, check, turn };
     return { result: await perform(job, modules, progress.isWanted ? listener : undefined, slices), data: job.data };
   }

@@ -6,11 +6,15 @@
 import { type Case, type CaseFiles, type CaseSettings, caseFrom } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { invalidArgument } from "./error.js";
+import { fileReaders } from "./file-readers.js";
 import { type CameraFile, type CameraFileOptions, parseCameraFile } from "./formats/camera-file.js";
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
+import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
 import { type Formats, formatsModule } from "./formats-module.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
+import { decodeDepth } from "./input/depth.js";
+import type { DepthImage, DepthReading } from "./input/depth-reading.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
 import type { ColorSamples } from "./prepared-mesh.js";
@@ -21,13 +25,14 @@ export type { Case, CaseFiles, CaseSettings } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export type { CameraFile, CameraFileOptions } from "./formats/camera-file.js";
+export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
+export type { Pinhole } from "./formats/pinhole.js";
+export type { DepthKind } from "./input/depth-kind.js";
+export type { DepthImage, DepthReading } from "./input/depth-reading.js";
 export type { AlignInput, CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 export type { WasmSource } from "./platform.js";
 export type { ColorSamples } from "./prepared-mesh.js";
 export type { Sim3 } from "./sim3.js";
-
-/** A depth map from a file: metres along the optical axis, row-major; 0 is "no reading". */
-export type DepthImage = PixelArray<Float32Array>;
 
 /** A mask from a file: row-major, 1 is the object. */
 export type MaskImage = PixelArray<Uint8Array>;
@@ -65,18 +70,18 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
 }
 
 /**
- * Reads a 16-bit grey PNG or a `.npy` array as a depth map.
+ * Reads a depth map: a 16-bit grey PNG, a `.npy` array, or a file of a depth model: `.npz` (with the mask and the camera
+ * in it), `.exr`, `.tiff` or `.pfm`. The latter load another module, `wasm/depth-files_bg.wasm` next to this script.
  * @param options.depthScale metres per unit, above 0; by default integers are millimetres, and floats metres
  * @param options.integerDepthScale the same for integers only: the `depthScale` of a camera file
+ * @param options.depthKind what the values are, `"metric"` by default; PNGs and arrays of 8 bits are read for the
+ * affine-invariant kinds only
  * @throws {@link Sim3AlignError} for any other file
  */
-export async function readDepth(
-  file: EncodedBytes,
-  options: { depthScale?: number | undefined; integerDepthScale?: number | undefined } = {},
-): Promise<DepthImage> {
+export async function readDepth(file: EncodedBytes, options: DepthReading = {}): Promise<DepthImage> {
   const given = optionsOf(options);
   const bytes = await requiredBytes("file", file);
-  return call(bytes, (readers) => readers.readDepth(bytes, given));
+  return decodeDepth("file", bytes, given, fileReaders);
 }
 
 /**
@@ -98,6 +103,15 @@ export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage>
 export async function readImage(file: EncodedBytes): Promise<PhotoImage> {
   const bytes = await requiredBytes("file", file);
   return call(bytes, (readers) => readers.readImage(bytes));
+}
+
+/**
+ * Reads the EXIF data of a PNG or a JPEG. What they do not state, or what is damaged, is missing.
+ * @throws {@link Sim3AlignError} for any other file
+ */
+export async function readExif(file: EncodedBytes): Promise<Exif> {
+  const bytes = await requiredBytes("file", file);
+  return call(bytes, (readers) => readers.readExif(bytes));
 }
 
 /**
@@ -152,7 +166,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 }
 
 /**
- * Reads a case folder: `depth.npy|png`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, `camera.json` or
+ * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, `camera.json` or
  * `scene_camera.json`, and optionally `rgb.png|jpg` or `image.png|jpg`, and `gt.json`.
  * @param files by name, relative to the folder
  *

@@ -18,6 +18,7 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
   return Aligner.create(options, {
     wasm: () => bytesOf(core),
     formatsWasm: async () => bytesOf((await import("inlined:formats")).default),
+    depthFilesWasm: async () => bytesOf((await import("inlined:depth-files")).default),
     jointWasm: async () => bytesOf((await import("inlined:joint")).default),
     registrationWasm: async () => bytesOf((await import("inlined:registration")).default),
     workerScript,

@@ -6,6 +6,12 @@ declare module "inlined:core" {
   export default base64;
 }
 
+declare module "inlined:depth-files" {
+  /** The depth-files module, base64. */
+  const base64: string;
+  export default base64;
+}
+
 declare module "inlined:formats" {
   /** The formats module, base64. */
   const base64: string;

@@ -2,7 +2,7 @@
 import { checkAttached } from "./attached.js";
 import type { Core, CoreListener, Task } from "./core.js";
 import { withoutInput } from "./error.js";
-import type { LoadFormats } from "./formats-module.js";
+import type { FileReaders } from "./file-readers.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import { resolveFrame, resolveViews } from "./input/frames.js";
@@ -50,9 +50,8 @@ export type Results = { [M in keyof Calls]: Calls[M]["result"] };
 export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; plan?: Uint8Array | undefined; index: number };
 
 /** The modules that run jobs. Others than the core are loaded when a job needs them. */
-export interface Modules {
+export interface Modules extends FileReaders {
   core: LoadedModule<Core>;
-  formats: LoadFormats;
   registrar: LoadRegistrar;
   joint: LoadJoint;
 }
@@ -79,15 +78,16 @@ export async function perform<J extends Job>(
 ): Promise<Results[J["method"]]>;
 export async function perform(
   job: Job,
-  { core, formats, registrar, joint }: Modules,
+  modules: Modules,
   listener: CoreListener | undefined,
   slices: Slices = all,
 ): Promise<unknown> {
+  const { core, formats, registrar, joint } = modules;
   const { options } = job;
   checkAttached("input", job.data);
   switch (job.method) {
     case "align": {
-      const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
+      const { core: input, warnings } = await resolveInput(job.data, modules, job.meshId);
       const result = isOfPaper(options)
         ? called(await registrar(), (r) => r.alignPaper(input, options, listener), input)
         : await runTask(core, (c) => c.beginAlign(input, options, listener), input, slices);
@@ -95,7 +95,7 @@ export async function perform(
     }
     case "place": {
       const { others, plan, index, ...own } = job.data;
-      const { core: input, warnings } = await resolveInput(own, formats, job.meshId);
+      const { core: input, warnings } = await resolveInput(own, modules, job.meshId);
       const observed = { ...input, others };
       const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener);
       const placed = await runTask(await joint(), begin, observed, slices);
@@ -104,7 +104,7 @@ export async function perform(
       return { ...placed, alignment: withWarnings(placed.alignment, { camera: [], colors: warnings.colors }) };
     }
     case "alignViews": {
-      const { core: input, warnings } = await resolveViews(job.data, formats, job.meshId);
+      const { core: input, warnings } = await resolveViews(job.data, modules, job.meshId);
       const begin = (j: JointAligner) => j.beginAlignViews(input, options, listener);
       const result = await runTask(await joint(), begin, input, slices);
       return {
@@ -124,7 +124,7 @@ export async function perform(
       return undefined;
     }
     case "trackFrame": {
-      const { core: frame } = await resolveFrame(job.data, formats);
+      const { core: frame } = await resolveFrame(job.data, modules);
       const module = await joint();
       checkAttached("frame", frame);
       return module.call((j) => j.trackFrame(job.tracker, frame, listener));
@@ -134,7 +134,7 @@ export async function perform(
       return (await joint()).call((j) => j.correctTrack(job.tracker, pose, frame));
     }
     case "evaluate": {
-      const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
+      const { core: input, warnings } = await resolveInput(job.data, modules, job.meshId);
       const evaluation = called(core, (c) => c.evaluate(input, job.transform, options), input);
       return withWarnings(evaluation, warnings);
     }

@@ -104,8 +104,12 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
     : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module; for bundlers that leave it out, such as esbuild, import from "sim3align/inline".`;
   const found = cause instanceof Error ? cause.message : String(cause);
   const expected = `the WebAssembly module ${file} of the same version`;
-  return failure("NOT_INITIALISED", name === "core" ? "wasm" : `${name}Wasm`, found, expected, remedy, cause);
+  return failure("NOT_INITIALISED", optionOf(name), found, expected, remedy, cause);
 }
+
+/** The option of `createAligner` with the module's location: `wasm`, `formatsWasm`, `depthFilesWasm`. */
+const optionOf = (name: string): string =>
+  name === "core" ? "wasm" : `${name.replace(/-(.)/g, (_, letter: string) => letter.toUpperCase())}Wasm`;
 
 /** A loaded module: its current instance, whose heap is let go when it has grown too large. */
 export class LoadedModule<G extends Glue> {

@@ -1,5 +1,6 @@
 /** Worker script: runs the jobs of its aligner one at a time. */
 import type { Core } from "./core.js";
+import type { DepthFiles } from "./depth-files-module.js";
 import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Formats } from "./formats-module.js";
 import { type Job, type MeshCache, perform } from "./jobs.js";
@@ -9,6 +10,7 @@ import { buffersOf } from "./pool/transfer.js";
 import type { Registrar } from "./registration-module.js";
 // Imported statically, because some bundlers put a worker script into a single file without dynamic imports.
 import * as coreGlue from "./wasm/core.js";
+import * as depthFilesGlue from "./wasm/depth-files.js";
 import * as formatsGlue from "./wasm/formats.js";
 import * as jointGlue from "./wasm/joint.js";
 import * as registrationGlue from "./wasm/registration.js";
@@ -23,6 +25,7 @@ class WorkerHost {
   readonly #post: Post;
   #core: WasmModule<Core> | undefined;
   readonly #formats = this.#lazy<Formats>("formats", formatsGlue);
+  readonly #depthFiles = this.#lazy<DepthFiles>("depth-files", depthFilesGlue as unknown as DepthFiles);
   readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
   readonly #joint = this.#lazy<JointAligner>("joint", jointGlue as unknown as JointAligner);
   /** Receives the answer to `needs-module`. */
@@ -79,12 +82,12 @@ class WorkerHost {
         throw internalError(error);
       });
       if (core === undefined) throw new Error("no core");
-      const [formats, registrar, joint] = [this.#formats, this.#registrar, this.#joint];
       const modules = {
         core,
-        formats: () => formats.load(),
-        registrar: () => registrar.load(),
-        joint: () => joint.load(),
+        formats: () => this.#formats.load(),
+        depthFiles: () => this.#depthFiles.load(),
+        registrar: () => this.#registrar.load(),
+        joint: () => this.#joint.load(),
       };
       return { type: "done", result: await perform(job, modules, wantsProgress ? listener : undefined) };
     } catch (error) {

@@ -52,11 +52,11 @@ export const within = (folder) =>
  * @returns {Promise<{ name: string, input: TypedCase, truth: Truth | null }>}
  */
 export async function readTypedCase(folder) {
-  const [{ readCaseFolder }, { resolveInput }, { formatsModule }] = await Promise.all(
-    ["case-folder.js", "input/resolve.js", "formats-module.js"].map(packageModule),
+  const [{ readCaseFolder }, { resolveInput }, { fileReaders }] = await Promise.all(
+    ["case-folder.js", "input/resolve.js", "file-readers.js"].map(packageModule),
   );
   const { name, input, truth } = await readCaseFolder(folder);
-  const { core } = await resolveInput(input, () => formatsModule.load());
+  const { core } = await resolveInput(input, fileReaders);
   const { depth, depthScale, width, height, mask, maskWidth, maskHeight, camera, mesh } = core;
   if ((maskWidth ?? width) !== width || (maskHeight ?? height) !== height) {
     throw new Error(`${folder}: the mask is not of the depth map's size. Remedy: resize it.`);

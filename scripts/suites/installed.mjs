@@ -78,11 +78,18 @@ async function nodeTest(folder, env = {}) {
 }
 
 export async function javaScript() {
-  const [simulators, notebooks] = [await installedPython("simulators"), await installedPython("notebooks")];
-  return nodeTest("js", {
-    ...(simulators === undefined ? {} : { SIM3ALIGN_SIMULATORS: simulators }),
-    ...(notebooks === undefined ? {} : { SIM3ALIGN_NOTEBOOKS: notebooks }),
-  });
+  const pythons = {
+    SIM3ALIGN_SIMULATORS: "simulators",
+    SIM3ALIGN_NOTEBOOKS: "notebooks",
+    SIM3ALIGN_DEPTH_FILES: "depth-files",
+  };
+  /** @type {NodeJS.ProcessEnv} */
+  const env = {};
+  for (const [name, folder] of Object.entries(pythons)) {
+    const python = await installedPython(folder);
+    if (python !== undefined) env[name] = python;
+  }
+  return nodeTest("js", env);
 }
 
 /** Counts where a program is missing: skipped on a developer's machine, failed in continuous integration. */

@@ -10,8 +10,8 @@ import { wasmModules } from "../lib/wasm.mjs";
 
 /** Crates of the workspace besides the aligner. */
 const crates = [
-  ...["formats", "geometry", "lab", "modules/core", "modules/joint", "modules/physics", "modules/registration"],
-  "physics",
+  ...["formats", "geometry", "lab", "physics"],
+  ...["core", "depth-files", "formats", "joint", "physics", "registration"].map((name) => `modules/${name}`),
 ];
 
 export async function lint() {

@@ -32,12 +32,12 @@ import { input, mesh, truth, view } from "../support/scene.js";
 
 const { width, height, depth, mask, camera } = view;
 const { resolveInput } = await internalModule("input/resolve.js");
-const { formatsModule } = await internalModule("formats-module.js");
+const { fileReaders } = await internalModule("file-readers.js");
 const aligner = await createAligner();
 
 /** What the core gets. */
 async function coreInput(changes: object) {
-  const { core, warnings } = await resolveInput({ ...input, ...changes }, () => formatsModule.load());
+  const { core, warnings } = await resolveInput({ ...input, ...changes }, fileReaders);
   return { ...core, warnings };
 }
 

@@ -16,6 +16,7 @@ pub mod filter;
 pub mod formats_bindings;
 pub mod formats_case;
 pub mod formats_colors;
+pub mod formats_depth_files;
 pub mod formats_fixtures;
 pub mod formats_gltf;
 pub mod formats_hostile;

@@ -66,7 +66,7 @@ export function alignCommand(): Command {
   const command = addBatchFlags(new Command("align"), caseKind)
     .summary("align the mesh of each case to its depth map")
     .description("Aligns the mesh of each case to its masked depth map.")
-    .option("--depth <file>", "depth map (.npy or 16-bit .png), instead of a case folder")
+    .option("--depth <file>", "depth map (.npy, 16-bit .png, .npz, .exr, .tiff or .pfm), instead of a case folder")
     .option("--mask <file>", "mask (.png, .npy, or .json with COCO RLE)")
     .option("--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)")
     .option("--camera <file|fx,fy,cx,cy|fov:deg>", "camera: a file, intrinsics or a vertical field of view", camera)

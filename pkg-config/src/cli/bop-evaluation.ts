@@ -3,7 +3,7 @@ import { type BopDataset, type BopTarget, imageKey, mostVisible, targetKey } fro
 import { bopId, readBopImage } from "../bop-folder.js";
 import { fileNotFound } from "../case-files.js";
 import { fromBop } from "../conventions/bop.js";
-import { formatsModule } from "../formats-module.js";
+import { fileReaders } from "../file-readers.js";
 import type { BopErrors } from "../generated/types.js";
 import type { CoreFrame } from "../input/core-input.js";
 import { resolveFrame } from "../input/frames.js";
@@ -62,7 +62,7 @@ export async function evaluateBop(
     const key = imageKey(target);
     if (view?.key !== key) {
       const files = await readBopImage(scene, bopId(imageId), false);
-      view = { key, frame: (await resolveFrame(files, () => formatsModule.load())).core };
+      view = { key, frame: (await resolveFrame(files, fileReaders)).core };
     }
     const { frame } = view;
     const estimates = best(byTarget.get(targetKey(target)) ?? [], count);

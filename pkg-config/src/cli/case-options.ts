@@ -28,7 +28,8 @@ export const caseSettings = ({ depthScale, imageId, resizeMask, image }: CaseFla
 /** The layout of a case folder, for --help. */
 export const caseFolderHelp = `
 A case folder holds
-  depth.npy or depth.png         z-depth; floats are metres, whole numbers (16-bit PNG) millimetres unless
+  depth.npy, .png, .npz, .exr, .tiff or .pfm
+                                 z-depth; floats are metres, whole numbers (16-bit PNG) millimetres unless
                                  --depth-scale or the camera file says otherwise; 0 and NaN are "no reading"
   mask.png, .npy or .json        non-zero is the object; JSON is COCO RLE {"size": [h, w], "counts": …}
   mesh.glb, .gltf, .obj, .ply or .stl

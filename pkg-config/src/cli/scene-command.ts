@@ -39,7 +39,7 @@ const rows: readonly OptionRow[] = OPTIONS.align.filter(({ name }) => name !== "
 
 const help = `
 A scene folder holds
-  depth.npy or depth.png, camera.json   as a case folder, see "sim3align align --help"
+  depth.npy or .png …, camera.json      as a case folder, see "sim3align align --help"
   objects/NAME/mask.png, .npy or .json  the mask of each object
   objects/NAME/mesh.glb, …              its mesh; textures are kept by --scene-glb
   objects/NAME/gt.json (optional)       its true pose

@@ -1,8 +1,8 @@
 /** Files as bytes, and detection of their type. */
 import { checkAttached } from "../attached.js";
 import { describe, failure, invalidArgument, messageOf } from "../error.js";
-import type { Formats, LoadFormats } from "../formats-module.js";
 import { isBuffer, isKind, isTypedArray } from "../kinds.js";
+import type { Glue, LoadedModule } from "../wasm-module.js";
 
 /** An array of bytes. */
 export type Bytes = Uint8Array | Uint8ClampedArray;
@@ -34,14 +34,14 @@ export async function fileBytes(argument: string, value: unknown): Promise<Uint8
  * Calls a reader of files, unless the bytes were moved to another thread while the readers were loaded.
  * @param rename of the arguments in errors
  */
-export async function callReader<T>(
-  formats: LoadFormats,
+export async function callReader<G extends Glue, T>(
+  load: () => Promise<LoadedModule<G>>,
   argument: string,
   bytes: Uint8Array,
-  read: (readers: Formats) => T,
+  read: (readers: G) => T,
   rename?: (argument: string) => string,
 ): Promise<T> {
-  const module = await formats();
+  const module = await load();
   checkAttached(argument, bytes);
   return module.call(read, rename);
 }

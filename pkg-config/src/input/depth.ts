@@ -1,8 +1,11 @@
 /** Converts depth maps and point maps to arrays with their size. */
 import { failure, invalidArgument } from "../error.js";
-import type { LoadFormats } from "../formats-module.js";
+import type { FileReaders } from "../file-readers.js";
+import type { Pinhole } from "../formats/pinhole.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
-import { callReader, fileBytes } from "./bytes.js";
+import { callReader, fileBytes, isBytes } from "./bytes.js";
+import { isAffineInvariant } from "./depth-kind.js";
+import type { DepthImage, DepthReading } from "./depth-reading.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {
@@ -13,8 +16,16 @@ export interface SizedArray<T> {
 
 type DepthArray = Float32Array | Uint16Array;
 
-const depthKinds =
-  "a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a 16-bit PNG or a .npy file";
+/** A depth map for the core, and what its file says of it. */
+export interface ReadDepth extends SizedArray<DepthArray> {
+  /** The camera in the file. */
+  camera?: Pinhole;
+  /** The unit of the values in the file, for people. */
+  unit?: string;
+}
+
+const depthForms =
+  "a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a 16-bit PNG or of a .npy, .npz, .exr, .tiff or .pfm file";
 
 /** The image size in the input, if given. */
 export interface StatedSize {
@@ -23,33 +34,57 @@ export interface StatedSize {
 }
 
 /**
- * The values of a depth map: metres for files and floats, units of `depthScale` for integers.
- * @param scale `depthScale` of the caller or, for integers only, of the camera file
+ * The values of a depth map: metres for files and floats, units of `depthScale` for integers; for other kinds than metric
+ * depth, the values themselves.
  */
 export async function readDepth(
   depth: unknown,
   size: StatedSize,
-  scale: { depthScale: number | undefined; integerDepthScale: number | undefined },
-  formats: LoadFormats,
-): Promise<SizedArray<DepthArray>> {
+  reading: DepthReading,
+  readers: FileReaders,
+): Promise<ReadDepth> {
   if (isDepthArray(depth)) return { data: depth, ...required(size) };
-  if (isRecord(depth) && "data" in depth) return sized("depth", depth, depthKinds, isDepthArray, size);
-  const bytes = await fileBytes("depth", depth);
-  if (bytes === null) throw wrongKind("depth", depth, depthKinds, "Float32Array");
-  if (bytes === depth && bytes.length === (size.width ?? 0) * (size.height ?? 0) && bytes.length > 0) {
-    const found = `a Uint8Array of ${size.width} × ${size.height} values`;
-    const remedy = "256 levels are a visualisation of depth: pass the depth map itself.";
-    throw failure("EIGHT_BIT_DEPTH", "depth", found, depthKinds, remedy);
+  const mayHaveBytes = isAffineInvariant(reading.depthKind);
+  if (isRecord(depth) && "data" in depth) {
+    const { data } = depth;
+    const values = mayHaveBytes && isBytes(data) ? { ...depth, data: Float32Array.from(data) } : depth;
+    return sized("depth", values, depthForms, isDepthArray, size);
   }
-  const file = await callReader(
-    formats,
-    "depth",
-    bytes,
-    (readers) => readers.readDepth(bytes, withoutUndefined(scale)),
-    (argument) => argument.replace(/^options\./, ""),
-  );
+  const bytes = await fileBytes("depth", depth);
+  if (bytes === null) throw wrongKind("depth", depth, depthForms, "Float32Array");
+  if (bytes === depth && bytes.length === (size.width ?? 0) * (size.height ?? 0) && bytes.length > 0) {
+    if (mayHaveBytes) return { data: Float32Array.from(bytes), ...required(size) };
+    const found = `a Uint8Array of ${size.width} × ${size.height} values`;
+    const remedy =
+      'Pass the depth map itself: 256 levels are a visualisation of it. If a relative model drew it, near is bright: pass depthKind "affine-invariant-disparity".';
+    throw failure("EIGHT_BIT_DEPTH", "depth", found, depthForms, remedy);
+  }
+  const file = await decodeDepth("depth", bytes, reading, readers, (argument) => argument.replace(/^options\./, ""));
   checkStatedSize("depth", file, size);
   return file;
+}
+
+/** How the files of depth models begin: NPZ (also without an array), OpenEXR, TIFF and PFM. */
+const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "Pf\n", "PF\n"];
+
+/**
+ * Reads a depth map of any supported format by the module that knows it.
+ * @param argument the name of the bytes, in errors
+ * @param rename of the arguments in errors of the reader
+ */
+export function decodeDepth(
+  argument: string,
+  bytes: Uint8Array,
+  reading: DepthReading,
+  readers: FileReaders,
+  rename?: (argument: string) => string,
+): Promise<DepthImage> {
+  const options = withoutUndefined(reading);
+  const beginning = String.fromCharCode(...bytes.subarray(0, 4));
+  if (ofDepthModels.some((magic) => beginning.startsWith(magic))) {
+    return callReader(readers.depthFiles, argument, bytes, (module) => module.readDepthFile(bytes, options), rename);
+  }
+  return callReader(readers.formats, argument, bytes, (module) => module.readDepth(bytes, options), rename);
 }
 
 /** The values of a point map, in metres. */

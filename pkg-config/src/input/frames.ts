@@ -1,6 +1,6 @@
 /** Converts views and frames to the typed arrays and numbers of the core. */
 import { invalidArgument, renamed, Sim3AlignError } from "../error.js";
-import type { LoadFormats } from "../formats-module.js";
+import type { FileReaders } from "../file-readers.js";
 import type { FileWarnings } from "../results.js";
 import { coreSim3, type Sim3Like } from "../sim3.js";
 import { checkNames, isRecord, withoutUndefined } from "../values.js";
@@ -20,7 +20,7 @@ export interface ResolvedFrame {
 /** Resolves a frame, whose mask may be missing. */
 export async function resolveFrame(
   frame: unknown,
-  formats: LoadFormats,
+  readers: FileReaders,
   more: readonly string[] = [],
 ): Promise<ResolvedFrame> {
   const properties = [...frameProperties, ...more];
@@ -29,11 +29,11 @@ export async function resolveFrame(
   }
   checkNames("", frame, properties, spelling);
   checkSides("", frame);
-  const { warnings, ...view } = await imageAndCamera(frame, formats);
-  const image = await readPhoto(frame.image, view, formats);
+  const { warnings, ...view } = await imageAndCamera(frame, readers);
+  const image = await readPhoto(frame.image, view, readers.formats);
   const core = { ...view, image, resizeMask: frame.resizeMask };
   if (frame.mask === undefined || frame.mask === null) return { core: withoutUndefined(core) as CoreFrame, warnings };
-  const mask = await readMask(frame.mask, Number(view.width) * Number(view.height), formats);
+  const mask = await readMask(frame.mask, Number(view.width) * Number(view.height), readers.formats);
   const masked = { ...core, mask: mask.data, maskWidth: mask.width, maskHeight: mask.height };
   return { core: withoutUndefined(masked) as CoreFrame, warnings };
 }
@@ -49,7 +49,7 @@ export interface ResolvedViews {
  * @param meshId the id of a prepared mesh
  * @throws {@link Sim3AlignError} whose argument names the view
  */
-export async function resolveViews(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedViews> {
+export async function resolveViews(input: unknown, readers: FileReaders, meshId?: number): Promise<ResolvedViews> {
   const given = isRecord(input) ? input : {};
   const { mesh, views } = given;
   if (!Array.isArray(views)) {
@@ -57,9 +57,9 @@ export async function resolveViews(input: unknown, formats: LoadFormats, meshId?
   }
   checkNames("input.", given, ["mesh", "views"], "What belongs to a view is a property of the view.");
   const resolved = [];
-  for (const [k, view] of views.entries()) resolved.push(await resolveView(view, k, formats));
+  for (const [k, view] of views.entries()) resolved.push(await resolveView(view, k, readers));
   const isColored = resolved.some(({ core }) => core.image !== undefined);
-  const read = await readCoreMesh(mesh, formats, isColored, meshId);
+  const read = await readCoreMesh(mesh, readers.formats, isColored, meshId);
   const core = { mesh: read.mesh, views: resolved.map((view) => view.core) };
   // Colours matter only where there is a photo to compare them with.
   const warningsOf = ({ core, warnings }: ResolvedFrame) => ({
@@ -69,9 +69,9 @@ export async function resolveViews(input: unknown, formats: LoadFormats, meshId?
   return { core, warnings: resolved.map(warningsOf) };
 }
 
-async function resolveView(view: unknown, index: number, formats: LoadFormats): Promise<ResolvedFrame> {
+async function resolveView(view: unknown, index: number, readers: FileReaders): Promise<ResolvedFrame> {
   try {
-    const { core, warnings } = await resolveFrame(view, formats, ["cameraToWorld"]);
+    const { core, warnings } = await resolveFrame(view, readers, ["cameraToWorld"]);
     const { cameraToWorld } = view as { cameraToWorld?: Sim3Like | null };
     if (cameraToWorld === undefined || cameraToWorld === null) return { core, warnings };
     return { core: { ...core, cameraToWorld: coreSim3(cameraToWorld) }, warnings };

@@ -1,7 +1,7 @@
 /** Converts inputs to the typed arrays and numbers of the core. */
 
 import { invalidArgument } from "../error.js";
-import type { LoadFormats } from "../formats-module.js";
+import type { FileReaders } from "../file-readers.js";
 import type { FileWarnings } from "../results.js";
 import type { ClassNames } from "../snapshot.js";
 import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
@@ -51,17 +51,17 @@ export const classNames: ClassNames = {
 };
 
 /**
- * Resolves an input. `formats` is called only if a file needs it.
+ * Resolves an input. Readers are loaded only if a file needs them.
  * @param meshId the id of a prepared mesh
  * @throws {@link Sim3AlignError} for arguments of the wrong type, and the errors of the file readers
  */
-export async function resolveInput(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedInput> {
+export async function resolveInput(input: unknown, readers: FileReaders, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
   const { resizeMask } = input;
-  const { warnings, ...view } = await imageAndCamera(input, formats);
-  const mask = await readMask(input.mask, Number(view.width) * Number(view.height), formats);
-  const image = await readPhoto(input.image, view, formats);
-  const mesh = await readCoreMesh(input.mesh, formats, image !== undefined, meshId);
+  const { warnings, ...view } = await imageAndCamera(input, readers);
+  const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
+  const image = await readPhoto(input.image, view, readers.formats);
+  const mesh = await readCoreMesh(input.mesh, readers.formats, image !== undefined, meshId);
   // Colours matter only where there is a photo to compare them with.
   const colorWarnings = image === undefined ? [] : mesh.warnings;
   const core = {
@@ -80,24 +80,24 @@ export async function resolveInput(input: unknown, formats: LoadFormats, meshId?
  * The depth map, or the point map, and the camera of an input.
  * @throws {@link Sim3AlignError} as {@link resolveInput}
  */
-export async function readView(input: unknown, formats: LoadFormats) {
+export async function readView(input: unknown, readers: FileReaders) {
   checkProperties(input);
-  return imageAndCamera(input, formats);
+  return imageAndCamera(input, readers);
 }
 
 /** Like {@link readView}, for an input whose property names have been checked. */
-export async function imageAndCamera(input: Record<string, unknown>, formats: LoadFormats) {
+export async function imageAndCamera(input: Record<string, unknown>, readers: FileReaders) {
   checkSides("", input);
   const { pointMap } = input;
-  return pointMap === undefined ? depthAndCamera(input, formats) : pointMapAndCamera(input, pointMap);
+  return pointMap === undefined ? depthAndCamera(input, readers) : pointMapAndCamera(input, pointMap);
 }
 
-async function depthAndCamera(input: Record<string, unknown>, formats: LoadFormats) {
+async function depthAndCamera(input: Record<string, unknown>, readers: FileReaders) {
   const size = { width: input.width as number | undefined, height: input.height as number | undefined };
   const depthScale = input.depthScale as number | undefined;
   const camera = await cameraOf(input);
   const { integerDepthScale } = camera;
-  const { data, width, height } = await readDepth(input.depth, size, { depthScale, integerDepthScale }, formats);
+  const { data, width, height } = await readDepth(input.depth, size, { depthScale, integerDepthScale }, readers);
   const isFile = data !== input.depth && !isRecord(input.depth);
   const isFloat = isTypedArray(data, "Float32Array");
   return {

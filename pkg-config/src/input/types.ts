@@ -21,7 +21,8 @@ export interface PixelArray<T> {
  * - `Float32Array`: metres (times `depthScale`, if given); with `width` and `height` in the input;
  * - `Uint16Array`: multiplied by `depthScale`; with `width` and `height` in the input;
  * - either of these as `{ data, width, height }`;
- * - the bytes of a 16-bit grey PNG (multiplied by `depthScale`) or of a `.npy` array.
+ * - the bytes of a 16-bit grey PNG (multiplied by `depthScale`), of a `.npy` array, or of a `.npz`, `.exr`, `.tiff` or
+ *   `.pfm` file as depth models write them.
  */
 export type DepthInput = Float32Array | Uint16Array | PixelArray<Float32Array | Uint16Array> | EncodedBytes;
 

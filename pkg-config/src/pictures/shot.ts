@@ -1,9 +1,9 @@
 /** A shot: an observation and a mesh, decoded for pictures of a pose. */
 import { resizeMask } from "../conventions/resize.js";
 import { coreModule } from "../core.js";
+import { fileReaders } from "../file-readers.js";
 import type { Pinhole } from "../formats/pinhole.js";
 import type { MaskPixels } from "../formats/pixels.js";
-import { formatsModule } from "../formats-module.js";
 import type { Photo } from "../input/colors.js";
 import { resolveInput } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
@@ -29,7 +29,7 @@ export class Shot {
    * @throws {@link Sim3AlignError} as `align`
    */
   static async of(input: AlignInput): Promise<Shot> {
-    const { core } = await resolveInput(input, () => formatsModule.load(), nextMeshId());
+    const { core } = await resolveInput(input, fileReaders, nextMeshId());
     const { depth = new Float32Array(), mask, mesh, image } = core;
     const [width, height] = [Number(core.width), Number(core.height)];
     const scale = Number(core.depthScale ?? (depth instanceof Uint16Array ? 0.001 : 1));

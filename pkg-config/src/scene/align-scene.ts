@@ -27,14 +27,14 @@ const isOwn = (error: unknown): error is Sim3AlignError =>
 /** Aligns a scene in the rounds of its plan, which the joint module makes. */
 export async function alignScene(
   input: SceneInput,
-  { formats, joint }: Modules,
+  modules: Modules,
   engine: Engine,
   { options, snap }: { options: Record<string, unknown>; snap: boolean },
   call: Call,
 ): Promise<SceneResult> {
-  const scene = await readScene(input, formats);
+  const scene = await readScene(input, modules);
   const { view, objects, occluders, support } = scene;
-  const module = await joint();
+  const module = await modules.joint();
   const { round, end } = roundsOf(scene, engine, options, call);
   const masks = [...objects.map(({ mask }) => mask), ...occluders];
   const seed = typeof options.seed === "number" ? options.seed : 0;

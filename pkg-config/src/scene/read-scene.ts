@@ -1,5 +1,6 @@
 /** Reads a scene: the view once, and a mask per object. */
 import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../error.js";
+import type { FileReaders } from "../file-readers.js";
 import { nearest } from "../formats/pixels.js";
 import type { LoadFormats } from "../formats-module.js";
 import { readMask } from "../input/mask.js";
@@ -57,12 +58,13 @@ export const classNames: ClassNames = {
  * Reads a scene.
  * @throws {@link Sim3AlignError} for arguments of the wrong type, masks of another size, and the errors of the readers
  */
-export async function readScene(scene: SceneInput, formats: LoadFormats): Promise<ReadScene> {
+export async function readScene(scene: SceneInput, readers: FileReaders): Promise<ReadScene> {
   if (!isRecord(scene)) {
     throw invalidArgument("scene", scene, "{ depth, camera, objects }", "See SceneInput in the documentation.");
   }
   const { objects, labels, occluders, support, ...rest } = scene as SceneInput & Record<string, unknown>;
-  const { warnings, ...view } = await readView(rest, formats);
+  const { formats } = readers;
+  const { warnings, ...view } = await readView(rest, readers);
   const photo = await readPhoto(rest.image, view, formats);
   const size: [number, number] = [Number(view.width), Number(view.height)];
   const read = { size, formats, labels: labels === undefined ? undefined : checkedLabels(labels, size) };

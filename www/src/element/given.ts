@@ -1,6 +1,6 @@
 /** Scenes that a host gives to the element: as arrays or encoded files in memory, as files, or by an address. */
 import type { EncodedBytes, PixelArray } from "sim3align";
-import { type DepthImage, type MeshFromFile, readCamera } from "sim3align/formats";
+import { type MeshFromFile, readCamera } from "sim3align/formats";
 import { rolesOf } from "../intake/roles.js";
 import { scenesOfTyped } from "../intake/scenes.js";
 import { extractArchives } from "../load/archives.js";
@@ -72,7 +72,7 @@ async function fromMemory(given: GivenScene): Promise<Opened> {
   return { scene, inputs, session: null };
 }
 
-async function depthOf({ depth, width = 0, height = 0, depthScale }: GivenScene): Promise<DepthImage> {
+async function depthOf({ depth, width = 0, height = 0, depthScale }: GivenScene): Promise<PixelArray<Float32Array>> {
   if (!(depth instanceof Float32Array || depth instanceof Uint16Array)) {
     return readDepth(depth, depthScale === undefined ? {} : { depthScale });
   }
@@ -83,7 +83,7 @@ async function depthOf({ depth, width = 0, height = 0, depthScale }: GivenScene)
   return { data: scale === 1 ? (depth as Float32Array) : Float32Array.from(depth, (z) => z * scale), width, height };
 }
 
-async function objectOf({ mask, mesh }: GivenObject, { width, height }: DepthImage): Promise<ReadObject> {
+async function objectOf({ mask, mesh }: GivenObject, { width, height }: PixelArray<Float32Array>): Promise<ReadObject> {
   const isPlain = ArrayBuffer.isView(mask) && mask.length === width * height;
   const own = isPlain
     ? { data: Uint8Array.from(mask), width, height }

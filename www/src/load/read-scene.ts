@@ -1,6 +1,6 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
 import type { MeshArrays } from "sim3align";
-import { type DepthImage, type MeshFromFile, readCamera, readPose } from "sim3align/formats";
+import { type MeshFromFile, type PixelArray, readCamera, readPose } from "sim3align/formats";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import type { NamedFile } from "./files.js";
@@ -29,7 +29,7 @@ export interface ReadObject {
 
 /** The inputs, as far as they could be read. */
 export interface Reading {
-  depth: DepthImage | null;
+  depth: PixelArray<Float32Array> | null;
   camera: Intrinsics | null;
   photo: Photo | null;
   objects: readonly ReadObject[];

@@ -1,0 +1,186 @@
+//! OpenEXR images with a channel of depth.
+
+use std::io;
+
+use exr::block::UncompressedBlock;
+use exr::block::lines::LineRef;
+use exr::block::reader::{ChunksReader, Reader};
+use exr::compression::Compression;
+use exr::math::Vec2;
+use exr::meta::attribute::SampleType;
+use exr::meta::header::Header;
+use exr::prelude::f16;
+
+use crate::depth::{DepthImage, DepthReadOptions, Stored};
+use crate::guard::{MAX_PIXELS, corrupt, pixel_count, too_large, unsupported};
+use sim3align_geometry::depth_kind::DepthKind;
+use sim3align_geometry::error::{Error, Result};
+
+/// Names of depth, the last part of `LAYER.NAME`: `Z` by convention (OpenEXR, Blender), or `depth`.
+const DEPTH_NAMES: [&str; 2] = ["z", "depth"];
+
+/// Names of the only channel of an image, as OpenCV (`Y`) and Blender (`V`) write it; `R` where one of three was kept.
+const SINGLE_NAMES: [&str; 3] = ["y", "v", "r"];
+
+/// Blender writes 1e10 where a ray hits nothing.
+const NOTHING: f64 = 9.9e9;
+
+/// Maximum number of channels: those of a renderer's passes are some dozens.
+const MAX_CHANNELS: usize = 256;
+
+/// Maximum number of bytes of a block, all channels together: 128 lines of a full-HD image with 64 channels.
+const MAX_BLOCK_BYTES: usize = 1 << 26;
+
+pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
+    let reader = Reader::read_from_buffered(io::Cursor::new(bytes), false).map_err(|error| broken(&error))?;
+    let (layer, channel) = find(reader.headers())?;
+    let Some(header) = reader.headers().get(layer) else { return Err(no_depth(reader.headers())) };
+    let picture = Picture::of(header)?;
+    let Some(description) = header.channels.list.get(channel) else { return Err(no_depth(reader.headers())) };
+    let sample = description.sample_type;
+    if description.sampling != Vec2(1, 1) {
+        return Err(unsupported("depth", "an EXR with a subsampled channel", "one value per pixel", "Save it again."));
+    }
+    // The library's decoder of B44 overflows on damaged files. It is lossy, so that nobody keeps depth in it.
+    if matches!(header.compression, Compression::B44 | Compression::B44A) {
+        let remedy = "Save it again, with ZIP compression.";
+        return Err(unsupported("depth", "an EXR with B44 compression", "lossless compression", remedy));
+    }
+    // In the order of the file: the library panics at offsets beyond 32 bits in the table of a damaged one.
+    let chunks = reader.all_chunks(false).map_err(|error| broken(&error))?;
+    let meta = chunks.meta_data().clone();
+    let Some(list) = meta.headers.get(layer).map(|header| &header.channels) else { return Err(no_depth(&[])) };
+    // Allocated when the first block has been read, and NaN where there is none.
+    let mut values = Vec::new();
+    for chunk in chunks {
+        let chunk = chunk.map_err(|error| broken(&error))?;
+        if chunk.layer_index != layer {
+            continue;
+        }
+        let block = UncompressedBlock::decompress_chunk(chunk, &meta, false).map_err(|error| broken(&error))?;
+        if block.index.level != Vec2(0, 0) {
+            continue;
+        }
+        values.resize(picture.width * picture.height, f32::NAN);
+        for line in block.lines(list).filter(|line| line.location.channel == channel) {
+            picture.write(&line, sample, &mut values).map_err(|error| broken(&error))?;
+        }
+    }
+    values.resize(picture.width * picture.height, f32::NAN);
+    let bits = if sample == SampleType::F16 { 16 } else { 32 };
+    let stored = Stored { width: picture.width, height: picture.height, bits, is_integer: sample == SampleType::U32 };
+    let value = |z: f32| if f64::from(z) >= NOTHING { f64::NAN } else { f64::from(z) };
+    stored.read(options, kind, values.into_iter().map(value))
+}
+
+/// The display window, which the stored pixels may cover in part, or exceed.
+struct Picture {
+    width: usize,
+    height: usize,
+    /// Where the first stored pixel is in the picture.
+    offset: [i64; 2],
+    data: [usize; 2],
+}
+
+impl Picture {
+    fn of(header: &Header) -> Result<Self> {
+        let window = header.shared_attributes.display_window;
+        let Vec2(width, height) = window.size;
+        pixel_count("depth", width, height)?;
+        let Vec2(data_width, data_height) = header.layer_size;
+        pixel_count("depth", data_width, data_height)?;
+        let pixel_bytes = header.channels.bytes_per_pixel;
+        let block = header.max_block_pixel_size();
+        let block_bytes = block.0.saturating_mul(block.1).saturating_mul(pixel_bytes);
+        if header.channels.list.len() > MAX_CHANNELS || block_bytes > MAX_BLOCK_BYTES.max(8 * MAX_PIXELS) {
+            let found = format!("{} channels in blocks of {block_bytes} bytes", header.channels.list.len());
+            return Err(too_large("depth", found, format!("at most {MAX_CHANNELS} channels")));
+        }
+        let start = header.own_attributes.layer_position;
+        let offset = [start.0, start.1].map(i64::from);
+        let display = [window.position.0, window.position.1].map(i64::from);
+        let offset = [offset[0] - display[0], offset[1] - display[1]];
+        Ok(Self { width, height, offset, data: [data_width, data_height] })
+    }
+
+    /// Writes the samples of a line.
+    fn write(&self, line: &LineRef<'_>, sample: SampleType, values: &mut [f32]) -> exr::error::UnitResult {
+        let Vec2(first, row) = line.location.position;
+        let mut write = |i: usize, value: f32| {
+            if let Some(slot) = self.place(first + i, row).and_then(|place| values.get_mut(place)) {
+                *slot = value;
+            }
+        };
+        match sample {
+            SampleType::F16 => {
+                for (i, value) in line.read_samples::<f16>().enumerate() {
+                    write(i, value?.to_f32());
+                }
+            }
+            SampleType::F32 => {
+                for (i, value) in line.read_samples::<f32>().enumerate() {
+                    write(i, value?);
+                }
+            }
+            SampleType::U32 => {
+                for (i, value) in line.read_samples::<u32>().enumerate() {
+                    write(i, value? as f32);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The index of a stored pixel in the picture, if it is inside.
+    fn place(&self, column: usize, row: usize) -> Option<usize> {
+        if column >= self.data[0] || row >= self.data[1] {
+            return None;
+        }
+        let at = |stored: usize, offset: i64, size: usize| {
+            usize::try_from(stored as i64 + offset).ok().filter(|place| *place < size)
+        };
+        let u = at(column, self.offset[0], self.width)?;
+        Some(at(row, self.offset[1], self.height)? * self.width + u)
+    }
+}
+
+/// The layer and the channel of depth.
+fn find(headers: &[Header]) -> Result<(usize, usize)> {
+    let channels = || {
+        headers.iter().enumerate().flat_map(|(layer, header)| {
+            let names = header.channels.list.iter().map(|channel| channel.name.to_string().to_ascii_lowercase());
+            names.enumerate().map(move |(channel, name)| (layer, channel, name))
+        })
+    };
+    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
+    let named = channels().find(|(_, _, name)| DEPTH_NAMES.contains(&last(name).as_str()));
+    let mut all = channels();
+    let single = match (all.next(), all.next()) {
+        (Some(only), None) => Some(only).filter(|(_, _, name)| SINGLE_NAMES.contains(&last(name).as_str())),
+        _ => None,
+    };
+    named.or(single).map(|(layer, channel, _)| (layer, channel)).ok_or_else(|| no_depth(headers))
+}
+
+fn no_depth(headers: &[Header]) -> Error {
+    let names: Vec<String> =
+        headers.iter().flat_map(|header| &header.channels.list).take(8).map(|c| c.name.to_string()).collect();
+    unsupported(
+        "depth",
+        format!("an EXR with the channels {}", names.join(", ")),
+        "a channel Z or depth, or Y, V or R alone",
+        "Save the depth alone: the EXR of a point map or of normals has three channels.",
+    )
+}
+
+fn broken(error: &exr::error::Error) -> Error {
+    match error {
+        exr::error::Error::NotSupported(feature) => unsupported(
+            "depth",
+            format!("an EXR with {feature}"),
+            "flat images, not deep ones",
+            "Save it again, with ZIP compression.",
+        ),
+        error => corrupt("depth", format!("an EXR that can't be decoded: {error}"), "an OpenEXR image"),
+    }
+}

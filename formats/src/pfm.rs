@@ -1,0 +1,63 @@
+//! Portable float maps: a text header, then 32-bit floats, the bottom row first.
+
+use crate::cursor::Cursor;
+use crate::depth::{DepthImage, DepthReadOptions, Stored};
+use crate::guard::{corrupt, pixel_count, unsupported};
+use sim3align_geometry::depth_kind::DepthKind;
+use sim3align_geometry::error::Result;
+
+/// Longest number in a header.
+const MAX_WORD: usize = 32;
+
+pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
+    let mut cursor = Cursor::new("depth", bytes);
+    if cursor.take(3)? == b"PF\n" {
+        return Err(unsupported(
+            "depth",
+            "a PFM of three channels (PF)",
+            "one channel (Pf)",
+            "Save the depth alone: z of a point map, one channel of a picture.",
+        ));
+    }
+    let (width, height) = (side(&mut cursor)?, side(&mut cursor)?);
+    let scale = word(&mut cursor)?;
+    // The sign is the byte order. The value is a unit of light, which writers of depth leave at 1.
+    let is_little = match scale.parse::<f64>() {
+        Ok(scale) if scale.is_finite() && scale != 0.0 => scale < 0.0,
+        _ => return Err(broken(format!("the scale {scale:?}"))),
+    };
+    let count = pixel_count("depth", width, height)?;
+    let data = cursor.take(4 * count)?;
+    let value = |bytes: &[u8]| {
+        let bytes = bytes.first_chunk().copied().unwrap_or_default();
+        f64::from(if is_little { f32::from_le_bytes(bytes) } else { f32::from_be_bytes(bytes) })
+    };
+    let values = data.chunks_exact(4 * width).rev().flat_map(|row| row.chunks_exact(4).map(value));
+    Stored { width, height, bits: 32, is_integer: false }.read(options, kind, values)
+}
+
+fn side(cursor: &mut Cursor<'_>) -> Result<usize> {
+    let word = word(cursor)?;
+    word.parse().map_err(|_| broken(format!("the size {word:?}")))
+}
+
+/// The next word, and the one white space after it.
+fn word(cursor: &mut Cursor<'_>) -> Result<String> {
+    let mut word = String::new();
+    loop {
+        match cursor.take(1)? {
+            [space] if space.is_ascii_whitespace() => {
+                // Some writers end lines with two characters, or pad numbers.
+                if !word.is_empty() {
+                    return Ok(word);
+                }
+            }
+            [letter] if letter.is_ascii_graphic() && word.len() < MAX_WORD => word.push(char::from(*letter)),
+            _ => return Err(broken("a header that is no text".into())),
+        }
+    }
+}
+
+fn broken(found: String) -> sim3align_geometry::error::Error {
+    corrupt("depth", format!("a PFM with {found}"), "width, height and scale")
+}

@@ -1,0 +1,219 @@
+//! The exports of the formats module: the readers of meshes, photos, masks, and depth maps as PNG and NPY.
+
+use glam::Vec3;
+use js_sys::{Array, Float32Array, Reflect, Uint8Array, Uint32Array};
+use sim3align_formats::bindings::{Options, depth_image, depth_options, image, object, string, to_bytes, to_js};
+use sim3align_formats::colored_mesh::ColoredMesh;
+use sim3align_formats::depth::read_depth_image;
+use sim3align_formats::error::Error;
+use sim3align_formats::exif::read_exif as exif_from_bytes;
+use sim3align_formats::mask::read_mask as mask_from_bytes;
+use sim3align_formats::mesh::{
+    MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
+    read_mesh as read_mesh_shape,
+};
+use sim3align_formats::photo::read_photo;
+use wasm_bindgen::prelude::*;
+
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = r#"
+/** Bytes of a file. */
+export type FileBytes = Uint8Array | ArrayBuffer;
+
+export interface ReadMeshOptions {
+  /** The format; told from the content by default. */
+  format?: "glb" | "gltf" | "obj" | "ply" | "stl";
+  /** The files that a `.gltf` or `.obj` refers to, by the names in it: see `externalResources`. */
+  resources?: Record<string, FileBytes>;
+  /** Whether to read the colours; `true` by default. */
+  colors?: boolean;
+}
+
+/** A mesh that was read. */
+export interface MeshArrays {
+  /** x, y, z per vertex, in the file's unit and axes. */
+  positions: Float32Array;
+  /** Three vertex indices per triangle. */
+  indices: Uint32Array;
+  /** The colours of the surface, if the file has any. */
+  samples?: ColorSamples;
+  /** Why the colours of the file can't be read. */
+  warnings: string[];
+}
+
+/** Colours of a surface, at points spread evenly over it. */
+export interface ColorSamples {
+  /** x, y, z per point. */
+  positions: Float32Array;
+  /** x, y, z of the unit normal per point, outward. */
+  normals: Float32Array;
+  /** Red, green and blue per point, sRGB-encoded. */
+  colors: Uint8Array;
+}
+
+/** The files that a mesh file refers to, by the names in it. */
+export interface ExternalResources {
+  /** Without these, the mesh can't be read. */
+  shape: string[];
+  /** Without these, it has no colours. */
+  colors: string[];
+}
+
+/** A photo that was read; `width` and `height` in pixels. */
+export interface PhotoImage {
+  /** Red, green and blue per pixel, row by row, sRGB-encoded. */
+  data: Uint8Array;
+  width: number;
+  height: number;
+}
+
+export interface ReadDepthOptions {
+  /** Metres per unit, above 0. By default, whole numbers are millimetres (0.001) and floats are metres. */
+  depthScale?: number;
+  /** Metres per unit of whole numbers only, where there is no `depthScale`: what a camera file says. */
+  integerDepthScale?: number;
+  /** What the values are; `"metric"` by default. */
+  depthKind?: string;
+}
+
+/** A depth map that was read; `width` and `height` in pixels. */
+export interface DepthImage {
+  /** Row by row: metres along the optical axis, unless `depthKind` says otherwise. */
+  data: Float32Array;
+  width: number;
+  height: number;
+  /** The unit of the values in the file. */
+  unit: string;
+  /** The camera in the file, in pixels. */
+  camera?: { fx: number; fy: number; cx: number; cy: number };
+}
+
+/** EXIF data that were read. */
+export interface Exif {
+  focalLength35mm?: number;
+  focalLengthMm?: number;
+  sensorWidthMm?: number;
+  digitalZoom?: number;
+  make?: string;
+  model?: string;
+  orientation: number;
+  width?: number;
+  height?: number;
+}
+
+/** A mask that was read; `width` and `height` in pixels. */
+export interface MaskImage {
+  /** Row by row; 1 is the object. */
+  data: Uint8Array;
+  width: number;
+  height: number;
+}
+"#;
+
+/// Reads GLB, glTF, OBJ, PLY or STL: all parts merged, node transforms applied, with the colours of the surface.
+#[wasm_bindgen(js_name = readMesh, unchecked_return_type = "MeshArrays")]
+pub fn read_mesh(
+    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
+    #[wasm_bindgen(unchecked_optional_param_type = "ReadMeshOptions")] options: &JsValue,
+) -> Result<JsValue, JsValue> {
+    let read = || {
+        let options = Options::new(options, &["format", "resources", "colors"])?;
+        let resources = options.get("resources");
+        let find = |uri: &str| to_bytes("", &Reflect::get(resources.as_ref()?, &uri.into()).ok()?).ok();
+        let format = match options.get("format") {
+            None => None,
+            Some(format) => Some(MeshFormat::from_name(&string("options.format", &format)?)?),
+        };
+        let bytes = to_bytes("mesh", bytes)?;
+        let with_resources = MeshReadOptions { format, resources: Some(&find) };
+        if options.get("colors").is_some_and(|colors| colors.is_falsy()) {
+            return read_mesh_shape(&bytes, &with_resources).map(ColoredMesh::from);
+        }
+        mesh_from_bytes(&bytes, &with_resources)
+    };
+    let ColoredMesh { mesh, colors, problem } = read().map_err(|error| to_js(&error))?;
+    let mut properties = vec![
+        ("positions", flat(mesh.positions()).into()),
+        ("indices", Uint32Array::from(mesh.triangles().as_flattened()).into()),
+        ("warnings", problem.iter().map(|problem| JsValue::from(without_colors(problem))).collect::<Array>().into()),
+    ];
+    if let Some(colors) = &colors {
+        let samples = colors.samples();
+        properties.push((
+            "samples",
+            object(&[
+                ("positions", flat(&samples.points).into()),
+                ("normals", flat(&samples.normals).into()),
+                ("colors", Uint8Array::from(colors.colors().as_flattened()).into()),
+            ]),
+        ));
+    }
+    Ok(object(&properties))
+}
+
+/// The warning for colours that can't be read.
+fn without_colors(problem: &Error) -> String {
+    format!("The mesh is read without its colours. {problem}")
+}
+
+fn flat(points: &[Vec3]) -> Float32Array {
+    let numbers: Vec<f32> = points.iter().flat_map(|p| p.to_array()).collect();
+    Float32Array::from(numbers.as_slice())
+}
+
+/// The files that a mesh file refers to: what `readMesh` needs as `resources`. The libraries of an OBJ refer to files
+/// themselves.
+#[wasm_bindgen(js_name = externalResources, unchecked_return_type = "ExternalResources")]
+pub fn external_resources(
+    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
+) -> Result<JsValue, JsValue> {
+    let found = to_bytes("mesh", bytes).and_then(|bytes| resources_of(&bytes)).map_err(|error| to_js(&error))?;
+    let names = |names: &[String]| names.iter().map(|name| JsValue::from(name.as_str())).collect::<Array>().into();
+    Ok(object(&[("shape", names(&found.shape)), ("colors", names(&found.colors))]))
+}
+
+/// Reads a PNG or a JPEG as a photo: sRGB colours, turned as the EXIF data say; large ones are reduced.
+#[wasm_bindgen(js_name = readImage, unchecked_return_type = "PhotoImage")]
+pub fn read_image(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
+    let photo = to_bytes("image", bytes).and_then(|bytes| read_photo(&bytes)).map_err(|error| to_js(&error))?;
+    Ok(image(&photo, Uint8Array::from(photo.data().as_flattened()).into()))
+}
+
+/// Reads the EXIF data of a PNG or a JPEG; a property is missing where they do not state it.
+#[wasm_bindgen(js_name = readExif, unchecked_return_type = "Exif")]
+pub fn read_exif(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
+    let exif = to_bytes("image", bytes).and_then(|bytes| exif_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
+    let numbers = [
+        ("focalLength35mm", exif.focal_length_35mm),
+        ("focalLengthMm", exif.focal_length_mm),
+        ("sensorWidthMm", exif.sensor_width_mm),
+        ("digitalZoom", exif.digital_zoom),
+        ("width", exif.width.map(f64::from)),
+        ("height", exif.height.map(f64::from)),
+    ];
+    let texts = [("make", exif.make), ("model", exif.model)];
+    let mut properties: Vec<(&str, JsValue)> = vec![("orientation", exif.orientation.number().into())];
+    properties.extend(numbers.into_iter().filter_map(|(name, number)| Some((name, number?.into()))));
+    properties.extend(texts.into_iter().filter_map(|(name, text)| Some((name, text?.into()))));
+    Ok(object(&properties))
+}
+
+/// Reads a grey PNG or a `.npy` array as depth.
+#[wasm_bindgen(js_name = readDepth, unchecked_return_type = "DepthImage")]
+pub fn read_depth(
+    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
+    #[wasm_bindgen(unchecked_optional_param_type = "ReadDepthOptions")] options: &JsValue,
+) -> Result<JsValue, JsValue> {
+    let read = || {
+        let (options, kind) = depth_options(options)?;
+        read_depth_image(&to_bytes("depth", bytes)?, &options, kind)
+    };
+    read().map(|depth| depth_image(&depth)).map_err(|error| to_js(&error))
+}
+
+/// Reads a PNG or a `.npy` array as a mask.
+#[wasm_bindgen(js_name = readMask, unchecked_return_type = "MaskImage")]
+pub fn read_mask(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
+    let mask = to_bytes("mask", bytes).and_then(|bytes| mask_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
+    Ok(image(&mask, Uint8Array::from(mask.data()).into()))
+}
