@@ -1,9 +1,18 @@
 /** Calls as data, so that the same code runs them on the calling thread or in a worker. */
 import { checkAttached } from "./attached.js";
+import {
+  type Calibrated,
+  type CalibrationObject,
+  checkMeasurable,
+  inCalibration,
+  isRaw,
+  partsOf,
+} from "./calibrate.js";
 import type { Core, CoreListener, Task } from "./core.js";
 import { withoutInput } from "./error.js";
 import type { FileReaders } from "./file-readers.js";
 import type { CorrectedFrame } from "./generated/types.js";
+import type { CoreInput, CoreView } from "./input/core-input.js";
 import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import { resolveFrame, resolveViews } from "./input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
@@ -15,18 +24,21 @@ import {
   type AlignResult,
   type Clouds,
   type Evaluation,
-  type FileWarnings,
+  type InputNotes,
+  sourcesOf,
   type Registration,
   type TrackedFrame,
+  type ViewAlignment,
   type ViewsAlignment,
-  withWarnings,
+  withNotes,
 } from "./results.js";
-import { isTypedArray, wrongKind } from "./values.js";
+import { isTypedArray, withoutUndefined, wrongKind } from "./values.js";
 import type { Glue, LoadedModule } from "./wasm-module.js";
 
 /** The calls: their data, which contain all large arrays, what else they are given, and their results. */
 interface Calls {
   align: { data: AlignInput; meshId?: number | undefined; result: AlignResult };
+  calibrate: { data: CalibrateInput; result: Calibrated };
   place: { data: PlaceInput; meshId?: number | undefined; result: Placed };
   alignViews: { data: ViewsInput; meshId?: number | undefined; result: ViewsAlignment };
   openTracker: { data: { mesh: MeshInput }; tracker: number; meshId?: number | undefined; result: undefined };
@@ -48,6 +60,9 @@ export type Results = { [M in keyof Calls]: Calls[M]["result"] };
 
 /** An object of a scene, the pixels of the others, and the plan of the scene, which only the joint module reads. */
 export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; plan?: Uint8Array | undefined; index: number };
+
+/** A view in the form of the core, and the objects by which it is calibrated, whose meshes have not been read. */
+export type CalibrateInput = CoreView & { objects: (Omit<CalibrationObject, "mesh"> & { mesh: unknown })[] };
 
 /** The modules that run jobs. Others than the core are loaded when a job needs them. */
 export interface Modules extends FileReaders {
@@ -87,30 +102,50 @@ export async function perform(
   checkAttached("input", job.data);
   switch (job.method) {
     case "align": {
-      const { core: input, warnings } = await resolveInput(job.data, modules, job.meshId);
+      const { core: read, notes } = await resolveInput(job.data, modules, job.meshId);
+      const [first, then] = isRaw(read) ? partsOf(listener) : [undefined, listener];
+      const calibrated = isRaw(read) ? await calibrateByObject(read, options, await joint(), first, slices) : undefined;
+      const input = calibrated === undefined ? read : inCalibration(read, calibrated);
       const result = isOfPaper(options)
-        ? called(await registrar(), (r) => r.alignPaper(input, options, listener), input)
-        : await runTask(core, (c) => c.beginAlign(input, options, listener), input, slices);
-      return withWarnings(result, warnings);
+        ? called(await registrar(), (r) => r.alignPaper(input, options, then), input)
+        : await runTask(core, (c) => c.beginAlign(input, options, then), input, slices);
+      return withNotes(calibratedResult(result, calibrated), notes);
+    }
+    case "calibrate": {
+      const { objects, ...view } = job.data;
+      const read: CalibrationObject[] = [];
+      for (const object of objects) {
+        const { mesh } = await readCoreMesh(object.mesh, formats, false);
+        read.push({ ...object, mesh });
+      }
+      const input = { ...view, objects: read };
+      return runTask(await joint(), (j) => j.beginCalibrate(input, listener), input, slices);
     }
     case "place": {
       const { others, plan, index, ...own } = job.data;
-      const { core: input, warnings } = await resolveInput(own, modules, job.meshId);
+      const { core: input, notes } = await resolveInput(own, modules, job.meshId);
       const observed = { ...input, others };
       const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener);
       const placed = await runTask(await joint(), begin, observed, slices);
       if (placed.alignment === undefined) return placed;
-      // The camera belongs to the scene, which reports its warnings.
-      return { ...placed, alignment: withWarnings(placed.alignment, { camera: [], colors: warnings.colors }) };
+      // The view belongs to the scene, which reports what its files say.
+      return { ...placed, alignment: withNotes(placed.alignment, { warnings: [], colors: notes.colors }) };
     }
     case "alignViews": {
-      const { core: input, warnings } = await resolveViews(job.data, modules, job.meshId);
-      const begin = (j: JointAligner) => j.beginAlignViews(input, options, listener);
-      const result = await runTask(await joint(), begin, input, slices);
-      return {
-        ...result,
-        views: result.views.map((view, k) => withWarnings(view, warnings[k] as FileWarnings)),
-      };
+      const { core: read, notes } = await resolveViews(job.data, modules, job.meshId);
+      const module = await joint();
+      const [first, then] = read.views.some(isRaw) ? partsOf(listener) : [undefined, listener];
+      const beginFirst = (j: JointAligner) => j.beginCalibrateViews({ ...read, options }, first);
+      const calibrated = read.views.some(isRaw) ? await runTask(module, beginFirst, read, slices) : [];
+      const views = read.views.map((view, k) => {
+        const own = calibrated[k];
+        return own === undefined ? view : inCalibration(view, own);
+      });
+      const input = { ...read, views };
+      const result = await runTask(module, (j) => j.beginAlignViews(input, options, then), input, slices);
+      const ofView = (view: ViewAlignment, k: number) =>
+        withNotes(calibratedResult(view, calibrated[k]), notes[k] as InputNotes);
+      return { ...result, views: result.views.map(ofView) };
     }
     case "openTracker": {
       // Any frame may have a photo.
@@ -124,19 +159,20 @@ export async function perform(
       return undefined;
     }
     case "trackFrame": {
-      const { core: frame } = await resolveFrame(job.data, modules);
+      const { core: frame, notes } = await resolveFrame(job.data, modules);
       const module = await joint();
       checkAttached("frame", frame);
-      return module.call((j) => j.trackFrame(job.tracker, frame, listener));
+      return { ...module.call((j) => j.trackFrame(job.tracker, frame, listener)), ...sourcesOf(notes) };
     }
     case "correctTrack": {
       const { pose, frame } = job.data;
       return (await joint()).call((j) => j.correctTrack(job.tracker, pose, frame));
     }
     case "evaluate": {
-      const { core: input, warnings } = await resolveInput(job.data, modules, job.meshId);
+      const { core: input, notes } = await resolveInput(job.data, modules, job.meshId);
+      checkMeasurable(input);
       const evaluation = called(core, (c) => c.evaluate(input, job.transform, options), input);
-      return withWarnings(evaluation, warnings);
+      return withNotes(evaluation, notes);
     }
     case "prepareMesh": {
       const { mesh, warnings } = await readMesh(job.data.mesh, formats, true);
@@ -158,6 +194,25 @@ export async function perform(
     }
   }
 }
+
+/** Calibrates the view of an input by its object. */
+function calibrateByObject(
+  { mesh, mask, maskWidth, maskHeight, resizeMask, ...view }: CoreInput,
+  options: object,
+  joint: LoadedModule<JointAligner>,
+  listener: CoreListener | undefined,
+  slices: Slices,
+): Promise<Calibrated> {
+  const { id: _, ...own } = mesh;
+  // What is known of the object is an option of one method.
+  const known = isOfPaper(options) ? {} : options;
+  const object = withoutUndefined({ mask, maskWidth, maskHeight, resizeMask, mesh: own, options: known });
+  const input = { ...view, objects: [object as CalibrationObject] };
+  return runTask(joint, (j) => j.beginCalibrate(input, listener), input, slices);
+}
+
+const calibratedResult = <T extends object>(result: T, calibrated: Calibrated | undefined): T =>
+  calibrated === undefined ? result : { ...result, depthCalibration: calibrated.calibration };
 
 /** Calls a module with an input that has been read. Meanwhile, the thread may have lost its memory to another one. */
 function called<G extends Glue, T>(module: LoadedModule<G>, work: (glue: G) => T, input: object): T {

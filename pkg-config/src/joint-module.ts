@@ -1,7 +1,16 @@
 /** The joint module: the WebAssembly module with `alignScene`, `alignViews` and `track`. */
+import type { Calibrated, CalibrationObject } from "./calibrate.js";
 import type { CoreListener, Task } from "./core.js";
-import type { Alignment, Contact, CorrectedFrame, Sim3, TrackedFrame, ViewsAlignment } from "./generated/types.js";
-import type { CoreFrame, CoreInput, CoreViews } from "./input/core-input.js";
+import type {
+  Alignment,
+  Contact,
+  CorrectedFrame,
+  DepthCalibration,
+  Sim3,
+  TrackedFrame,
+  ViewsAlignment,
+} from "./generated/types.js";
+import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./input/core-input.js";
 import type { CoreMesh } from "./prepared-mesh.js";
 import type { Support } from "./scene/types.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
@@ -35,9 +44,15 @@ export interface JointAligner extends Glue {
     plan: Uint8Array | undefined,
     placements: (Uint8Array | null)[],
   ): { plan: Uint8Array } | Arrangement;
+  beginCalibrate(input: CoreView & { objects: CalibrationObject[] }, onProgress: CoreListener | undefined): Task<Calibrated>;
+  beginCalibrateViews(input: CoreViews & { options: object }, onProgress: CoreListener | undefined): Task<Calibrated[]>;
   beginAlignViews(input: CoreViews, options: object, onProgress: CoreListener | undefined): Task<ViewsAlignment>;
   openTracker(id: number, input: { mesh: CoreMesh }, options: object): void;
-  trackFrame(id: number, frame: CoreFrame, onProgress: CoreListener | undefined): TrackedFrame;
+  trackFrame(
+    id: number,
+    frame: CoreFrame,
+    onProgress: CoreListener | undefined,
+  ): TrackedFrame & { depthCalibration?: DepthCalibration };
   correctTrack(id: number, pose: unknown, frame: unknown): CorrectedFrame[];
   closeTracker(id: number): void;
   dropMesh(id: number): void;

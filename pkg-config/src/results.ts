@@ -7,14 +7,27 @@ import type * as Core from "./generated/types.js";
 import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import type { AlignInput } from "./input/types.js";
 
+/** How the depth map and the camera of a view were read. */
+export interface OfInput {
+  /** The unit of the depth, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
+  depthUnit?: string;
+  /** Where the intrinsics come from, if they were not given: `"depth file"`, `"EXIF: …"`, or `"estimate"`. */
+  cameraSource?: string;
+  /**
+   * What the depth and the lens were taken to be, if they were not fully known. All lengths of the result are metres if
+   * `isMetric`; otherwise, their unit is unknown, and `correctDepth` of `sim3align/conventions` returns the depth map in it.
+   */
+  depthCalibration?: Core.DepthCalibration;
+}
+
 /** The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV: x right, y down, z forward; metres). */
-export interface Alignment extends Core.Alignment {
+export interface Alignment extends Core.Alignment, OfInput {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
 
 /** The result of `align` with `preset: "paper"`. */
-export interface PaperAlignment extends Core.PaperAlignment {
+export interface PaperAlignment extends Core.PaperAlignment, OfInput {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -35,20 +48,25 @@ export type AlignResult<P extends Core.Preset = Core.Preset, M extends boolean =
     : WithoutMetrics<AlignmentByPreset[P]>
   : never;
 
+/** The object in one of several views. */
+export interface ViewAlignment extends Core.ViewPose, OfInput {}
+
 /** The result of `alignViews`: world from mesh, x_world = s·R·p_mesh + t, in metres, and the pose in each view. */
 export interface ViewsAlignment extends Core.ViewsAlignment {
+  /** In the order of the input. */
+  views: ViewAlignment[];
   /** With `transfer: true`: the returned arrays of the input. */
   input?: ViewsInput;
 }
 
 /** The result of `Tracker.next`: camera from mesh, x_cam = s·R·p_mesh + t. */
-export interface TrackedFrame extends Core.TrackedFrame {
+export interface TrackedFrame extends Core.TrackedFrame, OfInput {
   /** With `transfer: true`: the returned arrays of the frame. */
   input?: FrameInput;
 }
 
 /** The result of `evaluate`. */
-export interface Evaluation extends Core.Evaluation {
+export interface Evaluation extends Core.Evaluation, Pick<OfInput, "depthUnit"> {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -71,17 +89,19 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment: A; input?: AlignInput; error?: undefined }
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
-/** The warnings of the readers of files. */
-export interface FileWarnings {
-  /** Of the camera file. */
-  camera: readonly string[];
-  /** Of the colours of the mesh file. */
+/** What the files of an input say, for its result. */
+export interface InputNotes extends Pick<OfInput, "depthUnit" | "cameraSource"> {
+  /** Of the view. */
+  warnings: readonly Core.Warning[];
+  /** Why the colours of the mesh file are not read. */
   colors: readonly string[];
 }
 
-/** A result whose warnings include those of the input files, before those of the core. */
-export function withWarnings<T extends { warnings: Core.Warning[] }>(result: T, { camera, colors }: FileWarnings): T {
-  const coded = (code: Core.WarningCode) => (message: string) => ({ code, message });
-  const warnings = [...camera.map(coded("CAMERA_NOT_PINHOLE")), ...colors.map(coded("COLORS_NOT_READ"))];
-  return { ...result, warnings: [...warnings, ...result.warnings] };
+/** How the files of a view were read. */
+export const sourcesOf = ({ warnings: _, colors: __, ...sources }: InputNotes) => sources;
+
+/** A result with what its files say; their warnings before those of the core. */
+export function withNotes<T extends { warnings: Core.Warning[] }>(result: T, notes: InputNotes): T {
+  const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
+  return { ...result, ...sourcesOf(notes), warnings: [...notes.warnings, ...ofColors, ...result.warnings] };
 }

@@ -112,10 +112,15 @@ export function whole(argument: string, value: unknown, least: number): number {
 }
 
 /** One of several names. */
-export function oneOf<T extends string>(argument: string, value: unknown, words: readonly T[]): T {
+export function oneOf<T extends string>(
+  argument: string,
+  value: unknown,
+  words: readonly T[],
+  code: "INVALID_ARGUMENT" | "INVALID_OPTION" = "INVALID_OPTION",
+): T {
   if (words.includes(value as T)) return value as T;
   const expected = words.map((word) => JSON.stringify(word)).join(" or ");
-  throw failure("INVALID_OPTION", argument, describe(value), expected, "Check the spelling.");
+  throw failure(code, argument, describe(value), expected, "Check the spelling.");
 }
 
 /** The options of a call. */

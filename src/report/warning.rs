@@ -43,6 +43,9 @@ pub enum WarningCode {
     /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of
     /// it.
     CameraNotPinhole,
+    /// No camera was given, and neither the depth file nor the photo states a focal length: it was estimated from the object.
+    /// The package's camera reader warns of it.
+    FocalLengthUnknown,
     /// The colours of the mesh file cannot be read, such as a texture in an unsupported format: the mesh is aligned by its
     /// shape alone. The package's mesh reader warns of it.
     ColorsNotRead,

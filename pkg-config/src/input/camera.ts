@@ -3,23 +3,34 @@ import { invalidArgument } from "../error.js";
 import { checkCameraSize, depthScaleIn, parseCameraFile } from "../formats/camera-file.js";
 import { type Pinhole, pinholeOf } from "../formats/pinhole.js";
 import type { ImageSize } from "../formats/pixels.js";
+import type { Warning } from "../generated/types.js";
 import { isRecord, stringsIn } from "../values.js";
 import { fileBytes } from "./bytes.js";
 import { checkSides } from "./depth.js";
+import { type CameraHints, foundCamera } from "./lens.js";
 
 /** A parsed camera, whose intrinsics may depend on the image size. */
 export interface Camera {
   /** Metres per unit of integer depth, if given in the camera file. */
   integerDepthScale: number | undefined;
-  /** The intrinsics for an image of this size. */
-  resolve(width: number | undefined, height: number | undefined): ResolvedCamera;
+  /** Whether the intrinsics were given. */
+  isGiven: boolean;
+  /** The intrinsics for an image of this size; `hints` where they were not given. */
+  resolve(width: number | undefined, height: number | undefined, hints?: CameraHints): ResolvedCamera;
 }
 
-interface ResolvedCamera {
+/** The intrinsics of a view. */
+export interface ResolvedCamera {
   /** `undefined` if the image size is invalid, which the core reports before it reads the camera. */
   camera: Pinhole | undefined;
-  warnings: readonly string[];
+  /** Standard deviation of the logarithm of the focal length, if it is a guess. */
+  focalDeviation?: number | undefined;
+  /** Where the intrinsics come from, if they were not given. */
+  source?: string;
+  warnings: readonly Warning[];
 }
+
+const notPinhole = (message: string): Warning => ({ code: "CAMERA_NOT_PINHOLE", message });
 
 const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
 const fileRemedy = "Pass the content of a camera file as cameraFile.";
@@ -28,11 +39,16 @@ const fileRemedy = "Pass the content of a camera file as cameraFile.";
 const fileProperties = ["cam_K", "k", "d", "D", "intrinsic_matrix", "ppx", "ppy", "fov_y_deg", "depth_scale"];
 
 /** `readCamera` adds `warnings` and `depthScale` to the intrinsics of a camera file. */
-export const cameraProperties = ["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "warnings", "depthScale"];
+export const cameraProperties = [
+  ...["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "focalUncertainty", "warnings", "depthScale"],
+];
 
-/** The camera of an input, which has either `camera` or `cameraFile`. */
+/** The properties that state intrinsics. */
+const intrinsics = ["fx", "fy", "cx", "cy", "K", "fovYDeg"];
+
+/** The camera of an input, which has `camera`, `cameraFile`, or neither. */
 export async function cameraOf({ camera, cameraFile, imageId }: Record<string, unknown>): Promise<Camera> {
-  if (cameraFile === undefined) return statedCamera(camera);
+  if (cameraFile === undefined) return statedCamera(camera === undefined ? {} : camera);
   if (camera === undefined) return fileCamera(cameraFile, imageId);
   const remedy = "Omit one of the two.";
   throw invalidArgument("cameraFile", cameraFile, "a camera or a camera file, but not both", remedy);
@@ -48,15 +64,27 @@ function statedCamera(camera: unknown): Camera {
   }
   const { width, height, depthScale, warnings } = camera as Partial<ImageSize> & Record<string, unknown>;
   checkSides("camera.", { width, height });
+  const stated = focalUncertainty(camera.focalUncertainty);
+  const isGiven = intrinsics.some((name) => camera[name] !== undefined);
   return {
     integerDepthScale: depthScale as number | undefined,
-    resolve(imageWidth, imageHeight) {
+    isGiven,
+    resolve(imageWidth, imageHeight, hints = {}) {
       const size = sizeOf(imageWidth, imageHeight);
       if (size === undefined) return { camera: undefined, warnings: [] };
       checkCameraSize("camera", { width, height }, size);
-      return { camera: pinholeOf("camera", camera, size), warnings: stringsIn(warnings) };
+      const given = () => ({ camera: pinholeOf("camera", camera, size), warnings: stringsIn(warnings).map(notPinhole) });
+      const found: ResolvedCamera = isGiven ? given() : foundCamera(size, hints);
+      return stated === undefined ? found : { ...found, focalDeviation: stated || undefined };
     },
   };
+}
+
+/** The relative standard deviation of a focal length; 0 for one that is known. */
+function focalUncertainty(value: unknown): number | undefined {
+  if (value === undefined || (typeof value === "number" && value >= 0 && value < 1)) return value;
+  const remedy = "Pass the relative standard deviation of the focal length: 0.1 for 10 %.";
+  throw invalidArgument("camera.focalUncertainty", value, "a number from 0 to 1", remedy);
 }
 
 async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
@@ -68,12 +96,13 @@ async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
   }
   return {
     integerDepthScale: depthScaleIn(content, imageId as string | undefined),
+    isGiven: true,
     resolve(width, height) {
       const size = sizeOf(width, height);
       if (size === undefined) return { camera: undefined, warnings: [] };
       const options = { ...size, imageId: imageId as string | undefined };
       const { fx, fy, cx, cy, warnings } = parseCameraFile(content, options, { file: "cameraFile", options: "" });
-      return { camera: { fx, fy, cx, cy }, warnings };
+      return { camera: { fx, fy, cx, cy }, warnings: warnings.map(notPinhole) };
     },
   };
 }

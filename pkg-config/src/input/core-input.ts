@@ -2,11 +2,14 @@
 import type { Pinhole } from "../formats/pinhole.js";
 import type { CoreMesh } from "../prepared-mesh.js";
 import type { Photo } from "./colors.js";
+import type { DepthKind } from "./depth-kind.js";
 
 /** The input of the core, which checks lengths and values. */
 export interface CoreInput {
   depth?: Float32Array | Uint16Array;
   depthScale?: unknown;
+  /** What the values are, unless they are metric. */
+  depthKind?: DepthKind;
   pointMap?: Float32Array;
   width?: unknown;
   height?: unknown;
@@ -15,9 +18,14 @@ export interface CoreInput {
   maskHeight?: number;
   resizeMask?: unknown;
   camera?: Pinhole;
+  /** Standard deviation of the logarithm of the focal length, if it is a guess. */
+  focalDeviation?: number;
   image?: Photo;
   mesh: CoreMesh;
 }
+
+/** The depth, the photo and the camera of an input. */
+export type CoreView = Omit<CoreInput, "mask" | "maskWidth" | "maskHeight" | "resizeMask" | "mesh">;
 
 /** A frame for the core. */
 export type CoreFrame = Omit<CoreInput, "mask" | "mesh"> & {

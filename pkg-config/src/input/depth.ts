@@ -20,8 +20,8 @@ type DepthArray = Float32Array | Uint16Array;
 export interface ReadDepth extends SizedArray<DepthArray> {
   /** The camera in the file. */
   camera?: Pinhole;
-  /** The unit of the values in the file, for people. */
-  unit?: string;
+  /** The unit of the values, and why it was taken, for people. */
+  unit: string;
 }
 
 const depthForms =
@@ -43,17 +43,18 @@ export async function readDepth(
   reading: DepthReading,
   readers: FileReaders,
 ): Promise<ReadDepth> {
-  if (isDepthArray(depth)) return { data: depth, ...required(size) };
+  const ofArray = <T extends SizedArray<DepthArray>>(read: T) => ({ ...read, unit: unitOf(read.data, reading) });
+  if (isDepthArray(depth)) return ofArray({ data: depth, ...required(size) });
   const mayHaveBytes = isAffineInvariant(reading.depthKind);
   if (isRecord(depth) && "data" in depth) {
     const { data } = depth;
     const values = mayHaveBytes && isBytes(data) ? { ...depth, data: Float32Array.from(data) } : depth;
-    return sized("depth", values, depthForms, isDepthArray, size);
+    return ofArray(sized("depth", values, depthForms, isDepthArray, size));
   }
   const bytes = await fileBytes("depth", depth);
   if (bytes === null) throw wrongKind("depth", depth, depthForms, "Float32Array");
   if (bytes === depth && bytes.length === (size.width ?? 0) * (size.height ?? 0) && bytes.length > 0) {
-    if (mayHaveBytes) return { data: Float32Array.from(bytes), ...required(size) };
+    if (mayHaveBytes) return ofArray({ data: Float32Array.from(bytes), ...required(size) });
     const found = `a Uint8Array of ${size.width} × ${size.height} values`;
     const remedy =
       'Pass the depth map itself: 256 levels are a visualisation of it. If a relative model drew it, near is bright: pass depthKind "affine-invariant-disparity".';
@@ -62,6 +63,15 @@ export async function readDepth(
   const file = await decodeDepth("depth", bytes, reading, readers, (argument) => argument.replace(/^options\./, ""));
   checkStatedSize("depth", file, size);
   return file;
+}
+
+/** The unit of an array, in the words of the readers of files. */
+function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDepthScale }: DepthReading): string {
+  if (isAffineInvariant(depthKind)) return `none (${depthKind})`;
+  if (depthScale !== undefined) return `${depthScale} m (depthScale)`;
+  if (depthKind !== "metric") return `unknown (${depthKind})`;
+  if (isFloats(data)) return "metres (float values, assumed)";
+  return integerDepthScale === undefined ? "0.001 m (16-bit integers, assumed)" : `${integerDepthScale} m (camera file)`;
 }
 
 /** How the files of depth models begin: NPZ (also without an array), OpenEXR, TIFF and PFM. */

@@ -1,20 +1,19 @@
 /** Converts views and frames to the typed arrays and numbers of the core. */
 import { invalidArgument, renamed, Sim3AlignError } from "../error.js";
 import type { FileReaders } from "../file-readers.js";
-import type { FileWarnings } from "../results.js";
+import type { InputNotes } from "../results.js";
 import { coreSim3, type Sim3Like } from "../sim3.js";
 import { checkNames, isRecord, withoutUndefined } from "../values.js";
 import type { CoreFrame, CoreViews } from "./core-input.js";
 import { checkSides } from "./depth.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
-import { readPhoto } from "./photo.js";
-import { frameProperties, imageAndCamera, spelling } from "./resolve.js";
+import { frameProperties, readFrame, spelling } from "./resolve.js";
 
-/** A resolved frame, and the warnings of its files. */
+/** A resolved frame, and what its files say. */
 export interface ResolvedFrame {
   core: CoreFrame;
-  warnings: readonly string[];
+  notes: InputNotes;
 }
 
 /** Resolves a frame, whose mask may be missing. */
@@ -29,19 +28,18 @@ export async function resolveFrame(
   }
   checkNames("", frame, properties, spelling);
   checkSides("", frame);
-  const { warnings, ...view } = await imageAndCamera(frame, readers);
-  const image = await readPhoto(frame.image, view, readers.formats);
-  const core = { ...view, image, resizeMask: frame.resizeMask };
-  if (frame.mask === undefined || frame.mask === null) return { core: withoutUndefined(core) as CoreFrame, warnings };
+  const { view, notes } = await readFrame(frame, readers);
+  const core = { ...view, resizeMask: frame.resizeMask };
+  if (frame.mask === undefined || frame.mask === null) return { core: withoutUndefined(core) as CoreFrame, notes };
   const mask = await readMask(frame.mask, Number(view.width) * Number(view.height), readers.formats);
   const masked = { ...core, mask: mask.data, maskWidth: mask.width, maskHeight: mask.height };
-  return { core: withoutUndefined(masked) as CoreFrame, warnings };
+  return { core: withoutUndefined(masked) as CoreFrame, notes };
 }
 
-/** Resolved views, and the warnings of the files of each. */
+/** Resolved views, and what the files of each say. */
 export interface ResolvedViews {
   core: CoreViews;
-  warnings: readonly FileWarnings[];
+  notes: readonly InputNotes[];
 }
 
 /**
@@ -62,19 +60,16 @@ export async function resolveViews(input: unknown, readers: FileReaders, meshId?
   const read = await readCoreMesh(mesh, readers.formats, isColored, meshId);
   const core = { mesh: read.mesh, views: resolved.map((view) => view.core) };
   // Colours matter only where there is a photo to compare them with.
-  const warningsOf = ({ core, warnings }: ResolvedFrame) => ({
-    camera: warnings,
-    colors: core.image === undefined ? [] : read.warnings,
-  });
-  return { core, warnings: resolved.map(warningsOf) };
+  const notesOf = ({ core, notes }: ResolvedFrame) => (core.image === undefined ? notes : { ...notes, colors: read.warnings });
+  return { core, notes: resolved.map(notesOf) };
 }
 
 async function resolveView(view: unknown, index: number, readers: FileReaders): Promise<ResolvedFrame> {
   try {
-    const { core, warnings } = await resolveFrame(view, readers, ["cameraToWorld"]);
+    const { core, notes } = await resolveFrame(view, readers, ["cameraToWorld"]);
     const { cameraToWorld } = view as { cameraToWorld?: Sim3Like | null };
-    if (cameraToWorld === undefined || cameraToWorld === null) return { core, warnings };
-    return { core: { ...core, cameraToWorld: coreSim3(cameraToWorld) }, warnings };
+    if (cameraToWorld === undefined || cameraToWorld === null) return { core, notes };
+    return { core: { ...core, cameraToWorld: coreSim3(cameraToWorld) }, notes };
   } catch (error) {
     if (!(error instanceof Sim3AlignError)) throw error;
     throw renamed(error, `views[${index}]${error.argument === "frame" ? "" : `.${error.argument}`}`);

@@ -1,5 +1,6 @@
 /** The photo of an input. */
 import { failure, invalidArgument } from "../error.js";
+import type { Exif } from "../formats/exif-focal.js";
 import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, wrongKind } from "../values.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
@@ -26,6 +27,13 @@ export async function readPhoto(image: unknown, size: StatedSize, formats: LoadF
   if (bytes === image && !beginsLikeImage(bytes) && channelsOf(bytes, size) !== undefined)
     return pixels("", bytes, size);
   return callReader(formats, "image", bytes, (readers) => readers.readImage(bytes));
+}
+
+/** The EXIF data of a photo, if it is a file. */
+export async function readPhotoExif(image: unknown, formats: LoadFormats): Promise<Exif | undefined> {
+  const bytes = isTypedArray(image, "Uint8ClampedArray") ? null : await fileBytes("image", image);
+  if (bytes === null || !beginsLikeImage(bytes)) return undefined;
+  return callReader(formats, "image", bytes, (readers) => readers.readExif(bytes));
 }
 
 const channelsOf = ({ length }: Bytes, { width, height }: StatedSize): number | undefined =>

@@ -2,26 +2,29 @@
 
 import { invalidArgument } from "../error.js";
 import type { FileReaders } from "../file-readers.js";
-import type { FileWarnings } from "../results.js";
+import type { InputNotes } from "../results.js";
 import type { ClassNames } from "../snapshot.js";
-import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
-import { cameraOf, cameraProperties } from "./camera.js";
-import type { CoreInput } from "./core-input.js";
-import { checkSides, readDepth, readPointMap } from "./depth.js";
+import { checkNames, isRecord, isTypedArray, oneOf, withoutUndefined } from "../values.js";
+import { cameraOf, cameraProperties, type ResolvedCamera } from "./camera.js";
+import type { Photo } from "./colors.js";
+import type { CoreInput, CoreView } from "./core-input.js";
+import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
+import { depthKinds, isAffineInvariant } from "./depth-kind.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
-import { readPhoto } from "./photo.js";
+import { readPhoto, readPhotoExif } from "./photo.js";
 
-/** A resolved input, and the warnings of its files. */
+/** A resolved input, and what its files say. */
 export interface ResolvedInput {
   core: CoreInput;
-  warnings: FileWarnings;
+  notes: InputNotes;
 }
 
 /** The properties of a frame: those of an input but the mesh. */
 export const frameProperties: readonly string[] = [
   "depth",
   "depthScale",
+  "depthKind",
   "pointMap",
   "width",
   "height",
@@ -58,70 +61,100 @@ export const classNames: ClassNames = {
 export async function resolveInput(input: unknown, readers: FileReaders, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
   const { resizeMask } = input;
-  const { warnings, ...view } = await imageAndCamera(input, readers);
+  const { view, notes } = await readFrame(input, readers);
   const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
-  const image = await readPhoto(input.image, view, readers.formats);
-  const mesh = await readCoreMesh(input.mesh, readers.formats, image !== undefined, meshId);
+  const mesh = await readCoreMesh(input.mesh, readers.formats, view.image !== undefined, meshId);
   // Colours matter only where there is a photo to compare them with.
-  const colorWarnings = image === undefined ? [] : mesh.warnings;
+  const colors = view.image === undefined ? [] : mesh.warnings;
   const core = {
     ...view,
-    image,
     resizeMask,
     mask: mask.data,
     maskWidth: mask.width,
     maskHeight: mask.height,
     mesh: mesh.mesh,
   };
-  return { core: withoutUndefined(core) as CoreInput, warnings: { camera: warnings, colors: colorWarnings } };
+  return { core: withoutUndefined(core) as CoreInput, notes: { ...notes, colors } };
+}
+
+/** A depth map or a point map, its photo and its camera, for the core; and what their files say. */
+export interface ReadFrame {
+  view: CoreView;
+  notes: InputNotes;
 }
 
 /**
- * The depth map, or the point map, and the camera of an input.
+ * The depth map, or the point map, the photo and the camera of an input.
  * @throws {@link Sim3AlignError} as {@link resolveInput}
  */
-export async function readView(input: unknown, readers: FileReaders) {
+export async function readView(input: unknown, readers: FileReaders): Promise<ReadFrame> {
   checkProperties(input);
-  return imageAndCamera(input, readers);
+  return readFrame(input, readers);
 }
 
 /** Like {@link readView}, for an input whose property names have been checked. */
-export async function imageAndCamera(input: Record<string, unknown>, readers: FileReaders) {
+export async function readFrame(input: Record<string, unknown>, readers: FileReaders): Promise<ReadFrame> {
   checkSides("", input);
   const { pointMap } = input;
-  return pointMap === undefined ? depthAndCamera(input, readers) : pointMapAndCamera(input, pointMap);
+  return pointMap === undefined ? depthFrame(input, readers) : pointMapFrame(input, pointMap, readers);
 }
 
-async function depthAndCamera(input: Record<string, unknown>, readers: FileReaders) {
+async function depthFrame(input: Record<string, unknown>, readers: FileReaders): Promise<ReadFrame> {
   const size = { width: input.width as number | undefined, height: input.height as number | undefined };
   const depthScale = input.depthScale as number | undefined;
+  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKinds, "INVALID_ARGUMENT");
   const camera = await cameraOf(input);
   const { integerDepthScale } = camera;
-  const { data, width, height } = await readDepth(input.depth, size, { depthScale, integerDepthScale }, readers);
+  const reading = { depthScale, integerDepthScale, depthKind };
+  const { data, unit, camera: inDepth, ...sides } = await readDepth(input.depth, size, reading, readers);
   const isFile = data !== input.depth && !isRecord(input.depth);
   const isFloat = isTypedArray(data, "Float32Array");
-  return {
+  // Integers of an unknown unit are read as they are.
+  const integerScale = depthKind === "metric" ? integerDepthScale : 1;
+  const image = await readPhoto(input.image, sides, readers.formats);
+  const exif = camera.isGiven ? undefined : await readPhotoExif(input.image, readers.formats);
+  const hints = { inDepth, photo: exif && image && { exif, size: image } };
+  const read = {
     depth: data,
     // The readers have already scaled the values of a file.
-    depthScale: isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerDepthScale)),
-    width,
-    height,
-    ...camera.resolve(width, height),
+    depthScale: isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale)),
+    depthKind: depthKind === "metric" ? undefined : depthKind,
   };
+  return frameOf(read, sides, image, camera.resolve(sides.width, sides.height, hints), unit);
 }
 
-async function pointMapAndCamera(input: Record<string, unknown>, pointMap: unknown) {
+async function pointMapFrame(
+  input: Record<string, unknown>,
+  pointMap: unknown,
+  readers: FileReaders,
+): Promise<ReadFrame> {
   const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
   if (other !== undefined) {
     const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
     throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
   }
-  const { data, width, height } = readPointMap(pointMap, input as { width?: number; height?: number });
-  const image = { pointMap: data, depthScale: undefined, width, height };
-  if (input.camera === undefined && input.cameraFile === undefined)
-    return { ...image, camera: undefined, warnings: [] };
+  const kinds = depthKinds.filter((kind) => !isAffineInvariant(kind));
+  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT");
+  const { data, ...sides } = readPointMap(pointMap, input as { width?: number; height?: number });
+  const image = await readPhoto(input.image, sides, readers.formats);
+  const isMetric = depthKind === "metric";
+  const read = { pointMap: data, depthKind: isMetric ? undefined : depthKind };
   const camera = await cameraOf(input);
-  return { ...image, ...camera.resolve(width, height) };
+  // Intrinsics that were not given are fitted to the point map.
+  const resolved = camera.isGiven ? camera.resolve(sides.width, sides.height) : { camera: undefined, warnings: [] };
+  return frameOf(read, sides, image, resolved, isMetric ? "metres (point map)" : `unknown (${depthKind})`);
+}
+
+function frameOf(
+  depth: Partial<CoreInput>,
+  { width, height }: Omit<SizedArray<unknown>, "data">,
+  image: Photo | undefined,
+  { camera, focalDeviation, source, warnings }: ResolvedCamera,
+  depthUnit: string,
+): ReadFrame {
+  const view = withoutUndefined({ ...depth, width, height, image, camera, focalDeviation });
+  const notes = { warnings, colors: [], depthUnit, ...withoutUndefined({ cameraSource: source }) };
+  return { view: view as CoreView, notes };
 }
 
 /** Rejects misspelt properties, which would otherwise be ignored. */

@@ -1,5 +1,6 @@
 /** Aligns the objects of a scene, on this thread or in workers. */
 import { checkAttached } from "../attached.js";
+import { type Calibrated, inCalibration, isRaw } from "../calibrate.js";
 import { type Call, type Engine, signalsOf } from "../engine.js";
 import { Sim3AlignError } from "../error.js";
 import type { Job, Modules, PlaceInput } from "../jobs.js";
@@ -8,14 +9,15 @@ import { onAbort, reasonOf } from "../on-abort.js";
 import type { Progress } from "../options.js";
 import { withArrays } from "../prepared-mesh.js";
 import { ProgressListener } from "../progress.js";
-import { withWarnings } from "../results.js";
+import { withNotes } from "../results.js";
 import { coreSim3 } from "../sim3.js";
-import { inputOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
+import { inputOf, othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
 
 type PlacedOrError = Placed | Sim3AlignError;
 
-/** Share of the work of a scene that each object takes in the first round, alone. */
+/** Shares of the work of a scene: of its calibration, where there is one; and of what follows, that of each object alone. */
+const CALIBRATION = 0.5;
 const ALONE = 0.75;
 
 /** Errors of one object; every other one, such as that of an option, ends the call. */
@@ -32,10 +34,12 @@ export async function alignScene(
   { options, snap }: { options: Record<string, unknown>; snap: boolean },
   call: Call,
 ): Promise<SceneResult> {
-  const scene = await readScene(input, modules);
+  const read = await readScene(input, modules);
+  const calibrated = isRaw(read.view) ? await calibratedScene(read, engine, options, call) : undefined;
+  const scene = calibrated === undefined ? read : { ...read, view: inCalibration(read.view, calibrated) };
   const { view, objects, occluders, support } = scene;
   const module = await modules.joint();
-  const { round, end } = roundsOf(scene, engine, options, call);
+  const { round, end } = roundsOf(scene, engine, options, call, calibrated === undefined ? 0 : CALIBRATION);
   const masks = [...objects.map(({ mask }) => mask), ...occluders];
   const seed = typeof options.seed === "number" ? options.seed : 0;
   try {
@@ -47,7 +51,10 @@ export async function alignScene(
       checkAttached("occluders", occluders);
       const placements = placed.map((of) => (of instanceof Sim3AlignError ? null : of.placement));
       const next = module.call((j) => j.planScene({ ...view, masks, support, seed, snap }, plan, placements));
-      if (next.plan === undefined) return resultOf(scene, placed, next);
+      if (next.plan === undefined) {
+        const result = resultOf(scene, placed, next);
+        return calibrated === undefined ? result : { ...result, depthCalibration: calibrated.calibration };
+      }
       plan = next.plan;
     }
   } finally {
@@ -64,14 +71,50 @@ function resultOf(scene: ReadScene, placed: readonly PlacedOrError[], arrangemen
     return { ...named, ...of.alignment, ...arrangement.objects[i] } as SceneAlignment;
   });
   const result = { objects, support: arrangement.support, metrics: metricsOf(objects), warnings: [] };
-  return withWarnings<SceneResult>(result, { camera: scene.warnings, colors: [] });
+  return withNotes<SceneResult>(result, scene.notes);
+}
+
+/** Calibrates the view of a scene by all its objects, in one job. */
+async function calibratedScene(
+  scene: ReadScene,
+  engine: Engine,
+  options: Record<string, unknown>,
+  { signal, progress }: Call,
+): Promise<Calibrated> {
+  const sent = scene.objects.map((object) => {
+    const { data, release } = withArrays({ mesh: object.mesh }, engine);
+    const { mesh } = data as { mesh: unknown };
+    const { mask } = object;
+    return { object: { mask, others: othersOf(scene, mask), mesh, options: ownOptions(options, object) }, release };
+  });
+  const report = ({ stage, fraction }: Progress) => progress.report(stage, CALIBRATION * fraction);
+  const listener = new ProgressListener(progress.isWanted ? report : undefined);
+  try {
+    const data = { ...scene.view, objects: sent.map(({ object }) => object) };
+    const job = { method: "calibrate", data, options: {} } as const;
+    return (await engine.run(job, { signal, progress: listener, transfer: false })).result;
+  } finally {
+    for (const { release } of sent) release();
+  }
+}
+
+/** The options of an object, in the form of the core. */
+function ownOptions(options: Record<string, unknown>, { known }: ReadObject): Record<string, unknown> {
+  const own: Record<string, unknown> = { ...options, ...known };
+  return own.initial === undefined ? own : { ...own, initial: coreSim3(own.initial as never) };
 }
 
 /**
  * The rounds of a scene. `round` aligns each object that has not failed `before`, as many at a time as the engine runs: the
- * error of one object is its result. `end` is to be called last.
+ * error of one object is its result. `end` is to be called last. `begun` is the share of the work that is done.
  */
-function roundsOf(scene: ReadScene, engine: Engine, options: Record<string, unknown>, call: Call) {
+function roundsOf(
+  scene: ReadScene,
+  engine: Engine,
+  options: Record<string, unknown>,
+  call: Call,
+  begun: number,
+) {
   const { objects } = scene;
   const fractions = objects.map(() => 0);
   const stopped = new AbortController();
@@ -82,14 +125,13 @@ function roundsOf(scene: ReadScene, engine: Engine, options: Record<string, unkn
 
   const place = async (index: number, plan: Uint8Array | undefined): Promise<Placed> => {
     const { input, others } = inputOf(scene, index);
-    const own: Record<string, unknown> = { ...options, ...objects[index]?.known };
-    if (own.initial !== undefined) own.initial = coreSim3(own.initial as never);
+    const own = ownOptions(options, objects[index] as ReadObject);
     const { release, ...sent } = withArrays({ ...input, others, plan, index } satisfies PlaceInput, engine);
     const [from, to] = plan === undefined ? [0, ALONE] : [ALONE, 1];
     const report = ({ stage, fraction, best }: Progress) => {
       fractions[index] = Math.max(fractions[index] ?? 0, from + (to - from) * fraction);
       const all = fractions.reduce((sum, one) => sum + one, 0) / fractions.length;
-      call.progress.report(stage, all, undefined, { index, best });
+      call.progress.report(stage, begun + (1 - begun) * all, undefined, { index, best });
     };
     const progress = new ProgressListener(call.progress.isWanted ? report : undefined);
     const job = { method: "place", ...sent, options: own } as Job & { method: "place" };

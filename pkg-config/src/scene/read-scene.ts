@@ -4,17 +4,18 @@ import type { FileReaders } from "../file-readers.js";
 import { nearest } from "../formats/pixels.js";
 import type { LoadFormats } from "../formats-module.js";
 import { readMask } from "../input/mask.js";
-import { readPhoto } from "../input/photo.js";
+import type { CoreView } from "../input/core-input.js";
 import { classNames as inputClassNames, readView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
+import type { InputNotes } from "../results.js";
 import type { ClassNames } from "../snapshot.js";
 import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
 import type { KnownOfObject, SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */
 export interface ReadScene {
-  /** The properties of the input of each object other than mask and mesh. */
-  view: Record<string, unknown>;
+  /** The view of all objects. */
+  view: CoreView;
   /** Width and height of the depth map, pixels. */
   size: [width: number, height: number];
   objects: ReadObject[];
@@ -23,7 +24,7 @@ export interface ReadScene {
   /** The number of masks that each pixel is in; `undefined` for a single mask. */
   counts: Uint16Array | undefined;
   support: unknown;
-  warnings: readonly string[];
+  notes: InputNotes;
 }
 
 /** An object whose mask has been read. */
@@ -64,8 +65,7 @@ export async function readScene(scene: SceneInput, readers: FileReaders): Promis
   }
   const { objects, labels, occluders, support, ...rest } = scene as SceneInput & Record<string, unknown>;
   const { formats } = readers;
-  const { warnings, ...view } = await readView(rest, readers);
-  const photo = await readPhoto(rest.image, view, formats);
+  const { view, notes } = await readView(rest, readers);
   const size: [number, number] = [Number(view.width), Number(view.height)];
   const read = { size, formats, labels: labels === undefined ? undefined : checkedLabels(labels, size) };
   const given = listOf("objects", objects);
@@ -79,13 +79,13 @@ export async function readScene(scene: SceneInput, readers: FileReaders): Promis
   const others = otherLabels(given, read.labels);
   if (others !== null) masks.push(others);
   return {
-    view: withoutUndefined({ ...view, image: photo }),
+    view,
     size,
     objects: readObjects,
     occluders: masks,
     counts: countsOf([...readObjects.map(({ mask }) => mask), ...masks]),
     support: support === undefined ? "auto" : support,
-    warnings,
+    notes,
   };
 }
 
@@ -179,12 +179,14 @@ function countsOf(masks: readonly Uint8Array[]): Uint16Array | undefined {
   return counts;
 }
 
+/** The pixels of the objects other than that of a mask. */
+export const othersOf = ({ counts }: ReadScene, mask: Uint8Array): Uint8Array | undefined =>
+  counts && Uint8Array.from(counts, (count, i) => (count > (mask[i] !== 0 ? 1 : 0) ? 1 : 0));
+
 /** The input of one object, and the pixels of the others. */
 export function inputOf(scene: ReadScene, index: number): { input: AlignInput; others: Uint8Array | undefined } {
   const { mask, mesh } = scene.objects[index] as ReadObject;
   const [width, height] = scene.size;
-  const { counts } = scene;
-  const others = counts && Uint8Array.from(counts, (count, i) => (count > (mask[i] !== 0 ? 1 : 0) ? 1 : 0));
   const input = { ...scene.view, mask: { data: mask, width, height }, mesh } as unknown as AlignInput;
-  return { input, others };
+  return { input, others: othersOf(scene, mask) };
 }

@@ -3,7 +3,7 @@ import type { Sim3AlignError } from "../error.js";
 import type * as Core from "../generated/types.js";
 import type { AlignInput, MaskInput, MeshInput, ObjectInput, PixelArray } from "../input/types.js";
 import type { AlignOptions, CallOptions, Progress } from "../options.js";
-import type { Alignment } from "../results.js";
+import type { Alignment, OfInput } from "../results.js";
 
 /** A plane n·x + d = 0 in the OpenCV camera frame, metres; n points to the side of the objects. */
 export interface Plane {
@@ -62,7 +62,7 @@ export interface SceneOptions extends Omit<AlignOptions, "onProgress" | "initial
 }
 
 /** An object of a scene, aligned. */
-export interface SceneAlignment extends Omit<Alignment, "input"> {
+export interface SceneAlignment extends Omit<Alignment, "input" | keyof OfInput> {
   /** The name of the input. */
   name?: string;
   /** What it rests on. */
@@ -98,7 +98,7 @@ export interface SceneMetrics {
 }
 
 /** The result of `alignScene`. */
-export interface SceneResult {
+export interface SceneResult extends OfInput {
   /** In the order of the input. */
   objects: (SceneAlignment | SceneFailure)[];
   /** What the objects stand on; `null` if nothing in the depth map is a plane that they touch. */

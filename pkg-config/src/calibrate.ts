@@ -1,0 +1,58 @@
+/** Views whose depth or focal length is not fully known: they are calibrated before their objects are aligned. */
+import type { CoreListener } from "./core.js";
+import { invalidArgument } from "./error.js";
+import type { DepthCalibration } from "./generated/types.js";
+import type { CoreFrame } from "./input/core-input.js";
+import { isAffineInvariant } from "./input/depth-kind.js";
+import type { CoreMesh } from "./prepared-mesh.js";
+
+/** An object by which a view is calibrated. */
+export interface CalibrationObject extends Pick<CoreFrame, "mask" | "maskWidth" | "maskHeight" | "resizeMask"> {
+  /** The pixels of other objects. */
+  others?: Uint8Array | undefined;
+  mesh: CoreMesh;
+  /** Options of `align`, in the form of the core. */
+  options: object;
+}
+
+/** The depth map of a calibrated view, and its calibration. */
+export interface Calibrated {
+  /** In metres if the calibration is metric. */
+  depth: Float32Array;
+  calibration: DepthCalibration;
+}
+
+/** The part of a call that calibration takes, where it is one. */
+const SHARE = 0.7;
+
+/** Whether depth or focal length are not fully known. */
+export const isRaw = ({ depthKind, focalDeviation }: Pick<CoreFrame, "depthKind" | "focalDeviation">): boolean =>
+  depthKind !== undefined || focalDeviation !== undefined;
+
+/** The view in the depth and with the camera of its calibration. */
+export function inCalibration<V extends Omit<CoreFrame, "mask">>(view: V, { depth, calibration }: Calibrated): V {
+  const { depthScale: _, depthKind: __, focalDeviation: ___, pointMap: ____, ...rest } = view;
+  return { ...rest, depth, camera: calibration.camera } as unknown as V;
+}
+
+/** The listener of the calibration, and that of what follows. */
+export function partsOf(listener: CoreListener | undefined): [first?: CoreListener, then?: CoreListener] {
+  if (listener === undefined) return [];
+  // Poses of a calibration that is not known yet are nothing to show.
+  const first: CoreListener = (stage, fraction) => listener(stage, SHARE * fraction);
+  return [first, (stage, fraction, best) => listener(stage, SHARE + (1 - SHARE) * fraction, best)];
+}
+
+/**
+ * Checks that lengths can be measured in a view.
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for depth with an unknown shift, or an unknown focal length
+ */
+export function checkMeasurable({ depthKind, focalDeviation, camera }: CoreFrame): void {
+  if (isAffineInvariant(depthKind)) {
+    const remedy = "Pass the depth that correctDepth() of sim3align/conventions makes with the calibration of a result.";
+    throw invalidArgument("depthKind", depthKind, "depth without an unknown shift", remedy);
+  }
+  if (focalDeviation === undefined) return;
+  const remedy = "Pass the camera of the calibration of a result.";
+  throw invalidArgument("camera", camera, "a camera whose focal length is known", remedy);
+}
