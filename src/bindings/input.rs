@@ -72,8 +72,8 @@ pub fn view(input: &JsValue) -> Result<(DepthMap, Pinhole)> {
     }
 }
 
-/// A view whose depth or focal length is not fully known: `{ depth, depthScale?, width, height, camera, depthKind?,
-/// focalDeviation? }`, the last the standard deviation of the logarithm of a focal length that is a guess.
+/// A view whose depth or focal length is not fully known: `{ depth | pointMap, depthScale?, width, height, camera,
+/// depthKind?, focalDeviation? }`, the last the standard deviation of the logarithm of a focal length that is a guess.
 pub fn raw_view(input: &JsValue) -> Result<RawView> {
     let kind = match get(input, "depthKind") {
         None => DepthKind::default(),
@@ -83,12 +83,27 @@ pub fn raw_view(input: &JsValue) -> Result<RawView> {
         })?,
     };
     let (width, height) = size_of(input)?;
-    let values = values(input, width, height, if kind == DepthKind::Metric { DEFAULT_DEPTH_SCALE } else { 1.0 })?;
+    let (values, camera) = if get(input, "pointMap").is_some() {
+        if kind.is_affine() {
+            return Err(Error::new(
+                ErrorCode::InvalidArgument,
+                "depthKind",
+                format!("\"{}\" with a point map", kind.name()),
+                "\"metric\" or \"scale-invariant\" with a point map",
+                "Points have no shift of their depth; pass the values of the depth model as depth.",
+            ));
+        }
+        let (depth, camera) = view(input)?;
+        (depth.data().to_vec(), camera)
+    } else {
+        let integer_scale = if kind.is_metric() { DEFAULT_DEPTH_SCALE } else { 1.0 };
+        let given = get(input, "camera").unwrap_or(JsValue::UNDEFINED);
+        (values(input, width, height, integer_scale)?, camera(&given)?)
+    };
     let focal = match number(input, "input", "focalDeviation")? {
         Some(deviation) if deviation > 0.0 => Focal::Guessed(deviation.min(MAX_FOCAL_DEVIATION)),
         _ => Focal::Known,
     };
-    let camera = camera(&get(input, "camera").unwrap_or(JsValue::UNDEFINED))?;
     camera.check_field_of_view(width, height)?;
     Ok(RawView { values: Image::new("depth", width, height, values)?, kind, camera, focal })
 }

@@ -45,7 +45,10 @@ impl Calibration {
 #[serde(rename_all = "camelCase")]
 pub struct DepthCalibration {
     /// What the values are.
-    #[cfg_attr(feature = "types", ts(type = "DepthKind"))]
+    #[cfg_attr(
+        feature = "types",
+        ts(type = "\"metric\" | \"scale-invariant\" | \"affine-invariant\" | \"affine-invariant-disparity\"")
+    )]
     pub depth_kind: DepthKind,
     /// Whether z is in metres: the depth is, or a known length of an object has made it so. Otherwise, all lengths of the
     /// result are in a unit of their own: that of the values of scale-invariant depth, else the distance of the objects.
@@ -55,7 +58,7 @@ pub struct DepthCalibration {
     /// t, in the unit of the values.
     pub shift: f64,
     /// The intrinsics, in pixels of the depth map.
-    #[cfg_attr(feature = "types", ts(type = "Pinhole"))]
+    #[cfg_attr(feature = "types", ts(type = "{ fx: number; fy: number; cx: number; cy: number }"))]
     pub camera: Pinhole,
     /// Whether the focal length was estimated.
     pub is_focal_estimated: bool,

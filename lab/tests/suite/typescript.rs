@@ -9,6 +9,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
+use sim3align::calibrate::calibration::{CalibrationUncertainty, DepthCalibration};
 use sim3align::metrics::Metrics;
 use sim3align::metrics::bop::BopErrors;
 use sim3align::metrics::layout::LayoutErrors;
@@ -291,7 +292,8 @@ fn types() -> String {
         Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, EvaluationDiagnostics, Diagnostics,
         PaperDiagnostics, PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole,
         WorldUncertainty, CameraPose, ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame,
-        TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration,
+        TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration, CalibrationUncertainty,
+        DepthCalibration,
     }
     let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
     HEADER.to_owned() + imports + &types.declarations.join("\n")

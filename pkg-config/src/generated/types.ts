@@ -834,3 +834,36 @@ export type Registration = Sim3 & {
   /** Everything else: initial scale, counts, timings. */
   diagnostics: RegistrationDiagnostics;
 };
+
+/** Standard deviations of what was estimated; 0 for what was known. */
+export type CalibrationUncertainty = {
+  /** Of the distance of the objects that the shift leaves, relative to it: 0.01 is one per cent. */
+  shift: number;
+  /** Of the focal length, relative to it. */
+  focal: number;
+};
+
+/**
+ * What a depth map and its lens were taken to be. With d for a value of the depth map, the depth z is s·d for metric
+ * and scale-invariant depth, s·(d + t) for affine-invariant depth, s / (d + t) for affine-invariant disparity.
+ */
+export type DepthCalibration = {
+  /** What the values are. */
+  depthKind: "metric" | "scale-invariant" | "affine-invariant" | "affine-invariant-disparity";
+  /**
+   * Whether z is in metres: the depth is, or a known length of an object has made it so. Otherwise, all lengths of
+   * the result are in a unit of their own: that of the values of scale-invariant depth, else the distance of the
+   * objects.
+   */
+  isMetric: boolean;
+  /** s. */
+  scale: number;
+  /** t, in the unit of the values. */
+  shift: number;
+  /** The intrinsics, in pixels of the depth map. */
+  camera: { fx: number; fy: number; cx: number; cy: number };
+  /** Whether the focal length was estimated. */
+  isFocalEstimated: boolean;
+  /** How well these numbers are determined. */
+  uncertainty: CalibrationUncertainty;
+};

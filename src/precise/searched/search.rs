@@ -189,7 +189,6 @@ impl Search {
         let mut canvas = Canvas::default();
         let score = refiner.objective.score(&mut canvas, pose);
         let depth_rms_m = refiner.depth_rms(&canvas);
-        if std::env::var("DBG").is_ok() { eprintln!("RELIEF {:?} {:.3} {:.3}", refiner.relief(&canvas), score.depth, score.overlap); }
         let proportions = (&self.mesh.surface, self.settings.lock_scale);
         let free_axis = self.equivalence.free_axis(pose.rotation);
         let covariance = refiner.covariance(&mut canvas, &score, pose, proportions, free_axis);
