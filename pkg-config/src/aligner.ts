@@ -13,6 +13,7 @@ import {
   checkedWorkers,
 } from "./aligner-options.js";
 import { checkAttached } from "./attached.js";
+import { mayBeRaw } from "./calibrate.js";
 import { coreModule } from "./core.js";
 import { depthFilesModule } from "./depth-files-module.js";
 import { type Call, type Engine, MainThreadEngine, signalsOf } from "./engine.js";
@@ -339,8 +340,9 @@ export class Aligner {
     const own = snapshot("input", data, classNames);
     const prepared: unknown = isRecord(own) ? (own as Record<string, unknown>).mesh : undefined;
     const { release, ...arrays } = withArrays(own, this.#engine);
-    // The registration module caches no meshes.
-    const sent = isOfPaper(options) && "meshId" in arrays ? { data: withCopiedMesh(arrays.data) } : arrays;
+    // The registration module caches no meshes, and the core's cache is not that of calibration.
+    const isCached = method !== "align" || !(isOfPaper(options) || mayBeRaw(own));
+    const sent = !isCached && "meshId" in arrays ? { data: withCopiedMesh(arrays.data) } : arrays;
     const job = { method, ...sent, options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };

@@ -2,8 +2,10 @@
 import type { CoreListener } from "./core.js";
 import { invalidArgument } from "./error.js";
 import type { DepthCalibration } from "./generated/types.js";
+import { intrinsics } from "./input/camera.js";
 import type { CoreFrame } from "./input/core-input.js";
 import { isAffineInvariant } from "./input/depth-kind.js";
+import { isRecord } from "./kinds.js";
 import type { CoreMesh } from "./prepared-mesh.js";
 
 /** An object by which a view is calibrated. */
@@ -29,6 +31,14 @@ const SHARE = 0.7;
 export const isRaw = ({ depthKind, focalDeviation }: Pick<CoreFrame, "depthKind" | "focalDeviation">): boolean =>
   depthKind !== undefined || focalDeviation !== undefined;
 
+/** Whether an input that has not been read may be such a view. */
+export const mayBeRaw = (input: unknown): boolean => {
+  const { depthKind, camera, cameraFile } = isRecord(input) ? input : {};
+  const { focalUncertainty, ...given } = isRecord(camera) ? camera : {};
+  const hasCamera = cameraFile !== undefined || intrinsics.some((name) => given[name] !== undefined);
+  return depthKind !== undefined || focalUncertainty !== undefined || !hasCamera;
+};
+
 /** The view in the depth and with the camera of its calibration. */
 export function inCalibration<V extends Omit<CoreFrame, "mask">>(view: V, { depth, calibration }: Calibrated): V {
   const { depthScale: _, depthKind: __, focalDeviation: ___, pointMap: ____, ...rest } = view;
@@ -49,7 +59,8 @@ export function partsOf(listener: CoreListener | undefined): [first?: CoreListen
  */
 export function checkMeasurable({ depthKind, focalDeviation, camera }: CoreFrame): void {
   if (isAffineInvariant(depthKind)) {
-    const remedy = "Pass the depth that correctDepth() of sim3align/conventions makes with the calibration of a result.";
+    const remedy =
+      "Pass the depth that correctDepth() of sim3align/conventions makes with the calibration of a result.";
     throw invalidArgument("depthKind", depthKind, "depth without an unknown shift", remedy);
   }
   if (focalDeviation === undefined) return;

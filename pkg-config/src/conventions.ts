@@ -7,6 +7,7 @@
  * @packageDocumentation
  */
 export { type BopExport, type BopPose, fromBop, toBop } from "./conventions/bop.js";
+export { correctDepth } from "./conventions/corrected-depth.js";
 export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
 export { type CvatCuboid, fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
 export { type CvatMaskElement, fromCvatRle } from "./conventions/cvat-rle.js";
@@ -45,6 +46,7 @@ export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export { fromCocoRle, toCocoRle } from "./formats/coco-rle.js";
 export type { StatedCamera } from "./formats/pinhole.js";
 export type { DepthPixels, ImageSize, MaskPixels } from "./formats/pixels.js";
+export type { DepthCalibration } from "./generated/types.js";
 export type { CocoRle, MeshArrays, PinholeCamera, PixelArray } from "./input/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
 export type { Quaternion, Vector3 } from "./values.js";

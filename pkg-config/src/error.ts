@@ -144,6 +144,10 @@ export function outOfMemory(cause: unknown): Sim3AlignError {
   return failure("OUT_OF_MEMORY", "input", "more data than the memory can hold", expected, remedy, cause);
 }
 
+/** Whether a call failed because of its input, and not because of what runs it. */
+export const isOfInput = (error: unknown): error is Sim3AlignError =>
+  error instanceof Sim3AlignError && !["DISPOSED", "WORKER_FAILED", "INTERNAL", "NOT_INITIALISED"].includes(error.code);
+
 /** The parts of an error, which can be sent to another thread. */
 export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignError): ErrorParts {
   return { code, argument, found, expected, remedy };

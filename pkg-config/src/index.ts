@@ -20,12 +20,14 @@ export {
 } from "./generated/options.js";
 export type {
   Alternative,
+  CalibrationUncertainty,
   CameraPose,
   ColorReport,
   ColorVerdict,
   Contact,
   CorrectedFrame,
   Counts,
+  DepthCalibration,
   Diagnostics,
   Effort,
   EvaluationDiagnostics,
@@ -55,6 +57,7 @@ export type {
   WorldFrame,
   WorldUncertainty,
 } from "./generated/types.js";
+export type { DepthKind } from "./input/depth-kind.js";
 export type { FrameInput, ViewInput, ViewsInput } from "./input/frame-types.js";
 export type {
   AlignInput,
@@ -76,6 +79,7 @@ export type {
   PinholeCamera,
   PixelArray,
   PointMapAlignInput,
+  UnknownCamera,
 } from "./input/types.js";
 export type {
   AlignAllOptions,
@@ -106,9 +110,11 @@ export type {
   AlignResult,
   Clouds,
   Evaluation,
+  OfInput,
   PaperAlignment,
   Registration,
   TrackedFrame,
+  ViewAlignment,
   ViewsAlignment,
   WithoutMetrics,
 } from "./results.js";

@@ -9,7 +9,7 @@ import {
   partsOf,
 } from "./calibrate.js";
 import type { Core, CoreListener, Task } from "./core.js";
-import { withoutInput } from "./error.js";
+import { isOfInput, withoutInput } from "./error.js";
 import type { FileReaders } from "./file-readers.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { CoreInput, CoreView } from "./input/core-input.js";
@@ -25,8 +25,8 @@ import {
   type Clouds,
   type Evaluation,
   type InputNotes,
-  sourcesOf,
   type Registration,
+  sourcesOf,
   type TrackedFrame,
   type ViewAlignment,
   type ViewsAlignment,
@@ -115,8 +115,11 @@ export async function perform(
       const { objects, ...view } = job.data;
       const read: CalibrationObject[] = [];
       for (const object of objects) {
-        const { mesh } = await readCoreMesh(object.mesh, formats, false);
-        read.push({ ...object, mesh });
+        // What is wrong with a mesh is told where it is aligned.
+        const mesh = await readCoreMesh(object.mesh, formats, false).catch((error) => {
+          if (!isOfInput(error)) throw error;
+        });
+        if (mesh) read.push({ ...object, mesh: mesh.mesh });
       }
       const input = { ...view, objects: read };
       return runTask(await joint(), (j) => j.beginCalibrate(input, listener), input, slices);

@@ -44,7 +44,10 @@ export interface JointAligner extends Glue {
     plan: Uint8Array | undefined,
     placements: (Uint8Array | null)[],
   ): { plan: Uint8Array } | Arrangement;
-  beginCalibrate(input: CoreView & { objects: CalibrationObject[] }, onProgress: CoreListener | undefined): Task<Calibrated>;
+  beginCalibrate(
+    input: CoreView & { objects: CalibrationObject[] },
+    onProgress: CoreListener | undefined,
+  ): Task<Calibrated>;
   beginCalibrateViews(input: CoreViews & { options: object }, onProgress: CoreListener | undefined): Task<Calibrated[]>;
   beginAlignViews(input: CoreViews, options: object, onProgress: CoreListener | undefined): Task<ViewsAlignment>;
   openTracker(id: number, input: { mesh: CoreMesh }, options: object): void;

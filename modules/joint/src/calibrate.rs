@@ -46,8 +46,7 @@ pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::
         let objects = get(input, "objects").filter(Array::is_array);
         let objects =
             objects.ok_or_else(|| wrong_type("objects", &JsValue::UNDEFINED, "an array", "Pass the objects."))?;
-        let objects: Vec<Owned> =
-            Array::from(&objects).iter().map(|object| owned(&object, size)).collect::<Result<_>>()?;
+        let objects = usable(Array::from(&objects).iter().map(|object| owned(&object, size)))?;
         let mut host = JsHost::new(on_progress);
         Ok(Task::new(Pauses::new(now_ms, None), move |pauses| async move {
             let borrowed: Vec<CalibratedObject<'_>> = objects
@@ -65,13 +64,32 @@ pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::
     begin().map(|task| CalibrateTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
 }
 
+/// The objects that can be used: what is wrong with one is told where it is aligned, unless all will fail.
+fn usable(objects: impl Iterator<Item = Result<Owned>>) -> Result<Vec<Owned>> {
+    let mut usable = Vec::new();
+    let mut first = None;
+    for object in objects {
+        match object {
+            Ok(object) => usable.push(object),
+            Err(error) if error.argument.starts_with("options") => return Err(error),
+            Err(error) => first = first.or(Some(error)),
+        }
+    }
+    match first {
+        Some(error) if usable.is_empty() => Err(error),
+        _ => Ok(usable),
+    }
+}
+
 fn owned(object: &JsValue, [width, height]: [usize; 2]) -> Result<Owned> {
     let mask = input::mask(object, width, height)?;
     check_mask_size([width, height], &mask)?;
     let others =
         get(object, "others").map(|others| Image::new("occluders", width, height, to_u8s(&others, "occluders")?));
     let options = options::precise(&get(object, "options").unwrap_or(JsValue::UNDEFINED))?;
-    Ok(Owned { mask, others: others.transpose()?, mesh: mesh::mesh_of(object)?, options })
+    let mesh = mesh::mesh_of(object)?;
+    mesh.check()?;
+    Ok(Owned { mask, others: others.transpose()?, mesh, options })
 }
 
 #[wasm_bindgen]

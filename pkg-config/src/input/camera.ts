@@ -44,7 +44,7 @@ export const cameraProperties = [
 ];
 
 /** The properties that state intrinsics. */
-const intrinsics = ["fx", "fy", "cx", "cy", "K", "fovYDeg"];
+export const intrinsics: readonly string[] = ["fx", "fy", "cx", "cy", "K", "fovYDeg"];
 
 /** The camera of an input, which has `camera`, `cameraFile`, or neither. */
 export async function cameraOf({ camera, cameraFile, imageId }: Record<string, unknown>): Promise<Camera> {
@@ -73,7 +73,10 @@ function statedCamera(camera: unknown): Camera {
       const size = sizeOf(imageWidth, imageHeight);
       if (size === undefined) return { camera: undefined, warnings: [] };
       checkCameraSize("camera", { width, height }, size);
-      const given = () => ({ camera: pinholeOf("camera", camera, size), warnings: stringsIn(warnings).map(notPinhole) });
+      const given = () => ({
+        camera: pinholeOf("camera", camera, size),
+        warnings: stringsIn(warnings).map(notPinhole),
+      });
       const found: ResolvedCamera = isGiven ? given() : foundCamera(size, hints);
       return stated === undefined ? found : { ...found, focalDeviation: stated || undefined };
     },

@@ -71,7 +71,9 @@ function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDep
   if (depthScale !== undefined) return `${depthScale} m (depthScale)`;
   if (depthKind !== "metric") return `unknown (${depthKind})`;
   if (isFloats(data)) return "metres (float values, assumed)";
-  return integerDepthScale === undefined ? "0.001 m (16-bit integers, assumed)" : `${integerDepthScale} m (camera file)`;
+  return integerDepthScale === undefined
+    ? "0.001 m (16-bit integers, assumed)"
+    : `${integerDepthScale} m (camera file)`;
 }
 
 /** How the files of depth models begin: NPZ (also without an array), OpenEXR, TIFF and PFM. */

@@ -60,7 +60,8 @@ export async function resolveViews(input: unknown, readers: FileReaders, meshId?
   const read = await readCoreMesh(mesh, readers.formats, isColored, meshId);
   const core = { mesh: read.mesh, views: resolved.map((view) => view.core) };
   // Colours matter only where there is a photo to compare them with.
-  const notesOf = ({ core, notes }: ResolvedFrame) => (core.image === undefined ? notes : { ...notes, colors: read.warnings });
+  const notesOf = ({ core, notes }: ResolvedFrame) =>
+    core.image === undefined ? notes : { ...notes, colors: read.warnings };
   return { core, notes: resolved.map(notesOf) };
 }
 

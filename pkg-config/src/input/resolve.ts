@@ -146,7 +146,7 @@ async function pointMapFrame(
 }
 
 function frameOf(
-  depth: Partial<CoreInput>,
+  depth: { [K in "depth" | "depthScale" | "depthKind" | "pointMap"]?: CoreInput[K] | undefined },
   { width, height }: Omit<SizedArray<unknown>, "data">,
   image: Photo | undefined,
   { camera, focalDeviation, source, warnings }: ResolvedCamera,

@@ -1,6 +1,7 @@
 /** The input of `align` and `evaluate`. */
 import type { BlobLike } from "../platform.js";
 import type { ColorSamples, PreparedMesh } from "../prepared-mesh.js";
+import type { DepthKind } from "./depth-kind.js";
 
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
@@ -54,6 +55,11 @@ interface CameraSize {
   width?: number | undefined;
   /** Height in pixels. */
   height?: number | undefined;
+  /**
+   * Relative standard deviation of the focal length, 0 to 1, where it is a guess: 0.1 for 10 %. It is then estimated
+   * together with the pose. By default, intrinsics that are given are known.
+   */
+  focalUncertainty?: number | undefined;
 }
 
 /** Pinhole intrinsics in pixels; pixel centres have integer coordinates: x = (u − cx)·z/fx. */
@@ -88,6 +94,12 @@ export interface FieldOfViewCamera extends CameraSize, NoPinhole {
 
 /** The intrinsics of the camera that took the depth map. */
 export type CameraInput = PinholeCamera | MatrixCamera | FieldOfViewCamera;
+
+/** A camera of which at most the image size is known. */
+export interface UnknownCamera extends CameraSize, NoPinhole {
+  K?: undefined;
+  fovYDeg?: undefined;
+}
 
 /**
  * A camera file: its bytes, its text, or its parsed JSON. Supported are sim3align's `camera.json`, BOP's
@@ -175,9 +187,12 @@ export interface CameraFromFileInput {
   imageId?: string | number | undefined;
 }
 
-/** An input without camera: the intrinsics are fitted to the point map. */
+/**
+ * An input without intrinsics. They are fitted to a point map. With a depth map, they are those in the depth file, if it has
+ * any; otherwise, the focal length is that of the photo's EXIF data, or unknown, and is estimated together with the pose.
+ */
 export interface NoCameraInput {
-  camera?: undefined;
+  camera?: UnknownCamera | undefined;
   cameraFile?: undefined;
   imageId?: undefined;
 }
@@ -226,12 +241,18 @@ export interface OwnSizePointMapInput {
 export type DepthAlignInput = ObjectInput &
   PhotoOfView &
   (SizedDepthInput | OwnSizeDepthInput) &
-  (StatedCameraInput | CameraFromFileInput) & {
+  (StatedCameraInput | CameraFromFileInput | NoCameraInput) & {
     /**
      * Metres per unit of depth, above 0: 0.001 for millimetres. By default, floats are metres, and integers use the
      * scale of the camera file or, without one, are millimetres.
      */
     depthScale?: number | undefined;
+    /**
+     * What the values are; `"metric"` by default. For other kinds, the scale and the shift of the depth map are estimated
+     * together with the pose, and lengths are metric only if one of the object is known (`scale`, `knownExtentM`): see
+     * `depthCalibration` of the result.
+     */
+    depthKind?: DepthKind | undefined;
     pointMap?: undefined;
   };
 
@@ -240,9 +261,14 @@ export type PointMapAlignInput = ObjectInput &
   PhotoOfView &
   (SizedPointMapInput | OwnSizePointMapInput) &
   (StatedCameraInput | CameraFromFileInput | NoCameraInput) & {
+    /** Whether the points are in metres, the default, or in an unknown unit. */
+    depthKind?: "metric" | "scale-invariant" | undefined;
     depth?: undefined;
     depthScale?: undefined;
   };
 
-/** The input of `align` and `evaluate`: depth with a camera, or a point map; the mask; the mesh; the photo, if there is one. */
+/**
+ * The input of `align` and `evaluate`: depth with its camera, or a point map; the mask; the mesh; the photo, if there is one.
+ * `evaluate` measures lengths: it needs a camera, or a point map, and depth without an unknown shift.
+ */
 export type AlignInput = DepthAlignInput | PointMapAlignInput;

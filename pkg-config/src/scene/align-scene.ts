@@ -2,7 +2,7 @@
 import { checkAttached } from "../attached.js";
 import { type Calibrated, inCalibration, isRaw } from "../calibrate.js";
 import { type Call, type Engine, signalsOf } from "../engine.js";
-import { Sim3AlignError } from "../error.js";
+import { isOfInput, Sim3AlignError } from "../error.js";
 import type { Job, Modules, PlaceInput } from "../jobs.js";
 import type { Arrangement, Placed } from "../joint-module.js";
 import { onAbort, reasonOf } from "../on-abort.js";
@@ -21,10 +21,7 @@ const CALIBRATION = 0.5;
 const ALONE = 0.75;
 
 /** Errors of one object; every other one, such as that of an option, ends the call. */
-const isOwn = (error: unknown): error is Sim3AlignError =>
-  error instanceof Sim3AlignError &&
-  !["DISPOSED", "WORKER_FAILED", "INTERNAL", "NOT_INITIALISED"].includes(error.code) &&
-  !error.argument.startsWith("options");
+const isOwn = (error: unknown): error is Sim3AlignError => isOfInput(error) && !error.argument.startsWith("options");
 
 /** Aligns a scene in the rounds of its plan, which the joint module makes. */
 export async function alignScene(
@@ -35,14 +32,16 @@ export async function alignScene(
   call: Call,
 ): Promise<SceneResult> {
   const read = await readScene(input, modules);
-  const calibrated = isRaw(read.view) ? await calibratedScene(read, engine, options, call) : undefined;
-  const scene = calibrated === undefined ? read : { ...read, view: inCalibration(read.view, calibrated) };
-  const { view, objects, occluders, support } = scene;
-  const module = await modules.joint();
-  const { round, end } = roundsOf(scene, engine, options, call, calibrated === undefined ? 0 : CALIBRATION);
-  const masks = [...objects.map(({ mask }) => mask), ...occluders];
-  const seed = typeof options.seed === "number" ? options.seed : 0;
+  const { stopped, end } = stopOf(call);
+  const running = { engine, options, progress: call.progress, stopped };
   try {
+    const calibrated = isRaw(read.view) ? await calibratedScene(read, running) : undefined;
+    const scene = calibrated === undefined ? read : { ...read, view: inCalibration(read.view, calibrated) };
+    const { view, objects, occluders, support } = scene;
+    const module = await modules.joint();
+    const round = roundsOf(scene, running, calibrated === undefined ? 0 : CALIBRATION);
+    const masks = [...objects.map(({ mask }) => mask), ...occluders];
+    const seed = typeof options.seed === "number" ? options.seed : 0;
     let placed: PlacedOrError[] = [];
     for (let plan: Uint8Array | undefined; ; ) {
       placed = await round(plan, placed);
@@ -74,13 +73,30 @@ function resultOf(scene: ReadScene, placed: readonly PlacedOrError[], arrangemen
   return withNotes<SceneResult>(result, scene.notes);
 }
 
+/** A scene that runs. */
+interface Running {
+  engine: Engine;
+  options: Record<string, unknown>;
+  progress: ProgressListener;
+  /** Ends all its jobs. */
+  stopped: AbortController;
+}
+
+/** What ends all jobs of a call; `end` is to be called last. */
+function stopOf(call: Call): { stopped: AbortController; end(): void } {
+  const stopped = new AbortController();
+  const unfollow = signalsOf(call).map((signal) => {
+    if (signal.aborted) stopped.abort(reasonOf(signal));
+    return onAbort(signal, (reason) => stopped.abort(reason));
+  });
+  const end = () => {
+    for (const each of unfollow) each();
+  };
+  return { stopped, end };
+}
+
 /** Calibrates the view of a scene by all its objects, in one job. */
-async function calibratedScene(
-  scene: ReadScene,
-  engine: Engine,
-  options: Record<string, unknown>,
-  { signal, progress }: Call,
-): Promise<Calibrated> {
+async function calibratedScene(scene: ReadScene, { engine, options, progress, stopped }: Running): Promise<Calibrated> {
   const sent = scene.objects.map((object) => {
     const { data, release } = withArrays({ mesh: object.mesh }, engine);
     const { mesh } = data as { mesh: unknown };
@@ -92,7 +108,7 @@ async function calibratedScene(
   try {
     const data = { ...scene.view, objects: sent.map(({ object }) => object) };
     const job = { method: "calibrate", data, options: {} } as const;
-    return (await engine.run(job, { signal, progress: listener, transfer: false })).result;
+    return (await engine.run(job, { signal: stopped.signal, progress: listener, transfer: false })).result;
   } finally {
     for (const { release } of sent) release();
   }
@@ -105,23 +121,12 @@ function ownOptions(options: Record<string, unknown>, { known }: ReadObject): Re
 }
 
 /**
- * The rounds of a scene. `round` aligns each object that has not failed `before`, as many at a time as the engine runs: the
- * error of one object is its result. `end` is to be called last. `begun` is the share of the work that is done.
+ * The rounds of a scene. Each aligns each object that has not failed `before`, as many at a time as the engine runs: the
+ * error of one object is its result. `begun` is the share of the work that is done.
  */
-function roundsOf(
-  scene: ReadScene,
-  engine: Engine,
-  options: Record<string, unknown>,
-  call: Call,
-  begun: number,
-) {
+function roundsOf(scene: ReadScene, { engine, options, progress: reported, stopped }: Running, begun: number) {
   const { objects } = scene;
   const fractions = objects.map(() => 0);
-  const stopped = new AbortController();
-  const unfollow = signalsOf(call).map((signal) => {
-    if (signal.aborted) stopped.abort(reasonOf(signal));
-    return onAbort(signal, (reason) => stopped.abort(reason));
-  });
 
   const place = async (index: number, plan: Uint8Array | undefined): Promise<Placed> => {
     const { input, others } = inputOf(scene, index);
@@ -131,9 +136,9 @@ function roundsOf(
     const report = ({ stage, fraction, best }: Progress) => {
       fractions[index] = Math.max(fractions[index] ?? 0, from + (to - from) * fraction);
       const all = fractions.reduce((sum, one) => sum + one, 0) / fractions.length;
-      call.progress.report(stage, begun + (1 - begun) * all, undefined, { index, best });
+      reported.report(stage, begun + (1 - begun) * all, undefined, { index, best });
     };
-    const progress = new ProgressListener(call.progress.isWanted ? report : undefined);
+    const progress = new ProgressListener(reported.isWanted ? report : undefined);
     const job = { method: "place", ...sent, options: own } as Job & { method: "place" };
     try {
       const { result } = await engine.run(job, { signal: stopped.signal, progress, transfer: false });
@@ -144,7 +149,7 @@ function roundsOf(
     }
   };
 
-  const round = async (plan: Uint8Array | undefined, before: readonly PlacedOrError[]): Promise<PlacedOrError[]> => {
+  return async (plan: Uint8Array | undefined, before: readonly PlacedOrError[]): Promise<PlacedOrError[]> => {
     const results: PlacedOrError[] = [];
     const indices = objects.keys();
     const worker = async () => {
@@ -164,11 +169,6 @@ function roundsOf(
     await Promise.all(Array.from({ length: Math.min(engine.capacity, objects.length) }, worker));
     return results;
   };
-
-  const end = () => {
-    for (const each of unfollow) each();
-  };
-  return { round, end };
 }
 
 function metricsOf(objects: readonly (SceneAlignment | SceneFailure)[]): SceneMetrics {

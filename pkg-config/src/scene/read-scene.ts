@@ -3,8 +3,8 @@ import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../
 import type { FileReaders } from "../file-readers.js";
 import { nearest } from "../formats/pixels.js";
 import type { LoadFormats } from "../formats-module.js";
-import { readMask } from "../input/mask.js";
 import type { CoreView } from "../input/core-input.js";
+import { readMask } from "../input/mask.js";
 import { classNames as inputClassNames, readView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
 import type { InputNotes } from "../results.js";
