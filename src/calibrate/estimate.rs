@@ -117,7 +117,10 @@ pub async fn estimate(
     used.sort_by_key(|k| subjects.get(*k).map(|s| core::cmp::Reverse((s.has_length, pixels(s)))));
     used.truncate(SUBJECTS);
     let reference = Reference::of(view, used.iter().filter_map(|k| subjects.get(*k)));
-    let reference = reference.ok_or_else(no_candidate)?;
+    let Some(reference) = reference else {
+        let first = used.first().and_then(|k| subjects.get(*k));
+        return Err(first.and_then(|subject| subject.unusable(view)).unwrap_or_else(no_candidate));
+    };
     let prior = Prior::of(view, reference);
     Estimator { view, subjects, used, reference, prior, pauses, stages }.run(start).await
 }

@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::calibration::Calibration;
 use super::raw_view::RawView;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::evidence::observation::Observation;
-use crate::geometry::image::Mask;
+use crate::geometry::image::{DepthMap, Mask};
 use crate::pauses::Pauses;
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
@@ -50,6 +50,14 @@ pub struct Pictured {
 }
 
 impl Subject<'_> {
+    /// What is wrong with the readings of this object, whatever the calibration.
+    pub fn unusable(&self, view: &RawView) -> Option<Error> {
+        let reading = |d: &f32| if d.is_finite() { d.abs().max(f32::MIN_POSITIVE.sqrt()) } else { 0.0 };
+        let (width, height) = (view.values.width(), view.values.height());
+        let depth = DepthMap::from_metres(width, height, view.values.data().iter().map(reading).collect());
+        depth.and_then(|depth| Observation::new(depth, self.mask.clone(), view.camera)).err()
+    }
+
     fn observation(&self, view: &RawView, calibration: &Calibration) -> Result<Observation> {
         let observation = Observation::new(view.depth(calibration)?, self.mask.clone(), view.camera(calibration))?;
         match &self.others {

@@ -44,7 +44,7 @@ const files: Refusals<object> = {
   "8-bit PNG depth: EIGHT_BIT_DEPTH depth": [{ ...sized, depth: png(bytes, width, height) }, /8-bit PNG/],
   "8-bit NPY depth: EIGHT_BIT_DEPTH depth": [{ ...sized, depth: npy(bytes, height, width) }, /8-bit/],
   "depth of no known format: UNSUPPORTED_FORMAT depth": [
-    { ...sized, depth: Buffer.from("II*\0 a TIFF") },
+    { ...sized, depth: Buffer.from("BM a bitmap") },
     /16-bit grey PNG or a \.npy/,
   ],
   "empty depth file: UNSUPPORTED_FORMAT depth": [{ ...sized, depth: new Uint8Array(0) }],

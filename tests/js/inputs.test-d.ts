@@ -44,6 +44,14 @@ export async function refused(): Promise<void> {
   await aligner.align({ ...object, depth: bytes, camera, cameraFile: "{}" });
   // @ts-expect-error an image id belongs to a camera file
   await aligner.align({ ...object, depth: bytes, camera, imageId: 3 });
-  // @ts-expect-error depth needs a camera
   await aligner.align({ ...object, depth: bytes });
+  await aligner.align({ ...object, depth: bytes, camera: { width: 2, height: 2 }, depthKind: "affine-invariant" });
+  // @ts-expect-error no such kind
+  await aligner.align({ ...object, depth: bytes, depthKind: "relative" });
+  // @ts-expect-error the points of an affine-invariant map have no shape
+  await aligner.align({
+    ...object,
+    pointMap: { data: new Float32Array(12), width: 2, height: 2 },
+    depthKind: "affine-invariant",
+  });
 }

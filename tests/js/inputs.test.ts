@@ -9,7 +9,7 @@ import { input, mesh, truth, view } from "../support/scene.js";
 
 const { width, height, depth, mask, camera } = view;
 const aligner = await createAligner();
-const reference = await aligner.evaluate(input, truth);
+const { depthUnit: unit, ...reference } = await aligner.evaluate(input, truth);
 const withoutSize = { depth: { data: depth, width, height }, mask, camera, mesh };
 
 /** Within what rounding depth to a tenth of a millimetre does. */
@@ -20,11 +20,19 @@ function assertClose(found: Evaluation, tolerance: number): void {
   }
 }
 
+/** The result without the unit that was taken, which tells the forms apart. */
+async function evaluated(input: AlignInput): Promise<Evaluation> {
+  const { depthUnit: _, ...evaluation } = await aligner.evaluate(input, truth);
+  return evaluation;
+}
+
+test("the unit that was taken is told", () => assert.equal(unit, "metres (float values, assumed)"));
+
 /** A form that loses nothing. */
 function same(name: string, make: () => Partial<AlignInput>): void {
   test(name, async () => {
     const changed = { ...withoutSize, ...make() } as AlignInput;
-    assert.deepEqual(await aligner.evaluate(changed, truth), reference);
+    assert.deepEqual(await evaluated(changed), reference);
   });
 }
 
@@ -47,13 +55,10 @@ same("depth: 0, negative, NaN and infinite values are no reading", () => {
 });
 
 test("depth: whole numbers, as an array, as PNG and as .npy, all alike", async () => {
-  const asArray = await aligner.evaluate(
-    { ...withoutSize, depth: { data: tenths, width, height }, depthScale: 0.0001 },
-    truth,
-  );
+  const asArray = await evaluated({ ...withoutSize, depth: { data: tenths, width, height }, depthScale: 0.0001 });
   assertClose(asArray, 0.05);
   for (const file of [png(tenths, width, height), npy(tenths, height, width)]) {
-    assert.deepEqual(await aligner.evaluate({ ...withoutSize, depth: file, depthScale: 0.0001 }, truth), asArray);
+    assert.deepEqual(await evaluated({ ...withoutSize, depth: file, depthScale: 0.0001 }), asArray);
   }
   const bopCamera = { cam_K: [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1], depth_scale: 0.1 };
   const { camera: _, ...withoutCamera } = withoutSize;
@@ -63,18 +68,18 @@ test("depth: whole numbers, as an array, as PNG and as .npy, all alike", async (
     cameraFile: { "7": bopCamera, "8": { ...bopCamera, depth_scale: 1 } },
     imageId: 7,
   };
-  assert.deepEqual(await aligner.evaluate(byCamera, truth), asArray, "the camera file's scale");
+  assert.deepEqual(await evaluated(byCamera), asArray, "the camera file's scale");
   const bare = { ...byCamera, depth: tenths, width, height };
-  assert.deepEqual(await aligner.evaluate(bare, truth), asArray, "the camera file's scale for an array");
+  assert.deepEqual(await evaluated(bare), asArray, "the camera file's scale for an array");
   const floats = { ...byCamera, depth: npy(depth, height, width) };
-  assert.deepEqual(await aligner.evaluate(floats, truth), reference, "floats are metres whatever the camera file says");
+  assert.deepEqual(await evaluated(floats), reference, "floats are metres whatever the camera file says");
 });
 
 test("depth: whole numbers are millimetres where nothing is said", async () => {
   const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
-  const asArray = await aligner.evaluate({ ...withoutSize, depth: { data: millimetres, width, height } }, truth);
+  const asArray = await evaluated({ ...withoutSize, depth: { data: millimetres, width, height } });
   assertClose(asArray, 0.5);
-  assert.deepEqual(await aligner.evaluate({ ...withoutSize, depth: png(millimetres, width, height) }, truth), asArray);
+  assert.deepEqual(await evaluated({ ...withoutSize, depth: png(millimetres, width, height) }), asArray);
 });
 
 same("mask: other values than 1", () => ({ mask: mask.map((m) => 200 * m) }));
@@ -112,17 +117,17 @@ same("camera file: what readCamera made of it", () => ({
 
 test("camera: a vertical field of view", async () => {
   const fovYDeg = (360 / Math.PI) * Math.atan(height / 2 / camera.fy);
-  const { metrics } = await aligner.evaluate({ ...withoutSize, camera: { fovYDeg } }, truth);
+  const { metrics } = await evaluated({ ...withoutSize, camera: { fovYDeg } });
   assert.ok((metrics.iou ?? 0) > 0.95, `${metrics.iou}`);
   const { camera: _, ...rest } = withoutSize;
-  const fromText = await aligner.evaluate({ ...rest, cameraFile: JSON.stringify({ fovYDeg }) }, truth);
+  const fromText = await evaluated({ ...rest, cameraFile: JSON.stringify({ fovYDeg }) });
   assert.deepEqual(fromText.metrics, metrics);
 });
 
 test("camera file: lens distortion is warned of", async () => {
   const cameraFile = { width, height, k: K, d: [0.1, -0.2, 0, 0, 0], distortion_model: "plumb_bob" };
   const { camera: _, ...rest } = withoutSize;
-  const { warnings, metrics } = await aligner.evaluate({ ...rest, cameraFile }, truth);
+  const { warnings, metrics } = await evaluated({ ...rest, cameraFile });
   assert.deepEqual(codesOf(warnings), ["CAMERA_NOT_PINHOLE"]);
   assert.match(warnings[0]?.message ?? "", /distortion/);
   assert.deepEqual(metrics, reference.metrics);
@@ -150,7 +155,7 @@ test("mesh: triangles without indices, null for indices", async () => {
   });
   for (const indices of [undefined, null]) {
     const soup = { ...withoutSize, mesh: { positions: corners, indices } };
-    assertClose(await aligner.evaluate(soup, truth), 1e-3);
+    assertClose(await evaluated(soup), 1e-3);
   }
 });
 
@@ -161,12 +166,12 @@ test("a point map takes the place of depth and camera", async () => {
     const [u, v] = [pixel % width, Math.floor(pixel / width)];
     return [((u - camera.cx) * z) / camera.fx, ((v - camera.cy) * z) / camera.fy, z][i % 3] ?? 0;
   });
-  assertClose(await aligner.evaluate({ pointMap: { data, width, height }, mask, mesh }, truth), 0.02);
-  assertClose(await aligner.evaluate({ pointMap: data, width, height, mask, mesh }, truth), 0.02);
-  assertClose(await aligner.evaluate({ pointMap: data, width, height, mask, mesh, camera }, truth), 0.02);
+  assertClose(await evaluated({ pointMap: { data, width, height }, mask, mesh }), 0.02);
+  assertClose(await evaluated({ pointMap: data, width, height, mask, mesh }), 0.02);
+  assertClose(await evaluated({ pointMap: data, width, height, mask, mesh, camera }), 0.02);
   const both = { pointMap: data, depth, width, height, mask, mesh } as unknown as AlignInput;
   const expected = ["INVALID_ARGUMENT depth", /not both/] as const;
-  await rejectsWith(() => aligner.evaluate(both, truth), ...expected);
+  await rejectsWith(() => evaluated(both), ...expected);
 });
 
 test("align takes files as well", async () => {

@@ -85,13 +85,14 @@ test("an object without a mesh hides what is behind it", async () => {
 test("one object without support is align", async () => {
   const [mask] = masks;
   assert.ok(mask);
-  const alone = withoutTimes(await here.align({ ...tableView, mask, mesh: standingMesh }, quick));
+  const { depthUnit, ...alone } = withoutTimes(await here.align({ ...tableView, mask, mesh: standingMesh }, quick));
   const scene = { ...tableView, objects: [{ mask, mesh: standingMesh }], support: null };
   const result = await here.alignScene(scene, quick);
   assert.equal(result.support, null);
   const [object] = placed(result).map(withoutTimes);
   const { contact, ...rest } = object ?? {};
   assert.deepEqual(rest, alone);
+  assert.equal(result.depthUnit, depthUnit);
   assert.deepEqual(contact, { restsOn: null, gapM: null, sharedVolume: 0, snappedM: 0 });
 });
 

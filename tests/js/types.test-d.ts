@@ -88,8 +88,8 @@ export async function accepted(aligner: Aligner): Promise<void> {
 export async function refused(aligner: Aligner, error: unknown): Promise<void> {
   // @ts-expect-error plain arrays are refused
   await aligner.align({ depth: [1, 2], width: 2, height: 1, mask: bytes, camera, mesh });
-  // @ts-expect-error depth needs a camera
-  await aligner.align({ depth: floats, width: 2, height: 2, mask: bytes, mesh });
+  // @ts-expect-error a bare array needs its size
+  await aligner.align({ depth: floats, mask: bytes, mesh });
   // @ts-expect-error a point map has the depth in it
   await aligner.align({ pointMap: floats, depth: floats, width: 2, height: 2, mask: bytes, mesh });
   // @ts-expect-error misspelt

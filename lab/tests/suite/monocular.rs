@@ -76,9 +76,16 @@ fn holes_continue_what_is_around_them() {
     };
     let holed: Vec<f64> = exact.iter().enumerate().map(|(i, z)| if is_hole(i) { 0.0 } else { *z }).collect();
     let found = filled(&map(&holed), &[&mask()]).unwrap();
+    // The slope of the background is unknown at the outline, and taken to be 0: a harmonic function that is 0 on the sides of
+    // a half strip and of this slope at its end is largest amid the end, 4 G / π² of slope times height, with Catalan's G.
+    let at_outline = 4.0 * 0.915_966 / (PI * PI) * 4e-4 * 31.0;
     for (i, (found, exact)) in found.iter().zip(&exact).enumerate() {
-        let most = if is_hole(i) { 2e-3 } else { 1e-6 };
-        assert!((found / exact - 1.0).abs() < most, "{i}: {found} for {exact}");
+        let most = match is_hole(i) {
+            false => 1e-6,
+            true if i % SIZE[0] >= OBJECT[0].end => at_outline,
+            true => 3e-4,
+        };
+        assert!((1.0 / found - 1.0 / exact).abs() < most, "{i}: {found} for {exact}");
     }
     // What lacks all readings gets those around; nothing gets nothing.
     let empty: Vec<f64> = exact.iter().enumerate().map(|(i, z)| if is_object(i) { 0.0 } else { *z }).collect();

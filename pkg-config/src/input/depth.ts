@@ -68,12 +68,13 @@ export async function readDepth(
 /** The unit of an array, in the words of the readers of files. */
 function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDepthScale }: DepthReading): string {
   if (isAffineInvariant(depthKind)) return `none (${depthKind})`;
-  if (depthScale !== undefined) return `${depthScale} m (depthScale)`;
+  // Of anything else than a number, the core says what is wrong.
+  if (typeof depthScale === "number") return `${depthScale} m (depthScale)`;
   if (depthKind !== "metric") return `unknown (${depthKind})`;
   if (isFloats(data)) return "metres (float values, assumed)";
-  return integerDepthScale === undefined
-    ? "0.001 m (16-bit integers, assumed)"
-    : `${integerDepthScale} m (camera file)`;
+  return typeof integerDepthScale === "number"
+    ? `${integerDepthScale} m (camera file)`
+    : "0.001 m (16-bit integers, assumed)";
 }
 
 /** How the files of depth models begin: NPZ (also without an array), OpenEXR, TIFF and PFM. */

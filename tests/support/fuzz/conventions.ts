@@ -8,6 +8,7 @@ import { oddValue, pick, proxied } from "./odd-values.js";
 const mesh = blob(5, 6);
 const image = { width: 8, height: 6 };
 const count = image.width * image.height;
+const depthKinds = ["metric", "scale-invariant", "affine-invariant", "affine-invariant-disparity"];
 const turned = { scale: truth.scale, rotation: [0, 0, 0.6, 0.8], translation: [0.1, -0.2, 1.5] };
 
 /** Arguments that the functions take, each made anew: calls and mutations may change them. */
@@ -45,6 +46,11 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
   ["fromCvatRle", () => [3, 4, 5, 2, 0, 7, 1, 2, 6, 3], () => ({ ...image })],
   ["fromCvatRle", () => ({ rle: "3,4,5", left: 1, top: 1, width: 4, height: 3 }), () => ({ ...image })],
   ["depthFromDisparity", "depth", () => ({ scale: 2, shift: 0.1 })],
+  [
+    "correctDepth",
+    () => new Float32Array([0, -1, Number.NaN, 0.5, 1, 2, 1e9, 3, 4]),
+    (random) => ({ depthKind: pick(random, depthKinds), scale: 2, shift: -0.1 }),
+  ],
   ["toFrame", "transform", (random) => pick(random, ["opencv", "opengl", "ros", "pytorch3d"])],
   ["fromFrame", "transform", (random) => pick(random, ["opencv", "opengl", "ros", "pytorch3d"])],
   ["toOpenGL", "transform"],

@@ -36,7 +36,20 @@ function properties(owner: Fields): [name: string, descriptor: PropertyDescripto
   }
 }
 
-const names = ["width", "depthScale", "mask", "K", "fovYDeg", "data", "format", "constructor", "__proto__", "counts"];
+const names = [
+  "width",
+  "depthScale",
+  "depthKind",
+  "focalUncertainty",
+  "mask",
+  "K",
+  "fovYDeg",
+  "data",
+  "format",
+  "constructor",
+  "__proto__",
+  "counts",
+];
 
 const set = ({ owner, name }: Place, value: unknown) =>
   Object.defineProperty(owner, name, { value, enumerable: true, configurable: true, writable: true });

@@ -26,6 +26,8 @@ export function randomPicture(random: Random): Record<string, unknown> {
     { depth: millimetres, ...size, depthScale: 0.001 },
     { depth: npy(depth, height, width) },
     { depth: png(millimetres, width, height) },
+    { depth: depth.map((z) => 3 / z - 1), ...size, depthKind: "affine-invariant-disparity" },
+    { depth: depth.map((z) => 5 * z - 1), ...size, depthKind: "affine-invariant" },
   ];
   const masks = [
     mask.slice(),
@@ -39,6 +41,9 @@ export function randomPicture(random: Random): Record<string, unknown> {
     { camera: { K: [fx, 0, cx, 0, fy, cy, 0, 0, 1] } },
     { camera: { K: Float64Array.of(fx, 0, cx, 0, fy, cy, 0, 0, 1) } },
     { camera: { fovYDeg: 30 } },
+    { camera: { ...camera, focalUncertainty: 0.2 } },
+    { camera: { ...size } },
+    {},
     { cameraFile: JSON.stringify(camera) },
     { cameraFile: { "1": { cam_K: [fx, 0, cx, 0, fy, cy, 0, 0, 1], depth_scale: 1 } } },
   ];
