@@ -5,7 +5,7 @@ import { fixed } from "./table.js";
 
 /** What is said once of results whose lengths have no unit. */
 export const noUnitNote =
-  "Lengths are in units of their own: none is known in metres. To align with --known-extent, or a number as --scale, makes them metric.";
+  "Lengths have no unit, because nothing metric is known: --known-extent, or a number as --scale, makes them metric.";
 
 /** Whether the lengths of a result, or of its JSON entry, are metres. */
 export function isMetric(result: object): boolean {
