@@ -4,6 +4,8 @@ use crate::bench::statistics::cell;
 use crate::monocular::picture::{Picture, Thing};
 use crate::prelude::*;
 use sim3align::align::align;
+use sim3align::precise::drawn::equivalence::Equivalence;
+use sim3align::precise::searched::proportions::Proportions;
 
 /// The errors of the lengths of an object along its axes, relative.
 #[derive(Debug, Clone)]
@@ -74,11 +76,12 @@ fn record(picture: &Picture, k: usize, seed: u64, most: f64, options: &AlignOpti
     let drawn = [0; 3].map(|_| between(random, -1.0, 1.0));
     let mean = drawn.iter().sum::<f64>() / 3.0;
     let largest = drawn.iter().fold(1e-9f64, |largest, x| largest.max((x - mean).abs()));
-    let stretch = drawn.map(|x| (x - mean) * most / largest);
-    let shrunk = mesh.positions().iter().map(|p| {
-        let p = p.as_dvec3().to_array();
-        Vec3::from_array([0, 1, 2].map(|i| (p[i] * libm::exp(-stretch[i])) as f32))
-    });
+    let straight = DMat3::from_diagonal(DVec3::from_array(drawn.map(|x| (x - mean) * most / largest)));
+    // What has a symmetry is stretched so that it keeps it.
+    let wrong = Equivalence::new(Symmetry::Auto.group(mesh)?).mean(&straight);
+    let stretch = Proportions::of_matrix(&wrong).matrix();
+    let shrink = stretch.inverse();
+    let shrunk = mesh.positions().iter().map(|p| (shrink * p.as_dvec3()).as_vec3());
     let shrunk = Mesh::new(shrunk.collect(), mesh.triangles().to_vec())?;
     let mut observation = Observation::new(picture.depth.clone(), mask.clone(), picture.camera)?;
     if let Some(others) = others(picture, k)? {
@@ -91,8 +94,8 @@ fn record(picture: &Picture, k: usize, seed: u64, most: f64, options: &AlignOpti
         return Ok(None);
     }
     let s = DMat3::from_cols_array_2d(&proportions.stretch);
-    let error =
-        |length: f64, axis: usize| libm::log(length / (truth.camera_from_mesh.scale * libm::exp(stretch[axis]))).abs();
+    let size = truth.camera_from_mesh.scale;
+    let error = |length: f64, axis: usize| libm::log(length / (size * stretch.col(axis).length())).abs();
     Ok(Some(Record {
         before: [0, 1, 2].map(|i| error(found.camera_from_mesh.scale, i)),
         after: [0, 1, 2].map(|i| error(proportions.camera_from_stretched.scale * s.col(i).length(), i)),
