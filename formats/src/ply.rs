@@ -7,13 +7,15 @@ use crate::cursor::Cursor;
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::mesh_builder::MeshBuilder;
 use crate::ply_header::{Element, Encoding, Header, Scalar};
+use crate::splats::{has_gaussians, read_gaussians};
 use crate::text::{number, quoted};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Reads the elements `vertex` (x, y, z of any type, at any position among the properties), `face` (polygons, as
 /// fans) and `tristrips`; ignores the others. Colours are the properties red, green and blue of the vertices: whole numbers
-/// up to the largest of their type, or floats from 0 to 1, sRGB-encoded.
+/// up to the largest of their type, or floats from 0 to 1, sRGB-encoded. If the vertices are Gaussians, reads the mesh of
+/// their surface.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`],
@@ -21,6 +23,9 @@ use sim3align_geometry::surface_colors::Rgb;
 pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let (header, body) = Header::read(bytes)?;
     let mut body = Body { encoding: header.encoding, cursor: Cursor::new("mesh", body) };
+    if has_gaussians(&header) {
+        return read_gaussians(&header, body, content);
+    }
     let mut builder = MeshBuilder::default();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
@@ -143,7 +148,7 @@ fn read_faces(element: &Element, body: &mut Body<'_>, push: &mut dyn FnMut(&[u32
 }
 
 /// Calls `visit` with the position of each property and its values (one, or the list), record by record.
-fn read_records(
+pub(crate) fn read_records(
     element: &Element,
     body: &mut Body<'_>,
     mut visit: impl FnMut(usize, &[f64]) -> Result<()>,
@@ -166,14 +171,14 @@ fn read_records(
 }
 
 /// The numbers after the header.
-struct Body<'a> {
+pub(crate) struct Body<'a> {
     encoding: Encoding,
     cursor: Cursor<'a>,
 }
 
 impl Body<'_> {
     /// Checks a count against the remaining bytes, before anything is read or allocated.
-    fn check_count(&self, element: &Element) -> Result<()> {
+    pub fn check_count(&self, element: &Element) -> Result<()> {
         // One more byte: the last number of an ASCII file need not be followed by a space.
         let available = self.cursor.remaining().len() + 1;
         match element.count.checked_mul(element.min_bytes(self.encoding)) {

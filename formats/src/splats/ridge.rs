@@ -1,0 +1,95 @@
+//! Moves the vertices of a surface around Gaussians onto the sheet that they form, and colours them.
+
+use glam::Vec3;
+
+use super::density::{each_node, kernel, widened_inverse};
+use super::lattice::Lattice;
+use super::region::Blob;
+use sim3align_geometry::surface_colors::Rgb;
+
+/// Rounds of the fit. In the first, vertices come from beside the sheet; the last ones follow its curvature.
+const ROUNDS: usize = 3;
+
+/// Standard deviation, in spacings, by which Gaussians are widened for their weight at a vertex, and standard deviations
+/// that they then reach.
+const WIDENING: f32 = 0.7;
+const REACH: f32 = 3.0;
+
+/// Thickness, in spacings, that is added to each Gaussian: flatter ones do not count more.
+const THICKNESS: f32 = 0.3;
+
+/// Longest step of a vertex in a round, in spacings.
+const MAX_STEP: f32 = 1.5;
+
+const NONE: u32 = u32::MAX;
+
+/// Sums over the Gaussians at a vertex.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    /// Slope and curvature, along the normal, of the squared distance to the Gaussians.
+    slope: f32,
+    curvature: f32,
+    color: Vec3,
+    weight: f32,
+}
+
+/// Moves each vertex along its normal to where the weighted sum of squared Mahalanobis distances to the Gaussians around
+/// it is smallest: flat Gaussians are planes there, round ones points. Returns the colours of the vertices.
+pub(super) fn fit(lattice: &Lattice, blobs: &[Blob], vertices: &mut [Vec3], triangles: &[[u32; 3]]) -> Vec<Rgb> {
+    let mut sums = vec![Sums::default(); vertices.len()];
+    // The vertices nearest to each node, as lists.
+    let mut first_of = vec![NONE; lattice.len()];
+    let mut next_of = vec![NONE; vertices.len()];
+    for _ in 0..ROUNDS {
+        let normals = normals(vertices, triangles);
+        first_of.fill(NONE);
+        for (i, vertex) in vertices.iter().enumerate() {
+            let node = lattice.nearest(*vertex);
+            next_of[i] = first_of[node];
+            first_of[node] = i as u32;
+        }
+        sums.fill(Sums::default());
+        for blob in blobs {
+            let near = widened_inverse(&blob.covariance, WIDENING);
+            let precision = widened_inverse(&blob.covariance, THICKNESS);
+            let color = Vec3::from_array(blob.color.map(f32::from));
+            // A vertex is up to √3 / 2 from its node.
+            each_node(lattice, blob.center, &near, REACH + 0.87 / WIDENING, |node, _| {
+                let mut vertex = first_of[node];
+                while let Some(&position) = vertices.get(vertex as usize) {
+                    let i = vertex as usize;
+                    let from_center = position - blob.center;
+                    let weight = blob.opacity * kernel(from_center.dot(near * from_center), REACH);
+                    if weight > 0.0 {
+                        let along = precision * normals[i];
+                        let sums = &mut sums[i];
+                        sums.slope += weight * along.dot(from_center);
+                        sums.curvature += weight * along.dot(normals[i]);
+                        sums.color += color * weight;
+                        sums.weight += weight;
+                    }
+                    vertex = next_of[i];
+                }
+            });
+        }
+        for ((vertex, sums), normal) in vertices.iter_mut().zip(&sums).zip(&normals) {
+            if sums.curvature > 0.0 {
+                *vertex -= normal * (sums.slope / sums.curvature).clamp(-MAX_STEP, MAX_STEP);
+            }
+        }
+    }
+    let color = |sums: &Sums| (sums.color / sums.weight.max(f32::MIN_POSITIVE)).to_array().map(|x| (x + 0.5) as u8);
+    sums.iter().map(color).collect()
+}
+
+/// The unit normals of the vertices, outward; zero where triangles cancel out.
+fn normals(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
+    let mut normals = vec![Vec3::ZERO; vertices.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| vertices[i as usize]);
+        let normal = (b - a).cross(c - a);
+        triangle.iter().for_each(|&i| normals[i as usize] += normal);
+    }
+    normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
+    normals
+}
