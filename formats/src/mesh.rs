@@ -5,7 +5,6 @@ use core::fmt;
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{beginning, unsupported};
 use crate::resources::{ExternalResources, Resources};
-use crate::splats::{is_splat_file, read_splat_file};
 use crate::{gltf, obj, ply, stl, text};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
@@ -21,12 +20,10 @@ pub enum MeshFormat {
     Ply,
     /// STL: ASCII and binary.
     Stl,
-    /// 3D Gaussians of 32 bytes each (`.splat`). Gaussians in a PLY file are [`MeshFormat::Ply`].
-    Splat,
 }
 
 impl MeshFormat {
-    /// The format of this name or file extension, in any case: `glb`, `gltf`, `obj`, `ply`, `stl`, `splat`.
+    /// The format of this name or file extension, in any case: `glb`, `gltf`, `obj`, `ply`, `stl`.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`], which lists the names.
@@ -36,7 +33,6 @@ impl MeshFormat {
             "obj" => Ok(Self::Obj),
             "ply" => Ok(Self::Ply),
             "stl" => Ok(Self::Stl),
-            "splat" => Ok(Self::Splat),
             _ => Err(Error::new(
                 ErrorCode::InvalidOption,
                 "options.format",
@@ -65,10 +61,7 @@ impl MeshFormat {
         let mut statements = words.filter(|word| !word.starts_with(b"#"));
         let before_vertices: [&[u8]; 9] = [b"vn", b"vt", b"vp", b"o", b"g", b"s", b"mtllib", b"usemtl", b"cstype"];
         let first_other = statements.find(|word| !before_vertices.contains(word));
-        if first_other == Some(b"v".as_slice()) {
-            return Some(Self::Obj);
-        }
-        is_splat_file(bytes).then_some(Self::Splat)
+        (first_other == Some(b"v".as_slice())).then_some(Self::Obj)
     }
 }
 
@@ -108,8 +101,7 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
 }
 
 /// Reads the shape of a mesh: all parts merged, node transforms applied, in the unit and axes of the file. Unused
-/// vertices are removed; normals, colours and textures are not read. Of 3D Gaussians, this is a mesh of the surface that
-/// the opaque ones show.
+/// vertices are removed; normals, colours and textures are not read.
 ///
 /// # Errors
 /// [`ErrorCode::UnsupportedFormat`], [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`],
@@ -120,7 +112,7 @@ pub fn read_mesh(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<Mesh> {
 }
 
 /// Reads a mesh with the colours of its surface: the same mesh as [`read_mesh`], with colours from vertices (glTF
-/// `COLOR_0`, PLY, OBJ), Gaussians, base colour factors and base colour textures (glTF) or an MTL (OBJ). In glTF they are multiplied.
+/// `COLOR_0`, PLY, OBJ), base colour factors and base colour textures (glTF) or an MTL (OBJ). In glTF they are multiplied.
 /// Parts without colour are white. If any texture or attribute of the colours can't be read, there are no colours but a
 /// [`problem`](ColoredMesh::problem): a part painted wrong would mislead.
 ///
@@ -136,7 +128,6 @@ fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result
         Some(MeshFormat::Obj) => obj::read_obj(bytes, options.resources, content),
         Some(MeshFormat::Ply) => ply::read_ply(bytes, content),
         Some(MeshFormat::Stl) => stl::read_stl(bytes).map(ColoredMesh::from),
-        Some(MeshFormat::Splat) => read_splat_file(bytes, content),
         None => Err(unsupported(
             "mesh",
             beginning(bytes),

@@ -7,25 +7,20 @@ use crate::cursor::Cursor;
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::mesh_builder::MeshBuilder;
 use crate::ply_header::{Element, Encoding, Header, Scalar};
-use crate::splats::{has_gaussians, read_gaussians};
 use crate::text::{number, quoted};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Reads the elements `vertex` (x, y, z of any type, at any position among the properties), `face` (polygons, as
 /// fans) and `tristrips`; ignores the others. Colours are the properties red, green and blue of the vertices: whole numbers
-/// up to the largest of their type, or floats from 0 to 1, sRGB-encoded. If the vertices are Gaussians, reads the mesh of
-/// their surface.
+/// up to the largest of their type, or floats from 0 to 1, sRGB-encoded.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`],
 /// [`ErrorCode::IndexOutOfRange`] and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
 pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let (header, body) = Header::read(bytes)?;
-    let mut body = Body { encoding: header.encoding, cursor: Cursor::new("mesh", body) };
-    if has_gaussians(&header) {
-        return read_gaussians(&header, body, content);
-    }
+    let mut body = Body::new("mesh", header.encoding, body);
     let mut builder = MeshBuilder::default();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
@@ -54,7 +49,7 @@ pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`].
 pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
     let (header, body) = Header::read(bytes)?;
-    let mut body = Body { encoding: header.encoding, cursor: Cursor::new("cloud", body) };
+    let mut body = Body::new("cloud", header.encoding, body);
     let mut points = Vec::new();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
@@ -176,7 +171,12 @@ pub(crate) struct Body<'a> {
     cursor: Cursor<'a>,
 }
 
-impl Body<'_> {
+impl<'a> Body<'a> {
+    /// The numbers of a file after its header; `argument` names the file in errors.
+    pub fn new(argument: &'static str, encoding: Encoding, bytes: &'a [u8]) -> Self {
+        Self { encoding, cursor: Cursor::new(argument, bytes) }
+    }
+
     /// Checks a count against the remaining bytes, before anything is read or allocated.
     pub fn check_count(&self, element: &Element) -> Result<()> {
         // One more byte: the last number of an ASCII file need not be followed by a space.

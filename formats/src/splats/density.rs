@@ -3,12 +3,12 @@
 use glam::{Mat3, Vec3};
 
 use super::lattice::{Lattice, clear_light_regions, take_region};
-use super::region::{Blob, FLOATER, LEVEL, REACH, WIDENING, median};
+use super::region::{Blob, FLOATER, LEVEL, REACH, WIDENING};
 
-/// Density of a surface as a share of that in the centres of the Gaussians, and at most: a Gaussian that noise has moved
+/// Density of a surface as a share of the mean in the centres of the Gaussians, and at most: a Gaussian that noise has moved
 /// away from a dense surface is then no part of it, but a sparse surface is one.
-const LEVEL_SHARE: f32 = 0.15;
-const MAX_LEVEL: f32 = 1.25;
+const LEVEL_SHARE: f32 = 0.25;
+const MAX_LEVEL: f32 = 1.5;
 
 /// The quadratic form dᵀ·C⁻¹·d of a covariance that is widened by a standard deviation.
 pub(super) fn widened_inverse(covariance: &[f32; 6], widening: f32) -> Mat3 {
@@ -80,8 +80,8 @@ impl Solid {
                 density[node] += blob.opacity * kernel(squared, REACH);
             });
         }
-        let typical = median(blobs.iter().map(|blob| density[lattice.nearest(blob.center)]));
-        let level = (LEVEL_SHARE * typical).clamp(LEVEL, MAX_LEVEL);
+        let in_centers: f64 = blobs.iter().map(|blob| f64::from(density[lattice.nearest(blob.center)])).sum();
+        let level = (LEVEL_SHARE * (in_centers / blobs.len() as f64) as f32).clamp(LEVEL, MAX_LEVEL);
         let occupied: Vec<bool> = density.iter().map(|density| *density >= level).collect();
         let mut is_inside = outside(lattice, &occupied);
         is_inside.iter_mut().for_each(|inside| *inside = !*inside);

@@ -1,4 +1,5 @@
-//! 3D Gaussian splats as meshes: files of Gaussians, and the surface that the opaque ones show.
+//! 3D Gaussian splats as meshes: files of Gaussians, and the surface that the opaque ones show. They are read by a module
+//! of their own.
 
 mod density;
 mod gaussian;
@@ -12,19 +13,25 @@ mod surface_nets;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 
-use crate::colored_mesh::{ColoredMesh, Content};
+use crate::colored_mesh::ColoredMesh;
 use crate::painted_mesh::{Paint, PaintedMesh};
 use gaussian::Gaussian;
 
-pub(crate) use ply_file::{has_gaussians, read_gaussians};
-pub(crate) use splat_file::{is_splat_file, read_splat_file};
+/// Reads 3D Gaussians as a closed mesh of the surface that the opaque ones show, in the unit and axes of the file: a PLY
+/// file as the authors of 3D Gaussian Splatting write it, or else a `.splat` file. With colours, they are those of the
+/// constant harmonic.
+///
+/// # Errors
+/// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`], [`ErrorCode::NonFinite`],
+/// [`ErrorCode::EmptyMesh`] without an opaque surface, [`ErrorCode::DegenerateMesh`] without an extent.
+pub fn read_splats(bytes: &[u8], with_colors: bool) -> Result<ColoredMesh> {
+    let is_ply = bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r");
+    surface_of(if is_ply { ply_file::read(bytes) } else { splat_file::read(bytes) }?, with_colors)
+}
 
 /// The closed mesh around the opaque Gaussians, without floaters. Its vertices are on the sheet that the centres of the
 /// Gaussians form; cavities that can't be seen from outside are filled.
-///
-/// # Errors
-/// [`ErrorCode::EmptyMesh`] without an opaque surface, [`ErrorCode::DegenerateMesh`].
-fn surface_of(gaussians: Vec<Gaussian>, content: Content) -> Result<ColoredMesh> {
+fn surface_of(gaussians: Vec<Gaussian>, with_colors: bool) -> Result<ColoredMesh> {
     let count = gaussians.len();
     let transparent = || {
         Error::new(
@@ -43,7 +50,7 @@ fn surface_of(gaussians: Vec<Gaussian>, content: Content) -> Result<ColoredMesh>
     }
     let colors = ridge::fit(&lattice, &blobs, &mut vertices, &triangles);
     let mesh = Mesh::new(vertices.into_iter().map(|vertex| lattice.point(vertex)).collect(), triangles)?;
-    let vertex_colors = if content == Content::Shape { Vec::new() } else { colors };
+    let vertex_colors = if with_colors { colors } else { Vec::new() };
     let paint = Paint { vertex_colors, ..Paint::default() };
     Ok(PaintedMesh { mesh, paint }.colored(Ok(Vec::new())))
 }

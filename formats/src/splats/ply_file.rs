@@ -3,10 +3,9 @@
 use glam::Vec3;
 
 use super::gaussian::{Gaussian, check_count};
-use super::surface_of;
-use crate::colored_mesh::{ColoredMesh, Content};
+use crate::guard::corrupt;
 use crate::ply::{Body, read_records};
-use crate::ply_header::{Element, Header};
+use crate::ply_header::Header;
 use sim3align_geometry::error::Result;
 
 /// The properties of a vertex that is a Gaussian: centre, colour as the constant term of spherical harmonics, opacity as
@@ -20,20 +19,10 @@ const PROPERTIES: [&[u8]; 14] = [
 /// The constant spherical harmonic, 1 / (2√π).
 const HARMONIC: f64 = 0.282_094_791_773_878_14;
 
-/// Whether the vertices of a PLY file are Gaussians.
-pub(crate) fn has_gaussians(header: &Header) -> bool {
-    let is_gaussian = |element: &Element| {
-        element.name == b"vertex" && PROPERTIES.iter().all(|name| element.properties.iter().any(|p| p.name == *name))
-    };
-    header.elements.iter().any(is_gaussian)
-}
-
-/// Reads the Gaussians of a PLY file as the mesh of their surface.
-///
-/// # Errors
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), `FileTooLarge`, `NonFinite` and those of
-/// [`surface_of`].
-pub(crate) fn read_gaussians(header: &Header, mut body: Body<'_>, content: Content) -> Result<ColoredMesh> {
+/// Reads the Gaussians of a PLY file.
+pub(super) fn read(bytes: &[u8]) -> Result<Vec<Gaussian>> {
+    let (header, body) = Header::read(bytes)?;
+    let mut body = Body::new("mesh", header.encoding, body);
     let mut gaussians = Vec::new();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
@@ -42,6 +31,10 @@ pub(crate) fn read_gaussians(header: &Header, mut body: Body<'_>, content: Conte
             continue;
         }
         check_count(element.count)?;
+        if let Some(name) = PROPERTIES.iter().find(|name| element.properties.iter().all(|p| p.name != **name)) {
+            let found = format!("Gaussians without {}", name.escape_ascii());
+            return Err(corrupt("mesh", found, "the properties of 3D Gaussian Splatting"));
+        }
         let slots: Vec<Option<usize>> =
             element.properties.iter().map(|p| PROPERTIES.iter().position(|name| p.name == *name)).collect();
         let last = slots.len() - 1;
@@ -56,7 +49,7 @@ pub(crate) fn read_gaussians(header: &Header, mut body: Body<'_>, content: Conte
             Ok(())
         })?;
     }
-    surface_of(gaussians, content)
+    Ok(gaussians)
 }
 
 fn gaussian(index: usize, numbers: &[f64; PROPERTIES.len()]) -> Result<Gaussian> {

@@ -7,6 +7,7 @@ use super::lattice::{Lattice, clear_light_regions};
 use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::number::number;
+use sim3align_geometry::surface::DIAGONALS;
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Opacity below which a Gaussian is not part of a surface.
@@ -18,8 +19,8 @@ pub(super) const LEVEL: f32 = 0.5;
 /// Share of the opacity of all below which a separate group of Gaussians is a floater.
 pub(super) const FLOATER: f64 = 0.01;
 
-/// Nodes along the longest side of the lattice, at most; its spacing is then 0.6 % of that side.
-const MAX_NODES: f32 = 160.0;
+/// Nodes along the longest side of the lattice, at most; its spacing is then 0.8 % of that side.
+const MAX_NODES: f32 = 128.0;
 const MIN_NODES: f32 = 24.0;
 
 /// Cells along the longest side in the search for floaters, at most, and rounds of it. Floaters may be so far away that the
@@ -57,8 +58,13 @@ pub(super) fn blobs_of(mut gaussians: Vec<Gaussian>) -> Result<Option<(Lattice, 
         let centers: Vec<Vec3> = gaussians.iter().map(|gaussian| gaussian.center).collect();
         let Some(bounds) = Bounds::of(&centers) else { return Ok(None) };
         let last = side;
-        side = bounds.extent().max_element() + 2.0 * median(gaussians.iter().map(|g| g.scales.max_element()));
-        if !(side > 0.0 && side.is_finite() && (bounds.max.abs().max(bounds.min.abs())).max_element() < side * 1e6) {
+        side = bounds.extent().max_element();
+        if side == 0.0 {
+            // All in one place.
+            side = gaussians.iter().map(|gaussian| gaussian.scales.max_element()).fold(f32::INFINITY, f32::min);
+        }
+        let farthest = bounds.max.abs().max(bounds.min.abs()).max_element();
+        if !((DIAGONALS[0]..=DIAGONALS[1]).contains(&f64::from(side)) && farthest < side * 1e6) {
             return Err(Error::new(
                 ErrorCode::DegenerateMesh,
                 "mesh",
@@ -74,16 +80,9 @@ pub(super) fn blobs_of(mut gaussians: Vec<Gaussian>) -> Result<Option<(Lattice, 
         let cells = (gaussians.len() as f32 / 27.0).sqrt().clamp(4.0, MAX_CELLS);
         drop_floaters(&mut gaussians, &Lattice::new(bounds.min, bounds.max, side / cells));
     }
-    // About one Gaussian for each cell of a surface, or more.
-    let spacing = side / (gaussians.len() as f32 / 3.0).sqrt().clamp(MIN_NODES, MAX_NODES);
+    // A Gaussian for two cells of a surface, or more.
+    let spacing = side / (gaussians.len() as f32 / 2.0).sqrt().clamp(MIN_NODES, MAX_NODES);
     Ok(Some(lattice_of(&gaussians, spacing)))
-}
-
-/// The median of some values; 0 without any.
-pub(super) fn median(values: impl Iterator<Item = f32>) -> f32 {
-    let mut values: Vec<f32> = values.collect();
-    let middle = values.len() / 2;
-    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f32::total_cmp).1 }
 }
 
 /// Keeps the Gaussians in, or next to, connected groups of opaque cells that are no floaters.

@@ -3,8 +3,6 @@
 use glam::Vec3;
 
 use super::gaussian::{Gaussian, check_count};
-use super::surface_of;
-use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::corrupt;
 use sim3align_geometry::error::Result;
 
@@ -12,41 +10,22 @@ use sim3align_geometry::error::Result;
 /// bytes around 128.
 const RECORD_BYTES: usize = 32;
 
-/// Number of Gaussians by which a file is recognised.
-const CHECKED: usize = 256;
-
-/// Whether these bytes can be a `.splat` file: it has no signature, but its quaternions have length 1.
-pub(crate) fn is_splat_file(bytes: &[u8]) -> bool {
-    let (records, rest) = bytes.as_chunks::<RECORD_BYTES>();
-    let is_gaussian = |record: &[u8; RECORD_BYTES]| {
-        let [center, scales] = vectors(record);
-        let norm: f32 = quaternion(record).iter().map(|x| x * x).sum();
-        center.is_finite() && scales.is_finite() && scales.min_element() >= 0.0 && (norm - 1.0).abs() < 0.1
-    };
-    !records.is_empty() && rest.is_empty() && records.iter().take(CHECKED).all(is_gaussian)
-}
-
-/// Reads a `.splat` file as the mesh of its surface.
-///
-/// # Errors
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), `FileTooLarge`, `NonFinite` and those of
-/// [`surface_of`].
-pub(crate) fn read_splat_file(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
+/// Reads a `.splat` file.
+pub(super) fn read(bytes: &[u8]) -> Result<Vec<Gaussian>> {
     let (records, rest) = bytes.as_chunks::<RECORD_BYTES>();
     if records.is_empty() || !rest.is_empty() {
         let found = format!("{} bytes", bytes.len());
         return Err(corrupt("mesh", found, format!("{RECORD_BYTES} bytes for each Gaussian of a .splat file")));
     }
     check_count(records.len())?;
-    let gaussians = (records.iter().enumerate())
+    (records.iter().enumerate())
         .map(|(i, record)| {
             let [center, scales] = vectors(record);
             let [red, green, blue, opacity] = [24, 25, 26, 27].map(|at| record[at]);
             let opacity = f32::from(opacity) / 255.0;
             Gaussian::new(i, center, scales.abs(), quaternion(record), opacity, [red, green, blue])
         })
-        .collect::<Result<Vec<_>>>()?;
-    surface_of(gaussians, content)
+        .collect()
 }
 
 /// Centre and standard deviations.
