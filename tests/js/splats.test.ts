@@ -73,10 +73,10 @@ test("files that other programs wrote are read with their colours", async () => 
 });
 
 test("damaged splats are refused, and meshes are no splats", async () => {
-  await rejectsWith(() => readMesh(ply.slice(0, -1)), "CORRUPT_FILE file");
-  await rejectsWith(() => readMesh(new Uint8Array(33), { format: "splat" }), "CORRUPT_FILE file");
+  await rejectsWith(() => readMesh(ply.slice(0, -1)), "CORRUPT_FILE mesh");
+  await rejectsWith(() => readMesh(new Uint8Array(33), { format: "splat" }), "CORRUPT_FILE mesh");
   const transparent = gaussians.map((gaussian) => ({ ...gaussian, opacity: 0.01 }));
-  await rejectsWith(() => readMesh(splatPly(transparent)), "EMPTY_MESH file");
+  await rejectsWith(() => readMesh(splatPly(transparent)), "EMPTY_MESH mesh");
   const aligner = await createAligner();
   const input = { depth, width, height, mask, camera, mesh: splatPly(transparent) };
   await rejectsWith(() => aligner.align(input), "EMPTY_MESH mesh");

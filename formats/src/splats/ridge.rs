@@ -7,8 +7,11 @@ use super::lattice::Lattice;
 use super::region::Blob;
 use sim3align_geometry::surface_colors::Rgb;
 
-/// Rounds of the fit. In the first, vertices come from beside the sheet; the last ones follow its curvature.
+/// Rounds of the fit. In the first, vertices come from beside the sheet; the others follow its curvature.
 const ROUNDS: usize = 3;
+
+/// Number of Gaussians in the rounds before the last, at most about: these need no precision.
+const MAX_COARSE: usize = 60_000;
 
 /// Standard deviation, in spacings, by which Gaussians are widened for their weight at a vertex, and standard deviations
 /// that they then reach.
@@ -20,6 +23,9 @@ const THICKNESS: f32 = 0.3;
 
 /// Longest step of a vertex in a round, in spacings.
 const MAX_STEP: f32 = 1.5;
+
+/// Support of a vertex by Gaussians, as a share of the mean, below which it follows its neighbours.
+const LEAST_SUPPORT: f32 = 0.25;
 
 const NONE: u32 = u32::MAX;
 
@@ -40,7 +46,7 @@ pub(super) fn fit(lattice: &Lattice, blobs: &[Blob], vertices: &mut [Vec3], tria
     // The vertices nearest to each node, as lists.
     let mut first_of = vec![NONE; lattice.len()];
     let mut next_of = vec![NONE; vertices.len()];
-    for _ in 0..ROUNDS {
+    for round in 1..=ROUNDS {
         let normals = normals(vertices, triangles);
         first_of.fill(NONE);
         for (i, vertex) in vertices.iter().enumerate() {
@@ -49,7 +55,8 @@ pub(super) fn fit(lattice: &Lattice, blobs: &[Blob], vertices: &mut [Vec3], tria
             first_of[node] = i as u32;
         }
         sums.fill(Sums::default());
-        for blob in blobs {
+        let stride = if round == ROUNDS { 1 } else { blobs.len().div_ceil(MAX_COARSE).max(1) };
+        for blob in blobs.iter().step_by(stride) {
             let near = widened_inverse(&blob.covariance, WIDENING);
             let precision = widened_inverse(&blob.covariance, THICKNESS);
             let color = Vec3::from_array(blob.color.map(f32::from));
@@ -77,9 +84,36 @@ pub(super) fn fit(lattice: &Lattice, blobs: &[Blob], vertices: &mut [Vec3], tria
                 *vertex -= normal * (sums.slope / sums.curvature).clamp(-MAX_STEP, MAX_STEP);
             }
         }
+        settle(vertices, &mut sums, triangles);
     }
     let color = |sums: &Sums| (sums.color / sums.weight.max(f32::MIN_POSITIVE)).to_array().map(|x| (x + 0.5) as u8);
     sums.iter().map(color).collect()
+}
+
+/// Moves vertices with little support, over closed holes and at single Gaussians beside the sheet, to the mean of their
+/// neighbours, and gives them the colours of these.
+fn settle(vertices: &mut [Vec3], sums: &mut [Sums], triangles: &[[u32; 3]]) {
+    let total: f64 = sums.iter().map(|sums| f64::from(sums.weight)).sum();
+    let least = LEAST_SUPPORT * (total / sums.len() as f64) as f32;
+    let mut around = vec![(Vec3::ZERO, 0.0, Sums::default()); vertices.len()];
+    for &[a, b, c] in triangles {
+        for (of, others) in [(a, [b, c]), (b, [c, a]), (c, [a, b])].map(|(of, others)| (of as usize, others)) {
+            if sums[of].weight < least {
+                let (positions, count, colors) = &mut around[of];
+                for other in others.map(|other| other as usize) {
+                    *positions += vertices[other];
+                    *count += 1.0;
+                    colors.color += sums[other].color;
+                    colors.weight += sums[other].weight;
+                }
+            }
+        }
+    }
+    for ((vertex, sums), (positions, count, colors)) in vertices.iter_mut().zip(sums).zip(around) {
+        if count > 0.0 {
+            (*vertex, *sums) = (positions / count, colors);
+        }
+    }
 }
 
 /// The unit normals of the vertices, outward; zero where triangles cancel out.
