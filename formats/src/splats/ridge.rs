@@ -1,6 +1,6 @@
 //! Moves the vertices of a surface around Gaussians onto the sheet that they form, and colours them.
 
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use super::density::{each_node, kernel, widened_inverse};
 use super::lattice::Lattice;
@@ -29,25 +29,41 @@ const LEAST_SUPPORT: f32 = 0.25;
 
 const NONE: u32 = u32::MAX;
 
+/// Share of the mean precision at a vertex that keeps it in place: it hardly moves along a flat sheet.
+const DAMPING: f32 = 0.2;
+
 /// Sums over the Gaussians at a vertex.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
-    /// Slope and curvature, along the normal, of the squared distance to the Gaussians.
-    slope: f32,
-    curvature: f32,
+    /// Gradient and Hessian of half the squared distance to the Gaussians.
+    gradient: Vec3,
+    hessian: Mat3,
     color: Vec3,
     weight: f32,
 }
 
-/// Moves each vertex along its normal to where the weighted sum of squared Mahalanobis distances to the Gaussians around
-/// it is smallest: flat Gaussians are planes there, round ones points. Returns the colours of the vertices.
+impl Sums {
+    /// The step towards where the distance is smallest.
+    fn step(&self) -> Vec3 {
+        let Mat3 { x_axis, y_axis, z_axis } = self.hessian;
+        let damping = DAMPING / 3.0 * (x_axis.x + y_axis.y + z_axis.z);
+        if damping > 0.0 {
+            let damped = self.hessian + Mat3::from_diagonal(Vec3::splat(damping));
+            (damped.inverse() * -self.gradient).clamp_length_max(MAX_STEP)
+        } else {
+            Vec3::ZERO
+        }
+    }
+}
+
+/// Moves each vertex to where the weighted sum of squared Mahalanobis distances to the Gaussians around it is smallest: flat
+/// Gaussians are planes there, which meet in edges and corners, and round ones points. Returns the colours of the vertices.
 pub(super) fn fit(lattice: &Lattice, blobs: &[Blob], vertices: &mut [Vec3], triangles: &[[u32; 3]]) -> Vec<Rgb> {
     let mut sums = vec![Sums::default(); vertices.len()];
     // The vertices nearest to each node, as lists.
     let mut first_of = vec![NONE; lattice.len()];
     let mut next_of = vec![NONE; vertices.len()];
     for round in 1..=ROUNDS {
-        let normals = normals(vertices, triangles);
         first_of.fill(NONE);
         for (i, vertex) in vertices.iter().enumerate() {
             let node = lattice.nearest(*vertex);
@@ -68,10 +84,10 @@ pub(super) fn fit(lattice: &Lattice, blobs: &[Blob], vertices: &mut [Vec3], tria
                     let from_center = position - blob.center;
                     let weight = blob.opacity * kernel(from_center.dot(near * from_center), REACH);
                     if weight > 0.0 {
-                        let along = precision * normals[i];
                         let sums = &mut sums[i];
-                        sums.slope += weight * along.dot(from_center);
-                        sums.curvature += weight * along.dot(normals[i]);
+                        let weighted = precision * weight;
+                        sums.gradient += weighted * from_center;
+                        sums.hessian += weighted;
                         sums.color += color * weight;
                         sums.weight += weight;
                     }
@@ -79,11 +95,7 @@ pub(super) fn fit(lattice: &Lattice, blobs: &[Blob], vertices: &mut [Vec3], tria
                 }
             });
         }
-        for ((vertex, sums), normal) in vertices.iter_mut().zip(&sums).zip(&normals) {
-            if sums.curvature > 0.0 {
-                *vertex -= normal * (sums.slope / sums.curvature).clamp(-MAX_STEP, MAX_STEP);
-            }
-        }
+        vertices.iter_mut().zip(&sums).for_each(|(vertex, sums)| *vertex += sums.step());
         settle(vertices, &mut sums, triangles);
     }
     let color = |sums: &Sums| (sums.color / sums.weight.max(f32::MIN_POSITIVE)).to_array().map(|x| (x + 0.5) as u8);
@@ -114,16 +126,4 @@ fn settle(vertices: &mut [Vec3], sums: &mut [Sums], triangles: &[[u32; 3]]) {
             (*vertex, *sums) = (positions / count, colors);
         }
     }
-}
-
-/// The unit normals of the vertices, outward; zero where triangles cancel out.
-fn normals(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; vertices.len()];
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| vertices[i as usize]);
-        let normal = (b - a).cross(c - a);
-        triangle.iter().for_each(|&i| normals[i as usize] += normal);
-    }
-    normals.iter_mut().for_each(|normal| *normal = normal.normalize_or_zero());
-    normals
 }
