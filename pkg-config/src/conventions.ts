@@ -42,6 +42,7 @@ export { fromSam3d, type Nested, type Sam3dLayout, type Sam3dVertices, toSam3d }
 export { exportSceneGlb, type SceneGlbObject, type SceneGlbOptions } from "./conventions/scene-glb.js";
 export { applyToPoints, compose, invert, toRowMajor, toSim3 } from "./conventions/similarity.js";
 export { placeSplats, type SplatOptions } from "./conventions/splats.js";
+export { type StretchLike, stretchGlb, stretchMesh } from "./conventions/stretch.js";
 export { depthFromTensor, type MaskChoice, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export { fromCocoRle, toCocoRle } from "./formats/coco-rle.js";

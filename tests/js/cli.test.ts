@@ -75,7 +75,7 @@ test("--json has everything, as the documentation says", async () => {
   const { timingsMs, ...rest } = blob;
   assert.ok(timingsMs.total > 0);
   const pose = "scale rotation translation matrix quaternion confidence turnConfidence alternatives uncertainty";
-  const keys = `${pose} metrics warnings timingsMs diagnostics errors`;
+  const keys = `${pose} metrics warnings depthUnit timingsMs diagnostics errors`;
   assert.deepEqual(Object.keys(blob), keys.split(" "));
   const same = withoutTimes(alignment);
   const written = <T extends Sim3>({ rotation, rotationMatrix, ...others }: T) => {
@@ -88,6 +88,16 @@ test("--json has everything, as the documentation says", async () => {
   assert.deepEqual(found, others);
   assert.deepEqual(Object.keys(foundErrors), Object.keys(expectedErrors ?? {}));
   assert.ok(Math.abs(foundErrors.scaleError - (expectedErrors?.scaleError ?? 9)) < 1e-6);
+});
+
+test("--json has the proportions that were asked for, with their pose", () => {
+  succeeds("align blob --quality fast --proportions axes --json proportions.json");
+  const { proportions } = results("proportions.json").blob;
+  assert.deepEqual(
+    [proportions.stretch.length, proportions.uncertainty.length, proportions.rotation.length],
+    [3, 3, 3],
+  );
+  assert.deepEqual([proportions.matrix.length, proportions.quaternion.length], [16, 4]);
 });
 
 test("bad cases are reported, the good ones aligned, and the exit status tells", () => {

@@ -1,96 +1,15 @@
-/** EXIF data, built here byte by byte, and the focal length that they state. */
+/** EXIF data, and the focal length that they state. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type Exif, focalFromExif, readExif, readImage, Sim3AlignError } from "sim3align/formats";
-import { crc32 } from "../support/crc32.js";
+import { type ExifFields, jpegHead, pngWith, tiff } from "../support/exif.js";
 import { png } from "../support/files.js";
 
-type Value = number | string | { rational: [number, number] };
-
-const tags = {
-  make: 0x010f,
-  model: 0x0110,
-  orientation: 0x0112,
-  exif: 0x8769,
-  focalLength: 0x920a,
-  pixelX: 0xa002,
-  pixelY: 0xa003,
-  planeX: 0xa20e,
-  planeUnit: 0xa210,
-  zoom: 0xa404,
-  focal35: 0xa405,
-} as const;
-
-type Fields = Partial<Record<keyof typeof tags, Value>>;
-
-/** EXIF data: a TIFF header, the directory of the image and that of the camera. */
-function tiff(image: Fields, camera: Fields, isLittle: boolean): Buffer {
-  const u16 = (n: number) => {
-    const bytes = Buffer.alloc(2);
-    if (isLittle) bytes.writeUInt16LE(n);
-    else bytes.writeUInt16BE(n);
-    return bytes;
-  };
-  const u32 = (n: number) => {
-    const bytes = Buffer.alloc(4);
-    if (isLittle) bytes.writeUInt32LE(n);
-    else bytes.writeUInt32BE(n);
-    return bytes;
-  };
-  const directory = (fields: Fields, start: number) => {
-    const entries = Object.entries(fields).sort(([a], [b]) => tags[a as keyof Fields] - tags[b as keyof Fields]);
-    let extra = Buffer.alloc(0);
-    const after = start + 2 + 12 * entries.length + 4;
-    const list = entries.map(([name, value]) => {
-      const tag = u16(tags[name as keyof Fields]);
-      const stored = (type: number, count: number, bytes: Buffer) => {
-        if (bytes.length <= 4)
-          return Buffer.concat([tag, u16(type), u32(count), bytes, Buffer.alloc(4 - bytes.length)]);
-        const at = u32(after + extra.length);
-        extra = Buffer.concat([extra, bytes]);
-        return Buffer.concat([tag, u16(type), u32(count), at]);
-      };
-      if (typeof value === "string") return stored(2, value.length + 1, Buffer.from(`${value}\0`, "latin1"));
-      if (typeof value === "object") return stored(5, 1, Buffer.concat(value.rational.map(u32)));
-      return name === "exif" || name.startsWith("pixel") ? stored(4, 1, u32(value)) : stored(3, 1, u16(value));
-    });
-    return Buffer.concat([u16(entries.length), ...list, u32(0), extra]);
-  };
-  const first = (pointer: number) => directory({ ...image, exif: pointer }, 8);
-  const at = 8 + first(0).length;
-  const head = Buffer.concat([Buffer.from(isLittle ? "II" : "MM"), u16(42), u32(8)]);
-  return Buffer.concat([head, first(at), directory(camera, at)]);
-}
-
-/** A PNG of 3 × 2 pixels with EXIF data. */
-function pngWith(exif: Buffer): Uint8Array {
-  const file = Buffer.from(png(Uint8Array.of(0, 50, 100, 150, 200, 250), 3, 2));
-  const typed = Buffer.concat([Buffer.from("eXIf"), exif]);
-  const frame = Buffer.alloc(8);
-  frame.writeUInt32BE(exif.length, 0);
-  frame.writeUInt32BE(crc32(typed), 4);
-  const end = 8 + 12 + 13;
-  const chunk = Buffer.concat([frame.subarray(0, 4), typed, frame.subarray(4)]);
-  return new Uint8Array(Buffer.concat([file.subarray(0, end), chunk, file.subarray(end)]));
-}
-
-/** The start of a JPEG with EXIF data, up to the header of its pixels. */
-function jpegWith(exif: Buffer): Uint8Array {
-  const segment = (marker: number, content: Buffer) => {
-    const head = Buffer.from([0xff, marker, 0, 0]);
-    head.writeUInt16BE(content.length + 2, 2);
-    return Buffer.concat([head, content]);
-  };
-  const app1 = segment(0xe1, Buffer.concat([Buffer.from("Exif\0\0", "latin1"), exif]));
-  const frame = segment(0xc0, Buffer.from([8, 0, 16, 0, 24, 1, 1, 0x11, 0]));
-  return new Uint8Array(Buffer.concat([Buffer.from([0xff, 0xd8]), app1, frame]));
-}
-
-const phone: [Fields, Fields] = [
+const phone: [ExifFields, ExifFields] = [
   { make: "Maker", model: "Phone 1", orientation: 6 },
   { focalLength: { rational: [425, 100] }, focal35: 26, pixelX: 4032, pixelY: 3024, zoom: { rational: [0, 1] } },
 ];
-const reflex: [Fields, Fields] = [
+const reflex: [ExifFields, ExifFields] = [
   { make: "Maker", orientation: 1 },
   {
     focalLength: { rational: [50, 1] },
@@ -104,7 +23,7 @@ const reflex: [Fields, Fields] = [
 
 test("EXIF data of PNG and JPEG, in both byte orders", async () => {
   for (const isLittle of [true, false]) {
-    for (const file of [pngWith(tiff(...phone, isLittle)), jpegWith(tiff(...phone, isLittle))]) {
+    for (const file of [pngWith(tiff(...phone, isLittle)), jpegHead(tiff(...phone, isLittle))]) {
       assert.deepEqual(await readExif(file), {
         orientation: 6,
         focalLength35mm: 26,
@@ -147,7 +66,7 @@ test("damaged EXIF data: what can be read, or a code", async () => {
     });
   }
   assert.ok(refused > 0);
-  const jpeg = jpegWith(exif);
+  const jpeg = jpegHead(exif);
   for (let length = 0; length < jpeg.length; length++) {
     const expected = { code: length < 3 ? "UNSUPPORTED_FORMAT" : "CORRUPT_FILE", argument: "image" };
     await assert.rejects(readExif(jpeg.slice(0, length)), expected, `cut to ${length}`);

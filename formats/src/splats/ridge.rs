@@ -30,7 +30,7 @@ const LEAST_SUPPORT: f32 = 0.25;
 const NONE: u32 = u32::MAX;
 
 /// Share of the mean precision at a vertex that keeps it in place: it hardly moves along a flat sheet.
-const DAMPING: f32 = 0.2;
+const DAMPING: f32 = 0.3;
 
 /// Sums over the Gaussians at a vertex.
 #[derive(Debug, Clone, Copy, Default)]

@@ -18,13 +18,13 @@ use sim3align::metrics::symmetry::Symmetry;
 use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
+use sim3align::precise::options::{AlignOptions, ExtentAxis, Proportions, Quality, SearchScope};
 use sim3align::progress::Stage;
 use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
 use sim3align::register::report::{Registration, RegistrationDiagnostics};
 use sim3align::report::{
     Alignment, Alternative, ColorReport, ColorVerdict, Counts, Diagnostics, Effort, PaperAlignment, PaperDiagnostics,
-    PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Uncertainty, Warning, WarningCode,
+    PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Stretch, Uncertainty, Warning, WarningCode,
 };
 use sim3align::scene::contact::Contact;
 use sim3align::track::options::TrackOptions;
@@ -276,7 +276,7 @@ macro_rules! add {
 fn types() -> String {
     let mut types = Types::default();
     add! { types:
-        Preset, ColorVerdict, Quality, Effort, SearchScope, ExtentAxis, GuardMode, Icp,
+        Preset, ColorVerdict, Quality, Effort, SearchScope, ExtentAxis, Proportions, GuardMode, Icp,
     }
     for call in calls() {
         types.add_options(&call);
@@ -289,7 +289,7 @@ fn types() -> String {
     );
     add! { types:
         ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, LayoutErrors, BopErrors, SearchCounts,
-        Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, EvaluationDiagnostics, Diagnostics,
+        Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, Stretch, EvaluationDiagnostics, Diagnostics,
         PaperDiagnostics, PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole,
         WorldUncertainty, CameraPose, ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame,
         TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration, CalibrationUncertainty,

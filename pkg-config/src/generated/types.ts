@@ -20,6 +20,9 @@ export type SearchScope = "global" | "local";
 /** A side of the mesh's bounding box. */
 export type ExtentAxis = "longest" | "x" | "y" | "z";
 
+/** What of a mesh's proportions is fitted to the image. */
+export type Proportions = "keep" | "axes" | "full";
+
 /** What RANSAC does with a hypothesis whose scale is outside the guard. */
 export type GuardMode = "reject" | "clamp";
 
@@ -74,6 +77,12 @@ export interface AlignOptions {
    * 0, or null. Default `null`.
    */
   workBudget?: number | null | undefined;
+  /**
+   * Whether to fit the proportions of the mesh, which generators get wrong by some per cent: see `proportions` of the
+   * result. The similarity and its metrics stay those of the mesh as it is. Not of a mesh whose scale is given.
+   * Default `"keep"`.
+   */
+  proportions?: Proportions | undefined;
   /** Whether to compute `metrics`. Without them the call takes less time. Default `true`. */
   metrics?: boolean | undefined;
   /**
@@ -305,7 +314,7 @@ export type Timings = Partial<Record<Stage, number>> & { total: number };
 export type ErrorCode = "INVALID_ARGUMENT" | "INVALID_OPTION" | "UNKNOWN_OPTION" | "WRONG_LENGTH" | "EMPTY_IMAGE" | "SIZE_MISMATCH" | "INVALID_CAMERA" | "EMPTY_MASK" | "DEGENERATE_MASK" | "NO_DEPTH_IN_MASK" | "FLAT_DEPTH" | "TOO_FEW_POINTS" | "EMPTY_MESH" | "INDEX_OUT_OF_RANGE" | "NON_FINITE" | "DEGENERATE_MESH" | "DEGENERATE_POINTS" | "NO_CONSENSUS" | "INVALID_TRANSFORM" | "UNSUPPORTED_FORMAT" | "CORRUPT_FILE" | "FILE_TOO_LARGE" | "EIGHT_BIT_DEPTH" | "COMPRESSED_MESH" | "OUT_OF_MEMORY" | "TRACKER_LOST" | "INTERNAL";
 
 /** The kinds of warning. */
-export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "MESH_DOUBTFUL" | "VIEW_CONTRADICTS" | "VIEW_SHOWS_NOTHING" | "CAMERA_NOT_PINHOLE" | "FOCAL_LENGTH_UNKNOWN" | "COLORS_NOT_READ";
+export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "DEPTH_LOOKS_INVERTED" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "MESH_DOUBTFUL" | "VIEW_CONTRADICTS" | "VIEW_SHOWS_NOTHING" | "CAMERA_NOT_PINHOLE" | "FOCAL_LENGTH_UNKNOWN" | "COLORS_NOT_READ";
 
 /** A condition that the caller should know about; the result stands. */
 export type Warning = {
@@ -549,6 +558,17 @@ export type Uncertainty = {
   distanceM: number;
 };
 
+/**
+ * A mesh in the proportions that the image shows: x_cam = s·R·S·p_mesh + t. The image determines less of them the
+ * less it shows of a side; what it does not show stays as the mesh has it, and is uncertain.
+ */
+export type Stretch = Sim3 & {
+  /** S as three rows of three: symmetric, of determinant 1, in the frame of the mesh. */
+  stretch: [[number, number, number], [number, number, number], [number, number, number]];
+  /** Standard deviations of the lengths along x, y and z of the mesh, relative: 0.01 is one per cent. */
+  uncertainty: [number, number, number];
+};
+
 /** How an evaluated scale compares with the initial one. */
 export type EvaluationDiagnostics = {
   /** s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1). */
@@ -633,6 +653,8 @@ export type Alignment = Sim3 & {
   alternatives: Array<Alternative>;
   /** How well the observation determines each part of the pose; `null` where the search could not tell. */
   uncertainty: Uncertainty | null;
+  /** The mesh in its true proportions; present where they were asked for, and fitted. */
+  proportions?: Stretch;
   /** Agreement of the posed mesh with the observation. */
   metrics: Metrics;
   /** Conditions that the caller should know about; the result stands. */
