@@ -1,5 +1,7 @@
 //! The density of Gaussians on a lattice, and the solid that it surrounds.
 
+use core::ops::Range;
+
 use glam::{Mat3, Vec3};
 
 use super::lattice::{Lattice, clear_light_regions, take_region};
@@ -25,6 +27,12 @@ pub(super) fn kernel(squared: f32, reach: f32) -> f32 {
     if left > 0.0 { left * left } else { 0.0 }
 }
 
+/// The integers from `first` to `last` that are below `count`.
+#[inline(always)]
+fn nodes(first: f32, last: f32, count: usize) -> Range<usize> {
+    first.ceil().max(0.0) as usize..((last.floor() + 1.0).max(0.0) as usize).min(count)
+}
+
 /// Calls `visit` for the nodes with dᵀ·`form`·d up to the square of `reach`, d being the vector from the centre, with the
 /// value.
 #[inline(always)]
@@ -36,7 +44,7 @@ pub(super) fn each_node(lattice: &Lattice, center: Vec3, form: &Mat3, reach: f32
     let planes = form.inverse();
     let range = |center: f32, variance: f32, count: usize| {
         let half = reach * variance.max(0.0).sqrt();
-        (center - half).max(0.0).ceil() as usize..((center + half).max(-1.0).floor() as usize + 1).min(count)
+        nodes(center - half, center + half, count)
     };
     for k in range(center.z, planes.z_axis.z, deep) {
         let z = k as f32 - center.z;
@@ -46,14 +54,13 @@ pub(super) fn each_node(lattice: &Lattice, center: Vec3, form: &Mat3, reach: f32
             let half = b * y + c * z;
             let rest = yy * y * y + 2.0 * yz * y * z + zz * z * z;
             let root = half * half - a * (rest - reach * reach);
-            if !(root >= 0.0) {
+            if root < 0.0 {
                 continue;
             }
             let root = root.sqrt();
-            let first = (center.x + (-half - root) / a).max(0.0).ceil() as usize;
-            let end = ((center.x + (-half + root) / a).max(-1.0) as usize + 1).min(across);
+            let (first, last) = (center.x + (-half - root) / a, center.x + (-half + root) / a);
             let row = (k * down + j) * across;
-            for i in first..end {
+            for i in nodes(first, last, across) {
                 let x = i as f32 - center.x;
                 visit(row + i, (a * x + 2.0 * half) * x + rest);
             }

@@ -80,6 +80,9 @@ pub(super) fn blobs_of(mut gaussians: Vec<Gaussian>) -> Result<Option<(Lattice, 
         let cells = (gaussians.len() as f32 / 27.0).sqrt().clamp(4.0, MAX_CELLS);
         drop_floaters(&mut gaussians, &Lattice::new(bounds.min, bounds.max, side / cells));
     }
+    if gaussians.is_empty() {
+        return Ok(None);
+    }
     // A Gaussian for two cells of a surface, or more.
     let spacing = side / (gaussians.len() as f32 / 2.0).sqrt().clamp(MIN_NODES, MAX_NODES);
     Ok(Some(lattice_of(&gaussians, spacing)))
