@@ -30,6 +30,7 @@ export const wasmModules = [
   { name: "registration", crate: "sim3align-registration", budget: 140_000 },
   { name: "formats", crate: "sim3align-module-formats", budget: 260_000 },
   { name: "depth-files", crate: "sim3align-depth-files", budget: 242_000 },
+  { name: "splats", crate: "sim3align-splats", budget: 62_000 },
   { name: "physics", crate: "sim3align-module-physics", budget: 70_000 },
 ];
 
