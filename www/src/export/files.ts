@@ -1,11 +1,13 @@
 /** Writers of results, in formats that other programs read. */
+import type { Metrics } from "sim3align";
 import { exportGlb, exportPly, exportSceneGlb, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
+import { isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { isResult } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 
-const { framePoses, options, support, video } = page;
+const { framePoses, options, support, unit, video } = page;
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
 export function matrixText({ pose }: ObjectModel, order: "column" | "row"): string {
@@ -28,18 +30,25 @@ export function keyOf(scene: Scene, object: ObjectModel): string {
   return namesakes.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
 }
 
-function jsonEntry({ pose, box, precise, metrics }: ObjectModel) {
+function jsonEntry({ pose, box, isAccepted, precise, metrics }: ObjectModel, unit: number | null) {
   const { transform, source } = pose.value;
+  const sides = [...box.value.sizeM];
   return {
     ...plain(transform),
     source,
-    sizeM: [...box.value.sizeM],
+    accepted: isAccepted.value,
+    // As multiples of the longest side of the first object where the unit is unknown.
+    ...(unit === null ? { sizeM: sides } : { relativeSize: sides.map((side) => side / unit) }),
     // The confidence is that of the aligned pose, not of one that was changed by hand.
     confidence: isResult(source) ? (precise?.confidence ?? null) : null,
-    metrics: metrics.value,
+    metrics: unit === null ? metrics.value : withoutLengths(metrics.value),
     alternatives: precise?.alternatives.map(plain) ?? [],
   };
 }
+
+/** The metrics that are no lengths. */
+const withoutLengths = (metrics: Metrics | null) =>
+  metrics && Object.fromEntries(Object.entries(metrics).filter(([name]) => !name.endsWith("Mm")));
 
 /** The poses of a video, by the names of its frames; as `sim3align track --json` writes them. */
 export function videoText(name: string): string {
@@ -55,15 +64,23 @@ export function videoText(name: string): string {
 
 /** The poses of all objects by name. The command line reads it with `--transform` and `--initial`. */
 export function jsonText(scene: Scene): string {
-  const entries = scene.objects.map((object) => [keyOf(scene, object), jsonEntry(object)]);
+  const entries = scene.objects.map((object) => [keyOf(scene, object), jsonEntry(object, unit.value)]);
   return JSON.stringify({ ...Object.fromEntries(entries), _about: about(scene) }, null, 2);
 }
 
-const about = ({ camera, width, height }: Scene) => ({
-  convention: "x_cam = scale · rotation · p_mesh + translation; OpenCV camera (x right, y down, z forward), metres",
-  camera: { ...camera, width, height },
-  options: options.value,
-});
+function about(scene: Scene) {
+  const { camera, calibration, cameraSource, depthUnit, height, width } = scene;
+  const units = isMetric(scene) ? "metres" : "unknown";
+  return {
+    convention: `x_cam = scale · rotation · p_mesh + translation; OpenCV camera (x right, y down, z forward), ${units === "metres" ? units : "unit unknown"}`,
+    units,
+    camera: { ...camera, width, height },
+    ...(cameraSource === null ? {} : { cameraSource }),
+    depthUnit,
+    ...(calibration === null ? {} : { depthCalibration: calibration }),
+    options: options.value,
+  };
+}
 
 /** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */
 export function bopText({ objects }: Scene): string {

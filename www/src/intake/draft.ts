@@ -88,7 +88,8 @@ export async function choose(role: Exclude<Role, "unused">, files: readonly Name
   if (role === "depth" || role === "photo" || role === "camera") {
     const kept = inputs.files.filter((one) => one.role !== role);
     const camera = { kind: "file", file } as const;
-    const own = { ...inputs, ...ownName(inputs), files: [...kept, { file, role }] };
+    const named = { ...inputs, ...ownName(inputs), files: [...kept, { file, role }] };
+    const own = role === "depth" ? { ...named, depthKind: null } : named;
     return change(() => ({ ...own, [role]: role === "camera" ? camera : file }), true);
   }
   const known = await rolesOf(files);
@@ -156,9 +157,9 @@ async function rebuild(files: readonly Typed[]): Promise<void> {
   const before = draftInputs(open);
   const [after] = await scenesOfTyped(files);
   if (after === undefined) return;
-  const { depthScale, resizeMasks } = before;
+  const { depthScale, depthKind, resizeMasks } = before;
   const camera = before.camera?.kind === "file" ? after.camera : (after.camera ?? before.camera);
-  await change(() => ({ ...after, depthScale, resizeMasks, camera, ...ownName(before) }), true);
+  await change(() => ({ ...after, depthScale, depthKind, resizeMasks, camera, ...ownName(before) }), true);
 }
 
 /** A sample with other files is no sample. */

@@ -1,4 +1,5 @@
 /** The inputs of a scene: which file is what, and which mask belongs to which mesh. Nothing is read yet. */
+import type { DepthKind } from "sim3align";
 import type { NamedFile } from "./files.js";
 
 /** What a file is used for; `resource` is a file that a mesh refers to. */
@@ -66,7 +67,10 @@ export interface Inputs {
   depth: NamedFile | null;
   /** Metres per unit of depth; null is the default of the reader. */
   depthScale: number | null;
+  /** What the values of the depth map are; null is what the file suggests. */
+  depthKind: DepthKind | null;
   photo: NamedFile | null;
+  /** Without one, it is that of the depth file, that of the photo's EXIF data, or estimated together with the poses. */
   camera: CameraSource | null;
   /** The image in files that describe several. */
   imageId: string | null;
@@ -84,6 +88,7 @@ export const noInputs: Inputs = {
   sample: null,
   depth: null,
   depthScale: null,
+  depthKind: null,
   photo: null,
   camera: null,
   imageId: null,

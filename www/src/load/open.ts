@@ -5,11 +5,11 @@ import type { NamedFile } from "./files.js";
 import { readInputs, sceneOf } from "./read-scene.js";
 import { type Sample, sampleInputs } from "./samples.js";
 
-const { announce, inputs, isReading, queue, scene, show } = page;
+const { announce, inputs, isReading, objects, queue, scene, show } = page;
 
 /** The number of the last call of `openSample`. The results of earlier calls are discarded. */
 let lastCall = 0;
-scene.subscribe(() => {
+objects.subscribe(() => {
   lastCall++;
 });
 

@@ -8,7 +8,7 @@ export function accept(workspace: Workspace): void {
   const { announce, select, selected } = workspace;
   const object = selected.peek();
   if (object === null || !object.isPlaced) return;
-  object.isAccepted.value = true;
+  object.accept();
   const next = nextOpen(workspace, object);
   announce(`Accepted ${object.name}.${next === null ? " All objects are accepted." : ""}`);
   if (next !== null) select(next.id);

@@ -8,12 +8,11 @@ import { fieldOf } from "../load/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { Tip } from "../ui/controls.js";
-import { centimetres, orDash, percent, significant } from "../ui/format.js";
+import { orDash, percent, significant, size, small, type Unit } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { Alternatives } from "./alternatives.js";
 import { Decision } from "./decision.js";
-import { Details, MainMetrics } from "./details.js";
-import { Remedies } from "./remedies.js";
+import { Alternatives, Details, Remedies } from "./later.js";
+import { MainMetrics } from "./metrics.js";
 import { SURE, warningsOf } from "./sureness.js";
 
 export function ResultPanel() {
@@ -71,19 +70,27 @@ function Failure({ error }: { error: Error }) {
 const sides = ["width", "height", "depth"];
 
 function Size({ object }: { object: ObjectModel | null }) {
+  const unit = useWorkspace().unit.value;
   const sizeM = object?.box.value.sizeM ?? [null, null, null];
   const largestM = Math.max(...sizeM.map((side) => side ?? 0));
   return (
     <div class="size">
-      <p class="dimensions" title="Width × height × depth along x, y and z of the mesh">
+      <p
+        class="dimensions"
+        title={
+          unit === null
+            ? "Width × height × depth, along the sides of the smallest box"
+            : "The depth map has no unit: multiples of the longest side of the first object"
+        }
+      >
         <span id="dimensions">
           {sizeM.map((side, i) => (
             <span key={sides[i]}>
               {i > 0 && <span class="times"> × </span>}
-              {orDash(side, (m) => centimetres(m, largestM))}
+              {orDash(side, (m) => size(m, unit, largestM).split(" ")[0] ?? "")}
             </span>
           ))}{" "}
-          <span class="unit">cm</span>
+          <span class="unit">{unit === null ? "cm" : "relative"}</span>
         </span>
       </p>
       <Confidence object={object} />
@@ -128,7 +135,8 @@ function reasonForNoConfidence(object: ObjectModel | null): string | null {
 
 /** Errors of the pose compared with the true one, if that is known. */
 function Truth({ object }: { object: ObjectModel | null }) {
-  const { inputs } = useWorkspace();
+  const { inputs, unit } = useWorkspace();
+  if (unit.value !== null) return null;
   const isKnown = object === null ? inputs.value.objects.some(({ truth }) => truth !== null) : object.truth !== null;
   if (!isKnown) return null;
   return (
@@ -149,10 +157,10 @@ const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErro
 const LOW_IOU = 0.85;
 
 function Warnings({ object }: { object: ObjectModel | null }) {
-  const { scene } = useWorkspace();
+  const { scene, unit } = useWorkspace();
   const iou = object?.metrics.value?.iou ?? 1;
   const hidden = object !== null && scene.value !== null && iou < LOW_IOU ? hiddenShare(scene.value, object) : 0;
-  const contact = object === null ? null : contactText(scene.value, object);
+  const contact = object === null ? null : contactText(scene.value, object, unit.value);
   const warnings = [
     ...(hidden > 0.05 ? [`The overlap is low because ${percent(hidden)} of the object is behind something else.`] : []),
     ...(scene.value?.warnings ?? []),
@@ -173,7 +181,7 @@ function Warnings({ object }: { object: ObjectModel | null }) {
 }
 
 /** What the object rests on, if the alignment of the scene says so. */
-function contactText(whole: Scene | null, object: ObjectModel): string | null {
+function contactText(whole: Scene | null, object: ObjectModel, unit: Unit): string | null {
   const contact = object.alignment.value?.contact;
   if (contact === undefined || object.pose.value.source !== "aligned") return null;
   const { restsOn, gapM } = contact;
@@ -184,6 +192,6 @@ function contactText(whole: Scene | null, object: ObjectModel): string | null {
       : restsOn === "level"
         ? "a level above the ground"
         : (whole?.objects[restsOn]?.name ?? "another object");
-  const gap = gapM === null ? "" : `, ${significant(Math.abs(1000 * gapM), 2)} mm ${gapM < 0 ? "sunk in" : "above it"}`;
+  const gap = gapM === null ? "" : `, ${small(Math.abs(gapM), unit)} ${gapM < 0 ? "sunk in" : "above it"}`;
   return `Stands on ${what}${gap}.`;
 }

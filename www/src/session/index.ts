@@ -1,5 +1,5 @@
 /** The session: kept in the browser while the user works, and saved and opened as one file. */
-import { effect } from "@preact/signals";
+import { batch, effect } from "@preact/signals";
 import type { NamedFile } from "../load/files.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { page } from "../state/page.js";
@@ -64,8 +64,10 @@ async function open(session: Packed, files: readonly NamedFile[]): Promise<boole
   const reading = await readInputs(from);
   const opened = sceneOf(from, reading);
   if (opened === null) return false;
-  applyState(session, opened, page);
-  show(opened, from);
+  batch(() => {
+    show(opened, from);
+    applyState(session, page);
+  });
   announce(`Restored ${from.name}.`);
   return true;
 }
