@@ -2,7 +2,6 @@
 import { type PackedState, stateOf } from "../session/pack.js";
 import { isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { isResult } from "../state/pose.js";
 import type { Workspace } from "../state/workspace.js";
 import type { ElementSession as HostSession, ObjectResult, PlainPose } from "./sim3-align.js";
 
@@ -25,7 +24,7 @@ export function resultOf({ scene }: Workspace, object: ObjectModel): ObjectResul
     source,
     sizeM: [...object.box.peek().sizeM],
     isMetric: whole === null || isMetric(whole),
-    confidence: isResult(source) ? (object.precise?.confidence ?? null) : null,
+    confidence: object.confidence,
     isAccepted: object.isAccepted.peek(),
     metrics: object.metrics.peek(),
   };

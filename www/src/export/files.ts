@@ -1,13 +1,11 @@
 /** Writers of results, in formats that other programs read. */
-import type { Metrics } from "sim3align";
-import { exportGlb, exportPly, exportSceneGlb, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
-import { isMetric } from "../state/calibration.js";
+import { exportGlb, exportPly, exportSceneGlb, placeGlb, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
-import { isResult } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
+import { plain, sceneResult } from "./results.js";
 
-const { framePoses, options, support, unit, video } = page;
+const { framePoses, support, video } = page;
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
 export function matrixText({ pose }: ObjectModel, order: "column" | "row"): string {
@@ -15,40 +13,6 @@ export function matrixText({ pose }: ObjectModel, order: "column" | "row"): stri
   const numbers = order === "column" ? transform.matrix : toRowMajor(transform);
   return `[${Array.from({ length: 4 }, (_, i) => numbers.slice(4 * i, 4 * i + 4).join(", ")).join(",\n ")}]`;
 }
-
-const plain = ({ matrix, scale, rotationMatrix, rotation, translation }: Sim3) => ({
-  scale,
-  rotation: rotationMatrix,
-  quaternion: rotation,
-  translation,
-  matrix,
-});
-
-/** A unique key for an object: its name, with a number if several objects have the same name. */
-export function keyOf(scene: Scene, object: ObjectModel): string {
-  const namesakes = scene.objects.filter(({ name }) => name === object.name);
-  return namesakes.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
-}
-
-function jsonEntry({ pose, box, isAccepted, precise, metrics }: ObjectModel, unit: number | null) {
-  const { transform, source } = pose.value;
-  const sides = [...box.value.sizeM];
-  return {
-    ...plain(transform),
-    source,
-    accepted: isAccepted.value,
-    // As multiples of the longest side of the first object where the unit is unknown.
-    ...(unit === null ? { sizeM: sides } : { relativeSize: sides.map((side) => side / unit) }),
-    // The confidence is that of the aligned pose, not of one that was changed by hand.
-    confidence: isResult(source) ? (precise?.confidence ?? null) : null,
-    metrics: unit === null ? metrics.value : withoutLengths(metrics.value),
-    alternatives: precise?.alternatives.map(plain) ?? [],
-  };
-}
-
-/** The metrics that are no lengths. */
-const withoutLengths = (metrics: Metrics | null) =>
-  metrics && Object.fromEntries(Object.entries(metrics).filter(([name]) => !name.endsWith("Mm")));
 
 /** The poses of a video, by the names of its frames; as `sim3align track --json` writes them. */
 export function videoText(name: string): string {
@@ -62,25 +26,12 @@ export function videoText(name: string): string {
   return JSON.stringify({ [name]: { frames: Object.fromEntries(frames) } }, null, 2);
 }
 
-/** The poses of all objects by name. The command line reads it with `--transform` and `--initial`. */
-export function jsonText(scene: Scene): string {
-  const entries = scene.objects.map((object) => [keyOf(scene, object), jsonEntry(object, unit.value)]);
-  return JSON.stringify({ ...Object.fromEntries(entries), _about: about(scene) }, null, 2);
-}
+/** The results of a scene. */
+export const jsonText = (scene: Scene): string => JSON.stringify(sceneResult(scene), null, 2);
 
-function about(scene: Scene) {
-  const { camera, calibration, cameraSource, depthUnit, height, width } = scene;
-  const units = isMetric(scene) ? "metres" : "unknown";
-  return {
-    convention: `x_cam = scale · rotation · p_mesh + translation; OpenCV camera (x right, y down, z forward), ${units === "metres" ? units : "unit unknown"}`,
-    units,
-    camera: { ...camera, width, height },
-    ...(cameraSource === null ? {} : { cameraSource }),
-    depthUnit,
-    ...(calibration === null ? {} : { depthCalibration: calibration }),
-    options: options.value,
-  };
-}
+/** The results of all scenes of the list. */
+export const allJsonText = async (): Promise<string> =>
+  JSON.stringify((await import("../session/index.js")).allResults(), null, 2);
 
 /** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */
 export function bopText({ objects }: Scene): string {

@@ -61,6 +61,8 @@ export interface ObjectFiles {
 
 /** The inputs. */
 export interface Inputs {
+  /** By which the scene is listed and kept; empty for samples, which are neither. */
+  id: string;
   name: string;
   /** The id of the sample, or null for the user's own files. */
   sample: string | null;
@@ -84,6 +86,7 @@ export interface Inputs {
 }
 
 export const noInputs: Inputs = {
+  id: "",
   name: "",
   sample: null,
   depth: null,
@@ -97,6 +100,10 @@ export const noInputs: Inputs = {
   resizeMasks: false,
   files: [],
 };
+
+/** The inputs of the user's own scene, with an id. */
+export const withId = (inputs: Inputs): Inputs =>
+  inputs.id !== "" ? inputs : { ...inputs, id: `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}` };
 
 /** The input fields. */
 export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";

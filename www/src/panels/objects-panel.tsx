@@ -120,7 +120,7 @@ function Toggle({ label, isOn, icon, onToggle }: ToggleProps) {
 function ObjectButton({ object, onRename }: { object: ObjectModel; onRename(): void }) {
   const { select, selected, unit } = useWorkspace();
   const { id, name, colour, run, isAccepted } = object;
-  const confidence = object.precise?.confidence ?? null;
+  const { confidence } = object;
   return (
     <button
       type="button"

@@ -3,7 +3,7 @@
  * layout does not shift.
  */
 import type { PoseErrors } from "sim3align";
-import { hiddenShare } from "../draw/hidden.js";
+import { occlusionOf } from "../draw/hidden.js";
 import { fieldOf } from "../load/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
@@ -101,9 +101,9 @@ function Size({ object }: { object: ObjectModel | null }) {
 function Confidence({ object }: { object: ObjectModel | null }) {
   const { frameIndex, framePoses } = useWorkspace();
   const isTracked = object?.pose.value.source === "tracked";
-  const tracked = isTracked ? (framePoses.value[frameIndex.value]?.confidence ?? null) : null;
-  const confidence = tracked ?? object?.precise?.confidence ?? null;
-  const reason = reasonForNoConfidence(object);
+  const frame = framePoses.value[frameIndex.value] ?? null;
+  const confidence = isTracked ? (frame?.confidence ?? null) : (object?.confidence ?? null);
+  const reason = isTracked && frame?.isCorrected ? "Set by hand" : reasonForNoConfidence(object);
   if (confidence === null || reason !== null) {
     return (
       <p class="badge" data-level="none">
@@ -153,16 +153,28 @@ const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErro
     `${significant(1000 * translationErrorM, 2)} mm`,
   ].join(", ");
 
-/** An overlap below this is explained if a part of the mesh is hidden. */
+/** An overlap below this is explained, if a part of the mesh is hidden. */
 const LOW_IOU = 0.85;
+/** Without such an explanation, an overlap below this means that something is wrong. */
+const WRONG_IOU = 0.7;
+
+/** Why the overlap is low. */
+function overlapText(whole: Scene, object: ObjectModel, iou: number): string | null {
+  const { hidden, visibleIou, isBehindSomething } = occlusionOf(whole, object);
+  if (isBehindSomething && visibleIou >= LOW_IOU)
+    return `The overlap is low because ${percent(hidden)} of the object is behind something else.`;
+  if (iou >= WRONG_IOU || (isBehindSomething && visibleIou >= WRONG_IOU)) return null;
+  return `Mesh and mask overlap by ${percent(iou)} only, and nothing in front explains it: the pose, the mask or the mesh is wrong.`;
+}
 
 function Warnings({ object }: { object: ObjectModel | null }) {
   const { scene, unit } = useWorkspace();
   const iou = object?.metrics.value?.iou ?? 1;
-  const hidden = object !== null && scene.value !== null && iou < LOW_IOU ? hiddenShare(scene.value, object) : 0;
+  const overlap =
+    object !== null && scene.value !== null && iou < LOW_IOU ? overlapText(scene.value, object, iou) : null;
   const contact = object === null ? null : contactText(scene.value, object, unit.value);
   const warnings = [
-    ...(hidden > 0.05 ? [`The overlap is low because ${percent(hidden)} of the object is behind something else.`] : []),
+    ...(overlap === null ? [] : [overlap]),
     ...(scene.value?.warnings ?? []),
     ...(object === null ? [] : warningsOf(object).map(({ message }) => message)),
   ];

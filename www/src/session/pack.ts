@@ -25,7 +25,8 @@ interface PackedObject {
   mask: (Omit<MaskSource, "file"> & { file: Ref }) | null;
   mesh: Ref | null;
   truth: (Omit<TruthSource, "file"> & { file: Ref }) | null;
-  state: PackedState;
+  /** Null if the scene was not opened yet. */
+  state: PackedState | null;
 }
 
 /** What was done with an object. */
@@ -59,7 +60,7 @@ export interface Packed {
 }
 
 /** The session of a scene, and its files in the order of their indices. */
-export function packed(inputs: Inputs, scene: Scene, options: Options): { session: Packed; files: NamedFile[] } {
+export function packed(inputs: Inputs, scene: Scene | null, options: Options): { session: Packed; files: NamedFile[] } {
   const files: NamedFile[] = [];
   const ref = (file: NamedFile): Ref => {
     const known = files.indexOf(file);
@@ -67,15 +68,16 @@ export function packed(inputs: Inputs, scene: Scene, options: Options): { sessio
   };
   const optional = (file: NamedFile | null): Ref | null => (file === null ? null : ref(file));
   const { camera, depthScale, depthKind, imageId, name, resizeMasks } = inputs;
-  const { calibration } = scene;
+  const calibration = scene?.calibration ?? null;
   const objects = inputs.objects.map(({ name, mask, mesh, truth }, i): PackedObject => {
     for (const sibling of mesh?.siblings ?? []) if (isResource(sibling.path)) ref(sibling);
+    const object = scene?.objects[i];
     return {
-      name: scene.objects[i]?.name ?? name,
+      name: object?.name ?? name,
       mask: mask && { ...mask, file: ref(mask.file) },
       mesh: mesh && ref(mesh.file),
       truth: truth && { ...truth, file: ref(truth.file) },
-      state: stateOf(scene.objects[i] as ObjectModel),
+      state: object === undefined ? null : stateOf(object),
     };
   });
   const session: Packed = {
@@ -113,7 +115,7 @@ export function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, align
 }
 
 /** The inputs of a session; null for one of another version. */
-export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs | null {
+export function unpacked(session: Packed, files: readonly NamedFile[], id = ""): Inputs | null {
   if (session.version !== VERSION) return null;
   const at = (ref: Ref): NamedFile => files[ref] as NamedFile;
   const optional = (ref: Ref | null) => (ref === null ? null : at(ref));
@@ -121,7 +123,7 @@ export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs |
   const meshes = new Map<Ref, MeshSource>();
   for (const { mesh } of session.objects) if (mesh !== null) meshes.set(mesh, { file: at(mesh), siblings: files });
   return {
-    ...{ name, sample: null, depthScale, depthKind, imageId, resizeMasks },
+    ...{ id, name, sample: null, depthScale, depthKind, imageId, resizeMasks },
     depth: optional(session.depth),
     photo: optional(session.photo),
     camera: camera?.kind === "file" ? { kind: "file", file: at(camera.file) } : camera,
@@ -139,7 +141,7 @@ export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs |
 
 /** What a session says of a scene that is there. */
 interface SessionState {
-  objects: readonly { state: PackedState }[];
+  objects: readonly { state: PackedState | null }[];
   options: Partial<Options>;
   calibration?: DepthCalibration | null | undefined;
 }
@@ -153,7 +155,7 @@ export function applyState({ objects, options: chosen, calibration }: SessionSta
   if (calibration) recalibrate(inCalibration(whole, calibration));
   whole.objects.forEach((object, i) => {
     const state = objects[i]?.state;
-    if (state === undefined) return;
+    if (state == null) return;
     const { matrix, source, alternative, alignment } = state;
     object.run.value = { state: alignment === null ? "idle" : "done" };
     const pose = { transform: toSim3(matrix), source, alignment };

@@ -3,7 +3,7 @@ import { computed, type ReadonlySignal, type Signal, signal } from "@preact/sign
 import type { MeshArrays, Metrics, PoseErrors, Sim3AlignError, Stage } from "sim3align";
 import type { Sim3Like, Vector3 } from "sim3align/conventions";
 import type { AnyAlignment, PreciseAlignment } from "./alignment.js";
-import { boundsOf, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
+import { boundsOf, isResult, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
 
 /** The state of an alignment. */
 export type Run =
@@ -100,6 +100,11 @@ export class ObjectModel implements Readonly<ObjectParts> {
   /** Whether the object has a pose other than the start pose. */
   get isPlaced(): boolean {
     return this.pose.value.source !== "start";
+  }
+
+  /** The confidence in the present pose; null for one that no alignment has found. */
+  get confidence(): number | null {
+    return isResult(this.pose.value.source) ? (this.precise?.confidence ?? null) : null;
   }
 
   /** The last alignment, if it is one of the preset `precise`. */

@@ -29,6 +29,12 @@ export interface Scene {
   readonly warnings: readonly string[];
 }
 
+/** How lengths of a scene are shown: null in metres, otherwise as multiples of this one, the longest side of the first object. */
+export function unitOf(scene: Scene): number | null {
+  const [first] = scene.objects;
+  return first === undefined || isMetric(scene) ? null : Math.max(...first.box.value.sizeM) || 1;
+}
+
 /** The state of a scene: what is shown, and which object is selected. */
 export function sceneState() {
   const scene = signal<Scene | null>(null);
@@ -46,12 +52,8 @@ export function sceneState() {
     () => objects.value.find(({ id }) => id === selectedId.value) ?? objects.value[0] ?? null,
   );
 
-  /** How lengths are shown: null in metres, otherwise as multiples of this one, the longest side of the first object. */
-  const unit = computed<number | null>(() => {
-    const [first] = objects.value;
-    if (scene.value === null || first === undefined || isMetric(scene.value)) return null;
-    return Math.max(...first.box.value.sizeM) || 1;
-  });
+  /** How lengths are shown. */
+  const unit = computed<number | null>(() => scene.value && unitOf(scene.value));
 
   /** Shows the scene in the depth of another calibration. */
   function recalibrate(whole: Scene): void {
