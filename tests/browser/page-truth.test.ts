@@ -39,11 +39,12 @@ test("sizes are those of the object's sides, in a file of any axes", async (open
   for (const [k, side] of saved.entries()) assert.ok(Math.abs(100 * side - (sides[k] ?? 0)) < 0.06, `${saved}`);
   // A known side leaves the others in proportion.
   await page.selectOption('.hand-panel [aria-label="Side"]', "3");
-  await page.fill("#known-size", "17.6");
+  await page.fill("#known-size", "25");
   await page.press("#known-size", "Enter");
   await opened.isNow("hand");
   const known = sorted(await opened.dimensions());
-  for (const [k, side] of SIDES_M.entries()) assert.ok(Math.abs((known[k] ?? 0) - 100 * side) < 0.15, `${known}`);
+  for (const [k, side] of SIDES_M.entries())
+    assert.ok(Math.abs((known[k] ?? 0) * (0.176 / 25) - side) < 0.002, `${known}`);
 });
 
 const warnings = async ({ page }: SitePage) => (await page.locator(".warnings").allTextContents()).join(" ");

@@ -72,11 +72,23 @@ export async function openListed({ id }: Inputs): Promise<void> {
   });
 }
 
-/** The next scene of the list that is not done, after the one that is shown. */
+/** How far the work on a scene of the list is. */
+export function progressOf({ inputs: { id }, progress }: Listed): Listed["progress"] {
+  if (id !== inputs.value.id || scene.value === null) return progress;
+  const all = objects.value;
+  return { objects: all.length, accepted: all.filter(({ isAccepted }) => isAccepted.value).length };
+}
+
+/** Whether an object of a scene is still to be accepted. */
+export function isOpen(one: Listed): boolean {
+  const progress = progressOf(one);
+  return progress === null || progress.accepted < progress.objects;
+}
+
+/** The next scene of the list that is open, after the one that is shown. */
 export function nextListed(): Inputs | null {
   const all = list.value;
   const at = all.findIndex((one) => one.inputs.id === inputs.value.id);
-  const isOpen = ({ progress }: Listed) => progress === null || progress.accepted < progress.objects;
   return [...all.slice(at + 1), ...all.slice(0, Math.max(at, 0))].find(isOpen)?.inputs ?? null;
 }
 

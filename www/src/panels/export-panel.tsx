@@ -15,8 +15,8 @@ export function ExportPanel() {
         <legend class="visually-hidden">Poses, files and images</legend>
         {[
           ...(video.value === null ? [] : [videoExport]),
-          ...(list.value.length > 1 ? [listExport] : []),
           ...allExports,
+          ...(list.value.length > 1 ? [listExport] : []),
         ].map(([title, act]) => (
           <button key={title} type="button" onClick={() => whole !== null && object !== null && act(whole, object)}>
             {title}

@@ -1,6 +1,6 @@
 /** The input files of the scene that is shown. */
 import { baseName } from "../load/files.js";
-import { editInputs, nextListed, openListed, openNext, openSample } from "../load/open.js";
+import { editInputs, isOpen, nextListed, openListed, openNext, openSample, progressOf } from "../load/open.js";
 import { samples } from "../load/samples.js";
 import { alignAll } from "../run/align.js";
 import type { Listed } from "../state/opened.js";
@@ -69,7 +69,8 @@ export function InputPanel() {
   );
 }
 
-function stateOf({ progress }: Listed): string {
+function stateOf(one: Listed): string {
+  const progress = progressOf(one);
   if (progress === null) return "not opened";
   const { accepted, objects } = progress;
   return accepted === objects ? "✓ accepted" : `${accepted} of ${objects} accepted`;
@@ -78,7 +79,7 @@ function stateOf({ progress }: Listed): string {
 /** The user's own scenes, if there are several, and those of other tabs. */
 function Scenes() {
   const [all, others] = [list.value, othersScenes.value];
-  const left = all.filter(({ progress }) => progress === null || progress.accepted < progress.objects).length;
+  const left = all.filter(isOpen).length;
   return (
     <>
       {all.length > 1 && (
@@ -91,7 +92,7 @@ function Scenes() {
                   aria-pressed={one.inputs.id === inputs.value.id}
                   onClick={() => openListed(one.inputs)}
                 >
-                  <span class="name">{one.inputs.name}</span> <span class="quiet">{stateOf(one)}</span>
+                  <span class="listed">{one.inputs.name}</span> <span class="quiet">{stateOf(one)}</span>
                 </button>
               </li>
             ))}

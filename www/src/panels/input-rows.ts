@@ -5,9 +5,9 @@ import { percent, significant } from "../ui/format.js";
 
 export const kindTitles: { readonly [K in DepthKind]: string } = {
   metric: "Distances",
-  "scale-invariant": "Distances of unknown scale",
+  "scale-invariant": "Distances, scale unknown",
   "affine-invariant": "Relative depth, far is large",
-  "affine-invariant-disparity": "Relative disparity, near is large",
+  "affine-invariant-disparity": "Disparity, near is large",
 };
 
 /** Where a camera comes from that was not given. */
