@@ -1,7 +1,10 @@
 /** Depth that a model guessed, and cameras that nobody has given: sizes without a unit, until one of them is known. */
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { otherPose } from "../support/case-folder.js";
+import { repository } from "../support/environment.js";
 import { tiff, withExif } from "../support/exif.js";
 import { png } from "../support/files.js";
 import {
@@ -105,6 +108,26 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   await opened.aligned();
   assert.ok(Math.abs(Math.max(...(await opened.dimensions())) - longest) < 0.1);
   assert.deepEqual(await opened.violations(), []);
+});
+
+/** Files as depth cameras and models write them, and what the sheet says of each. */
+const written: readonly (readonly [file: string, unit: RegExp, camera: RegExp])[] = [
+  ["depth-depth-pro.npz", /^Unit: /, /From the depth file/],
+  ["depth-opencv.exr", /^Unit: metres/, /Estimated/],
+  ["depth-uint16.tiff", /^Unit: 0\.001 m/, /Estimated/],
+  ["depth-opencv.pfm", /^Unit: metres/, /Estimated/],
+];
+
+test("files of depth models are read, and their units and cameras shown", async (opened, page) => {
+  for (const [file, unit, camera] of written) {
+    const bytes = Uint8Array.from(readFileSync(join(repository, "tests", "fixtures", file)));
+    await drop(opened, { [file]: bytes });
+    const sheet = await opened.sheet();
+    assert.match((await sheet.locator('[data-field="depth"]').textContent()) ?? "", /\d+ × \d+/, file);
+    assert.match((await page.textContent("#depth-unit")) ?? "", unit, file);
+    assert.match((await sheet.locator('[data-field="camera"]').textContent()) ?? "", camera, file);
+    await page.click("#intake-cancel");
+  }
 });
 
 test("several objects calibrate a scene together, and one known size makes all of them metric", async (opened, page) => {

@@ -131,11 +131,32 @@ test(
   },
 );
 
-test("without a connection, the page says that a part of it is missing", async (opened, page) => {
+test("files can be dropped without a connection, once the page is loaded", async (opened, page) => {
+  // It loads the rest of itself after the first alignment.
+  await page.waitForFunction(
+    () => performance.getEntriesByType("resource").some(({ name }) => /\/intake-[^/]+\.js$/.test(name)),
+    undefined,
+    PATIENCE,
+  );
+  await page.waitForLoadState("networkidle");
   await page.context().setOffline(true);
   await drop(opened, files);
-  await opened.says(/could not be loaded\. Connect/);
-  await page.context().setOffline(false);
-  // The browser logs the requests that failed.
-  opened.errors.length = 0;
+  await opened.shows("Own files");
 });
+
+test(
+  "without a connection, the page says that a part of it is missing",
+  {
+    isLoading: true,
+  },
+  async (opened, page) => {
+    const isIntake = /\/(intake|draft)-[^/]+\.js$/;
+    await page.route(isIntake, (route) => route.abort());
+    await page.reload();
+    await opened.aligned();
+    await drop(opened, files);
+    await opened.says(/could not be loaded\. Connect/);
+    // The browser logs the requests that failed.
+    opened.errors.length = 0;
+  },
+);
