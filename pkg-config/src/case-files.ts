@@ -4,6 +4,7 @@ import { failure, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
+import type { DepthKind } from "./input/depth-kind.js";
 import type { ViewInput } from "./input/frame-types.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
 import { isRecord, withoutUndefined } from "./values.js";
@@ -13,6 +14,8 @@ export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<En
 
 /** How to read the files of a case. */
 export type CaseSettings = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask">> & {
+  /** What the values of the depth map are; `"metric"` by default. */
+  depthKind?: DepthKind | undefined;
   /** Whether to read the photo; `true` by default. */
   image?: boolean | undefined;
 };
@@ -21,8 +24,8 @@ export type CaseSettings = Partial<Pick<AlignInput, "depthScale" | "imageId" | "
 export interface Case {
   /** The input for `align` and `evaluate`. */
   input: AlignInput;
-  /** The name of the file of each part of the input; of the photo, if there is one. */
-  files: Record<Exclude<keyof typeof caseFiles, "image">, string> & { image?: string };
+  /** The name of the file of each part of the input; of the camera and of the photo, if there is one. */
+  files: Record<"depth" | "mask" | "mesh", string> & { camera?: string; image?: string };
   /** The true pose; `null` if unknown. */
   truth: KnownPose | null;
 }
@@ -50,24 +53,26 @@ export interface FrameFiles {
 const CAMERA_POSE_FILE = "pose.json";
 
 /**
- * Reads a frame: depth map, camera file, and optionally mask, photo, `pose.json` and `gt.json`, identified by name.
+ * Reads a frame: depth map, and optionally camera file, mask, photo, `pose.json` and `gt.json`, identified by name.
  * @param place location of the files, for errors
  * @internal
  */
 export async function frameFrom(files: CaseFiles, settings: CaseSettings, place: string): Promise<FrameFiles> {
   const { find, required, read, optional } = filesOf(files, settings, place);
-  const names = { depth: required("depth"), camera: required("camera") };
-  const [mask, image] = [find("mask"), find("image")];
-  const [depth, cameraFile, maskBytes, imageBytes, pose, truth] = await Promise.all([
-    ...[read(names.depth), read(names.camera)],
-    ...[optional(mask), optional(image), optional(CAMERA_POSE_FILE), optional("gt.json")],
+  const names = { depth: required("depth"), camera: find("camera"), mask: find("mask"), image: find("image") };
+  const [depth, cameraFile, mask, image, pose, truth] = await Promise.all([
+    ...[read(names.depth), optional(names.camera), optional(names.mask), optional(names.image)],
+    ...[optional(CAMERA_POSE_FILE), optional("gt.json")],
   ]);
   const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
   const { image: _, ...more } = settings;
-  const parts = { depth, cameraFile, mask: maskBytes, image: imageBytes, cameraToWorld };
+  const parts = { depth, cameraFile, mask, image, cameraToWorld };
   const input = withoutUndefined({ ...parts, ...more }) as ViewInput;
-  const named = withoutUndefined({ ...names, mask, image }) as FrameFiles["files"];
-  return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+  return {
+    input,
+    files: withoutUndefined(names) as FrameFiles["files"],
+    truth: truth === undefined ? null : parsePoseFile("truth", truth),
+  };
 }
 
 /** Finds and reads the files of a case. */
@@ -98,7 +103,7 @@ function cameraPose(bytes: Uint8Array): number[] {
 }
 
 /**
- * Reads a case: depth map, mask, mesh, camera file and `gt.json`, identified by name.
+ * Reads a case: depth map, mask, mesh, and optionally camera file, photo and `gt.json`, identified by name.
  * @param place location of the files, for errors
  * @internal
  */
@@ -113,21 +118,19 @@ export async function caseFrom(
     depth: required("depth"),
     mask: required("mask"),
     mesh: required("mesh"),
-    camera: required("camera"),
+    ...withoutUndefined({ camera: find("camera"), image: find("image") }),
   };
-  const photo = find("image");
-  const [depth, mask, meshBytes, cameraFile, truth, image] = await Promise.all([
-    ...[read(parts.depth), read(parts.mask), read(parts.mesh), read(parts.camera)],
-    ...[optional("gt.json"), optional(photo)],
+  const [depth, mask, meshBytes, cameraFile, image, truth] = await Promise.all([
+    ...[read(parts.depth), read(parts.mask), read(parts.mesh)],
+    ...[optional(parts.camera), optional(parts.image), optional("gt.json")],
   ]);
   const mesh = await meshFile(parts.mesh, meshBytes as Uint8Array, formats, async (path) => {
     if (path in files) return read(path);
     throw fileNotFound("mesh", `no ${path} in ${place}`, `the files that ${parts.mesh} refers to`);
   });
   const { image: _, ...more } = settings;
-  const input = { depth, mask, mesh, cameraFile, ...(image === undefined ? {} : { image }), ...more } as AlignInput;
-  const named = photo === undefined ? parts : { ...parts, image: photo };
-  return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+  const input = withoutUndefined({ depth, mask, mesh, cameraFile, image, ...more }) as AlignInput;
+  return { input, files: parts, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
 }
 
 /**

@@ -14,6 +14,7 @@ import {
 } from "./case-files.js";
 import { formatsModule } from "./formats-module.js";
 import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
+import { withoutUndefined } from "./values.js";
 
 export type { CaseSettings } from "./case-files.js";
 
@@ -29,7 +30,7 @@ export interface CasePaths {
   mask: string;
   mesh: string;
   /** A camera file, or the camera. */
-  camera: string | { value: CameraInput };
+  camera?: string | { value: CameraInput } | undefined;
   image?: string | undefined;
 }
 
@@ -103,7 +104,7 @@ export async function readFrame(folder: string, settings: CaseSettings): Promise
 async function namesIn(folder: string): Promise<string[]> {
   const list = (recursive: boolean) =>
     readdir(folder, { recursive }).catch((cause) => {
-      throw unreadable("case", folder, "a folder with depth, mask, mesh and camera", cause);
+      throw unreadable("case", folder, "a folder with depth, mask and mesh", cause);
     });
   const names = await list(false);
   const mesh = caseFiles.mesh.find((name) => names.includes(name));
@@ -116,19 +117,20 @@ async function namesIn(folder: string): Promise<string[]> {
 export async function readCaseFiles(name: string, paths: CasePaths, settings: CaseSettings = {}): Promise<CaseOnDisk> {
   const { camera, image: imagePath, ...files } = paths;
   const { image: withImage = true, ...more } = settings;
-  const [depth, mask, mesh, cameraInput, image] = await Promise.all([
+  const cameraPath = typeof camera === "string" ? camera : undefined;
+  const [depth, mask, mesh, cameraFile, image] = await Promise.all([
     read("depth", paths.depth),
     read("mask", paths.mask),
     readMeshFile(paths.mesh),
-    typeof camera === "string"
-      ? read("camera", camera).then((cameraFile) => ({ cameraFile }))
-      : { camera: camera.value },
-    imagePath === undefined || !withImage ? {} : read("image", imagePath).then((image) => ({ image })),
+    cameraPath === undefined ? undefined : read("camera", cameraPath),
+    imagePath === undefined || !withImage ? undefined : read("image", imagePath),
   ]);
+  const stated = typeof camera === "object" ? camera.value : undefined;
+  const input: object = withoutUndefined({ depth, mask, mesh, camera: stated, cameraFile, image, ...more });
   return {
     name,
-    input: { depth, mask, mesh, ...cameraInput, ...image, ...more } as AlignInput,
-    files: { ...files, ...(typeof camera === "string" ? { camera } : {}), ...(imagePath && { image: imagePath }) },
+    input: input as AlignInput,
+    files: withoutUndefined({ ...files, camera: cameraPath, image: imagePath }) as CaseOnDisk["files"],
     truth: null,
   };
 }

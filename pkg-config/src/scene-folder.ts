@@ -8,6 +8,7 @@ import { fromBop } from "./conventions/bop.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import type { MeshFile } from "./input/types.js";
 import type { SceneInput, SceneObjectInput } from "./scene/types.js";
+import { withoutUndefined } from "./values.js";
 
 /** A scene whose files have been read, but not decoded. */
 export interface SceneOnDisk {
@@ -24,7 +25,7 @@ export interface SceneSettings extends CaseSettings {
 }
 
 /**
- * Reads a scene: a folder with `depth.*`, `camera.json` and `objects/NAME/{mask.*, mesh.*, gt.json}`, or a scene of BOP
+ * Reads a scene: a folder with `depth.*`, optionally `camera.json`, and `objects/NAME/{mask.*, mesh.*, gt.json}`, or a scene of BOP
  * with `depth/`, `mask_visib/`, `scene_camera.json`, `scene_gt.json` and models.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
@@ -45,9 +46,7 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
 }
 
 async function readFolder(folder: string, names: string[], { models, ...settings }: SceneSettings) {
-  const [depth, cameraFile] = await Promise.all(
-    [caseFiles.depth, caseFiles.camera].map((files) => readOne("scene", folder, names, files)),
-  );
+  const depth = await readOne("scene", folder, names, caseFiles.depth);
   const objects: SceneObjectInput[] = [];
   const truths: (KnownPose | null)[] = [];
   for (const name of (await namesIn(join(folder, "objects"))).sort()) {
@@ -61,9 +60,12 @@ async function readFolder(folder: string, names: string[], { models, ...settings
     truths.push(files.includes("gt.json") ? parsePoseFile("truth", await read("truth", join(own, "gt.json"))) : null);
   }
   const { resizeMask: _, image: withImage = true, ...view } = settings;
-  const photo = withImage ? caseFiles.image.find((name) => names.includes(name)) : undefined;
-  const image = photo === undefined ? {} : { image: await read("image", join(folder, photo)) };
-  const input = { depth, cameraFile, objects, ...image, ...view } as SceneInput;
+  const optional = async (part: "camera" | "image") => {
+    const name = caseFiles[part].find((candidate) => names.includes(candidate));
+    return name === undefined ? undefined : read(part, join(folder, name));
+  };
+  const [cameraFile, image] = [await optional("camera"), withImage ? await optional("image") : undefined];
+  const input = withoutUndefined({ depth, cameraFile, objects, image, ...view }) as SceneInput;
   return { name: basename(resolve(folder)), input, truths };
 }
 
@@ -97,7 +99,7 @@ const resizeOf = ({ resizeMask }: CaseSettings) => (resizeMask === undefined ? {
 
 async function namesIn(folder: string): Promise<string[]> {
   return readdir(folder).catch((cause) => {
-    throw fileNotFound("scene", `nothing to read at ${folder}`, "a folder with depth, camera and objects", cause);
+    throw fileNotFound("scene", `nothing to read at ${folder}`, "a folder with depth and objects", cause);
   });
 }
 

@@ -13,8 +13,10 @@ use crate::evidence::observation::Observation;
 use crate::pauses::Pauses;
 use crate::precise;
 use crate::precise::drawn::equivalence::DIFFERENT;
+use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::judged::color::{Judgment, agreement, judgment};
+use crate::precise::judged::stretch::stretch;
 use crate::precise::judged::verdict;
 use crate::precise::judged::verdict::Certainty;
 use crate::precise::options::AlignOptions;
@@ -204,14 +206,17 @@ impl<'a> Search<'a> {
             Some(judgment) => verdict::conclude(&rounds, Some(judgment))?,
             None => (solution, certainty),
         };
-        let Self { observation, mesh, request: Request { setup, .. }, .. } = self;
+        let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
         let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
         if let Some(metrics) = &mut metrics {
             let (clean, pose) = (rounds.search.observation.clone(), &solution.camera_from_mesh);
             metrics.color_agreement = agreement(observation, Some(clean), mesh, pose);
         }
+        let search = &rounds.search;
+        let pose = CropPose::of_similarity(&solution.camera_from_mesh, &search.mesh.frame);
+        let proportions = pose.and_then(|pose| stretch(search, &pose, options.proportions));
         let outcome = outcome(observation, setup, &clouds, &solution, metrics, self.stages);
-        Ok(with_certainty(outcome, certainty, rounds.search.renders))
+        Ok(Alignment { proportions, ..with_certainty(outcome, certainty, search.renders) })
     }
 }
 
@@ -239,6 +244,7 @@ fn with_certainty(outcome: Outcome, certainty: Certainty, renders: usize) -> Ali
         turn_confidence,
         alternatives,
         uncertainty,
+        proportions: None,
         metrics,
         warnings,
         diagnostics,

@@ -65,6 +65,19 @@ choices! {
     }
 }
 
+choices! {
+    /// What of a mesh's proportions is fitted to the image.
+    pub enum Proportions {
+        /// Nothing: they are taken to be right.
+        #[default]
+        Keep = "keep",
+        /// Its lengths along the axes of the mesh.
+        Axes = "axes",
+        /// Lengths and right angles.
+        Full = "full",
+    }
+}
+
 options! {
     /// Options of `align` with the default preset, `"precise"`. All have defaults.
     pub struct AlignOptions {
@@ -95,6 +108,9 @@ options! {
         /// An upper bound on the work of the search, in units of about a millisecond on a 2020 laptop. The work is
         /// counted, not timed, so that the result does not depend on the machine. `null` sets no bound.
         work_budget: Option<f64> = None, Positive;
+        /// Whether to fit the proportions of the mesh, which generators get wrong by some per cent: see `proportions` of the
+        /// result. The similarity and its metrics stay those of the mesh as it is. Not of a mesh whose scale is given.
+        proportions: Proportions = Proportions::Keep, Choice;
         /// Whether to compute `metrics`. Without them the call takes less time.
         metrics: bool = true, Flag;
         /// Seed of all random draws. The same input and seed give the same bits.

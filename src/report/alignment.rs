@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::diagnostics::{Diagnostics, PaperDiagnostics, PreciseDiagnostics};
-use super::pose::{Alternative, Sim3, Uncertainty};
+use super::pose::{Alternative, Sim3, Stretch, Uncertainty};
 use super::warning::Warning;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::Metrics;
@@ -27,6 +27,10 @@ pub struct Alignment {
     pub alternatives: Vec<Alternative>,
     /// How well the observation determines each part of the pose; `null` where the search could not tell.
     pub uncertainty: Option<Uncertainty>,
+    /// The mesh in its true proportions; present where they were asked for, and fitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub proportions: Option<Stretch>,
     /// Agreement of the posed mesh with the observation.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "types", ts(as = "Metrics"))]

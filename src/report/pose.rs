@@ -35,6 +35,21 @@ impl From<&Similarity> for Sim3 {
     }
 }
 
+/// A mesh in the proportions that the image shows: x_cam = s·R·S·p_mesh + t. The image determines less of them the less it
+/// shows of a side; what it does not show stays as the mesh has it, and is uncertain.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Stretch {
+    /// s, R and t: the similarity of the stretched mesh S·p.
+    #[serde(flatten)]
+    pub camera_from_stretched: Sim3,
+    /// S as three rows of three: symmetric, of determinant 1, in the frame of the mesh.
+    pub stretch: [[f64; 3]; 3],
+    /// Standard deviations of the lengths along x, y and z of the mesh, relative: 0.01 is one per cent.
+    pub uncertainty: [f64; 3],
+}
+
 /// Another pose that explains the observation: a transform like the alignment's own.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]

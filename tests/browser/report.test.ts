@@ -79,6 +79,19 @@ test("details: pictures with layers, numbers, 3D", async () => {
   assert.deepEqual(errors, []);
 });
 
+test("without a unit, the page shows no metres", async () => {
+  run("align alpha --quality fast --depth-kind scale-invariant --report relative");
+  const { page, errors } = await browser.open(pathToFileURL(join(folder, "relative", "index.html")).href);
+  await page.waitForSelector("#detail dl");
+  const shown = (await page.textContent("#detail")) ?? "";
+  assert.match(shown, /mesh 0\.\d+ units nearer.*units per mesh unit/s);
+  assert.doesNotMatch(shown, /\d m?m\b/);
+  const heads = await page.locator("#head th").allTextContents();
+  const cells = await page.locator("#rows tr:first-child").locator("th, td").allTextContents();
+  assert.equal(cells[heads.indexOf("Depth, mm")], "–");
+  assert.deepEqual(errors, []);
+});
+
 test("the keyboard goes through the rows, and axe finds nothing", async () => {
   const { page } = await browser.open(address);
   await page.locator("#scroller").focus();

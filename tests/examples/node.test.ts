@@ -9,7 +9,7 @@ import { compose, fromBop, invert, type Sim3, toSim3 } from "sim3align/conventio
 import { readMesh } from "sim3align/formats";
 import { otherPose, writeCase } from "../support/case-folder.js";
 import { repository, sampleDir } from "../support/environment.js";
-import { examplesDir, filesOf, newFolder, printedBy, runExample } from "../support/examples.js";
+import { examplesDir, filesOf, newFolder, printedBy, runExample, samplePhoto } from "../support/examples.js";
 import { turnBetween } from "../support/rig.js";
 
 const aligner = await createAligner();
@@ -17,6 +17,15 @@ const aligner = await createAligner();
 const sample = filesOf(sampleDir);
 const gt = JSON.parse(readFileSync(join(sampleDir, "gt.json"), "utf8"));
 const truth = { scale: gt.scale, rotation: gt.rotation, translation: gt.translation };
+
+/** The longest side of the bounding box of points. */
+function longestExtent(positions: Float32Array): number {
+  const sides = [0, 1, 2].map((axis) => {
+    const values = positions.filter((_, i) => i % 3 === axis);
+    return values.reduce((a, b) => Math.max(a, b)) - values.reduce((a, b) => Math.min(a, b));
+  });
+  return Math.max(...sides);
+}
 
 /** Checks a pose of the sample against what is known of it. */
 async function isRight(matrix: number[]): Promise<void> {
@@ -184,35 +193,67 @@ class Tensor {
   }
 }
 
-test("06-transformersjs aligns the tensors of a depth pipeline and of SAM", async () => {
-  const { readDepth, readMask } = await import("sim3align/formats");
-  const { data, width, height } = await readDepth(sample.depth);
-  const mask = (await readMask(sample.mask)).data.map((value) => (value === 0 ? 0 : 1));
-  const direct = await aligner.align(sample);
-
-  // Three masks: a part of the object, the object, and everything.
-  const part = mask.map((value, i) => (i % width < 0.5 * width ? value : 0));
-  const three = Uint8Array.from([part, mask, new Uint8Array(mask.length).fill(1)].flatMap((one) => [...one]));
-  const masks = new Tensor({ type: "bool", data: three, dims: [1, 3, height, width] });
-  const iou_scores = new Tensor({ type: "float32", data: Float32Array.of(0.88, 0.98, 0.93), dims: [1, 1, 3] });
-  const image = { data: new Uint8ClampedArray(4 * width * height).fill(120), width, height };
+test("06-transformersjs aligns a photo without a camera, with the tensors of a relative depth model and of SAM", async () => {
   const { alignTensors } = await import(join(examplesDir, "06-transformersjs", "align-tensors.mjs"));
-  const aligned = (values: Float32Array, disparity?: { scale: number; shift: number }): Promise<Alignment> => {
-    const predicted_depth = new Tensor({ type: "float32", data: values, dims: [height, width] });
-    return alignTensors(
-      aligner,
-      { predicted_depth, masks, iou_scores, disparity, image },
-      JSON.parse(`${sample.cameraFile}`),
-      sample.mesh,
-    );
+  const { loadSampleModels } = await import(join(examplesDir, "06-transformersjs", "sample-models.mjs"));
+  const see = await loadSampleModels(async (name: string) => readFileSync(join(sampleDir, name)));
+  const found = await see();
+  const wrapped = (type: string, { data, dims }: Pick<Tensor, "data" | "dims">) => new Tensor({ type, data, dims });
+  const tensors = {
+    ...found,
+    predicted_depth: wrapped("float32", found.predicted_depth),
+    masks: wrapped("bool", found.masks),
+    iou_scores: wrapped("float32", found.iou_scores),
   };
+  const [height = 0, width = 0] = found.predicted_depth.dims;
+  const photo = samplePhoto(width, height);
 
-  const metric = await aligned(data);
+  const relative: Alignment = await alignTensors(aligner, tensors, photo, sample.mesh);
+  assert.equal(relative.depthCalibration?.isMetric, false);
+  assert.match(relative.cameraSource ?? "", /^EXIF: 32 mm/);
+  const { positions } = await readMesh(sample.mesh);
+  const options = { knownExtentM: longestExtent(positions) * truth.scale };
+  const metric: Alignment = await alignTensors(aligner, tensors, photo, sample.mesh, options);
+  assert.equal(metric.depthCalibration?.isMetric, true);
+  const { errors } = await aligner.evaluate(sample, metric, { truth });
+  assert.ok(errors !== null && errors.scaleError < 1e-3 && errors.rotationErrorDeg < 10, JSON.stringify(errors));
+  // The shift of the depth is known by the relief of the object alone.
+  assert.ok(Math.abs(metric.translation[2] / truth.translation[2] - 1) < 0.15, `${metric.translation}`);
+
+  const { depthKind, predicted_depth } = found;
+  const depth = { data: predicted_depth.data, width, height };
+  const direct = await aligner.align({ depth, depthKind, image: photo, mask: sample.mask, mesh: sample.mesh }, options);
   assert.deepEqual(metric.matrix, direct.matrix);
-  const relative = data.map((z) => (z > 0 ? (1 / z - 0.2) / 3 : Number.NaN));
-  await isRight([...(await aligned(relative, { scale: 3, shift: 0.2 })).matrix]);
+});
 
-  const { status, stderr } = await runExample("06-transformersjs/main.mjs", ["photo.jpg", "mug.glb", "320,240", "50"]);
+test("06-transformersjs loads the models that it is told to, and asks them for the place in the photo", async () => {
+  const { loadModels } = await import(join(examplesDir, "06-transformersjs", "models.mjs"));
+  const asked: unknown[] = [];
+  const picture = (width: number, height: number) => ({ width, height, resize: picture });
+  const transformers = {
+    RawImage: { fromBlob: async () => picture(4032, 3024) },
+    pipeline: async (task: string, name: string) => {
+      asked.push(task, name);
+      return async ({ width, height }: { width: number; height: number }) => ({ predicted_depth: [width, height] });
+    },
+    SamModel: { from_pretrained: async () => async () => ({ pred_masks: "masks", iou_scores: "scores" }) },
+    AutoProcessor: {
+      from_pretrained: async (name: string) => {
+        asked.push(name);
+        const process = async (_: unknown, { input_points }: { input_points: unknown }) => ({
+          ...{ original_sizes: input_points, reshaped_input_sizes: 0 },
+        });
+        return Object.assign(process, { post_process_masks: async (...all: unknown[]) => [all] });
+      },
+    },
+  };
+  const see = await loadModels(transformers, { depth: "metric-model", depthKind: "metric", mask: "sam" });
+  assert.deepEqual(asked, ["depth-estimation", "metric-model", "sam"]);
+  assert.deepEqual(await see(new Blob(), [0.5, 0.25]), {
+    ...{ predicted_depth: [1024, 768], depthKind: "metric", iou_scores: "scores" },
+    masks: ["masks", [[[512, 192]]], 0],
+  });
+  const { status, stderr } = await runExample("06-transformersjs/main.mjs", ["photo.jpg", "mug.glb", "0.5,0.5"]);
   assert.equal(status, 1);
   assert.match(stderr, /npm install @huggingface\/transformers/);
 });

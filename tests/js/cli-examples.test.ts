@@ -11,6 +11,7 @@ import { cocoRle, glb, npy, obj, png, writeFiles } from "../support/files.js";
 import { frameAt, frameFiles } from "../support/rig.js";
 import { mesh, poseJson, truth, view } from "../support/scene.js";
 import { tableFiles } from "../support/table.js";
+import { deflated, zip } from "../support/zip.js";
 
 const write = (path: string, content: Uint8Array | string | object) => writeFiles(folder, { [path]: content });
 
@@ -25,6 +26,7 @@ before(() => {
   write("annotated.json", poseJson(truth));
   const { width, height, depth } = view;
   write("d.npy", npy(depth, height, width));
+  write("moge.npz", zip([deflated("depth.npy", npy(depth, height, width))]));
   const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
   write("d.png", png(millimetres, width, height));
   write("m.png", pixels);

@@ -75,7 +75,7 @@ test("--json has everything, as the documentation says", async () => {
   const { timingsMs, ...rest } = blob;
   assert.ok(timingsMs.total > 0);
   const pose = "scale rotation translation matrix quaternion confidence turnConfidence alternatives uncertainty";
-  const keys = `${pose} metrics warnings timingsMs diagnostics errors`;
+  const keys = `${pose} metrics warnings depthUnit timingsMs diagnostics errors`;
   assert.deepEqual(Object.keys(blob), keys.split(" "));
   const same = withoutTimes(alignment);
   const written = <T extends Sim3>({ rotation, rotationMatrix, ...others }: T) => {

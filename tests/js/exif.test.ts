@@ -1,34 +1,15 @@
-/** EXIF data, built here byte by byte, and the focal length that they state. */
+/** EXIF data, and the focal length that they state. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type Exif, focalFromExif, readExif, readImage, Sim3AlignError } from "sim3align/formats";
-import { crc32 } from "../support/crc32.js";
-import { type Fields, segment, tiff, withExif } from "../support/exif.js";
+import { type ExifFields, jpegHead, pngWith, tiff } from "../support/exif.js";
 import { png } from "../support/files.js";
 
-/** A PNG of 3 × 2 pixels with EXIF data. */
-function pngWith(exif: Buffer): Uint8Array {
-  const file = Buffer.from(png(Uint8Array.of(0, 50, 100, 150, 200, 250), 3, 2));
-  const typed = Buffer.concat([Buffer.from("eXIf"), exif]);
-  const frame = Buffer.alloc(8);
-  frame.writeUInt32BE(exif.length, 0);
-  frame.writeUInt32BE(crc32(typed), 4);
-  const end = 8 + 12 + 13;
-  const chunk = Buffer.concat([frame.subarray(0, 4), typed, frame.subarray(4)]);
-  return new Uint8Array(Buffer.concat([file.subarray(0, end), chunk, file.subarray(end)]));
-}
-
-/** The start of a JPEG with EXIF data, up to the header of its pixels. */
-function jpegWith(exif: Buffer): Uint8Array {
-  const frame = segment(0xc0, Buffer.from([8, 0, 16, 0, 24, 1, 1, 0x11, 0]));
-  return new Uint8Array(withExif(Buffer.concat([Buffer.from([0xff, 0xd8]), frame]), exif));
-}
-
-const phone: [Fields, Fields] = [
+const phone: [ExifFields, ExifFields] = [
   { make: "Maker", model: "Phone 1", orientation: 6 },
   { focalLength: { rational: [425, 100] }, focal35: 26, pixelX: 4032, pixelY: 3024, zoom: { rational: [0, 1] } },
 ];
-const reflex: [Fields, Fields] = [
+const reflex: [ExifFields, ExifFields] = [
   { make: "Maker", orientation: 1 },
   {
     focalLength: { rational: [50, 1] },
@@ -42,7 +23,7 @@ const reflex: [Fields, Fields] = [
 
 test("EXIF data of PNG and JPEG, in both byte orders", async () => {
   for (const isLittle of [true, false]) {
-    for (const file of [pngWith(tiff(...phone, isLittle)), jpegWith(tiff(...phone, isLittle))]) {
+    for (const file of [pngWith(tiff(...phone, isLittle)), jpegHead(tiff(...phone, isLittle))]) {
       assert.deepEqual(await readExif(file), {
         orientation: 6,
         focalLength35mm: 26,
@@ -85,7 +66,7 @@ test("damaged EXIF data: what can be read, or a code", async () => {
     });
   }
   assert.ok(refused > 0);
-  const jpeg = jpegWith(exif);
+  const jpeg = jpegHead(exif);
   for (let length = 0; length < jpeg.length; length++) {
     const expected = { code: length < 3 ? "UNSUPPORTED_FORMAT" : "CORRUPT_FILE", argument: "image" };
     await assert.rejects(readExif(jpeg.slice(0, length)), expected, `cut to ${length}`);

@@ -1,12 +1,16 @@
 //! The proportions of a mesh that are fitted with its pose: their derivatives, the nearest similarity against the closed
 //! form of Umeyama, and meshes that are too wide or too flat.
 
+use sim3align::align::align;
 use sim3align::geometry::surface::{SurfaceMoments, triangle_area};
 use sim3align::precise::scored::conditioning::Conditioning;
 use sim3align::precise::searched::proportions::{PROPORTIONS, Proportions, Stretched};
 use sim3align::precise::searched::recipe::FINE;
 
-use crate::precise::{body, observe, truth};
+use sim3align::precise::options::Proportions as Freedom;
+use sim3align::report::Stretch;
+
+use crate::precise::{body, observe, quick, truth};
 use crate::precise_scene::pose;
 use crate::prelude::*;
 
@@ -191,4 +195,62 @@ fn a_fit_in_proportion_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
     let objective = Objective { prior, ..free };
     let held = Refiner { objective, lock_scale: false }.refine_in_proportion(&mut canvas, start, 20, &surface);
     assert!(prior.is_at_bound(&held.pose), "the truth is below: {held:?}");
+}
+
+/// The lengths of the axes of a mesh, metres per unit.
+fn lengths(scale: f64, stretch: &DMat3) -> [f64; 3] {
+    [0, 1, 2].map(|axis| scale * stretch.col(axis).length())
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_mesh_is_put_into_its_proportions() {
+    for seed in 0..4 {
+        let draw = &mut Draw::new(seed);
+        // The object, a mesh of it in other proportions, and the lengths that its axes have in truth.
+        let object = body();
+        let by = proportions(draw, 0.06).matrix();
+        let mesh = mapped(&object, |p| (by.inverse() * p.as_dvec3()).as_vec3());
+        let expected = lengths(truth().scale, &by);
+        let seen = observe(&object, &truth());
+        let options = AlignOptions { proportions: Freedom::Full, ..quick() };
+        let found = align(&seen, &mesh, &options, &mut Silent).unwrap();
+        let Stretch { camera_from_stretched, stretch, uncertainty } = found.proportions.clone().unwrap();
+        let stretch = DMat3::from_cols_array_2d(&stretch);
+        assert!((stretch - stretch.transpose()).to_cols_array().iter().all(|x| x.abs() < 1e-12), "seed {seed}");
+        assert!((stretch.determinant() - 1.0).abs() < 1e-3, "seed {seed}: {}", stretch.determinant());
+        for (axis, length) in lengths(camera_from_stretched.scale, &stretch).into_iter().enumerate() {
+            let error = libm::log(length / expected[axis]).abs();
+            let most = 3.0 * uncertainty[axis] + 0.005;
+            assert!(error < most, "seed {seed}, axis {axis}: {error}, of at most {most}");
+            assert!(uncertainty[axis] < 0.06, "seed {seed}: {uncertainty:?}");
+        }
+        // The similarity is the same, to the bit, as without.
+        let plain = align(&seen, &mesh, &quick(), &mut Silent).unwrap();
+        assert_eq!(plain.camera_from_mesh, found.camera_from_mesh);
+        assert_eq!(plain.proportions, None);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn axes_are_stretched_alone_and_symmetry_is_kept() {
+    let wide = mapped(&body(), |p| p * Vec3::new(1.06, 0.97, 0.97));
+    let seen = observe(&body(), &truth());
+    let fitted = |mesh: &Mesh, seen: &Observation, options: AlignOptions| {
+        let found = align(seen, mesh, &options, &mut Silent).unwrap();
+        found.proportions.map(|found| DMat3::from_cols_array_2d(&found.stretch))
+    };
+    let axes = AlignOptions { proportions: Freedom::Axes, ..quick() };
+    let stretch = fitted(&wide, &seen, axes.clone()).unwrap();
+    let off = [stretch.x_axis.y, stretch.x_axis.z, stretch.y_axis.z];
+    assert!(off.iter().all(|x| x.abs() < 2e-3), "{stretch}");
+    assert!(stretch.x_axis.x < stretch.y_axis.y, "{stretch}");
+    // A surface of revolution stays one.
+    let round = ellipsoid(Vec3::new(0.5, 0.5, 1.0), 24);
+    let flat = mapped(&round, |p| p * Vec3::new(1.0, 1.0, 0.94));
+    let full = AlignOptions { proportions: Freedom::Full, symmetry: Symmetry::Auto, ..quick() };
+    let stretch = fitted(&flat, &observe(&round, &truth()), full).unwrap();
+    assert!((stretch.x_axis.x - stretch.y_axis.y).abs() < 2e-3, "{stretch}");
+    // A mesh of known size is that of the object itself.
+    let known = AlignOptions { scale: ScaleOption::Fixed(truth().scale), ..axes };
+    assert_eq!(fitted(&wide, &seen, known), None);
 }

@@ -1,4 +1,4 @@
-/** The checksum of PNG's chunks (zlib's is not in Node 20). */
+/** The checksum of PNG's chunks and of files in zip archives (zlib's is not in Node 20). */
 export function crc32(bytes: Uint8Array): number {
   let crc = 0xffffffff;
   for (const byte of bytes) {

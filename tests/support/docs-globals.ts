@@ -17,6 +17,8 @@ declare global {
   var fy: number;
   var cx: number;
   var cy: number;
+  var photo: Scene["photo"];
+  var relative: Scene["relative"];
   var mesh: Scene["mesh"];
   var glb: Scene["glb"];
   var result: Scene["result"];

@@ -5,6 +5,7 @@
 import { createAligner } from "sim3align";
 import { resizeCamera, resizeDepth, resizeMask } from "sim3align/conventions";
 import { Object3D, PerspectiveCamera } from "three";
+import { greyJpeg, tiff } from "./exif.js";
 import { glb } from "./files.js";
 import { mesh, truth, view } from "./scene.js";
 
@@ -16,6 +17,11 @@ const { fx, fy, cx, cy } = camera;
 const { width, height } = size;
 const input = { depth, width, height, mask, camera, mesh };
 
+/** The bytes of a photo of this camera: 65 mm on full frame, resized by a quarter. */
+const photo = greyJpeg(tiff({}, { focal35: 65, pixelX: 4 * width, pixelY: 4 * height }, true), width, height);
+/** What a model of relative depth returns. */
+const relative = { data: depth.map((z) => 2 / z + 0.3), width, height };
+
 const aligner = await createAligner();
 const result = await aligner.align(input);
 const { scale, rotation, translation } = result;
@@ -25,7 +31,7 @@ const [x, y, z, w] = rotation;
 export const docsScene = {
   createAligner,
   aligner,
-  ...{ input, depth, width, height, mask, camera, fx, fy, cx, cy, mesh },
+  ...{ input, depth, width, height, mask, camera, fx, fy, cx, cy, mesh, photo, relative },
   /** The bytes of a GLB file of the mesh. */
   glb: glb(mesh),
   result,

@@ -1,7 +1,8 @@
-/** EXIF data, made byte by byte, independently of the package's reader. */
+/** EXIF data, and photos with them, built byte by byte. */
+import { crc32 } from "./crc32.js";
+import { png } from "./files.js";
 
-/** The value of a field. */
-export type Value = number | string | { rational: [number, number] };
+type Value = number | string | { rational: [number, number] };
 
 const tags = {
   make: 0x010f,
@@ -17,10 +18,11 @@ const tags = {
   focal35: 0xa405,
 } as const;
 
-export type Fields = Partial<Record<keyof typeof tags, Value>>;
+/** Values of tags. */
+export type ExifFields = Partial<Record<keyof typeof tags, Value>>;
 
 /** EXIF data: a TIFF header, the directory of the image and that of the camera. */
-export function tiff(image: Fields, camera: Fields, isLittle: boolean): Buffer {
+export function tiff(image: ExifFields, camera: ExifFields, isLittle: boolean): Buffer {
   const u16 = (n: number) => {
     const bytes = Buffer.alloc(2);
     if (isLittle) bytes.writeUInt16LE(n);
@@ -33,12 +35,14 @@ export function tiff(image: Fields, camera: Fields, isLittle: boolean): Buffer {
     else bytes.writeUInt32BE(n);
     return bytes;
   };
-  const directory = (fields: Fields, start: number) => {
-    const entries = Object.entries(fields).sort(([a], [b]) => tags[a as keyof Fields] - tags[b as keyof Fields]);
+  const directory = (fields: ExifFields, start: number) => {
+    const entries = Object.entries(fields).sort(
+      ([a], [b]) => tags[a as keyof ExifFields] - tags[b as keyof ExifFields],
+    );
     let extra = Buffer.alloc(0);
     const after = start + 2 + 12 * entries.length + 4;
     const list = entries.map(([name, value]) => {
-      const tag = u16(tags[name as keyof Fields]);
+      const tag = u16(tags[name as keyof ExifFields]);
       const stored = (type: number, count: number, bytes: Buffer) => {
         if (bytes.length <= 4)
           return Buffer.concat([tag, u16(type), u32(count), bytes, Buffer.alloc(4 - bytes.length)]);
@@ -58,16 +62,46 @@ export function tiff(image: Fields, camera: Fields, isLittle: boolean): Buffer {
   return Buffer.concat([head, first(at), directory(camera, at)]);
 }
 
-/** A segment of a JPEG. */
-export function segment(marker: number, content: Uint8Array): Uint8Array {
+/** A PNG of 3 × 2 pixels with EXIF data. */
+export function pngWith(exif: Buffer): Uint8Array {
+  const file = Buffer.from(png(Uint8Array.of(0, 50, 100, 150, 200, 250), 3, 2));
+  const typed = Buffer.concat([Buffer.from("eXIf"), exif]);
+  const frame = Buffer.alloc(8);
+  frame.writeUInt32BE(exif.length, 0);
+  frame.writeUInt32BE(crc32(typed), 4);
+  const end = 8 + 12 + 13;
+  const chunk = Buffer.concat([frame.subarray(0, 4), typed, frame.subarray(4)]);
+  return new Uint8Array(Buffer.concat([file.subarray(0, end), chunk, file.subarray(end)]));
+}
+
+const segment = (marker: number, content: Uint8Array) => {
   const head = Buffer.from([0xff, marker, 0, 0]);
   head.writeUInt16BE(content.length + 2, 2);
   return Buffer.concat([head, content]);
-}
+};
 
-/** The segment of EXIF data. */
-export const exifSegment = (exif: Buffer) => segment(0xe1, Buffer.concat([Buffer.from("Exif\0\0", "latin1"), exif]));
+const exifSegment = (exif: Buffer) => segment(0xe1, Buffer.concat([Buffer.from("Exif\0\0", "latin1"), exif]));
 
 /** A JPEG with EXIF data after its first marker. */
 export const withExif = (jpeg: Uint8Array, exif: Buffer): Uint8Array =>
   Buffer.concat([jpeg.subarray(0, 2), exifSegment(exif), jpeg.subarray(2)]);
+
+/** The start of a grey JPEG with EXIF data, up to the header of its pixels. */
+export function jpegHead(exif: Buffer, width = 24, height = 16): Uint8Array {
+  const frame = Buffer.from([8, 0, 0, 0, 0, 1, 1, 0x11, 0]);
+  frame.writeUInt16BE(height, 1);
+  frame.writeUInt16BE(width, 3);
+  return new Uint8Array(Buffer.concat([Buffer.from([0xff, 0xd8]), exifSegment(exif), segment(0xc0, frame)]));
+}
+
+/** A JPEG of one grey with EXIF data. Each of its blocks is two bits: no change of the mean, and no detail. */
+export function greyJpeg(exif: Buffer, width: number, height: number): Uint8Array {
+  const quantisation = segment(0xdb, new Uint8Array(65).fill(1).fill(0, 0, 1));
+  // One code, "0", for the symbol 0.
+  const code = (table: number) => segment(0xc4, Uint8Array.of(table, 1, ...new Uint8Array(15), 0));
+  const scan = segment(0xda, Uint8Array.of(1, 1, 0, 0, 63, 0));
+  const blocks = Math.ceil(width / 8) * Math.ceil(height / 8);
+  const bits = new Uint8Array(Math.ceil(blocks / 4));
+  const parts = [jpegHead(exif, width, height), quantisation, code(0x00), code(0x10), scan, bits, [0xff, 0xd9]];
+  return new Uint8Array(Buffer.concat(parts.map((part) => Uint8Array.from(part))));
+}

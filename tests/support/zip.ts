@@ -1,5 +1,6 @@
 /** Zip archives whose headers say what a test wants, which no program writes. */
 import { constants, deflateRawSync } from "node:zlib";
+import { crc32 } from "./crc32.js";
 
 /** A file in an archive, and what its headers say instead of the truth. */
 export interface ZipEntry {
@@ -8,6 +9,8 @@ export interface ZipEntry {
   packed: Uint8Array;
   /** The size that the directory declares. */
   inflated: number;
+  /** The checksum that the directory declares. */
+  crc?: number;
   method?: number;
   flags?: number;
 }
@@ -17,6 +20,7 @@ export const deflated = (path: string, content: Uint8Array): ZipEntry => ({
   path,
   packed: deflateRawSync(content),
   inflated: content.length,
+  crc: crc32(content),
 });
 
 const BLOCK_BYTES = 1 << 22;
@@ -33,9 +37,9 @@ export function zip(entries: readonly ZipEntry[], count = entries.length): Uint8
   const parts: Uint8Array[] = [];
   const directory: Uint8Array[] = [];
   let at = 0;
-  for (const { path, packed, inflated, method = 8, flags = 0 } of entries) {
+  for (const { path, packed, inflated, crc = 0, method = 8, flags = 0 } of entries) {
     const name = Buffer.from(path);
-    const facts = words([20, 2], [flags, 2], [method, 2], [0, 4], [0, 4], [packed.length, 4], [inflated, 4]);
+    const facts = words([20, 2], [flags, 2], [method, 2], [0, 4], [crc, 4], [packed.length, 4], [inflated, 4]);
     const local = Buffer.concat([words([0x04034b50, 4]), facts, words([name.length, 2], [0, 2]), name]);
     const place = words([name.length, 2], [0, 2], [0, 2], [0, 2], [0, 2], [0, 4], [at, 4]);
     directory.push(words([0x02014b50, 4], [20, 2]), facts, place, name);

@@ -4,6 +4,7 @@ pub mod benchmark;
 pub mod imported;
 pub mod option_text;
 pub mod overlay;
+pub mod proportions;
 pub mod records;
 pub mod scene_bench;
 pub mod statistics;

@@ -6,7 +6,9 @@ mod cases;
 mod fuzz;
 mod monocular;
 mod outlines;
+mod pictures;
 mod profile;
+mod proportions;
 mod registration;
 mod scenes;
 mod sequence_rows;
@@ -32,12 +34,13 @@ pub struct Command {
 }
 
 /// All subcommands.
-pub const COMMANDS: [Command; 11] = [
+pub const COMMANDS: [Command; 12] = [
     cases::COMMAND,
     scenes::COMMAND,
     bench::COMMAND,
     together::COMMAND,
     monocular::COMMAND,
+    proportions::COMMAND,
     registration::COMMAND,
     views::COMMAND,
     track::COMMAND,

@@ -24,7 +24,7 @@ use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
 use sim3align::register::report::{Registration, RegistrationDiagnostics};
 use sim3align::report::{
     Alignment, Alternative, ColorReport, ColorVerdict, Counts, Diagnostics, Effort, PaperAlignment, PaperDiagnostics,
-    PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Uncertainty, Warning, WarningCode,
+    PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Stretch, Uncertainty, Warning, WarningCode,
 };
 use sim3align::scene::contact::Contact;
 use sim3align::track::options::TrackOptions;
@@ -289,7 +289,7 @@ fn types() -> String {
     );
     add! { types:
         ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, LayoutErrors, BopErrors, SearchCounts,
-        Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, EvaluationDiagnostics, Diagnostics,
+        Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, Stretch, EvaluationDiagnostics, Diagnostics,
         PaperDiagnostics, PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole,
         WorldUncertainty, CameraPose, ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame,
         TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration, CalibrationUncertainty,

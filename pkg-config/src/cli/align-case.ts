@@ -4,6 +4,7 @@ import type { KnownPose } from "../conventions/pose-file.js";
 import {
   type Aligner,
   type AlignInput,
+  type OfInput,
   OPTIONS,
   type OptionRow,
   type OptionsOf,
@@ -16,6 +17,8 @@ import {
 import { withoutUndefined } from "../values.js";
 import { type CaseFlags, caseSettings } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
+import { correctedInput } from "./corrected-input.js";
+import { isMetric } from "./lengths.js";
 import { givenOptions } from "./option-flags.js";
 import { failureOf, type Outcome } from "./outcome.js";
 import { readTransform } from "./transform-file.js";
@@ -81,16 +84,17 @@ async function alignFrames(
   return { name, views: alignment, frames: frames.map((frame) => frame.name), errors };
 }
 
-/** The errors of a pose relative to the true one, if that is known. */
+/** The errors of a pose relative to the true one, if that is known and the pose is metric. */
 export async function errorsOf(
   aligner: Aligner,
   input: AlignInput,
-  pose: Sim3,
+  pose: Sim3 & OfInput,
   truth: KnownPose | null | undefined,
 ): Promise<PoseErrors | null> {
-  if (truth === null || truth === undefined) return null;
+  if (truth === null || truth === undefined || !isMetric(pose)) return null;
   const { transform, symmetry } = truth;
-  return (await aligner.evaluate(input, pose, { truth: transform, symmetry, layout: false })).errors;
+  const measured = await correctedInput(input, pose.depthCalibration);
+  return (await aligner.evaluate(measured, pose, { truth: transform, symmetry, layout: false })).errors;
 }
 
 /** The options set by `--options` and by flags. */

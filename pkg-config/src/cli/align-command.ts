@@ -2,7 +2,14 @@
 import { Command, Option } from "commander";
 import { type AlignFlags, alignCase, paper, precise, shared } from "./align-case.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
-import { addCaseOptions, caseFolderHelp, caseSettings, conventionsHelp, statusHelp } from "./case-options.js";
+import {
+  addCaseOptions,
+  caseFolderHelp,
+  caseSettings,
+  conventionsHelp,
+  depthKindHelp,
+  statusHelp,
+} from "./case-options.js";
 import { type CaseToDo, caseOfFiles, casesIn, type FileFlags } from "./cases.js";
 import { csvHeadings } from "./csv-file.js";
 import { caseKind, foldersToDo } from "./folders.js";
@@ -25,6 +32,7 @@ const columnsHelp = csvHeadings.join(", ").replace(/(.{80,100}), /g, "$1,\n  ");
 
 const help = `${caseFolderHelp}
 ${conventionsHelp}
+${depthKindHelp}
 ${transformFileHelp}
 
 Output
@@ -33,7 +41,7 @@ Output
   it. A single case is shown in detail. The confidence is the probability that the pose is right, 0 to 1. An alternative
   is another pose that explains the observation nearly as well.
   --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, turnConfidence, alternatives,
-  uncertainty, metrics, warnings, timingsMs, diagnostics } }; a case that failed has { error: { code, argument, found, expected,
+  uncertainty, metrics, warnings, depthUnit, cameraSource, depthCalibration, timingsMs, diagnostics } }; a case that failed has { error: { code, argument, found, expected,
   remedy, message } }. With --preset paper, confidences and uncertainty are null and alternatives is empty.
   A case with frames has { scale, rotation, translation, …, frames: { "<frame>": { scale, rotation, translation, …,
   confidence, role, camera } } }: its own pose is world from mesh, if the camera poses are known; those of the frames are
@@ -59,6 +67,9 @@ Examples
   sim3align align cases/mug --preset paper --options '{"fpfhRadiusVoxels": 4}' --json - | jq .mug.scale
   sim3align align --depth d.png --mask m.png --mesh mug.glb --camera 600,600,320,240 --depth-scale 0.001
   sim3align align --depth d.npy --mask m.png --mesh mug.obj --camera fov:55 --image photo.jpg
+  sim3align align photo.jpg --depth moge.npz --mask m.png --mesh mug.glb
+  sim3align align photo.jpg --depth d.npy --mask m.png --mesh mug.glb --depth-kind affine-invariant-disparity
+  sim3align align cases/mug --depth-kind affine-invariant-disparity --known-extent 0.095 --known-extent-axis y
 ${statusHelp}`;
 
 /** The command. */
@@ -70,7 +81,7 @@ export function alignCommand(): Command {
     .option("--mask <file>", "mask (.png, .npy, or .json with COCO RLE)")
     .option("--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)")
     .option("--camera <file|fx,fy,cx,cy|fov:deg>", "camera: a file, intrinsics or a vertical field of view", camera)
-    .option("--image <file>", "photo (.png or .jpg) with the field of view of the depth map")
+    .option("--image <file>", "photo (.png or .jpg) with the field of view of the depth map, also without the flag")
     .addOption(new Option("--preset <name>", "method (default precise)").choices(["precise", "paper"]));
   addOptionFlags(addCaseOptions(addPictureFlags(command)), shared);
   command.option("--options <json>", "further options of align() as JSON; flags take precedence", jsonObject);
@@ -81,8 +92,7 @@ export function alignCommand(): Command {
 
 async function run(args: string[], flags: CaseBatchFlags): Promise<void> {
   const settings = caseSettings(flags);
-  const hasFolders = args.length > 0 || flags.list !== undefined;
-  const only = caseOfFiles(flags, hasFolders, settings);
+  const only = caseOfFiles(flags, args, flags.list !== undefined, settings);
   const cases = only === undefined ? casesIn(await foldersToDo(caseKind, args, flags.list), settings) : [only];
   await alignBatch(cases, flags, new Output(flags));
 }

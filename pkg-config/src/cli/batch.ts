@@ -2,6 +2,7 @@
 import { isRecord } from "../values.js";
 import { BatchProgress } from "./batch-progress.js";
 import type { CaseKey } from "./jsonl-file.js";
+import { isMetric, noUnitNote } from "./lengths.js";
 import type { Output, OutputFlags } from "./output.js";
 import { type Pictures, shownIn } from "./pictures.js";
 
@@ -38,6 +39,8 @@ export class Batch {
   #progress: BatchProgress | undefined;
   #done = 0;
   #failed = 0;
+  /** Whether a result has lengths without a unit. */
+  #hasNoUnit = false;
 
   constructor(total: number, output: Output, pictures: Pictures, flags: OutputFlags) {
     this.#total = total;
@@ -60,6 +63,7 @@ export class Batch {
   #count(entry: object): string[] {
     const errors = errorsIn(entry);
     this.#done += 1;
+    this.#hasNoUnit ||= !isMetric(entry);
     if (errors.length > 0) this.#failed += 1;
     return errors;
   }
@@ -97,7 +101,8 @@ export class Batch {
     this.#output.end();
     this.#pictures.end();
     const isSeparate = this.#total > 1 && this.#remarks.length > 0;
-    this.#output.lines(isSeparate ? ["", ...this.#remarks] : this.#remarks);
+    const remarks = isSeparate ? ["", ...this.#remarks] : this.#remarks;
+    this.#output.lines(this.#hasNoUnit ? [...remarks, "", noUnitNote] : remarks);
     const before = this.#failedBefore;
     if (before.length === 0) return;
     const more = before.length > NAMED ? ` and ${before.length - NAMED} more` : "";

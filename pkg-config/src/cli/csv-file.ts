@@ -1,5 +1,6 @@
 /** The results as a table of comma-separated values. */
 import { isRecord } from "../values.js";
+import { isMetric } from "./lengths.js";
 import { LineFile } from "./line-file.js";
 import { shownIn } from "./pictures.js";
 import { checkReplaceable, checkWritable } from "./writable.js";
@@ -19,10 +20,11 @@ const codes = (value: unknown) =>
 const group = (name: string, keys: readonly string[]) => keys.map((key) => [key, at(name, key)] as const);
 
 /** The columns after the name, read from the JSON entry of a case. They do not depend on the results. */
-const columns: readonly (readonly [heading: string, read: (entry: Entry) => unknown])[] = [
+const allColumns: readonly (readonly [heading: string, read: (entry: Entry) => unknown])[] = [
   ["error", at("error", "code")],
   ["confidence", at("confidence")],
   ["alternatives", (entry) => lengthOf(entry.alternatives)],
+  ["isMetric", (entry) => ("error" in entry ? undefined : isMetric(entry))],
   ["scale", at("scale")],
   ...["qx", "qy", "qz", "qw"].map((heading, i) => [heading, at("quaternion", i)] as const),
   ...["txM", "tyM", "tzM"].map((heading, i) => [heading, at("translation", i)] as const),
@@ -33,6 +35,12 @@ const columns: readonly (readonly [heading: string, read: (entry: Entry) => unkn
   ["warnings", (entry) => codes(entry.warnings)],
   ["timeMs", at("timingsMs", "total")],
 ];
+
+/** The columns; those in metres and millimetres are empty for lengths without a unit. */
+const columns = allColumns.map(
+  ([heading, read]) =>
+    [heading, /M(m)?$/.test(heading) ? (entry: Entry) => (isMetric(entry) ? read(entry) : undefined) : read] as const,
+);
 
 /** The headings, for --help. */
 export const csvHeadings: readonly string[] = ["case", ...columns.map(([heading]) => heading)];

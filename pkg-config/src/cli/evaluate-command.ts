@@ -20,9 +20,11 @@ import {
   caseFolderHelp,
   caseSettings,
   conventionsHelp,
+  depthKindHelp,
   statusHelp,
 } from "./case-options.js";
 import { caseKind, type FolderToDo, foldersToDo } from "./folders.js";
+import { Lengths } from "./lengths.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
 import { evaluationJson, type Failure, failedLine, failureOf } from "./outcome.js";
 import { Output } from "./output.js";
@@ -39,6 +41,9 @@ const rows: readonly OptionRow[] = OPTIONS.evaluate.filter(({ name }) => name !=
 
 const help = `${caseFolderHelp}
 ${conventionsHelp}
+${depthKindHelp}
+  Metrics need depth without an unknown shift, and a camera: evaluate takes metric and scale-invariant depth. Transforms of
+  scale-invariant depth are in its unit.
 ${transformFileHelp}
 
 Output
@@ -68,11 +73,12 @@ async function run(args: string[], flags: EvaluateFlags): Promise<void> {
   const output = new Output(flags);
   const { style } = output;
   const names = cases.map(({ name }) => name);
-  const row = evaluationTable(names, style);
+  const lengths = new Lengths((flags.depthKind ?? "metric") === "metric");
+  const row = evaluationTable(names, lengths, style);
   await runBatch(cases, flags, output, {
     async run(aligner, key, live): Promise<Done> {
       const results = await evaluateCase(aligner, key, flags);
-      const json = results.map(({ result }) => evaluationJson(result));
+      const json = results.map(({ result }) => evaluationJson(result, lengths));
       const isWhole = results.length === 1 && results[0]?.frame === undefined;
       const frames = Object.fromEntries(results.map(({ frame }, i) => [frame, json[i]]));
       const rows: string[] = [];
@@ -81,7 +87,7 @@ async function run(args: string[], flags: EvaluateFlags): Promise<void> {
         const name = frame === undefined ? key.name : `${key.name}/${frame}`;
         if (live === undefined) rows.push(...row(name, result));
         if ("error" in result) remarks.push(failedLine({ ...result, name }, style));
-        else if (live !== undefined) remarks.push(...evaluationDetails(name, result, style));
+        else if (live !== undefined) remarks.push(...evaluationDetails(name, result, lengths, style));
       }
       return { key, entry: isWhole ? (json[0] as object) : { frames }, rows, remarks };
     },

@@ -1,6 +1,8 @@
 /** Outcomes of cases, for tables and for JSON. */
 import { describe, failure, Sim3AlignError } from "../error.js";
-import type { AlignResult, Evaluation, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
+import type { AlignResult, Evaluation, OfInput, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
+import { withoutUndefined } from "../values.js";
+import type { Lengths } from "./lengths.js";
 import type { Style } from "./style.js";
 import { UsageError } from "./usage-error.js";
 
@@ -68,6 +70,10 @@ function transformJson<T extends Sim3>({ scale, rotation, rotationMatrix, transl
   return { scale, rotation: rotationMatrix, translation, matrix, quaternion: rotation, ...rest };
 }
 
+/** How depth and camera were read. */
+export const ofInputJson = ({ depthUnit, cameraSource, depthCalibration }: OfInput) =>
+  withoutUndefined({ depthUnit, cameraSource, depthCalibration });
+
 /** The JSON entry of an aligned case. The keys do not depend on the preset. */
 function alignmentJson({ alignment, errors }: Success) {
   const { scale, rotation, rotationMatrix, translation, matrix, metrics, warnings } = alignment;
@@ -84,6 +90,7 @@ function alignmentJson({ alignment, errors }: Success) {
     uncertainty,
     ...(metrics === undefined ? {} : { metrics }),
     warnings,
+    ...ofInputJson(alignment),
     timingsMs,
     diagnostics,
     ...(errors === null ? {} : { errors }),
@@ -136,5 +143,5 @@ export const outcomeJson = (outcome: Outcome): object =>
   "error" in outcome ? failureJson(outcome) : "views" in outcome ? viewsJson(outcome) : alignmentJson(outcome);
 
 /** The JSON entry of an evaluated case. */
-export const evaluationJson = (evaluation: Evaluation | Failure): object =>
-  "error" in evaluation ? failureJson(evaluation) : evaluation;
+export const evaluationJson = (evaluation: Evaluation | Failure, { isMetric }: Lengths): object =>
+  "error" in evaluation ? failureJson(evaluation) : isMetric ? evaluation : { ...evaluation, isMetric };

@@ -7,9 +7,11 @@ import { exportGlb, placeGlb } from "../conventions/glb.js";
 import type { AlignInput, MeshArrays } from "../input/types.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
-import { isRecord } from "../values.js";
+import type { OfInput } from "../results.js";
+import { isRecord, withoutUndefined } from "../values.js";
 import { type CaseFlags, caseSettings } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
+import { correctedInput } from "./corrected-input.js";
 import { alternativesOf, fileName, ReportFolder } from "./report-folder.js";
 import { makeFolder } from "./writable.js";
 
@@ -31,9 +33,11 @@ export interface Shown {
 export function shownIn(name: string, entry: object): Shown[] {
   const { frames, objects = frames, ...own } = entry as Readonly<Record<string, unknown>>;
   if (!isRecord(objects)) return [{ name, entry: own }];
+  // The objects of a scene are in one depth map.
+  const { depthCalibration } = own;
   return Object.entries(objects).map(([part, pose]) => ({
     name: `${name}/${part}`,
-    entry: pose as Readonly<Record<string, unknown>>,
+    entry: { ...withoutUndefined({ depthCalibration }), ...(pose as object) },
   }));
 }
 
@@ -77,7 +81,7 @@ export class Pictures {
     if (!this.isWanted || input === undefined || !Array.isArray(entry.matrix)) return;
     const matrix = entry.matrix as number[];
     const { overlay, glb } = this.#flags;
-    const shot = await Shot.of(input);
+    const shot = await Shot.of(await correctedInput(input, entry.depthCalibration as OfInput["depthCalibration"]));
     try {
       if (this.#report !== undefined) {
         const others = alternativesOf(entry).map((other) => other.matrix as number[]);

@@ -6,6 +6,7 @@ import { basename, join, resolve } from "node:path";
 import type { CasePictures } from "../pictures/case-pictures.js";
 import type { ReportDetails, ReportRow } from "../report-page/types.js";
 import { isRecord } from "../values.js";
+import { isMetric } from "./lengths.js";
 import { LineFile } from "./line-file.js";
 import { reportHtml } from "./report-html.js";
 import { UsageError } from "./usage-error.js";
@@ -96,6 +97,7 @@ function rowOf(name: string, entry: Entry, folder: string | undefined): ReportRo
     ...(folder === undefined ? {} : { folder }),
     ...("error" in entry ? { error: { code: String(error.code), message: String(error.message) } } : {}),
     confidence: number(entry.confidence),
+    isMetric: isMetric(entry),
     scale: number(entry.scale),
     alternatives: alternativesOf(entry).length,
     iou: number(metrics.iou),

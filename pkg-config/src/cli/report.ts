@@ -1,12 +1,14 @@
 /** Human-readable tables of results. */
 import type { AlignResult, Evaluation, LayoutErrors, Metrics, PoseErrors, Warning } from "../index.js";
+import { depthRows } from "./depth-rows.js";
+import { isMetric, Lengths } from "./lengths.js";
 import { type Failure, failedLine, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
 import type { Style } from "./style.js";
-import { type Column, fixed, headings, pairs, significant, tableLine, textWidth } from "./table.js";
+import { type Column, fixed, headings, pairs, type Row, significant, tableLine, textWidth } from "./table.js";
 
 const number = (heading: string): Column => ({ heading, isNumber: true, width: 6 });
 
-/** The metrics in tables: heading, name, and number of decimals. */
+/** The metrics in tables: heading, name, and number of decimals. Those in millimetres need metric lengths. */
 const metricColumns = [
   ["IoU", "iou", 3],
   ["bound. F", "boundaryF", 3],
@@ -19,8 +21,10 @@ const metricColumns = [
 type Metric = (typeof metricColumns)[number][1];
 
 const metricHeadings = metricColumns.map(([heading]) => number(heading));
-const metricCells = (read: (metric: Metric) => number | null | undefined): string[] =>
-  metricColumns.map(([, metric, digits]) => fixed(read(metric), digits));
+const metricCells = (lengths: Lengths, read: (metric: Metric) => number | null | undefined): string[] =>
+  metricColumns.map(([, metric, digits]) =>
+    metric.endsWith("Mm") ? lengths.cell(read(metric), digits) : fixed(read(metric), digits),
+  );
 
 const errorHeadings: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
 
@@ -66,10 +70,10 @@ export function summaryTable(
 }
 
 /** The table of several evaluations. */
-export function evaluationTable(names: readonly string[], style: Style): RowLines<Evaluation> {
+export function evaluationTable(names: readonly string[], lengths: Lengths, style: Style): RowLines<Evaluation> {
   const cells = ({ metrics, errors }: Evaluation) => [
-    ...metricCells((metric) => metrics[metric]),
-    ...errorCells(errors),
+    ...metricCells(lengths, (metric) => metrics[metric]),
+    ...errorCells(errors, lengths),
   ];
   return tableOf(names, [...metricHeadings, ...errorHeadings], style, cells);
 }
@@ -83,7 +87,7 @@ function caseCells({ alignment }: Success): string[] {
     certain === null ? "–" : String(certain.alternatives.length),
     significant(scale, 4),
     fixed(scaleRatio, 3),
-    ...metricCells((metric) => metrics?.[metric]),
+    ...metricCells(new Lengths(isMetric(alignment)), (metric) => metrics?.[metric]),
     fixed(timingsMs.total / 1000, 2),
   ];
 }
@@ -100,7 +104,7 @@ function viewsCells({ views: alignment }: ViewsSuccess): string[] {
     String(alternatives.length),
     significant(scale, 4),
     "–",
-    ...metricCells(mean),
+    ...metricCells(new Lengths(isMetric(alignment)), mean),
     fixed(diagnostics.timingsMs.total / 1000, 2),
   ];
 }
@@ -110,23 +114,25 @@ export function viewsDetails({ name, views: alignment, frames, errors }: ViewsSu
   const { scale, translation, rotation, world, confidence, uncertainty, views, warnings, diagnostics } = alignment;
   const frame = world === "given" ? "world" : "camera of the first view that is used";
   const numbers = (values: readonly number[]) => values.map((x) => fixed(x, 6)).join("  ");
+  const { unit } = new Lengths(isMetric(alignment));
   const view = (frameName: string, k: number): Row[] => {
-    const { confidence, role, metrics } = views[k] as (typeof views)[number];
+    const { confidence, role, metrics, ...ofInput } = views[k] as (typeof views)[number];
+    const read = depthRows(ofInput).map(([name, value]): Row => ["", `${name}: ${value}`]);
     const own = errors[k] ?? null;
     const error =
       own === null
         ? ""
         : `, errors: scale ${fixed(100 * own.scaleError, 2)} %, rotation ${fixed(own.rotationErrorDeg, 2)}°, translation ${fixed(100 * own.translationErrorRelative, 2)} %`;
-    return [[frameName, `${role}, confidence ${fixed(confidence, 2)}, IoU ${fixed(metrics?.iou, 3)}${error}`]];
+    return [[frameName, `${role}, confidence ${fixed(confidence, 2)}, IoU ${fixed(metrics?.iou, 3)}${error}`], ...read];
   };
   return [
     style.bold(`${name}: ${frame} from mesh, x = s·R·p + t`),
     ...pairs([
       [
         "scale s",
-        `${significant(scale, 6)} m per mesh unit${uncertainty === null ? "" : ` ± ${fixed(100 * uncertainty.scale, 2)} %`}`,
+        `${significant(scale, 6)} ${unit} per mesh unit${uncertainty === null ? "" : ` ± ${fixed(100 * uncertainty.scale, 2)} %`}`,
       ],
-      ["translation t", `${numbers(translation)} m`],
+      ["translation t", `${numbers(translation)} ${unit}`],
       ["rotation R", `${numbers(rotation)} (quaternion x y z w)`],
       ["confidence", `${fixed(confidence, 2)}, score ${fixed(diagnostics.score, 3)}`],
     ]),
@@ -137,12 +143,13 @@ export function viewsDetails({ name, views: alignment, frames, errors }: ViewsSu
   ];
 }
 
-function errorCells(errors: PoseErrors | null): string[] {
+/** Errors of an alignment are known for metric lengths only. */
+function errorCells(errors: PoseErrors | null, lengths = new Lengths(true)): string[] {
   if (errors === null) return errorHeadings.map(() => "–");
   return [
     fixed(100 * errors.scaleError, 1),
     fixed(errors.rotationErrorDeg, 1),
-    fixed(1000 * errors.translationErrorM, 1),
+    lengths.cell(1000 * errors.translationErrorM, 1),
     fixed(100 * errors.translationErrorRelative, 1),
   ];
 }
@@ -152,20 +159,22 @@ export function details({ name, alignment, errors }: Success, style: Style): str
   const { scale, rotation, rotationMatrix, translation, metrics, diagnostics } = alignment;
   const matrixRow = (i: 0 | 1 | 2) =>
     [...rotationMatrix[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
+  const lengths = new Lengths(isMetric(alignment));
   return [
     style.bold(`${name}: camera from mesh, x_cam = s·R·p + t`),
     ...pairs([
-      ["scale s", `${significant(scale, 6)} m per mesh unit`],
+      ["scale s", `${significant(scale, 6)} ${lengths.unit} per mesh unit`],
       ["scale ratio", `${fixed(diagnostics.scaleRatio, 4)} of the initial ${significant(diagnostics.initialScale, 6)}`],
-      ["translation t", `${translation.map((x) => fixed(x, 6)).join("  ")} m`],
+      ["translation t", `${translation.map((x) => fixed(x, 6)).join("  ")} ${lengths.unit}`],
       ["rotation R", `${rotation.map((x) => fixed(x, 6)).join("  ")} (quaternion x y z w)`],
       ["matrix (s·R | t)", matrixRow(0)],
       ["", matrixRow(1)],
       ["", matrixRow(2)],
-      ...("confidence" in alignment ? certainty(alignment) : [refinement(alignment)]),
+      ...("confidence" in alignment ? certainty(alignment, lengths) : [refinement(alignment, lengths)]),
+      ...depthRows(alignment),
     ]),
-    ...(metrics === undefined ? [] : ["", ...metricsSection(metrics, style)]),
-    ...errorsSection(errors, style),
+    ...(metrics === undefined ? [] : ["", ...metricsSection(metrics, lengths, style)]),
+    ...errorsSection(errors, lengths, style),
     "",
     style.bold("Stages"),
     ...pairs(Object.entries(diagnostics.timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`])),
@@ -176,17 +185,16 @@ export function details({ name, alignment, errors }: Success, style: Style): str
   ];
 }
 
-type Row = readonly [name: string, value: string];
-
-function refinement({ diagnostics: { converged, residualM } }: AlignResult<"paper">): Row {
-  return [
-    "refinement",
-    `${converged ? "converged" : "did not converge"}, residual ${significant(1000 * residualM, 3)} mm`,
-  ];
+function refinement({ diagnostics: { converged, residualM } }: AlignResult<"paper">, lengths: Lengths): Row {
+  const residual = lengths.millimetres(1000 * residualM, 3);
+  return ["refinement", `${converged ? "converged" : "did not converge"}, residual ${residual}`];
 }
 
 /** Confidence, alternatives and uncertainty. */
-function certainty({ confidence, alternatives, uncertainty, diagnostics }: AlignResult<"precise">): Row[] {
+function certainty(
+  { confidence, alternatives, uncertainty, diagnostics }: AlignResult<"precise">,
+  lengths: Lengths,
+): Row[] {
   const { score } = diagnostics;
   const others = alternatives.map((other) => `${fixed(other.turnDeg, 0)}° (score ${fixed(other.score, 3)})`);
   const rows: Row[] = [
@@ -196,7 +204,8 @@ function certainty({ confidence, alternatives, uncertainty, diagnostics }: Align
   if (uncertainty === null) return rows;
   const { scale, rotationDeg, rotationAxis, lateralM, distanceM } = uncertainty;
   const axis = rotationAxis.map((x) => fixed(x, 2)).join(" ");
-  const shift = `${fixed(1000 * lateralM, 1)} mm lateral, ${fixed(1000 * distanceM, 1)} mm in distance`;
+  const [lateral, distance] = [lateralM, distanceM].map((length) => lengths.millimetres(1000 * length, 1));
+  const shift = `${lateral} lateral, ${distance} in distance`;
   return [
     ...rows,
     ["uncertainty", `scale ${fixed(100 * scale, 1)} %, rotation ${fixed(rotationDeg, 1)}° about ${axis}, ${shift}`],
@@ -217,7 +226,7 @@ function countRows({ diagnostics: { counts } }: AlignResult): Row[] {
 }
 
 /** Details of an evaluated case. */
-export function evaluationDetails(name: string, evaluation: Evaluation, style: Style): string[] {
+export function evaluationDetails(name: string, evaluation: Evaluation, lengths: Lengths, style: Style): string[] {
   const { metrics, errors, layout, warnings, diagnostics } = evaluation;
   const { scaleRatio, initialScale, collapsed } = diagnostics;
   return [
@@ -227,32 +236,33 @@ export function evaluationDetails(name: string, evaluation: Evaluation, style: S
         "scale ratio",
         `${fixed(scaleRatio, 4)} of the initial ${significant(initialScale, 6)}${collapsed ? ", collapsed" : ""}`,
       ],
+      ...depthRows(evaluation),
     ]),
     "",
-    ...metricsSection(metrics, style),
-    ...errorsSection(errors, style),
-    ...layoutSection(layout, style),
+    ...metricsSection(metrics, lengths, style),
+    ...errorsSection(errors, lengths, style),
+    ...layoutSection(layout, lengths, style),
     ...warningsSection(warnings, style),
   ];
 }
 
-function metricsSection(metrics: Metrics, style: Style): string[] {
+function metricsSection(metrics: Metrics, lengths: Lengths, style: Style): string[] {
   return [
     style.bold("Metrics"),
     ...pairs([
       ["silhouette IoU", fixed(metrics.iou, 4)],
       ["boundary F", fixed(metrics.boundaryF, 4)],
       ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`],
-      ["Chamfer", `${fixed(metrics.chamferMm, 3)} mm (both directions)`],
-      ["uni-Chamfer", `${fixed(metrics.uniChamferMm, 3)} mm (observed to surface)`],
+      ["Chamfer", `${lengths.millimetres(metrics.chamferMm, 3)} (both directions)`],
+      ["uni-Chamfer", `${lengths.millimetres(metrics.uniChamferMm, 3)} (observed to surface)`],
       ["fitness", fixed(metrics.fitness, 4)],
       ["normal consistency", fixed(metrics.normalConsistency, 4)],
-      ["depth MAE", `${fixed(metrics.depthMaeMm, 3)} mm`],
+      ["depth MAE", lengths.millimetres(metrics.depthMaeMm, 3)],
     ]),
   ];
 }
 
-function errorsSection(errors: PoseErrors | null, style: Style): string[] {
+function errorsSection(errors: PoseErrors | null, lengths: Lengths, style: Style): string[] {
   if (errors === null) return [];
   const { scaleError, rotationErrorDeg, translationErrorM, translationErrorRelative, addSMm } = errors;
   return [
@@ -263,14 +273,14 @@ function errorsSection(errors: PoseErrors | null, style: Style): string[] {
       ["rotation", `${fixed(rotationErrorDeg, 2)}°`],
       [
         "translation",
-        `${fixed(1000 * translationErrorM, 2)} mm, ${fixed(100 * translationErrorRelative, 2)} % of the diameter`,
+        `${lengths.millimetres(1000 * translationErrorM, 2)}, ${fixed(100 * translationErrorRelative, 2)} % of the diameter`,
       ],
-      ["ADD-S", `${fixed(addSMm, 2)} mm`],
+      ["ADD-S", lengths.millimetres(addSMm, 2)],
     ]),
   ];
 }
 
-function layoutSection(layout: LayoutErrors | null, style: Style): string[] {
+function layoutSection(layout: LayoutErrors | null, { isMetric }: Lengths, style: Style): string[] {
   if (layout === null) return [];
   const { boxIou, icpRotationDeg, addSRelative, isFound, isCadAligned } = layout;
   return [
@@ -280,7 +290,7 @@ function layoutSection(layout: LayoutErrors | null, style: Style): string[] {
       ["3D IoU", fixed(boxIou, 4)],
       ["ICP-Rot", `${fixed(icpRotationDeg, 2)}°`],
       ["ADD-S", `${fixed(100 * addSRelative, 2)} % of the diameter${isFound ? "" : ", not found"}`],
-      ["20 cm, 20°, 20 %", isCadAligned ? "aligned" : "not aligned"],
+      ...(isMetric ? [["20 cm, 20°, 20 %", isCadAligned ? "aligned" : "not aligned"] as const] : []),
     ]),
   ];
 }

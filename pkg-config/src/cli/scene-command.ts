@@ -17,16 +17,25 @@ import { withoutUndefined } from "../values.js";
 import { errorsOf } from "./align-case.js";
 import type { Done } from "./batch.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
-import { addCaseOptions, type CaseFlags, caseSettings, conventionsHelp, statusHelp } from "./case-options.js";
+import {
+  addCaseOptions,
+  type CaseFlags,
+  caseSettings,
+  conventionsHelp,
+  depthKindHelp,
+  statusHelp,
+} from "./case-options.js";
+import { depthRows } from "./depth-rows.js";
 import { type FolderToDo, foldersToDo, sceneKind } from "./folders.js";
+import { isMetric, Lengths } from "./lengths.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { type Failure, failedLine, failureOf, failureText, type Outcome, outcomeJson } from "./outcome.js";
+import { type Failure, failedLine, failureOf, failureText, type Outcome, ofInputJson, outcomeJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { addPictureFlags, drawEntry, type PictureFlags } from "./pictures.js";
 import { type Live, runBatch } from "./run-batch.js";
 import { addSceneFileFlags, checkSceneFiles, type SceneFileFlags, writeSceneFiles } from "./scene-files.js";
 import type { Style } from "./style.js";
-import { type Column, fixed, headings, tableLine } from "./table.js";
+import { type Column, fixed, headings, pairs, tableLine } from "./table.js";
 
 interface SceneFlags extends CaseFlags, PictureFlags, SceneFileFlags, BatchFlags, Readonly<Record<string, unknown>> {
   snap?: boolean;
@@ -39,7 +48,7 @@ const rows: readonly OptionRow[] = OPTIONS.align.filter(({ name }) => name !== "
 
 const help = `
 A scene folder holds
-  depth.npy or .png …, camera.json      as a case folder, see "sim3align align --help"
+  depth.npy or .png …                   as a case folder, see "sim3align align --help"; also camera.json and the photo
   objects/NAME/mask.png, .npy or .json  the mask of each object
   objects/NAME/mesh.glb, …              its mesh; textures are kept by --scene-glb
   objects/NAME/gt.json (optional)       its true pose
@@ -47,12 +56,14 @@ A scene in the layout of BOP (depth/, mask_visib/, scene_camera.json, scene_gt.j
 ../../models) is one as well; --image-id selects the image.
 ${conventionsHelp}
   The support is the plane n·x + d = 0 in the camera frame, metres; n points to the side of the objects.
+${depthKindHelp} Files for simulators need metres.
 
 Output
   A row per object: confidence, scale, what it rests on, gap, shared volume, silhouette IoU; with gt.json also the errors
   against it.
   --json writes { "<scene>": { "objects": { "<object>": as a case of "align --json", with "contact" },
-  "support": { "normal", "d", "confidence" } | null, "metrics", "warnings" } }; a scene that failed has { "error" }.
+  "support": { "normal", "d", "confidence" } | null, "metrics", "warnings",
+  "depthUnit", "cameraSource", "depthCalibration" } }; a scene that failed has { "error" }.
   --csv has a row per object, SCENE/OBJECT. --report, --overlay and --glb write pictures and posed meshes of each object, see "sim3align align --help".
   --scene-glb writes the scene of a single folder: nodes by name, materials and textures, the camera, and the support as
   ground, y up, in metres.
@@ -68,6 +79,7 @@ Examples
   sim3align scene scenes/desk --scale 0.05,0.5
   sim3align scene scenes/desk --snap --scene-glb desk.glb
   sim3align scene scenes/desk --mjcf desk-mujoco --usd desk.usda
+  sim3align scene scenes/desk --depth-kind affine-invariant-disparity
   sim3align scene scenes/* --report report
   sim3align scene bop/test/000048 --image-id 1 --json -
 ${statusHelp}`;
@@ -86,7 +98,7 @@ export function sceneCommand(): Command {
 
 async function run(args: string[], flags: SceneFlags): Promise<void> {
   const scenes = await scenesIn(await foldersToDo(sceneKind, args, flags.list), flags);
-  checkSceneFiles(flags, scenes.length);
+  checkSceneFiles(flags, scenes.length, hasLengths(flags));
   const support = await supportOf(flags.support);
   const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models: flags.models });
   const output = new Output(flags);
@@ -104,6 +116,10 @@ async function run(args: string[], flags: SceneFlags): Promise<void> {
       }),
   });
 }
+
+/** Whether the flags make lengths metric. */
+const hasLengths = ({ depthKind = "metric", knownExtent, scale }: SceneFlags) =>
+  depthKind === "metric" || knownExtent !== undefined || typeof scale === "number";
 
 /** A scene to align. */
 interface SceneToDo extends Omit<FolderToDo, "folder"> {
@@ -141,7 +157,8 @@ async function alignScene(
     const errors = await Promise.all(
       result.objects.map((object, i) => {
         const own = inputOf(scene, i);
-        return object.error === undefined && own !== undefined ? errorsOf(aligner, own, object, scene.truths[i]) : null;
+        if (object.error !== undefined || own === undefined) return null;
+        return errorsOf(aligner, own, { ...object, ...ofInputJson(result) }, scene.truths[i]);
       }),
     );
     const outcomes = outcomesOf(result, errors);
@@ -177,13 +194,14 @@ const outcomesOf = ({ objects }: SceneResult, errors: readonly (PoseErrors | nul
   });
 
 /** The JSON entry of a scene. */
-function sceneJson({ objects, support, metrics, warnings }: SceneResult, outcomes: readonly Outcome[]): object {
+function sceneJson(result: SceneResult, outcomes: readonly Outcome[]): object {
+  const { objects, support, metrics, warnings } = result;
   const entries = outcomes.map((outcome, i) => {
     const object = objects[i];
     const contact = object === undefined || object.error !== undefined ? {} : { contact: object.contact };
     return [outcome.name, { ...outcomeJson(outcome), ...contact }];
   });
-  return { objects: Object.fromEntries(entries), support, metrics, warnings };
+  return { objects: Object.fromEntries(entries), support, metrics, warnings, ...ofInputJson(result) };
 }
 
 const number = (heading: string): Column => ({ heading, isNumber: true, width: 8 });
@@ -196,14 +214,16 @@ const columns: Column[] = [
 
 function lines(
   name: string,
-  { objects, support, warnings }: SceneResult,
+  result: SceneResult,
   outcomes: readonly Outcome[],
   errors: readonly (PoseErrors | null)[],
 ): string[] {
+  const { objects, support, warnings } = result;
+  const lengths = new Lengths(isMetric(result));
   const plane =
     support === null
       ? "no support"
-      : `support n = ${support.normal.map((x) => fixed(x, 4)).join(" ")}, d = ${fixed(support.d, 4)} m`;
+      : `support n = ${support.normal.map((x) => fixed(x, 4)).join(" ")}, d = ${fixed(support.d, 4)} ${lengths.unit}`;
   const rows = objects.map((object, i) => {
     const outcome = outcomes[i] as Outcome;
     if (object.error !== undefined || "error" in outcome) return `failed ${failureText(outcome as Failure)}`;
@@ -215,7 +235,7 @@ function lines(
       fixed(object.confidence, 2),
       fixed(object.scale, 5),
       below,
-      gapM === null ? "–" : fixed(1000 * gapM, 1),
+      lengths.cell(gapM === null ? null : 1000 * gapM, 1),
       fixed(100 * sharedVolume, 1),
       fixed(object.metrics?.iou ?? null, 3),
       ...(error === null || error === undefined
@@ -229,5 +249,5 @@ function lines(
     return tableLine(columns, cells);
   });
   const notes = warnings.map(({ code, message }) => `${code}: ${message}`);
-  return [`${name}: ${plane}`, headings(columns), ...rows, ...notes];
+  return [`${name}: ${plane}`, ...pairs(depthRows(result)), headings(columns), ...rows, ...notes];
 }

@@ -47,17 +47,26 @@ export const addSceneFileFlags = (command: Command): Command =>
 
 /**
  * Checks the flags before the first scene.
+ * @param isMetric whether lengths will be metric, as simulators need them
  * @throws {@link UsageError}
  */
-export function checkSceneFiles({ sceneGlb, mjcf, urdf, usd }: SceneFileFlags, scenes: number): void {
+export function checkSceneFiles(
+  { sceneGlb, mjcf, urdf, usd }: SceneFileFlags,
+  scenes: number,
+  isMetric: boolean,
+): void {
   const outputs = [
-    ["--scene-glb", sceneGlb, checkWritable],
-    ["--mjcf", mjcf, makeFolder],
-    ["--urdf", urdf, makeFolder],
-    ["--usd", usd, checkWritable],
+    ["--scene-glb", sceneGlb, checkWritable, false],
+    ["--mjcf", mjcf, makeFolder, true],
+    ["--urdf", urdf, makeFolder, true],
+    ["--usd", usd, checkWritable, true],
   ] as const;
-  for (const [flag, path, check] of outputs) {
+  for (const [flag, path, check, needsMetres] of outputs) {
     if (path === undefined) continue;
+    if (needsMetres && !isMetric)
+      throw new UsageError(
+        `${flag} needs metres, which depth of this kind has not: pass --known-extent, or a number as --scale.`,
+      );
     if (scenes > 1) throw new UsageError(`${flag} takes a single scene.`);
     check(flag, path);
   }
@@ -70,7 +79,7 @@ export async function writeSceneFiles(
   flags: SceneFileFlags,
 ): Promise<string[]> {
   const { sceneGlb, mjcf, urdf, usd, density, parts, rest } = flags;
-  const camera = cameraOf(scene.input);
+  const camera = cameraOf(scene.input, result);
   if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera));
   if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
   const { support } = result;
@@ -142,9 +151,11 @@ async function glbOf(
   return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
 }
 
-function cameraOf(input: SceneInput): ImageCamera | undefined {
+function cameraOf(input: SceneInput, { depthCalibration }: SceneResult): ImageCamera | undefined {
   const { cameraFile, imageId } = input as { cameraFile?: Uint8Array; imageId?: string };
-  if (cameraFile === undefined) return undefined;
+  const found = depthCalibration?.camera;
+  // The principal point of a camera that was not given is the centre.
+  if (cameraFile === undefined) return found && { fy: found.fy, width: 2 * found.cx + 1, height: 2 * found.cy + 1 };
   try {
     const { fy, cx, cy, width, height } = parseCameraFile(cameraFile, withoutUndefined({ imageId }));
     // A file without size: the principal point is about the middle.

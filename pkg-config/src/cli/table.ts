@@ -35,8 +35,11 @@ export const headings = (columns: readonly Column[]) =>
     columns.map(({ heading }) => heading),
   );
 
+/** A name and its value. */
+export type Row = readonly [name: string, value: string];
+
 /** Names and values in two columns, indented. */
-export function pairs(entries: readonly (readonly [name: string, value: string])[]): string[] {
+export function pairs(entries: readonly Row[]): string[] {
   const longest = Math.max(...entries.map(([name]) => textWidth(name)));
   return entries.map(([name, value]) => `  ${pad(name, longest, false)}  ${value}`);
 }

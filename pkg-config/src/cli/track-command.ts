@@ -11,15 +11,17 @@ import {
   caseFolderHelp,
   caseSettings,
   conventionsHelp,
+  depthKindHelp,
   statusHelp,
 } from "./case-options.js";
+import { depthRows } from "./depth-rows.js";
 import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
 import { failedLine, failureOf, outcomeJson, trackJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { type Live, runBatch } from "./run-batch.js";
 import type { Style } from "./style.js";
-import { type Column, fixed, headings, significant, tableLine } from "./table.js";
+import { type Column, fixed, headings, pairs, significant, tableLine } from "./table.js";
 import { readTransform } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
@@ -28,11 +30,12 @@ interface TrackFlags extends CaseFlags, BatchFlags, Readonly<Record<string, unkn
 const help = `${caseFolderHelp}
 A video needs a mask in its first frame only. Camera poses are not used.
 ${conventionsHelp}
+${depthKindHelp}
 
 Output
   A row per frame: state, confidence, scale and its standard deviation, and time.
   --json writes { "<video>": { scale, frames: { "<frame>": { scale, rotation, translation, matrix, quaternion, state,
-  confidence, … } } } }; a frame that failed has { error }. The scale of the video is the last one. A single video is written
+  confidence, depthUnit, depthCalibration, … } } } }; a frame that failed has { error }. The scale of the video is the last one. A single video is written
   after each frame, several when each ends. --csv has a row per frame, VIDEO/FRAME.
 ${batchHelp(videoKind)}
 
@@ -113,6 +116,9 @@ async function trackVideo(
       print(tableLine(columns, row));
       if (output.isClosed) break;
     }
+    // How the last frame was read stands for the others.
+    const last = frames.flatMap(({ tracked }) => ("error" in tracked ? [] : [tracked])).at(-1);
+    if (last !== undefined) print(...pairs(depthRows(last)));
     return { key, entry: trackJson(frames), rows, remarks: [] };
   } catch (error) {
     const failed = failureOf(name, error, files);

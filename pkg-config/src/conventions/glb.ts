@@ -84,6 +84,11 @@ export function placeGlb(
   transform: Sim3Like,
   options: GltfNodeOptions = {},
 ): Uint8Array {
+  return underNode(glb, toGltfNode(transform, options));
+}
+
+/** A GLB with one more node above its scene. */
+export function underNode(glb: Uint8Array | ArrayBuffer, parent: Partial<GltfNode>): Uint8Array {
   const { json, others } = chunksOf(glb);
   const nodes = objectsOf(json, "nodes");
   const children = new Set(nodes.flatMap((node) => node.children ?? []));
@@ -91,7 +96,7 @@ export function placeGlb(
   const scenes = json.scenes === undefined ? [{ nodes: roots }] : objectsOf(json, "scenes");
   const scene = typeof json.scene === "number" ? json.scene : 0;
   const shown = (scenes[scene]?.nodes ?? []) as number[];
-  const node: GltfNode & { children?: number[] } = toGltfNode(transform, options);
+  const node: Partial<GltfNode> & { children?: number[] } = { ...parent };
   // glTF does not allow an empty list of children.
   if (shown.length > 0) node.children = shown;
   const placed = {

@@ -35,9 +35,12 @@ function covariance(mesh: Mesh): Matrix3 {
 /** The planes of the rotations: each pair of axes. */
 const planes = [[0, 1] as const, [0, 2] as const, [1, 2] as const] as const;
 
-/** The eigenvectors as columns, by Jacobi rotations; right-handed. */
-export function principalAxes(mesh: Mesh): Matrix3 {
-  let matrix = covariance(mesh);
+/** The axes along which a surface is spread most and least, as columns; right-handed. */
+export const principalAxes = (mesh: Mesh): Matrix3 => eigenvectors(covariance(mesh));
+
+/** The eigenvectors of a symmetric matrix as columns, by Jacobi rotations; right-handed. */
+export function eigenvectors(symmetric: Matrix3): Matrix3 {
+  let matrix = symmetric;
   let axes: Matrix3 = [1, 0, 0, 0, 1, 0, 0, 0, 1];
   // Three planes per sweep; the off-diagonal entries shrink quadratically.
   for (let step = 0; step < 36; step++) {

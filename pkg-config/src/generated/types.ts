@@ -74,6 +74,12 @@ export interface AlignOptions {
    * 0, or null. Default `null`.
    */
   workBudget?: number | null | undefined;
+  /**
+   * Whether to fit the proportions of the mesh, which generators get wrong by some per cent: see `proportions` of the
+   * result. The similarity and its metrics stay those of the mesh as it is. Not of a mesh whose scale is given.
+   * Default `"keep"`.
+   */
+  proportions?: Proportions | undefined;
   /** Whether to compute `metrics`. Without them the call takes less time. Default `true`. */
   metrics?: boolean | undefined;
   /**
@@ -549,6 +555,17 @@ export type Uncertainty = {
   distanceM: number;
 };
 
+/**
+ * A mesh in the proportions that the image shows: x_cam = s·R·S·p_mesh + t. The image determines less of them the
+ * less it shows of a side; what it does not show stays as the mesh has it, and is uncertain.
+ */
+export type Stretch = Sim3 & {
+  /** S as three rows of three: symmetric, of determinant 1, in the frame of the mesh. */
+  stretch: [[number, number, number], [number, number, number], [number, number, number]];
+  /** Standard deviations of the lengths along x, y and z of the mesh, relative: 0.01 is one per cent. */
+  uncertainty: [number, number, number];
+};
+
 /** How an evaluated scale compares with the initial one. */
 export type EvaluationDiagnostics = {
   /** s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1). */
@@ -633,6 +650,8 @@ export type Alignment = Sim3 & {
   alternatives: Array<Alternative>;
   /** How well the observation determines each part of the pose; `null` where the search could not tell. */
   uncertainty: Uncertainty | null;
+  /** The mesh in its true proportions; present where they were asked for, and fitted. */
+  proportions?: Stretch;
   /** Agreement of the posed mesh with the observation. */
   metrics: Metrics;
   /** Conditions that the caller should know about; the result stands. */

@@ -31,10 +31,16 @@ const common: readonly Column[] = [
     (row) => (row.error === undefined ? row.alternatives : null),
     0,
   ),
-  number("scale", "Scale", "Metres per unit of the mesh", (row) => row.scale, 4),
+  number("scale", "Scale", "Metres, or units of the result's own, per unit of the mesh", (row) => row.scale, 4),
   number("iou", "IoU", "Overlap of silhouette and mask", (row) => row.iou, 3),
   number("boundaryF", "Boundary F", "Agreement of the outlines", (row) => row.boundaryF, 3),
-  number("depthMaeMm", "Depth, mm", "Mean absolute difference of depth", (row) => row.depthMaeMm, 2),
+  number(
+    "depthMaeMm",
+    "Depth, mm",
+    "Mean absolute difference of depth, if it is metric",
+    (row) => (row.isMetric ? row.depthMaeMm : null),
+    2,
+  ),
 ];
 
 const errors: readonly Column[] = [

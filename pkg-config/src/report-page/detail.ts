@@ -110,14 +110,17 @@ export class Detail {
     folder: string,
     { limitMm, isPhoto, alternatives, matrix, space }: ReportDetails,
   ): void {
+    // The unit of lengths that are not metric is unknown.
+    const length = (mm: number | null, digits: number) =>
+      row.isMetric ? `${decimals(mm, digits)} mm` : `${decimals(mm && mm / 1000, digits + 3)} units`;
     const legend = element(
       "p",
       { class: "legend" },
       `Over the ${isPhoto ? "photo" : "depth map"}: `,
       element("span", { class: "key mesh" }, "mesh"),
       element("span", { class: "key mask" }, "mask"),
-      element("span", { class: "key near" }, `mesh ${limitMm} mm nearer`),
-      element("span", { class: "key far" }, `${limitMm} mm farther`),
+      element("span", { class: "key near" }, `mesh ${length(limitMm, 0)} nearer`),
+      element("span", { class: "key far" }, `${length(limitMm, 0)} farther`),
     );
     const canvas = element("canvas", {
       width: 440,
@@ -146,11 +149,11 @@ export class Detail {
     }
     const numbers: [string, string][] = [
       ["Confidence", decimals(row.confidence, 3)],
-      ["Scale", row.scale === null ? "–" : `${row.scale.toPrecision(6)} m per unit`],
+      ["Scale", row.scale === null ? "–" : `${row.scale.toPrecision(6)} ${row.isMetric ? "m" : "units"} per mesh unit`],
       ["Silhouette IoU", decimals(row.iou, 4)],
       ["Boundary F", decimals(row.boundaryF, 4)],
-      ["Depth difference", `${decimals(row.depthMaeMm, 2)} mm`],
-      ["Chamfer distance", `${decimals(row.chamferMm, 2)} mm`],
+      ["Depth difference", length(row.depthMaeMm, 2)],
+      ["Chamfer distance", length(row.chamferMm, 2)],
     ];
     const entries = numbers.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]);
     const rows = [0, 1, 2, 3].map((i) =>

@@ -9,6 +9,8 @@ export interface ReportRow {
   /** The code and the text of its failure. */
   error?: { code: string; message: string };
   confidence: number | null;
+  /** Whether lengths are metric; otherwise, their unit is unknown. */
+  isMetric: boolean;
   scale: number | null;
   alternatives: number;
   iou: number | null;

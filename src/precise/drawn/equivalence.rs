@@ -1,10 +1,13 @@
 //! Equivalence: poses that a symmetry of the mesh makes one.
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::geometry::rotations::angle_between;
 use crate::metrics::symmetry::SymmetryGroup;
+
+/// Rolls about an axis of revolution that average a symmetric matrix.
+const ROLLS: usize = 4;
 
 /// Minimum rotation between different poses, radians.
 pub const DIFFERENT: f64 = 0.26;
@@ -38,6 +41,21 @@ impl Equivalence {
     pub fn others(&self, rotation: DQuat, rolls: usize) -> Vec<DQuat> {
         let members = self.0.members(rolls).into_iter().skip(1);
         members.map(|turn| rotation * DQuat::from_array(turn.coords.into())).collect()
+    }
+
+    /// The mean of a symmetric matrix in the frame of the mesh over all rotations that leave its shape as it is.
+    pub fn mean(&self, matrix: &DMat3) -> DMat3 {
+        if self.is_sphere() {
+            let third = (matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z) / 3.0;
+            return DMat3::from_diagonal(DVec3::splat(third));
+        }
+        // Three rolls or more average what has two waves in a turn.
+        let members = self.0.members(ROLLS);
+        let turned = members.iter().map(|turn| {
+            let turn = DMat3::from_quat(DQuat::from_array(turn.coords.into()));
+            turn.transpose() * *matrix * turn
+        });
+        turned.fold(DMat3::ZERO, |sum, one| sum + one) * (1.0 / members.len() as f64)
     }
 
     /// The axis, in the camera frame, about which the symmetry leaves the rotation of a pose free.

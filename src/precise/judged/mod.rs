@@ -9,4 +9,5 @@ pub mod choice;
 pub mod color;
 pub mod confidence;
 pub mod lookalikes;
+pub mod stretch;
 pub mod verdict;

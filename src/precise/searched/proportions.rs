@@ -23,10 +23,10 @@ pub const PROPORTIONS: usize = 5;
 /// Number of all parameters.
 const ALL: usize = PARAMETERS + PROPORTIONS;
 
-/// Standard deviation of each parameter. From 0.02 to 0.1, the errors on generated cases are about the same.
+/// Standard deviation of each parameter. From 0.02 to 0.1, the errors of the similarity on generated cases are about the same.
 const DEVIATION: f64 = 0.03;
-/// Score per square of E: [`DROP`] at one standard deviation.
-const COST: f64 = DROP / (DEVIATION * DEVIATION);
+/// Standard deviation of a parameter that is not free.
+const FIXED: f64 = 1e-4;
 /// Maximum magnitude of a parameter.
 const MOST: f64 = 0.25;
 /// Iterations that find the nearest similarity: each squares the relative error, which starts at the size of E.
@@ -42,6 +42,55 @@ const SMALL: f64 = 1e-4;
 const ROOT_HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 const ROOT_SIXTH: f64 = 0.408_248_290_463_863;
 
+/// Which E a mesh may have, and which are likely.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shapes {
+    /// Score per square of E: [`DROP`] at one standard deviation.
+    cost: f64,
+    /// The projection to the parameters that are free; all, if `None`.
+    free: Option<[[f64; PROPORTIONS]; PROPORTIONS]>,
+}
+
+impl Default for Shapes {
+    fn default() -> Self {
+        Self { cost: DROP / (DEVIATION * DEVIATION), free: None }
+    }
+}
+
+impl Shapes {
+    /// Those of which `free` is the projection to the free parameters, with this standard deviation.
+    pub fn new(deviation: f64, free: [[f64; PROPORTIONS]; PROPORTIONS]) -> Self {
+        Self { cost: DROP / (deviation * deviation), free: Some(free) }
+    }
+
+    /// What is not free of the parameter with this index, by parameter.
+    fn fixed(&self, index: usize) -> Option<[f64; PROPORTIONS]> {
+        let mut row = self.free?[index].map(|x| -x);
+        row[index] += 1.0;
+        Some(row)
+    }
+
+    /// The penalty on the score.
+    fn cost(&self, Proportions(parameters): &Proportions) -> f64 {
+        let dot = |row: [f64; PROPORTIONS]| row.iter().zip(parameters).map(|(a, b)| a * b).sum::<f64>();
+        let fixed: f64 = (0..PROPORTIONS).filter_map(|i| self.fixed(i)).map(|row| dot(row) * dot(row)).sum();
+        self.cost * parameters.iter().map(|x| x * x).sum::<f64>() + DROP / (FIXED * FIXED) * fixed
+    }
+
+    /// Adds the quadratic of the penalty.
+    fn add_to(&self, Proportions(parameters): &Proportions, equations: &mut NormalEquationsOf<ALL>) {
+        for (i, x) in parameters.iter().enumerate() {
+            let mut jacobian = [0.0; ALL];
+            jacobian[PARAMETERS + i] = 1.0;
+            equations.add(&jacobian, *x, 2.0 * self.cost);
+            let Some(row) = self.fixed(i) else { continue };
+            jacobian[PARAMETERS..].copy_from_slice(&row);
+            let residual = row.iter().zip(parameters).map(|(a, b)| a * b).sum();
+            equations.add(&jacobian, residual, 2.0 * DROP / (FIXED * FIXED));
+        }
+    }
+}
+
 /// The parameters of E.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Proportions([f64; PROPORTIONS]);
@@ -52,12 +101,14 @@ impl Proportions {
         Self(parameters)
     }
 
+    /// Its parameters.
+    pub fn parameters(&self) -> [f64; PROPORTIONS] {
+        self.0
+    }
+
     /// e^E, in the frame of the mesh.
     pub fn matrix(&self) -> DMat3 {
-        let [a, b, xy, xz, yz] = self.0;
-        let (a, b) = (ROOT_HALF * a, ROOT_SIXTH * b);
-        let [xy, xz, yz] = [xy, xz, yz].map(|x| ROOT_HALF * x);
-        let e = DMat3::from_cols_array(&[a + b, xy, xz, xy, b - a, yz, xz, yz, -2.0 * b]);
+        let e = self.exponent();
         // Terms of fourth order are below 1e-5 if E is 10 %.
         DMat3::IDENTITY + e + e * e * 0.5 + e * e * e * (1.0 / 6.0)
     }
@@ -76,18 +127,19 @@ impl Proportions {
         ]
     }
 
-    /// The penalty on the score.
-    fn cost(&self) -> f64 {
-        COST * self.0.iter().map(|x| x * x).sum::<f64>()
+    /// The parameters of a symmetric E of trace 0.
+    pub fn of_matrix(e: &DMat3) -> Self {
+        let (straight, sum) = (e.x_axis.x - e.y_axis.y, e.x_axis.x + e.y_axis.y - 2.0 * e.z_axis.z);
+        let across = [e.x_axis.y, e.x_axis.z, e.y_axis.z].map(|x| x / ROOT_HALF);
+        Self([ROOT_HALF * straight, ROOT_SIXTH * sum, across[0], across[1], across[2]])
     }
 
-    /// Adds the quadratic of the penalty.
-    fn add_to(&self, equations: &mut NormalEquationsOf<ALL>) {
-        for (i, x) in self.0.iter().enumerate() {
-            let mut jacobian = [0.0; ALL];
-            jacobian[PARAMETERS + i] = 1.0;
-            equations.add(&jacobian, *x, 2.0 * COST);
-        }
+    /// E.
+    pub fn exponent(&self) -> DMat3 {
+        let [a, b, xy, xz, yz] = self.0;
+        let (a, b) = (ROOT_HALF * a, ROOT_SIXTH * b);
+        let [xy, xz, yz] = [xy, xz, yz].map(|x| ROOT_HALF * x);
+        DMat3::from_cols_array(&[a + b, xy, xz, xy, b - a, yz, xz, yz, -2.0 * b])
     }
 }
 
@@ -134,29 +186,36 @@ impl Stretched {
     }
 }
 
-impl Ascent<ALL> for OnGrid<'_, '_> {
+/// A refinement of a pose and of the proportions on one grid.
+pub(in crate::precise) struct InProportion<'a, 'c> {
+    pub(in crate::precise) on: OnGrid<'a, 'c>,
+    pub(in crate::precise) shapes: Shapes,
+}
+
+impl Ascent<ALL> for InProportion<'_, '_> {
     type Pose = Stretched;
     type Score = Score;
 
     fn allowed(&self, at: Stretched) -> Stretched {
-        Stretched { pose: self.refiner.objective.prior.bounded(at.pose), ..at }
+        Stretched { pose: self.on.refiner.objective.prior.bounded(at.pose), ..at }
     }
 
     fn score(&mut self, at: &Stretched) -> Score {
         let stretch = at.proportions.matrix().as_mat3();
-        let mut score = self.refiner.objective.score_stretched(self.canvas, &at.pose, &stretch);
-        score.total -= at.proportions.cost() as f32;
+        let mut score = self.on.refiner.objective.score_stretched(self.on.canvas, &at.pose, &stretch);
+        score.total -= self.shapes.cost(&at.proportions) as f32;
         score
     }
 
     fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquationsOf<ALL> {
-        let canvas = &*self.canvas;
+        let refiner = self.on.refiner;
+        let canvas = &*self.on.canvas;
         let to_mesh: Mat3 = canvas.rotation.transpose();
         let mut equations = NormalEquationsOf::new();
-        let turns = self.refiner.evidence(canvas, score, &mut |point, gradient, residual, weight| {
+        let turns = refiner.evidence(canvas, score, &mut |point, gradient, residual, weight| {
             let mut jacobian = [0.0; ALL];
             let arm = to_mesh * (point - canvas.translation);
-            let of_pose = self.refiner.jacobian(canvas, point, gradient);
+            let of_pose = refiner.jacobian(canvas, point, gradient);
             let of_proportions = Proportions::jacobian(arm, to_mesh * gradient);
             for (to, from) in jacobian.iter_mut().zip(of_pose.iter().chain(&of_proportions)) {
                 *to = f64::from(*from);
@@ -165,21 +224,27 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
         });
         turns.add_to(&mut equations);
         let mut of_surroundings = NormalEquations::new();
-        self.refiner.add_surroundings(&mut of_surroundings, &at.pose);
+        refiner.add_surroundings(&mut of_surroundings, &at.pose);
         equations.add_first(&of_surroundings);
-        at.proportions.add_to(&mut equations);
+        self.shapes.add_to(&at.proportions, &mut equations);
         equations
     }
 
     fn moved(&self, at: &Stretched, step: [f64; ALL]) -> Option<Stretched> {
         let mut first: Step = [0.0; PARAMETERS];
         first.copy_from_slice(&step[..PARAMETERS]);
-        let pose = self.refiner.moved(&at.pose, first)?;
+        let pose = self.on.refiner.moved(&at.pose, first)?;
         let mut proportions = at.proportions;
         for (x, by) in proportions.0.iter_mut().zip(&step[PARAMETERS..]) {
             *x = (*x + by).clamp(-MOST, MOST);
         }
         Some(Stretched { pose, proportions })
+    }
+}
+
+impl<'a, 'c> InProportion<'a, 'c> {
+    pub(in crate::precise) fn new(refiner: &'a Refiner<'a>, canvas: &'c mut Canvas, shapes: Shapes) -> Self {
+        Self { on: OnGrid { refiner, canvas }, shapes }
     }
 }
 
@@ -202,7 +267,7 @@ impl Refiner<'_> {
         }
         let stretched = |proportions| Stretched { pose: *pose, proportions };
         let at = stretched(Proportions::default());
-        let mut equations = Ascent::<ALL>::equations(&mut OnGrid { refiner: self, canvas }, &at, score);
+        let mut equations = InProportion::new(self, canvas, Shapes::default()).equations(&at, score);
         free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
         let of_all = covariance(&equations)?;
         // The change of the nearest similarity with each parameter.
@@ -244,7 +309,7 @@ impl Refiner<'_> {
         }
         let start = Stretched { pose, proportions: Proportions::default() };
         let Found { pose, score, renders, converged } =
-            ascend::<ALL, _>(&mut OnGrid { refiner: self, canvas }, start, iterations);
+            ascend(&mut InProportion::new(self, canvas, Shapes::default()), start, iterations);
         // At a bound of the scale, it stays there.
         let is_at_bound = self.objective.prior.is_at_bound(&pose.pose);
         let nearest = self.objective.prior.bounded(pose.nearest(surface, is_at_bound));

@@ -34,7 +34,7 @@ const MIN_OUTLINE_CELLS: f32 = 0.5;
 const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
 /// A refinement on one grid, whose last render is on the canvas.
-pub(super) struct OnGrid<'a, 'c> {
+pub(in crate::precise) struct OnGrid<'a, 'c> {
     pub(super) refiner: &'a Refiner<'a>,
     pub(super) canvas: &'c mut Canvas,
 }

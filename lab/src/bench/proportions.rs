@@ -1,0 +1,117 @@
+//! Meshes whose proportions are wrong by a known amount, and how far an alignment puts them right.
+
+use crate::bench::statistics::cell;
+use crate::monocular::picture::{Picture, Thing};
+use crate::prelude::*;
+use sim3align::align::align;
+use sim3align::precise::drawn::equivalence::Equivalence;
+use sim3align::precise::searched::proportions::Proportions;
+
+/// The errors of the lengths of an object along its axes, relative.
+#[derive(Debug, Clone)]
+pub struct Record {
+    /// Without proportions.
+    pub before: [f64; 3],
+    /// With them.
+    pub after: [f64; 3],
+    /// What the result says of them.
+    pub uncertainty: [f64; 3],
+}
+
+/// Uncertainty up to which a side counts as seen.
+const SEEN: f64 = 0.02;
+/// Rotation beyond which a pose is wrong, degrees.
+const WRONG_DEG: f64 = 20.0;
+
+/// The records of the objects of an image, stretched by at most `most` (logarithm).
+///
+/// # Errors
+/// Those of meshes and observations.
+pub fn records(picture: &Picture, seed: u64, most: f64, options: &AlignOptions) -> Result<Vec<Record>> {
+    let records = (0..picture.objects.len()).map(|k| record(picture, k, seed, most, options));
+    Ok(records.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+}
+
+/// A table of the errors, in per cent.
+pub fn table(records: &[Record]) -> String {
+    let mut lines = vec![
+        "| sides | number | median before | after | 90 % before | after | 90 % of error / uncertainty |".to_owned(),
+        "|---|---|---|---|---|---|---|".into(),
+    ];
+    let groups: [(&str, fn(f64) -> bool); 3] = [("all", |_| true), ("seen", |u| u < SEEN), ("not seen", |u| u >= SEEN)];
+    for (name, is_in) in groups {
+        let sides = || {
+            let sides = records.iter().flat_map(|r| (0..3).map(|i| [r.before[i], r.after[i], r.uncertainty[i]]));
+            sides.filter(|[.., uncertainty]| is_in(*uncertainty))
+        };
+        let at = |share: f64, of: fn(&[f64; 3]) -> f64| {
+            let mut values: Vec<f64> = sides().map(|side| of(&side)).collect();
+            values.sort_by(f64::total_cmp);
+            values.get((share * values.len() as f64) as usize).copied()
+        };
+        let percent = |share, of| cell(at(share, of).map(|x| 100.0 * x), 2);
+        let [before, after] = [|s: &[f64; 3]| s[0], |s: &[f64; 3]| s[1]];
+        lines.push(format!(
+            "| {name} | {} | {} | {} | {} | {} | {} |",
+            sides().count(),
+            percent(0.5, before),
+            percent(0.5, after),
+            percent(0.9, before),
+            percent(0.9, after),
+            cell(at(0.9, |s| s[1] / s[2].max(1e-9)), 2),
+        ));
+    }
+    lines.join("\n")
+}
+
+/// A number of a text, the same everywhere.
+fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// The record of an object of known pose; `None` if it has none, if its size is given, or if it was not found.
+fn record(picture: &Picture, k: usize, seed: u64, most: f64, options: &AlignOptions) -> Result<Option<Record>> {
+    let Thing { name, mask, mesh, truth: Some(truth), .. } = &picture.objects[k] else { return Ok(None) };
+    let random = &mut Random::new(mixed([seed, hash(name)]), 0);
+    let drawn = [0; 3].map(|_| between(random, -1.0, 1.0));
+    let mean = drawn.iter().sum::<f64>() / 3.0;
+    let largest = drawn.iter().fold(1e-9f64, |largest, x| largest.max((x - mean).abs()));
+    let straight = DMat3::from_diagonal(DVec3::from_array(drawn.map(|x| (x - mean) * most / largest)));
+    // What has a symmetry is stretched so that it keeps it.
+    let wrong = Equivalence::new(Symmetry::Auto.group(mesh)?).mean(&straight);
+    let stretch = Proportions::of_matrix(&wrong).matrix();
+    let shrink = stretch.inverse();
+    let shrunk = mesh.positions().iter().map(|p| (shrink * p.as_dvec3()).as_vec3());
+    let shrunk = Mesh::new(shrunk.collect(), mesh.triangles().to_vec())?;
+    let mut observation = Observation::new(picture.depth.clone(), mask.clone(), picture.camera)?;
+    if let Some(others) = others(picture, k)? {
+        observation = observation.with_others(others)?;
+    }
+    let Ok(found) = align(&observation, &shrunk, options, &mut Silent) else { return Ok(None) };
+    let turn = truth.camera_from_mesh.rotation.inverse() * Rotation3::from(quaternion(found.camera_from_mesh.rotation));
+    let Some(proportions) = &found.proportions else { return Ok(None) };
+    if turn.angle().to_degrees() > WRONG_DEG {
+        return Ok(None);
+    }
+    let s = DMat3::from_cols_array_2d(&proportions.stretch);
+    let size = truth.camera_from_mesh.scale;
+    let error = |length: f64, axis: usize| libm::log(length / (size * stretch.col(axis).length())).abs();
+    Ok(Some(Record {
+        before: [0, 1, 2].map(|i| error(found.camera_from_mesh.scale, i)),
+        after: [0, 1, 2].map(|i| error(proportions.camera_from_stretched.scale * s.col(i).length(), i)),
+        uncertainty: proportions.uncertainty,
+    }))
+}
+
+fn quaternion([x, y, z, w]: [f64; 4]) -> UnitQuaternion<f64> {
+    UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z))
+}
+
+/// The pixels of all objects but one; `None` if there are no others.
+fn others(picture: &Picture, k: usize) -> Result<Option<Mask>> {
+    let masks: Vec<&Mask> =
+        picture.objects.iter().enumerate().filter(|(j, _)| *j != k).map(|(_, thing)| &thing.mask).collect();
+    let Some(first) = masks.first() else { return Ok(None) };
+    let is_other = |i: usize| u8::from(masks.iter().any(|mask| mask.data()[i] != 0));
+    Image::new("mask", first.width(), first.height(), (0..first.data().len()).map(is_other).collect()).map(Some)
+}

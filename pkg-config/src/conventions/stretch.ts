@@ -1,0 +1,107 @@
+/** Meshes in the proportions that an alignment found. */
+import { failure } from "../error.js";
+import type { MeshArrays } from "../input/types.js";
+import { finiteNumbers, record, type Vector3 } from "../values.js";
+import { underNode } from "./glb.js";
+import { meshOf } from "./mesh.js";
+import { eigenvectors } from "./principal-axes.js";
+import { column, determinant, dot, entry, type Matrix3, quaternionOf, transposed, turned } from "./rotation.js";
+
+/** What the functions read of `proportions` of a result. */
+export interface StretchLike {
+  /** A symmetric matrix with positive eigenvalues, as three rows of three or nine numbers. */
+  stretch: ArrayLike<number> | readonly (readonly number[])[];
+}
+
+/** Largest difference between entries of a symmetric matrix, relative to its largest one. */
+const SYMMETRIC = 1e-6;
+
+/**
+ * A mesh in other proportions: its vertices times the stretch. It is placed by the transform in `proportions`, with which
+ * all exports, boxes and sizes take it.
+ *
+ * @param mesh the aligned mesh, as arrays
+ * @param proportions of a result of `align` with `proportions: "axes"` or `"full"`
+ *
+ * @example
+ * const { proportions } = await aligner.align(input, { proportions: "full" });
+ * const { sizeM } = objectDimensions(stretchMesh(mesh, proportions), proportions);
+ * @throws {@link Sim3AlignError} for an invalid mesh, and `INVALID_ARGUMENT` for a matrix that is not a stretch
+ */
+export function stretchMesh<M extends MeshArrays>(mesh: M, proportions: StretchLike): M {
+  const { positions } = meshOf("mesh", mesh);
+  const matrix = stretchOf(proportions);
+  const { samples } = mesh;
+  if (samples === undefined || samples === null) return { ...mesh, positions: mapped(matrix, positions) };
+  // Normals turn with the inverse, which is as symmetric.
+  const normals = mapped(inverse(matrix), samples.normals, true);
+  return {
+    ...mesh,
+    positions: mapped(matrix, positions),
+    samples: { ...samples, positions: mapped(matrix, samples.positions), normals },
+  };
+}
+
+/**
+ * A GLB in other proportions, by two parent nodes above its scene: a scaling along the axes of the stretch, and the rotation
+ * to these. Materials, textures and animations are kept; nothing is decoded. It is placed by the transform in `proportions`.
+ *
+ * @param glb the bytes of the aligned file
+ * @param proportions of a result of `align` for the same file
+ *
+ * @example
+ * const placed = placeGlb(stretchGlb(generated, proportions), proportions);
+ * @throws {@link Sim3AlignError} as {@link stretchMesh} and {@link placeGlb}
+ */
+export function stretchGlb(glb: Uint8Array | ArrayBuffer, proportions: StretchLike): Uint8Array {
+  const matrix = stretchOf(proportions);
+  const axes = eigenvectors(matrix);
+  const inAxes = underNode(glb, { name: "axes of the stretch", rotation: quaternionOf(transposed(axes)) });
+  return underNode(inAxes, { name: "stretch", rotation: quaternionOf(axes), scale: lengthsAlong(matrix, axes) });
+}
+
+/** The eigenvalues of a symmetric matrix, by its eigenvectors. */
+const lengthsAlong = (matrix: Matrix3, axes: Matrix3): Vector3 =>
+  [0, 1, 2].map((k) => dot(column(axes, k as 0), turned(matrix, column(axes, k as 0)))) as Vector3;
+
+function stretchOf(proportions: StretchLike): Matrix3 {
+  const { stretch } = record("proportions", proportions, "{ stretch }, `proportions` of a result");
+  const numbers = finiteNumbers("proportions.stretch", stretch, 9, "nine finite numbers, three rows of three");
+  const matrix = numbers as unknown as Matrix3;
+  const largest = Math.max(...numbers.map(Math.abs));
+  const isSymmetric = ([0, 1, 2] as const).every((i) =>
+    ([0, 1, 2] as const).every((j) => Math.abs(entry(matrix, i, j) - entry(matrix, j, i)) <= SYMMETRIC * largest),
+  );
+  if (isSymmetric && lengthsAlong(matrix, eigenvectors(matrix)).every((length) => length > 0)) return matrix;
+  const expected = "a symmetric matrix with positive eigenvalues";
+  throw failure(
+    "INVALID_ARGUMENT",
+    "proportions.stretch",
+    `[${numbers.join(", ")}]`,
+    expected,
+    "Pass that of a result.",
+  );
+}
+
+function inverse(m: Matrix3): Matrix3 {
+  const cofactor = (i: number, j: number) => {
+    const [a, b, c, d] = [(i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3] as [0, 0, 0, 0];
+    return entry(m, a, c) * entry(m, b, d) - entry(m, a, d) * entry(m, b, c);
+  };
+  const by = determinant(m);
+  return Array.from({ length: 9 }, (_, k) => cofactor(k % 3, Math.floor(k / 3)) / by) as unknown as Matrix3;
+}
+
+/** Vectors times a matrix, one after the other; of length 1, if `isUnit`. */
+function mapped(matrix: Matrix3, vectors: Float32Array, isUnit = false): Float32Array {
+  const result = new Float32Array(vectors.length);
+  for (let i = 0; i + 2 < vectors.length; i += 3) {
+    const vector = turned(matrix, [vectors[i] as number, vectors[i + 1] as number, vectors[i + 2] as number]);
+    const by = isUnit ? 1 / (Math.hypot(...vector) || 1) : 1;
+    result.set(
+      vector.map((x) => x * by),
+      i,
+    );
+  }
+  return result;
+}
