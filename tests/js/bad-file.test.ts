@@ -45,7 +45,7 @@ const files: Refusals<object> = {
   "8-bit NPY depth: EIGHT_BIT_DEPTH depth": [{ ...sized, depth: npy(bytes, height, width) }, /8-bit/],
   "depth of no known format: UNSUPPORTED_FORMAT depth": [
     { ...sized, depth: Buffer.from("BM a bitmap") },
-    /16-bit grey PNG or a \.npy/,
+    /16-bit grey PNG, a \.npy array, or a \.npz/,
   ],
   "empty depth file: UNSUPPORTED_FORMAT depth": [{ ...sized, depth: new Uint8Array(0) }],
   "truncated depth: CORRUPT_FILE depth": [{ ...sized, depth: npy(depth, height, width).slice(0, 5000) }],

@@ -4,7 +4,18 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner } from "sim3align";
-import { applyToPoints, exportGlb, exportPly, exportSceneGlb, placeGlb, toOpenGL, toSim3 } from "sim3align/conventions";
+import {
+  applyToPoints,
+  exportGlb,
+  exportPly,
+  exportSceneGlb,
+  objectDimensions,
+  placeGlb,
+  stretchGlb,
+  stretchMesh,
+  toOpenGL,
+  toSim3,
+} from "sim3align/conventions";
 import { type BufferGeometry, type Group, Mesh, Vector3 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PLYLoader } from "three/addons/loaders/PLYLoader.js";
@@ -216,4 +227,100 @@ test("what is no GLB is refused, whatever its bytes", async () => {
       assert.equal((error as Error).name, "Sim3AlignError", `change ${i}: ${error}`);
     }
   }
+});
+
+/** A symmetric matrix with positive eigenvalues. */
+function stretchOf(random: Random): [number, number, number][] {
+  const [a, b, c, d, e, f] = Array.from({ length: 6 }, () => random.between(-0.15, 0.15)) as [
+    number,
+    number,
+    number,
+    number,
+    number,
+    number,
+  ];
+  return [
+    [1 + a, b, c],
+    [b, 1 + d, e],
+    [c, e, 1 + f],
+  ];
+}
+
+test("a GLB in other proportions is the mesh in them, by nodes that glTF allows", async () => {
+  const original = exportGlb(mesh, truth);
+  for (let seed = 1; seed <= 5; seed++) {
+    const stretch = stretchOf(new Random(seed));
+    const expected = Array.from(mesh.positions, (_, i) => {
+      const row = stretch[i % 3] as [number, number, number];
+      const first = i - (i % 3);
+      return row.reduce((sum, s, k) => sum + s * (mesh.positions[first + k] as number), 0);
+    });
+    const { positions } = stretchMesh(mesh, { stretch });
+    assertNear(positions, expected, `seed ${seed}`, 1e-6);
+    const glb = placeGlb(
+      stretchGlb(exportGlb(mesh, { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] }, { frame: "opencv" }), {
+        stretch,
+      }),
+      truth,
+      { frame: "opencv" },
+    );
+    await assertValid(glb);
+    assertNear(vertices(await load(glb)), applyToPoints(truth, positions), `seed ${seed}`, 1e-6);
+  }
+  assert.notDeepEqual(stretchGlb(original, { stretch: [1.1, 0, 0, 0, 1, 0, 0, 0, 1] }), original);
+});
+
+test("normals of a stretched surface stay perpendicular to it", () => {
+  const [points, normals] = [new Float32Array([0, 0, 1, 1, 0, 0]), new Float32Array([0, 0.6, 0.8, 0, 0.6, 0.8])];
+  const samples = { positions: points, normals, colors: new Uint8Array(6) };
+  for (let seed = 1; seed <= 5; seed++) {
+    const stretch = stretchOf(new Random(seed));
+    const { samples: found } = stretchMesh({ ...soup, samples }, { stretch });
+    const n = found?.normals.subarray(0, 3) ?? [];
+    // Two directions of the plane of the normal.
+    for (const along of [
+      [1, 0, 0],
+      [0, 0.8, -0.6],
+    ]) {
+      const moved = stretch.map((row) => row.reduce((sum, s, k) => sum + s * (along[k] ?? 0), 0));
+      assert.ok(Math.abs(moved.reduce((sum, x, k) => sum + x * (n[k] ?? 0), 0)) < 1e-6);
+    }
+    assert.ok(Math.abs(Math.hypot(...n) - 1) < 1e-6);
+  }
+});
+
+test("what is no stretch is refused", async () => {
+  const bad: [unknown, RegExp][] = [
+    [{ stretch: [1, 0.5, 0, 0, 1, 0, 0, 0, 1] }, /symmetric/],
+    [{ stretch: [1, 0, 0, 0, -1, 0, 0, 0, 1] }, /positive/],
+    [{ stretch: [1, 2] }, /nine/],
+    [undefined, /proportions/],
+  ];
+  for (const [proportions, message] of bad) {
+    await assert.rejects(async () => stretchMesh(mesh, proportions as never), message);
+  }
+});
+
+test("an object is measured in the proportions that align found", async () => {
+  const aligner = await createAligner();
+  const narrow = { ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 0.95 * x : x)) };
+  const input = { ...view, mesh: narrow };
+  const plain = await aligner.align(input, { quality: "fast" });
+  const found = await aligner.align(input, { quality: "fast", proportions: "axes" });
+  assert.deepEqual(found.matrix, plain.matrix);
+  assert.equal(plain.proportions, undefined);
+  const { proportions } = found;
+  assert.ok(proportions !== undefined);
+  const ratio = ([x, y]: readonly number[]) => (x as number) / (y as number);
+  const truthRatio = ratio(objectDimensions(mesh, truth).sizeM);
+  const before = ratio(objectDimensions(narrow, found).sizeM);
+  const after = ratio(objectDimensions(stretchMesh(narrow, proportions), proportions).sizeM);
+  assert.ok(
+    Math.abs(Math.log(after / truthRatio)) < 0.5 * Math.abs(Math.log(before / truthRatio)),
+    `${after}, ${before}, ${truthRatio}`,
+  );
+  assert.equal(
+    (await aligner.align(input, { quality: "fast", proportions: "full", scale: 0.09 })).proportions,
+    undefined,
+  );
 });

@@ -18,7 +18,7 @@ use sim3align::metrics::symmetry::Symmetry;
 use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
+use sim3align::precise::options::{AlignOptions, ExtentAxis, Proportions, Quality, SearchScope};
 use sim3align::progress::Stage;
 use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
 use sim3align::register::report::{Registration, RegistrationDiagnostics};
@@ -276,7 +276,7 @@ macro_rules! add {
 fn types() -> String {
     let mut types = Types::default();
     add! { types:
-        Preset, ColorVerdict, Quality, Effort, SearchScope, ExtentAxis, GuardMode, Icp,
+        Preset, ColorVerdict, Quality, Effort, SearchScope, ExtentAxis, Proportions, GuardMode, Icp,
     }
     for call in calls() {
         types.add_options(&call);

@@ -1,6 +1,7 @@
 /** Depth maps with their calibration. */
+import { checkAttached } from "../attached.js";
 import type { DepthCalibration } from "../generated/types.js";
-import { isTypedArray, record, wrongKind } from "../values.js";
+import { finite, isTypedArray, positive, record, wrongKind } from "../values.js";
 
 /** See `src/calibrate/calibration.rs`. */
 const FARTHEST = 1e3;
@@ -20,8 +21,9 @@ export function correctDepth(
   if (!isTypedArray<Float32Array>(values, "Float32Array", "Uint16Array", "Uint8Array")) {
     throw wrongKind("values", values, "a Float32Array, a Uint16Array or a Uint8Array", "Float32Array");
   }
-  const given = record("calibration", calibration, "depthCalibration of a result") as Partial<DepthCalibration>;
-  const { depthKind, scale = 1, shift = 0 } = given;
+  checkAttached("values", values);
+  const { depthKind, ...given } = record("calibration", calibration, "depthCalibration of a result");
+  const [scale, shift] = [positive("calibration.scale", given.scale), finite("calibration.shift", given.shift)];
   const depth = (d: number): number => {
     if (depthKind === "affine-invariant") return (d + shift) * scale;
     if (depthKind === "affine-invariant-disparity") return scale / Math.max(d + shift, scale / FARTHEST);

@@ -20,6 +20,9 @@ export type SearchScope = "global" | "local";
 /** A side of the mesh's bounding box. */
 export type ExtentAxis = "longest" | "x" | "y" | "z";
 
+/** What of a mesh's proportions is fitted to the image. */
+export type Proportions = "keep" | "axes" | "full";
+
 /** What RANSAC does with a hypothesis whose scale is outside the guard. */
 export type GuardMode = "reject" | "clamp";
 

@@ -31,6 +31,13 @@ const valid = {
   size: () => ({ width: 5, height: 4 }),
   camera: () => ({ fx: 12, fy: 12, cx: 3.5, cy: 2.5 }),
   tensor: () => ({ data: new Float32Array(count).fill(0.5), dims: [1, 1, image.height, image.width] }),
+  stretch: () => ({
+    stretch: [
+      [1.1, 0.05, 0],
+      [0.05, 0.9, -0.02],
+      [0, -0.02, 1.02],
+    ],
+  }),
   options: () => ({}),
 };
 
@@ -69,6 +76,8 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
     ],
     () => ({ support: { normal: [0, -1, 0.2], d: 0.4 }, camera: { fy: 500, width: 640, height: 480 } }),
   ],
+  ["stretchMesh", "mesh", "stretch"],
+  ["stretchGlb", "glb", "stretch"],
   ["placeGlb", "glb", "transform", () => ({ frame: "opencv", name: "mug" })],
   ["toGltfNode", "transform", () => ({ metrics: { iou: 0.9 }, name: "mug" })],
   ["fromLabelStudioRle", () => new Uint8Array([0, 0, 0, 192, 58, 8, 0, 1, 255, 7, 9, 9]), () => ({ ...image })],
