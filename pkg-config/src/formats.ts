@@ -166,8 +166,8 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 }
 
 /**
- * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, `camera.json` or
- * `scene_camera.json`, and optionally `rgb.png|jpg` or `image.png|jpg`, and `gt.json`.
+ * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, and optionally
+ * `camera.json` or `scene_camera.json`, `rgb.png|jpg` or `image.png|jpg`, and `gt.json`.
  * @param files by name, relative to the folder
  *
  * @example

@@ -15,6 +15,16 @@ const IMPLAUSIBLY_NEAR_M: f32 = 0.01;
 /// Share of the image beyond which a mask probably selects everything instead of an object.
 const WHOLE_IMAGE: f64 = 0.99;
 
+/// The distance of pixels inside the mask from those outside that are compared, relative to the width of the object: edges of
+/// depth are a few pixels off or wide.
+const ACROSS: f64 = 0.1;
+/// The difference of depth that makes a step, and the least share of the pairs that have one.
+const STEP: f32 = 0.05;
+const STEPS: f64 = 0.25;
+/// Share of the steps towards the camera from which on depth looks inverted. Of real objects that something hides almost
+/// entirely, they are up to 0.9.
+const TOWARDS_CAMERA: f64 = 0.95;
+
 /// Warnings about depth and mask.
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let (width, height) = (observation.mask().width(), observation.mask().height());
@@ -56,6 +66,17 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
             });
         }
     }
+    if let Some(share) = steps_towards_camera(observation, mask_pixels)
+        && share >= TOWARDS_CAMERA
+    {
+        warnings.push(Warning {
+            code: WarningCode::DepthLooksInverted,
+            message: format!(
+                "{} % of the steps of the depth at the object's outline go towards the camera: the object seems to be behind its surroundings. If near is large in this depth map, pass depthKind \"affine-invariant-disparity\".",
+                number((100.0 * share).round())
+            ),
+        });
+    }
     let all_pixels = observation.mask().data().len();
     if mask_pixels as f64 >= WHOLE_IMAGE * all_pixels as f64 {
         warnings.push(Warning {
@@ -80,6 +101,30 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
         });
     }
     warnings
+}
+
+/// The share of the steps of the depth out of the mask that go towards the camera; `None` if there are few steps.
+fn steps_towards_camera(observation: &Observation, mask_pixels: usize) -> Option<f64> {
+    let (mask, depth) = (observation.mask().data(), observation.depth().data());
+    let width = observation.mask().width();
+    let across = (ACROSS * (mask_pixels as f64).sqrt()) as usize + 1;
+    let [mut pairs, mut nearer, mut farther] = [0.0; 3];
+    for i in 0..mask.len() {
+        let aside = if i % width + across < width { i + across } else { mask.len() };
+        for j in [aside, i + across * width] {
+            let Some((other, other_depth)) = mask.get(j).zip(depth.get(j)) else { continue };
+            let is_inside = mask[i] != 0;
+            if is_inside == (*other != 0) || depth[i] <= 0.0 || *other_depth <= 0.0 {
+                continue;
+            }
+            let ratio = if is_inside { other_depth / depth[i] } else { depth[i] / other_depth };
+            pairs += 1.0;
+            nearer += f64::from(u8::from(ratio < 1.0 - STEP));
+            farther += f64::from(u8::from(ratio > 1.0 + STEP));
+        }
+    }
+    let steps = nearer + farther;
+    (steps > STEPS * pairs).then(|| nearer / steps)
 }
 
 /// A warning about the scale. The initial scale includes every reading in the mask, also background by mistake: a scale

@@ -22,6 +22,8 @@ pub enum WarningCode {
     DepthLooksLikeMillimetres,
     /// Depths so small that they look like metres taken as millimetres.
     DepthLooksTooSmall,
+    /// The surroundings of the object are nearer than it: near may be large in this depth map.
+    DepthLooksInverted,
     /// The mask covers the whole image: it is probably inverted, or no mask.
     MaskCoversImage,
     /// The mask touches the image border: part of the object is outside the view.

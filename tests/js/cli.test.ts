@@ -90,6 +90,16 @@ test("--json has everything, as the documentation says", async () => {
   assert.ok(Math.abs(foundErrors.scaleError - (expectedErrors?.scaleError ?? 9)) < 1e-6);
 });
 
+test("--json has the proportions that were asked for, with their pose", () => {
+  succeeds("align blob --quality fast --proportions axes --json proportions.json");
+  const { proportions } = results("proportions.json").blob;
+  assert.deepEqual(
+    [proportions.stretch.length, proportions.uncertainty.length, proportions.rotation.length],
+    [3, 3, 3],
+  );
+  assert.deepEqual([proportions.matrix.length, proportions.quaternion.length], [16, 4]);
+});
+
 test("bad cases are reported, the good ones aligned, and the exit status tells", () => {
   const names = ["no-mask", "blob", "empty-mask", "nowhere", "outside", "blob-other-formats"];
   const { status, stdout } = run("align", ...names, "--json", "many.json", "--workers", "1");

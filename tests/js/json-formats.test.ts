@@ -292,4 +292,9 @@ test("a case's settings go into its input", async () => {
   const { input: found, truth: pose } = await readCase(files, { imageId: 7, depthScale: 0.0001 });
   assert.equal(pose, null);
   assert.deepEqual([found.imageId, found.depthScale], [7, 0.0001]);
+
+  const { "scene_camera.json": _, ...noCamera } = files;
+  const { input: alone, files: names } = await readCase(noCamera, { depthKind: "affine-invariant" });
+  assert.equal(alone.depthKind, "affine-invariant");
+  assert.ok(!("cameraFile" in alone) && !("camera" in names), "the camera may be missing");
 });

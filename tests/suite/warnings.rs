@@ -43,3 +43,28 @@ fn faults_of_the_input_are_warned_of_whatever_the_pose() {
         assert!(kept(code, 1.0), "{code:?}");
     }
 }
+
+#[wasm_bindgen_test(unsupported = test)]
+fn depth_that_is_near_where_it_is_large_is_warned_of() {
+    let whole = observe(&body(), &truth());
+    let width = whole.mask().width();
+    // Depth of the object, of a wall behind it, and of an object that hides all but a share of the columns.
+    let seen = |hidden: usize, value: fn(f32) -> f32| {
+        let pixels = whole.depth().data().iter().zip(whole.mask().data()).enumerate();
+        let depth = pixels.map(|(i, (z, m))| match (*m != 0, i % width < hidden) {
+            (true, _) => value(*z),
+            (false, true) => value(0.3),
+            (false, false) => value(1.8),
+        });
+        let depth = DepthMap::from_metres(width, whole.mask().height(), depth.collect()).unwrap();
+        let observation = Observation::new(depth, whole.mask().clone(), whole.camera()).unwrap();
+        codes(&about_observation(&observation))
+    };
+    let [metres, disparity]: [fn(f32) -> f32; 2] = [|z| z, |z| 1.0 / z];
+    assert_eq!(seen(0, metres), []);
+    assert_eq!(seen(0, disparity), [WarningCode::DepthLooksInverted]);
+    // Hidden by half; and at the bottom of a box.
+    assert_eq!(seen(width / 2, metres), []);
+    assert_eq!(seen(width, metres), [WarningCode::DepthLooksInverted]);
+    assert_eq!(seen(width, disparity), []);
+}

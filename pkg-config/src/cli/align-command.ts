@@ -41,8 +41,9 @@ Output
   it. A single case is shown in detail. The confidence is the probability that the pose is right, 0 to 1. An alternative
   is another pose that explains the observation nearly as well.
   --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, turnConfidence, alternatives,
-  uncertainty, metrics, warnings, depthUnit, cameraSource, depthCalibration, timingsMs, diagnostics } }; a case that failed has { error: { code, argument, found, expected,
-  remedy, message } }. With --preset paper, confidences and uncertainty are null and alternatives is empty.
+  uncertainty, proportions, metrics, warnings, depthUnit, cameraSource, depthCalibration, timingsMs, diagnostics } };
+  proportions, cameraSource and depthCalibration where there are any. A case that failed has { error: { code, argument,
+  found, expected, remedy, message } }. With --preset paper, confidences and uncertainty are null and alternatives is empty.
   A case with frames has { scale, rotation, translation, …, frames: { "<frame>": { scale, rotation, translation, …,
   confidence, role, camera } } }: its own pose is world from mesh, if the camera poses are known; those of the frames are
   camera from mesh.

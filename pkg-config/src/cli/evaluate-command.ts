@@ -20,7 +20,6 @@ import {
   caseFolderHelp,
   caseSettings,
   conventionsHelp,
-  depthKindHelp,
   statusHelp,
 } from "./case-options.js";
 import { caseKind, type FolderToDo, foldersToDo } from "./folders.js";
@@ -41,9 +40,11 @@ const rows: readonly OptionRow[] = OPTIONS.evaluate.filter(({ name }) => name !=
 
 const help = `${caseFolderHelp}
 ${conventionsHelp}
-${depthKindHelp}
-  Metrics need depth without an unknown shift, and a camera: evaluate takes metric and scale-invariant depth. Transforms of
-  scale-invariant depth are in its unit.
+
+Depth of models
+  Metrics need a camera and depth without an unknown shift: --depth-kind is metric, or scale-invariant (times an unknown
+  factor). Transforms of scale-invariant depth are in its unit, and lengths are printed as "units"; columns in metres and
+  millimetres are empty.
 ${transformFileHelp}
 
 Output

@@ -1,5 +1,4 @@
 /** Lengths in what is printed: metric, or in a unit that nobody knows. */
-import type { OfInput } from "../index.js";
 import { isRecord } from "../values.js";
 import { fixed } from "./table.js";
 
@@ -10,7 +9,7 @@ export const noUnitNote =
 /** Whether the lengths of a result, or of its JSON entry, are metres. */
 export function isMetric(result: object): boolean {
   const { depthCalibration, frames, views = frames, ...own } = result as Readonly<Record<string, unknown>>;
-  if (isRecord(depthCalibration)) return (depthCalibration as OfInput["depthCalibration"])?.isMetric !== false;
+  if (isRecord(depthCalibration)) return depthCalibration.isMetric !== false;
   if (typeof views === "object" && views !== null) return Object.values(views).every(isMetric);
   return own.isMetric !== false;
 }

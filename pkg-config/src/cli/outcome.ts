@@ -78,7 +78,7 @@ export const ofInputJson = ({ depthUnit, cameraSource, depthCalibration }: OfInp
 function alignmentJson({ alignment, errors }: Success) {
   const { scale, rotation, rotationMatrix, translation, matrix, metrics, warnings } = alignment;
   const { timingsMs, ...diagnostics } = alignment.diagnostics;
-  const { confidence, turnConfidence, alternatives, uncertainty } =
+  const { confidence, turnConfidence, alternatives, uncertainty, proportions } =
     "confidence" in alignment
       ? alignment
       : { confidence: null, turnConfidence: null, alternatives: [], uncertainty: null };
@@ -88,6 +88,7 @@ function alignmentJson({ alignment, errors }: Success) {
     turnConfidence,
     alternatives: alternatives.map(transformJson),
     uncertainty,
+    ...(proportions === undefined ? {} : { proportions: transformJson(proportions) }),
     ...(metrics === undefined ? {} : { metrics }),
     warnings,
     ...ofInputJson(alignment),

@@ -56,7 +56,8 @@ A scene in the layout of BOP (depth/, mask_visib/, scene_camera.json, scene_gt.j
 ../../models) is one as well; --image-id selects the image.
 ${conventionsHelp}
   The support is the plane n·x + d = 0 in the camera frame, metres; n points to the side of the objects.
-${depthKindHelp} Files for simulators need metres.
+${depthKindHelp}
+  Files for simulators need metres.
 
 Output
   A row per object: confidence, scale, what it rests on, gap, shared volume, silhouette IoU; with gt.json also the errors

@@ -16,9 +16,6 @@ use crate::precise::drawn::render::Canvas;
 use crate::precise::scored::objective::Objective;
 use crate::precise::scored::score::{Background, Score, is_outline};
 
-/// Standard deviation of the depths of a render from which on it has relief, relative to the diagonal of the mesh.
-const LEAST_RELIEF: f64 = 0.05;
-
 /// The problem of a refinement.
 pub struct Refiner<'a> {
     /// The objective to maximise.
@@ -179,27 +176,6 @@ impl Refiner<'_> {
             }
         }
         (sum / f64::from(count.max(1))).sqrt()
-    }
-
-    /// The relief of the depth map beside that of the last render: the slope of the depths over those drawn, without those
-    /// beyond the share of the mesh's own depth. `None` where the render has hardly any relief.
-    pub fn relief(&self, canvas: &Canvas) -> Option<f64> {
-        let cells = || {
-            let cells = canvas.inverse_depth.iter().zip(&self.objective.grid.depth);
-            cells.filter(|(w, z)| **w > 0.0 && **z > 0.0).map(|(w, z)| (1.0 / f64::from(*w), f64::from(*z)))
-        };
-        let (mut count, mut drawn_sum, mut seen_sum) = (0.0f64, 0.0, 0.0);
-        for (drawn, seen) in cells() {
-            (count, drawn_sum, seen_sum) = (count + 1.0, drawn_sum + drawn, seen_sum + seen);
-        }
-        let (drawn_mean, seen_mean) = (drawn_sum / count.max(1.0), seen_sum / count.max(1.0));
-        let (mut both, mut square) = (0.0, 0.0);
-        for (drawn, seen) in cells() {
-            both += (drawn - drawn_mean) * (seen - seen_mean);
-            square += (drawn - drawn_mean) * (drawn - drawn_mean);
-        }
-        let least = LEAST_RELIEF * f64::from(canvas.scale);
-        (square > least * least * count).then(|| both / square)
     }
 
     /// The change, with each parameter of the pose, of a residual that changes by `gradient`·δx as the surface point moves by
