@@ -187,7 +187,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
       const { readGiven } = await import("./given.js");
       const { scene, inputs, session } = await readGiven(given);
       if (!isCurrent()) return;
-      show(scene, inputs);
+      show(scene, inputs, false);
       if (session !== null) applyState(session, this.#workspace);
       const isGiven = this.#applyPending() || session !== null;
       announce(`${scene.name} is open.`);
