@@ -355,10 +355,8 @@ export class SceneView {
   }
 
   private showSizes(): void {
-    const { display, animations } = this;
-    const isShown = (id: string) => display.dimensions === true && !animations.isRunning(id);
-    const { unit = null } = display;
-    this.sizes.update(this.models, this.selected, unit, isShown);
+    const { dimensions, unit = null } = this.display;
+    this.sizes.update(this.models, this.selected, unit, (id) => dimensions === true && !this.animations.isRunning(id));
     this.ruler.show(this.measured, unit);
   }
 
