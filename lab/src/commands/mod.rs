@@ -4,6 +4,7 @@ mod arguments;
 mod bench;
 mod cases;
 mod fuzz;
+mod generators;
 mod monocular;
 mod outlines;
 mod pictures;
@@ -34,13 +35,14 @@ pub struct Command {
 }
 
 /// All subcommands.
-pub const COMMANDS: [Command; 12] = [
+pub const COMMANDS: [Command; 13] = [
     cases::COMMAND,
     scenes::COMMAND,
     bench::COMMAND,
     together::COMMAND,
     monocular::COMMAND,
     proportions::COMMAND,
+    generators::COMMAND,
     registration::COMMAND,
     views::COMMAND,
     track::COMMAND,

@@ -4,13 +4,16 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::sync::OnceLock;
 
+use sim3align::align::evaluate::Evaluation;
 use sim3align::evidence::clouds::Sampling;
 use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::{Metrics, evaluate};
 use sim3align_geometry::order::median;
 use sim3align_geometry::triangle_tree::TriangleTree;
 use sim3align_lab::bench::benchmark::BenchCase;
+use sim3align_lab::bench::generators::{ROWS, records, table};
 use sim3align_lab::cases::tier::Tier;
+use sim3align_lab::files::listed;
 use sim3align_lab::prelude::*;
 
 use crate::common::{assert_canonical, assert_read_back, depth_of, fresh, mask_px};
@@ -343,4 +346,31 @@ fn arranged_objects_are_held_as_their_scenes_say() {
     }
     assert!(stances.len() >= 5, "{stances:?}");
     assert!(invented > 0);
+}
+
+#[test]
+fn the_placement_of_a_generator_is_compared_with_ours() {
+    let folder = fresh("generators");
+    let set = SceneSet::new(SEED, 1);
+    let scene = set.scene(0).unwrap();
+    scene.write(Prior::Smooth, &folder).unwrap();
+    // The first object where it is, 8 % too large; the others without a placement.
+    let first = listed(&folder.join("objects")).unwrap().into_iter().next().unwrap();
+    let mut placement: serde_json::Value = serde_json::from_slice(&fs::read(first.join("gt.json")).unwrap()).unwrap();
+    placement["scale"] = (1.08 * placement["scale"].as_f64().unwrap()).into();
+    fs::write(first.join("sam3d.json"), placement.to_string()).unwrap();
+    let options = AlignOptions { quality: Quality::Fast, ..AlignOptions::default() };
+    let records = records(&folder, &options).unwrap();
+    assert_eq!(records.len(), scene.pairs.len());
+    let [own, icp, aligned, stretched] = &records[0].1;
+    let errors = |evaluation: &Option<Evaluation>| evaluation.as_ref().unwrap().errors.unwrap();
+    assert!((errors(own).scale_error - 0.08).abs() < 1e-9 && errors(own).rotation_error_deg < 1e-6);
+    // Rigid ICP keeps the scale.
+    assert!((errors(icp).scale_error - 0.08).abs() < 1e-9);
+    assert!(aligned.is_some() && stretched.is_some());
+    assert!(records[1..].iter().all(|(_, [own, icp, ..])| own.is_none() && icp.is_none()));
+    let table = table(&records);
+    assert_eq!(table.lines().count(), 2 + ROWS.len());
+    assert!(table.contains("| the generator's own | 1 |"), "{table}");
+    fs::remove_dir_all(&folder).unwrap();
 }
