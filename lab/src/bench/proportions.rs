@@ -38,11 +38,10 @@ pub fn table(records: &[Record]) -> String {
         "| sides | number | median before | after | 90 % before | after | 90 % of error / uncertainty |".to_owned(),
         "|---|---|---|---|---|---|---|".into(),
     ];
-    let groups: [(&str, fn(f64) -> bool); 3] = [("all", |_| true), ("seen", |u| u < SEEN), ("not seen", |u| u >= SEEN)];
-    for (name, is_in) in groups {
+    for (name, from, to) in [("all", 0.0, f64::INFINITY), ("seen", 0.0, SEEN), ("not seen", SEEN, f64::INFINITY)] {
         let sides = || {
             let sides = records.iter().flat_map(|r| (0..3).map(|i| [r.before[i], r.after[i], r.uncertainty[i]]));
-            sides.filter(|[.., uncertainty]| is_in(*uncertainty))
+            sides.filter(|[.., uncertainty]| (from..to).contains(uncertainty))
         };
         let at = |share: f64, of: fn(&[f64; 3]) -> f64| {
             let mut values: Vec<f64> = sides().map(|side| of(&side)).collect();
