@@ -19,7 +19,7 @@ const optionTable = {
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(intake|session|export|view3d)\/|\/src\/(run\/video|load\/(allowance|archives|case-url|label-masks|slices)|panels\/(time-panel|help-dialog))\./;
+  /\/src\/(intake|session|export|view3d)\/|\/src\/(run\/(video|known-size)|load\/(allowance|archives|case-url|label-masks|slices)|draw\/(albedo|pose-thumbnail|thumbnails)|views\/space|panels\/(time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);

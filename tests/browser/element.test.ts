@@ -20,7 +20,14 @@ interface Element extends HTMLElement {
   options: Record<string, unknown>;
   readonly: boolean;
   session: { objects: { name: string }[] };
-  results: { name: string; pose: { matrix: number[] } | null; confidence: number | null; isAccepted: boolean }[];
+  results: {
+    name: string;
+    pose: { matrix: number[] } | null;
+    isMetric: boolean;
+    metrics: { iou: number | null } | null;
+    confidence: number | null;
+    isAccepted: boolean;
+  }[];
   align(): Promise<Element["results"]>;
 }
 
@@ -94,6 +101,41 @@ async function serveFiles(page: Page, path: string, served: Files): Promise<void
     return body === undefined ? route.fulfill({ status: 404 }) : route.fulfill({ body: Buffer.from(body) });
   });
 }
+
+test("relative depth without a camera is aligned in no unit, and a session holds its calibration", async () => {
+  const { page, errors } = await host(`<sim3-align id="a"></sim3-align><sim3-align id="b" manual></sim3-align>`);
+  await page.evaluate(() => {
+    const { camera: _, depth, ...given } = window.arrays as { camera: object; depth: Float32Array };
+    const disparity = Float32Array.from(depth, (z) => 2 / z + 0.3);
+    window.arrays = { ...given, depth: disparity, depthKind: "affine-invariant-disparity" };
+  });
+  await give(page, "a");
+  const { objects } = await told<{ objects: Element["results"] }>(page, "a", "align");
+  const [result] = objects;
+  assert.equal(result?.isMetric, false);
+  assert.ok((result?.metrics?.iou ?? 0) > 0.9, `${result?.metrics?.iou}`);
+  assert.match(
+    await page.evaluate(
+      () => document.querySelector("#a")?.shadowRoot?.querySelector("#dimensions")?.textContent ?? "",
+    ),
+    /relative/,
+  );
+  const { matrix } = result?.pose ?? { matrix: [] };
+  await page.evaluate(() => {
+    const [a, b] = ["#a", "#b"].map((id) => document.querySelector(id) as Element);
+    if (a !== undefined && b !== undefined) Object.assign(b, { session: a.session, scene: window.arrays });
+  });
+  await told(page, "b", "ready");
+  const restored = await page.waitForFunction(() => {
+    const [one] = (document.querySelector("#b") as Element).results;
+    return one?.pose && one.metrics ? one : null;
+  }, PATIENCE);
+  const one = (await restored.jsonValue()) as Element["results"][number];
+  assert.deepEqual(one.pose?.matrix, matrix);
+  assert.ok(Math.abs((one.metrics?.iou ?? 0) - (result?.metrics?.iou ?? 1)) < 1e-9, "in another depth or camera");
+  assert.deepEqual(errors, []);
+  await page.close();
+});
 
 test("an element aligns what it is given to the same bits as Node, and says so", async () => {
   const { page, errors } = await host(`<sim3-align id="a"></sim3-align>`);

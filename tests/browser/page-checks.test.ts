@@ -64,7 +64,7 @@ test("a rejected file leaves the scene, its files and its name as they were", as
 });
 
 const wrong: readonly (readonly [title: string, changed: Files, field: string, says: RegExp])[] = [
-  ["an 8-bit depth map", { "depth.npy": new Uint8Array(), "depth.png": eightBit }, "depth", /8.bit.*expected.*16/i],
+  ["an 8-bit depth map of one value", { "depth.npy": new Uint8Array(), "depth.png": eightBit }, "depth", /no relief/],
   ["no reading at all", { "depth.npy": depthNpy(new Float32Array(pixels)) }, "depth", /no reading/],
   [
     "millimetres for metres",

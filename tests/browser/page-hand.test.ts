@@ -25,6 +25,28 @@ test("nudges change the pose, with undo and redo", async (opened, page) => {
   assert.equal(await page.getAttribute("#redo", "aria-disabled"), "true");
 });
 
+test(
+  "undoing an alignment restores the confidence and the alternatives of the one before",
+  "#sample=desk",
+  async (opened, page) => {
+    const confidence = () => page.textContent(".badge");
+    const pictures = page.locator(".alternatives button:not(.tip)");
+    const before = [await confidence(), await pictures.count()];
+    await page.selectOption("#option-symmetry, #effort", "fast");
+    await page.click(".options-panel summary");
+    await page.selectOption("#option-symmetry", "none");
+    await page.click("#align");
+    await page.locator("#cancel").waitFor({ state: "detached" });
+    await opened.aligned();
+    const after = [await confidence(), await pictures.count()];
+    assert.notDeepEqual(after, before);
+    await page.click("#undo");
+    assert.deepEqual([await confidence(), await pictures.count()], before);
+    await page.click("#redo");
+    assert.deepEqual([await confidence(), await pictures.count()], after);
+  },
+);
+
 test("refining restores a mesh that was moved", async (opened, page) => {
   const iou = await opened.metric("iou");
   await showNudges(opened);

@@ -93,6 +93,9 @@ test("a correction in the middle is carried to the other frames, and all poses a
   await page.click("#correct");
   await opened.says(/^Corrected \d frames/);
   assert.equal(await page.locator('.strip [data-state="corrected"]').count(), 1);
+  // Nobody knows how sure a pose is that a person has set.
+  assert.equal(await page.textContent(".badge"), "Set by hand");
+  assert.match((await page.textContent("#frame-name")) ?? "", /corrected$/);
   await goTo(opened, 4);
   assert.ok((await centreX(opened)) > before + 0.001, `${await centreX(opened)}, was ${before}`);
   const { name, bytes } = await opened.saved("JSON of all frames");

@@ -7,6 +7,7 @@ pub mod align;
 pub mod align_task;
 pub mod angle;
 pub mod bop;
+pub mod calibrate;
 pub mod components;
 pub mod density;
 pub mod determinism;

@@ -80,13 +80,18 @@ const segment = (marker: number, content: Uint8Array) => {
   return Buffer.concat([head, content]);
 };
 
+const exifSegment = (exif: Buffer) => segment(0xe1, Buffer.concat([Buffer.from("Exif\0\0", "latin1"), exif]));
+
+/** A JPEG with EXIF data after its first marker. */
+export const withExif = (jpeg: Uint8Array, exif: Buffer): Uint8Array =>
+  Buffer.concat([jpeg.subarray(0, 2), exifSegment(exif), jpeg.subarray(2)]);
+
 /** The start of a grey JPEG with EXIF data, up to the header of its pixels. */
 export function jpegHead(exif: Buffer, width = 24, height = 16): Uint8Array {
-  const app1 = segment(0xe1, Buffer.concat([Buffer.from("Exif\0\0", "latin1"), exif]));
   const frame = Buffer.from([8, 0, 0, 0, 0, 1, 1, 0x11, 0]);
   frame.writeUInt16BE(height, 1);
   frame.writeUInt16BE(width, 3);
-  return new Uint8Array(Buffer.concat([Buffer.from([0xff, 0xd8]), app1, segment(0xc0, frame)]));
+  return new Uint8Array(Buffer.concat([Buffer.from([0xff, 0xd8]), exifSegment(exif), segment(0xc0, frame)]));
 }
 
 /** A JPEG of one grey with EXIF data. Each of its blocks is two bits: no change of the mean, and no detail. */

@@ -2,11 +2,10 @@
 import { useEffect } from "preact/hooks";
 import { DropOverlay } from "./panels/drop-overlay.js";
 import { ExportPanel } from "./panels/export-panel.js";
-import { HandPanel } from "./panels/hand-panel.js";
 import { Header } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
+import { HandPanel, OptionsPanel } from "./panels/later.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
-import { OptionsPanel } from "./panels/options-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { StartPanel } from "./panels/start-panel.js";

@@ -65,6 +65,8 @@ async function start(): Promise<void> {
   if (sample === undefined) announce("Choose input files.");
   isSettled.value = true;
   (await import("./session/index.js")).keepSession();
+  // From here on, files can be dropped without a connection. Without one now, the first drop tries again.
+  import("./intake/index.js").catch(() => {});
 }
 start();
 

@@ -11,9 +11,8 @@ type Point2 = readonly [number, number];
 function outermost({ positions, indices }: Mesh): Vector3[] {
   const used = indices === null ? Array.from({ length: positions.length / 3 }, (_, i) => i) : [...new Set(indices)];
   const vertex = (i: number): Vector3 => [positions[3 * i] ?? 0, positions[3 * i + 1] ?? 0, positions[3 * i + 2] ?? 0];
-  const points = used.map(vertex);
-  if (points.length <= 2000) return points;
-  const kept = new Set<Vector3>();
+  if (used.length <= 2000) return used.map(vertex);
+  const kept = new Set<number>();
   // Directions through a grid on half of the surface of a cube; each finds two extreme vertices.
   const steps = Array.from({ length: 13 }, (_, i) => (i - 6) / 6);
   const directions = steps.flatMap((a) =>
@@ -23,17 +22,28 @@ function outermost({ positions, indices }: Mesh): Vector3[] {
       [a, b, 1],
     ]),
   );
-  for (const direction of directions) {
+  // Flat numbers: meshes may have a million vertices.
+  const points = new Float32Array(3 * used.length);
+  used.forEach((from, i) => {
+    points.set(positions.subarray(3 * from, 3 * from + 3), 3 * i);
+  });
+  for (const [x, y, z] of directions) {
     let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-    let [first, last] = [points[0], points[0]];
-    for (const point of points) {
-      const along = dot(direction, point);
-      if (along < low) [low, first] = [along, point];
-      if (along > high) [high, last] = [along, point];
+    let [first, last] = [0, 0];
+    for (let i = 0; i < points.length; i += 3) {
+      const along = x * (points[i] as number) + y * (points[i + 1] as number) + z * (points[i + 2] as number);
+      if (along < low) {
+        low = along;
+        first = i;
+      }
+      if (along > high) {
+        high = along;
+        last = i;
+      }
     }
-    for (const end of [first, last]) if (end !== undefined) kept.add(end);
+    kept.add(first / 3).add(last / 3);
   }
-  return [...kept];
+  return Array.from(kept, (i) => vertex(used[i] ?? 0));
 }
 
 /** The corners of the convex hull, counter-clockwise (Andrew's monotone chain). */

@@ -28,7 +28,7 @@ export function drawObject(scene: DrawnScene, object: ObjectModel, matrix: Array
   const mask = scene.maskOf(object);
   const depth = renderDepth(mesh, matrix, scene);
   const box = boxAround(scene.maskBoxOf(object), boxOf(depth, scene.width));
-  return { mask, colour, isSelected: false, depth, box, limitM: differenceLimit(object.visible.sizeM) };
+  return { mask, colour, isSelected: false, depth, box, limitM: differenceLimit(object.visible.peek().sizeM) };
 }
 
 /** Draws `before` left of the wipe and `after` right of it. */

@@ -110,7 +110,10 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
   set pose(pose: Sim3Like | null) {
     const object = this.#workspace.selected.peek();
     if (object === null || pose === null) this.#pendingPose = pose;
-    else this.#workspace.place(object, { transform: toSim3(pose), source: "hand" });
+    else {
+      const alignment = object.alignment.peek();
+      this.#workspace.place(object, { transform: toSim3(pose), source: "hand", alignment });
+    }
   }
 
   /** The name of the selected object. */
@@ -149,7 +152,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
 
   /** The results of all objects. */
   get results(): ObjectResult[] {
-    return (this.#workspace.scene.peek()?.objects ?? []).map(resultOf);
+    return this.#workspace.objects.peek().map((object) => resultOf(this.#workspace, object));
   }
 
   /** Poses, decisions and options as plain data, to be kept and set again with the same scene. */
@@ -158,11 +161,10 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
   }
 
   set session(session: ElementSession | null) {
-    const scene = this.#workspace.scene.peek();
     if (session === null) return;
     if (session.version !== 1) throw new TypeError(`Unknown version of the session: ${session.version}.`);
-    if (scene === null) this.#pendingSession = session;
-    else applyState(session, scene, this.#workspace);
+    if (this.#workspace.scene.peek() === null) this.#pendingSession = session;
+    else applyState(session, this.#workspace);
   }
 
   /** Aligns all objects that are not locked. Resolves to the results; failures are in the events `error`. */
@@ -185,8 +187,8 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
       const { readGiven } = await import("./given.js");
       const { scene, inputs, session } = await readGiven(given);
       if (!isCurrent()) return;
-      show(scene, inputs);
-      if (session !== null) applyState(session, scene, this.#workspace);
+      show(scene, inputs, false);
+      if (session !== null) applyState(session, this.#workspace);
       const isGiven = this.#applyPending() || session !== null;
       announce(`${scene.name} is open.`);
       this.#send("ready", { name: scene.name, objects: scene.objects.map(({ name }) => name) });

@@ -1,7 +1,6 @@
 /** The content of an element: the views and panels of the page, without those for files. */
-import { HandPanel } from "../panels/hand-panel.js";
+import { HandPanel, OptionsPanel } from "../panels/later.js";
 import { ObjectsPanel } from "../panels/objects-panel.js";
-import { OptionsPanel } from "../panels/options-panel.js";
 import { ResultPanel } from "../panels/result-panel.js";
 import { RunBar } from "../panels/run-bar.js";
 import { useWorkspace } from "../ui/workspace.js";

@@ -17,7 +17,7 @@ export const errorDetail = (cause: unknown, name: string | null = null): Element
 
 /** Sends the events of a workspace, until the returned function is called. */
 export function sendEvents(workspace: Workspace, send: Send): () => void {
-  const { fraction, isRunning, scene } = workspace;
+  const { fraction, isRunning, objects } = workspace;
   let wasRunning = false;
   const stops = [
     effect(() => {
@@ -30,7 +30,7 @@ export function sendEvents(workspace: Workspace, send: Send): () => void {
       if (hasEnded) untracked(() => sendEnd(workspace, send));
     }),
     effect(() => {
-      const ofObjects = (scene.value?.objects ?? []).flatMap((object) => untracked(() => sendChanges(object, send)));
+      const ofObjects = objects.value.flatMap((object) => untracked(() => sendChanges(workspace, object, send)));
       return () => {
         for (const stop of ofObjects) stop();
       };
@@ -41,15 +41,14 @@ export function sendEvents(workspace: Workspace, send: Send): () => void {
   };
 }
 
-function sendEnd({ scene }: Workspace, send: Send): void {
-  const objects = scene.peek()?.objects ?? [];
-  const states = objects.map((object) => [object, object.run.peek()] as const);
+function sendEnd(workspace: Workspace, send: Send): void {
+  const states = workspace.objects.peek().map((object) => [object, object.run.peek()] as const);
   for (const [object, run] of states) if (run.state === "failed") send("error", errorDetail(run.error, object.name));
-  const done = states.filter(([, run]) => run.state === "done").map(([object]) => resultOf(object));
+  const done = states.filter(([, run]) => run.state === "done").map(([object]) => resultOf(workspace, object));
   if (done.length > 0) send("align", { objects: done });
 }
 
-function sendChanges(object: ObjectModel, send: Send): (() => void)[] {
+function sendChanges(workspace: Workspace, object: ObjectModel, send: Send): (() => void)[] {
   const { pose, isAccepted, name } = object;
   let [shown, wasAccepted] = [pose.peek(), isAccepted.peek()];
   return [
@@ -58,7 +57,7 @@ function sendChanges(object: ObjectModel, send: Send): (() => void)[] {
       shown = next;
     }),
     isAccepted.subscribe((is) => {
-      if (is !== wasAccepted) send("accept", resultOf(object));
+      if (is !== wasAccepted) send("accept", resultOf(workspace, object));
       wasAccepted = is;
     }),
   ];

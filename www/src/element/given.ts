@@ -1,10 +1,11 @@
 /** Scenes that a host gives to the element: as arrays or encoded files in memory, as files, or by an address. */
 import type { EncodedBytes, PixelArray } from "sim3align";
-import { type MeshFromFile, readCamera } from "sim3align/formats";
+import type { MeshFromFile } from "sim3align/formats";
 import { rolesOf } from "../intake/roles.js";
 import { scenesOfTyped } from "../intake/scenes.js";
 import { extractArchives } from "../load/archives.js";
 import { filesAt } from "../load/case-url.js";
+import { cameraOf, knownCamera, type ReadDepthMap, viewOf } from "../load/depth-view.js";
 import { fromFile, type NamedFile } from "../load/files.js";
 import { type Inputs, noInputs } from "../load/inputs.js";
 import { atSize } from "../load/masks.js";
@@ -53,37 +54,57 @@ async function fromFiles(files: readonly NamedFile[]): Promise<Opened> {
 
 /** A scene in memory, read as files are. */
 async function fromMemory(given: GivenScene): Promise<Opened> {
-  const depth = await depthOf(given);
-  const { width, height } = depth;
-  const [{ fx, fy, cx, cy }, photo, objects] = await Promise.all([
-    readCamera(given.camera as object as Readonly<Record<string, unknown>>, { width, height }),
-    given.image === undefined ? null : photoFrom(given.image, { width, height }),
-    Promise.all(given.objects.map((object) => objectOf(object, depth))),
+  const read = await depthOf(given);
+  const { width, height, depthKind, unit: depthUnit } = read;
+  const { camera: stated, image } = given;
+  const [photo, objects] = await Promise.all([
+    image === undefined ? null : photoFrom(image, { width, height }),
+    Promise.all(given.objects.map((object) => objectOf(object, read))),
   ]);
+  const bytes = image instanceof Blob ? await bytesOf(image) : null;
+  const found =
+    stated === undefined
+      ? await cameraOf(read, photo && bytes && { ...photo, bytes })
+      : await knownCamera(stated as object as Readonly<Record<string, unknown>>, { width, height });
+  const { depthM, raw } = viewOf(read, found);
   const names = given.objects.map(({ name }, i) => name ?? (objects.length === 1 ? "Object" : `Object ${i + 1}`));
   const inputs: Inputs = {
     ...noInputs,
     name: given.name ?? "Scene",
     objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null, isSure: true })),
   };
-  const camera = { fx, fy, cx, cy };
-  const scene = sceneOf(inputs, { depth, camera, photo, objects, problems: [], warnings: [] });
+  const scene = sceneOf(inputs, {
+    ...{ depth: { data: depthM, width, height }, raw, depthKind, depthUnit, photo, objects },
+    ...{ camera: found.camera, cameraSource: found.source, warnings: found.warnings, problems: [] },
+  });
   if (scene === null) throw new Error("A scene has at least one object.");
   return { scene, inputs, session: null };
 }
 
-async function depthOf({ depth, width = 0, height = 0, depthScale }: GivenScene): Promise<PixelArray<Float32Array>> {
+async function depthOf({
+  depth,
+  width = 0,
+  height = 0,
+  depthScale,
+  depthKind = "metric",
+}: GivenScene): Promise<ReadDepthMap> {
   if (!(depth instanceof Float32Array || depth instanceof Uint16Array)) {
-    return readDepth(depth, depthScale === undefined ? {} : { depthScale });
+    return { ...(await readDepth(depth, { depthScale, depthKind })), depthKind };
   }
   if (width * height !== depth.length) {
     throw new Error(`depth has ${depth.length} values; expected width × height, ${width} × ${height}.`);
   }
-  const scale = depthScale ?? (depth instanceof Uint16Array ? 0.001 : 1);
-  return { data: scale === 1 ? (depth as Float32Array) : Float32Array.from(depth, (z) => z * scale), width, height };
+  const isMetric = depthKind === "metric";
+  const scale = depthScale ?? (isMetric && depth instanceof Uint16Array ? 0.001 : 1);
+  const data = Float32Array.from(depth, (z) => z * scale);
+  const unit = !isMetric ? "unknown" : scale === 1 ? "metres" : `${scale} m`;
+  return { data, width, height, depthKind, unit: depthScale === undefined && isMetric ? `${unit} (assumed)` : unit };
 }
 
-async function objectOf({ mask, mesh }: GivenObject, { width, height }: PixelArray<Float32Array>): Promise<ReadObject> {
+async function objectOf(
+  { mask, mesh }: GivenObject,
+  { width, height }: Omit<PixelArray<unknown>, "data">,
+): Promise<ReadObject> {
   const isPlain = ArrayBuffer.isView(mask) && mask.length === width * height;
   const own = isPlain
     ? { data: Uint8Array.from(mask), width, height }

@@ -1,7 +1,7 @@
 /** What an element says about its objects, as plain data. */
 import { type PackedState, stateOf } from "../session/pack.js";
+import { isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { isResult } from "../state/pose.js";
 import type { Workspace } from "../state/workspace.js";
 import type { ElementSession as HostSession, ObjectResult, PlainPose } from "./sim3-align.js";
 
@@ -15,14 +15,16 @@ export const plainPose = ({ pose }: ObjectModel): PlainPose => {
   return { scale, rotation: [...rotation], translation: [...translation], matrix: [...matrix] };
 };
 
-export function resultOf(object: ObjectModel): ObjectResult {
+export function resultOf({ scene }: Workspace, object: ObjectModel): ObjectResult {
+  const whole = scene.peek();
   const { source } = object.pose.peek();
   return {
     name: object.name,
     pose: source === "start" ? null : plainPose(object),
     source,
     sizeM: [...object.box.peek().sizeM],
-    confidence: isResult(source) ? (object.precise?.confidence ?? null) : null,
+    isMetric: whole === null || isMetric(whole),
+    confidence: object.confidence,
     isAccepted: object.isAccepted.peek(),
     metrics: object.metrics.peek(),
   };
@@ -30,6 +32,7 @@ export function resultOf(object: ObjectModel): ObjectResult {
 
 export function sessionOf({ options, scene }: Workspace): ElementSession {
   const objects = (scene.peek()?.objects ?? []).map((object) => ({ name: object.name, state: stateOf(object) }));
+  const calibration = scene.peek()?.calibration ?? null;
   // Plain data only, as after a transfer as JSON.
-  return JSON.parse(JSON.stringify({ version: 1, options: options.peek(), objects })) as ElementSession;
+  return JSON.parse(JSON.stringify({ version: 1, options: options.peek(), calibration, objects })) as ElementSession;
 }

@@ -1,5 +1,15 @@
 /** What a host sees of `<sim3-align>`. The types of inputs and metrics are those of the package `sim3align`. */
-import type { CameraInput, EncodedBytes, MeshArrays, Metrics, PixelArray, Preset, Quality } from "sim3align";
+import type {
+  CameraInput,
+  DepthCalibration,
+  DepthKind,
+  EncodedBytes,
+  MeshArrays,
+  Metrics,
+  PixelArray,
+  Preset,
+  Quality,
+} from "sim3align";
 import type { Sim3Like } from "sim3align/conventions";
 
 /** An object of a given scene. */
@@ -15,13 +25,19 @@ export interface GivenObject {
 /** A scene in memory. */
 export interface GivenScene {
   name?: string | undefined;
-  /** z-depth: metres, or 16-bit integers times `depthScale`, with `width` and `height`; or an encoded PNG or NPY file. */
+  /**
+   * z-depth: metres, or 16-bit integers times `depthScale`, with `width` and `height`; or an encoded PNG, NPY, NPZ, EXR,
+   * TIFF or PFM file.
+   */
   depth: Float32Array | Uint16Array | EncodedBytes;
   width?: number | undefined;
   height?: number | undefined;
   /** Metres per unit of depth. By default, integers are millimetres, and floats metres. */
   depthScale?: number | undefined;
-  camera: CameraInput;
+  /** What the values of the depth map are; `"metric"` by default. Others are calibrated by the objects. */
+  depthKind?: DepthKind | undefined;
+  /** By default, that in the depth file or in the EXIF data of the photo; or estimated together with the poses. */
+  camera?: CameraInput | undefined;
   /** The photo of the depth map's view: an image file or pixels (red, green, blue, alpha). */
   image?: Blob | ImageData | undefined;
   objects: readonly GivenObject[];
@@ -30,7 +46,7 @@ export interface GivenScene {
 /** What the property `scene` accepts. */
 export type GivenInput = GivenScene | Blob | readonly File[] | string;
 
-/** A pose: OpenCV camera from mesh, metres. */
+/** A pose: OpenCV camera from mesh, in metres if the result `isMetric`. */
 export interface PlainPose {
   scale: number;
   /** Unit quaternion x, y, z, w. */
@@ -46,8 +62,10 @@ export interface ObjectResult {
   /** Null before the first alignment. */
   pose: PlainPose | null;
   source: "start" | "aligned" | "alternative" | "refined" | "hand" | "tracked";
-  /** Sides of the bounding box along x, y and z of the mesh, metres. */
+  /** Sides of the smallest box around the object, named after the nearest axes x, y and z of the mesh. */
   sizeM: number[];
+  /** Whether lengths are metres. Otherwise, the unit of all lengths is unknown, but the same for all objects. */
+  isMetric: boolean;
   /** Of an aligned pose only. */
   confidence: number | null;
   isAccepted: boolean;
@@ -72,6 +90,8 @@ export interface ElementSession {
   version: 1;
   options: ElementOptions;
   objects: { name: string; state: object }[];
+  /** What depth and focal length were taken to be, if they were not known; the poses are in this depth. */
+  calibration?: DepthCalibration | null | undefined;
 }
 
 /** The details of the events. */

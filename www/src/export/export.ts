@@ -1,5 +1,6 @@
 /** Copies and saves results. */
 import { extension } from "../load/files.js";
+import { isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { permalink } from "../state/permalink.js";
@@ -18,13 +19,25 @@ export const allExports: readonly Export[] = [
   ["GLB", async (_, object) => download(`${fileName(object.name)}-placed.glb`, (await writers()).glbBytes(object))],
   ["GLB of the scene", async (scene) => download("scene.glb", (await writers()).sceneBytes(scene))],
   ["JSON", async (scene, { name }) => download(`${fileName(name)}.json`, (await writers()).jsonText(scene))],
-  ["BOP JSON", async (scene) => download("scene_gt.json", (await writers()).bopText(scene))],
+  [
+    "BOP JSON",
+    async (scene) => {
+      if (isMetric(scene)) download("scene_gt.json", (await writers()).bopText(scene));
+      else announce("BOP files are in millimetres: enter the known size of an object first.", "failed");
+    },
+  ],
   ["Copy matrix (column-major)", (_, object) => copyMatrix(object, "column")],
   ["Copy matrix (row-major)", (_, object) => copyMatrix(object, "row")],
   ["PLY", async (_, object) => download(`${fileName(object.name)}-placed.ply`, (await writers()).plyBytes(object))],
   ["Session", saveSession],
   ["PNG of the view", (_, object) => saveImage(fileName(object.name))],
   ["Copy link", () => copy(permalink(), "the link")],
+];
+
+/** What can be saved of several scenes besides. */
+export const listExport: Export = [
+  "JSON of all scenes",
+  async () => download("scenes.json", await (await writers()).allJsonText()),
 ];
 
 /** What can be saved of a video besides. */

@@ -1,44 +1,17 @@
 /** Writers of results, in formats that other programs read. */
-import { exportGlb, exportPly, exportSceneGlb, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
+import { exportGlb, exportPly, exportSceneGlb, placeGlb, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
-import { isResult } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
+import { plain, sceneResult } from "./results.js";
 
-const { framePoses, options, support, video } = page;
+const { framePoses, support, video } = page;
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
 export function matrixText({ pose }: ObjectModel, order: "column" | "row"): string {
   const { transform } = pose.value;
   const numbers = order === "column" ? transform.matrix : toRowMajor(transform);
   return `[${Array.from({ length: 4 }, (_, i) => numbers.slice(4 * i, 4 * i + 4).join(", ")).join(",\n ")}]`;
-}
-
-const plain = ({ matrix, scale, rotationMatrix, rotation, translation }: Sim3) => ({
-  scale,
-  rotation: rotationMatrix,
-  quaternion: rotation,
-  translation,
-  matrix,
-});
-
-/** A unique key for an object: its name, with a number if several objects have the same name. */
-export function keyOf(scene: Scene, object: ObjectModel): string {
-  const namesakes = scene.objects.filter(({ name }) => name === object.name);
-  return namesakes.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
-}
-
-function jsonEntry({ pose, box, precise, metrics }: ObjectModel) {
-  const { transform, source } = pose.value;
-  return {
-    ...plain(transform),
-    source,
-    sizeM: [...box.value.sizeM],
-    // The confidence is that of the aligned pose, not of one that was changed by hand.
-    confidence: isResult(source) ? (precise?.confidence ?? null) : null,
-    metrics: metrics.value,
-    alternatives: precise?.alternatives.map(plain) ?? [],
-  };
 }
 
 /** The poses of a video, by the names of its frames; as `sim3align track --json` writes them. */
@@ -53,17 +26,12 @@ export function videoText(name: string): string {
   return JSON.stringify({ [name]: { frames: Object.fromEntries(frames) } }, null, 2);
 }
 
-/** The poses of all objects by name. The command line reads it with `--transform` and `--initial`. */
-export function jsonText(scene: Scene): string {
-  const entries = scene.objects.map((object) => [keyOf(scene, object), jsonEntry(object)]);
-  return JSON.stringify({ ...Object.fromEntries(entries), _about: about(scene) }, null, 2);
-}
+/** The results of a scene. */
+export const jsonText = (scene: Scene): string => JSON.stringify(sceneResult(scene), null, 2);
 
-const about = ({ camera, width, height }: Scene) => ({
-  convention: "x_cam = scale · rotation · p_mesh + translation; OpenCV camera (x right, y down, z forward), metres",
-  camera: { ...camera, width, height },
-  options: options.value,
-});
+/** The results of all scenes of the list. */
+export const allJsonText = async (): Promise<string> =>
+  JSON.stringify((await import("../session/index.js")).allResults(), null, 2);
 
 /** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */
 export function bopText({ objects }: Scene): string {

@@ -1,12 +1,14 @@
 /** The cards of the view: depth map, photo, camera. */
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
+import type { DepthKind } from "sim3align";
 import { depthRange } from "../draw/colours.js";
 import { baseName } from "../load/files.js";
 import type { CameraSource, Field } from "../load/inputs.js";
+import { cameraTitle, kindTitles } from "../panels/input-rows.js";
 import { type Draft, draftInputs } from "../state/draft.js";
 import { Choices, FileButton } from "../ui/controls.js";
-import { significant } from "../ui/format.js";
+import { percent, significant } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { ASSUMED_FOV_DEG, fovYDegOf } from "./checks.js";
 import { change, choose } from "./draft.js";
@@ -66,6 +68,9 @@ export const FieldFiles = ({ field, title, isWrong, ...input }: FieldFilesProps)
 const useImage = (rgba: Uint8ClampedArray | null, depth: { width: number; height: number } | null) =>
   useMemo(() => rgba && depth && new ImageData(Uint8ClampedArray.from(rgba), depth.width, depth.height), [rgba, depth]);
 
+/** The extensions of depth maps. */
+const depthFiles = ".png,.npy,.npz,.exr,.tif,.tiff,.pfm";
+
 /** Metres per unit of depth, as text. An empty text is the default of the reader. */
 const depthUnits = [
   ["", "Auto"],
@@ -75,27 +80,44 @@ const depthUnits = [
   ["0.00025", "0.25 mm"],
 ] as const;
 
+const kinds = Object.entries(kindTitles) as [DepthKind, string][];
+
 export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
-  const { depth: file, depthScale } = draftInputs(open);
-  const depth = open.reading?.depth ?? null;
+  const { depth: file, depthScale, depthKind } = draftInputs(open);
+  const { depth = null, depthKind: read = "metric", depthUnit = "" } = open.reading ?? {};
+  const kind = depthKind ?? read;
   const range = useMemo(() => (depth === null ? null : depthRange(depth.data)), [depth]);
   const image = useImage(ground, depth);
   return (
-    <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept=".png,.npy">
+    <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept={depthFiles}>
       <Picture image={image} label="Depth map" class="shot" />
       <p class="quiet">
         {depth !== null && `${depth.width} × ${depth.height}`}
-        {range !== null && `, ${range.nearM.toFixed(2)} to ${range.farM.toFixed(2)} m`}
+        {kind === "metric" && range !== null && `, ${range.nearM.toFixed(2)} to ${range.farM.toFixed(2)} m`}
       </p>
-      <label class="field-inline" for="depth-scale">
-        <span>Unit</span>
+      <label class="field-inline" for="depth-kind">
+        <span>Values</span>
         <Choices
-          id="depth-scale"
-          value={`${depthScale ?? ""}` as (typeof depthUnits)[number][0]}
-          choices={depthUnits}
-          onChoose={(value) => change((now) => ({ ...now, depthScale: value === "" ? null : Number(value) }))}
+          id="depth-kind"
+          value={kind}
+          choices={kinds}
+          onChoose={(value) => change((now) => ({ ...now, depthKind: value }))}
         />
       </label>
+      {kind === "metric" && (
+        <label class="field-inline" for="depth-scale">
+          <span>Unit</span>
+          <Choices
+            id="depth-scale"
+            value={`${depthScale ?? ""}` as (typeof depthUnits)[number][0]}
+            choices={depthUnits}
+            onChoose={(value) => change((now) => ({ ...now, depthScale: value === "" ? null : Number(value) }))}
+          />
+        </label>
+      )}
+      <p class="quiet" id="depth-unit">
+        {depth !== null && (kind === "metric" ? `Unit: ${depthUnit}` : "No unit: sizes are relative to one another.")}
+      </p>
     </Card>
   );
 }
@@ -124,8 +146,8 @@ export function PhotoCard({ open }: { open: Draft }) {
 
 const intrinsics = ["fx", "fy", "cx", "cy"] as const;
 
-function chosenCamera(camera: CameraSource | null): string {
-  if (camera === null) return "";
+function chosenCamera(camera: CameraSource | null, source: string | null): string {
+  if (camera === null) return source === null ? "" : cameraTitle(source);
   return camera.kind === "file"
     ? baseName(camera.file.path)
     : camera.kind === "assumed"
@@ -135,8 +157,8 @@ function chosenCamera(camera: CameraSource | null): string {
 
 export function CameraCard({ open }: { open: Draft }) {
   const { camera } = draftInputs(open);
-  const read = open.reading?.camera ?? null;
-  const depth = open.reading?.depth ?? null;
+  const { camera: read = null, cameraSource = null, depth = null, raw = null } = open.reading ?? {};
+  const isGuess = raw !== null && raw.focalUncertainty > 0;
   const shown = camera?.kind === "numbers" ? camera : read;
   const fovDeg = read !== null && depth !== null ? fovYDegOf(read, depth) : null;
   const enter = (name: (typeof intrinsics)[number], value: number) =>
@@ -146,7 +168,7 @@ export function CameraCard({ open }: { open: Draft }) {
       return { ...now, camera: { kind: "numbers", ...entered } };
     });
   return (
-    <Card field="camera" title="Camera" chosen={chosenCamera(camera)} accept=".json,.yaml,.yml">
+    <Card field="camera" title="Camera" chosen={chosenCamera(camera, cameraSource)} accept=".json,.yaml,.yml">
       <div class="camera-numbers">
         {intrinsics.map((name) => (
           <label key={name} class="field-inline">
@@ -177,6 +199,12 @@ export function CameraCard({ open }: { open: Draft }) {
           <span class="unit">°</span>
         </label>
       </div>
+      {isGuess && <p class="quiet">Focal length ± {percent(raw.focalUncertainty)}, refined with the poses.</p>}
+      {camera !== null && (
+        <button type="button" onClick={() => change((now) => ({ ...now, camera: null }))}>
+          Leave out
+        </button>
+      )}
     </Card>
   );
 }

@@ -28,6 +28,7 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
   return [
     ...reading.problems,
     ...missing(inputs),
+    ...guessed(inputs, reading),
     ...depth,
     ...ofCamera(reading),
     ...ofPhoto(reading),
@@ -35,14 +36,11 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
   ];
 }
 
-function missing({ depth, camera, objects }: Inputs): Problem[] {
-  const assumed: Remedy = {
-    title: `Use ${ASSUMED_FOV_DEG}° field of view`,
-    apply: (inputs) => ({ ...inputs, camera: { kind: "assumed", fovYDeg: ASSUMED_FOV_DEG } }),
-  };
+function missing({ depth, objects }: Inputs): Problem[] {
   return [
-    ...(depth === null ? [error("depth", "Depth map missing. Choose a 16-bit PNG or an NPY file.")] : []),
-    ...(camera === null ? [error("camera", "Camera missing. Choose a file, or enter the intrinsics.", [assumed])] : []),
+    ...(depth === null
+      ? [error("depth", "Depth map missing. Choose a PNG, or the file that a depth camera or a model wrote.")]
+      : []),
     ...(objects.some(({ mask }) => mask !== null)
       ? []
       : [error("mask", "Mask missing. Choose a PNG, NPY or COCO JSON file.")]),
@@ -52,14 +50,35 @@ function missing({ depth, camera, objects }: Inputs): Problem[] {
   ];
 }
 
+/** What was taken for granted, and decides about the sizes. */
+function guessed({ depthKind: chosen }: Inputs, { cameraSource, depth, depthKind }: Reading): Problem[] {
+  const assumed: Remedy = {
+    title: `Use ${ASSUMED_FOV_DEG}° field of view`,
+    apply: (inputs) => ({ ...inputs, camera: { kind: "assumed", fovYDeg: ASSUMED_FOV_DEG } }),
+  };
+  const right: Remedy = { title: "It is", apply: (inputs) => ({ ...inputs, depthKind }) };
+  const looksRelative =
+    "This looks like relative disparity, as models draw it: near is bright. Sizes will have no unit until one is known.";
+  const unknown =
+    "No camera, and neither the depth file nor the photo states one: the focal length will be estimated together with the poses.";
+  return [
+    ...(depth !== null && chosen === null && depthKind !== "metric" ? [doubt("depth", looksRelative, [right])] : []),
+    ...(cameraSource === "estimate" ? [doubt("camera", unknown, [assumed])] : []),
+  ];
+}
+
 const useScale = (title: string, depthScale: number): Remedy => ({
   title,
   apply: (inputs) => ({ ...inputs, depthScale }),
 });
 
-function ofDepth({ depthScale }: Inputs, { depth }: Reading): Problem[] {
+function ofDepth({ depthScale }: Inputs, { depth, raw }: Reading): Problem[] {
   if (depth === null) return [];
   const range = depthRange(depth.data);
+  if (raw !== null && raw.depthKind !== "metric") {
+    const isFlat = range === null || raw.depth.every((d) => d === raw.depth[0] || !Number.isFinite(d));
+    return isFlat ? [error("depth", "The depth map has no relief: all of its values are equal.")] : [];
+  }
   if (range === null) return [error("depth", "The depth map has no reading: every pixel is 0 or no number.")];
   const { medianM } = range;
   const [nearest, farthest] = PLAUSIBLE_DEPTH_M;
@@ -112,7 +131,12 @@ function ofPhoto({ photo, depth }: Reading): Problem[] {
   return [error("photo", `The photo is ${sizes}: they do not show the same view.`, [leaveOut])];
 }
 
-function ofObject(inputs: Inputs, { depth, camera }: Reading, { mask, mesh }: ReadObject, i: number): Problem[] {
+function ofObject(
+  inputs: Inputs,
+  { depth, camera, depthKind }: Reading,
+  { mask, mesh }: ReadObject,
+  i: number,
+): Problem[] {
   const files = inputs.objects[i];
   if (files === undefined) return [];
   const leaveOut: Remedy = { title: "Leave it out", apply: withoutObject(i) };
@@ -138,7 +162,7 @@ function ofObject(inputs: Inputs, { depth, camera }: Reading, { mask, mesh }: Re
   if (readings === 0) {
     return [...problems, error("mask", "No pixel of the mask has a depth reading.", several ? [leaveOut] : [], i)];
   }
-  if (camera === null || mesh === null) return problems;
+  if (camera === null || mesh === null || depthKind !== "metric") return problems;
   const { sizeM } = visibleExtent(depth, mask, camera);
   const [smallest, largest] = PLAUSIBLE_SIZE_M;
   if (sizeM < smallest || sizeM > largest) {

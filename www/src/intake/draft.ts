@@ -2,7 +2,7 @@
 
 import { extractArchives } from "../load/archives.js";
 import type { NamedFile } from "../load/files.js";
-import { type Inputs, noInputs, type Role, type Typed } from "../load/inputs.js";
+import { type Inputs, noInputs, type Role, type Typed, withId } from "../load/inputs.js";
 import { error, errorOf, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
@@ -15,7 +15,7 @@ import { rolesOf } from "./roles.js";
 import { scenesOfTyped } from "./scenes.js";
 import { isVideo, videoOf } from "./video.js";
 
-const { announce, queue, scene, show } = page;
+const { announce, enlist, scene, show } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
@@ -88,7 +88,8 @@ export async function choose(role: Exclude<Role, "unused">, files: readonly Name
   if (role === "depth" || role === "photo" || role === "camera") {
     const kept = inputs.files.filter((one) => one.role !== role);
     const camera = { kind: "file", file } as const;
-    const own = { ...inputs, ...ownName(inputs), files: [...kept, { file, role }] };
+    const named = { ...inputs, ...ownName(inputs), files: [...kept, { file, role }] };
+    const own = role === "depth" ? { ...named, depthKind: null } : named;
     return change(() => ({ ...own, [role]: role === "camera" ? camera : file }), true);
   }
   const known = await rolesOf(files);
@@ -120,7 +121,6 @@ export async function accept(): Promise<void> {
   lastChange++;
   draft.value = null;
   if (open.isVideo) {
-    queue.value = [];
     const opening = await videoOf(open.scenes);
     // Tracking starts with the first frame, whichever is looked at.
     const frame = opening.frames[0] as Inputs;
@@ -131,8 +131,9 @@ export async function accept(): Promise<void> {
     await trackAll();
     return;
   }
-  if (!open.isEdit) queue.value = open.scenes.filter((_, i) => i > open.index);
-  show(opened, inputs);
+  const scenes = open.scenes.map((one) => (one.sample === null ? withId(one) : one));
+  if (scenes.length > 1) enlist(scenes);
+  show(opened, scenes[open.index] as Inputs);
   await alignAll(page);
 }
 
@@ -156,9 +157,9 @@ async function rebuild(files: readonly Typed[]): Promise<void> {
   const before = draftInputs(open);
   const [after] = await scenesOfTyped(files);
   if (after === undefined) return;
-  const { depthScale, resizeMasks } = before;
+  const { depthScale, depthKind, resizeMasks } = before;
   const camera = before.camera?.kind === "file" ? after.camera : (after.camera ?? before.camera);
-  await change(() => ({ ...after, depthScale, resizeMasks, camera, ...ownName(before) }), true);
+  await change(() => ({ ...after, depthScale, depthKind, resizeMasks, camera, ...ownName(before) }), true);
 }
 
 /** A sample with other files is no sample. */
@@ -181,8 +182,9 @@ async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens
   if (opens && isWhole && !next.isEdit && !hasWork()) await accept();
 }
 
-/** Whether the scene that is shown has poses that were set by hand, which a new scene would discard. */
-const hasWork = () => scene.peek()?.objects.some(({ pose }) => pose.peek().source === "hand") === true;
+/** Whether the sample that is shown has poses that were set by hand: unlike the user's own scenes, it is not kept. */
+const hasWork = () =>
+  scene.peek()?.sample !== null && scene.peek()?.objects.some(({ pose }) => pose.peek().source === "hand") === true;
 
 /** Shows what is wrong with the files as a whole. */
 function refuse(problem: Problem): void {

@@ -17,13 +17,7 @@ const kindWords = new Set(
 
 /** The words of a name that tell the object. "IMG_2-coffeeCup.mask" and "coffee cup" share two. */
 export function wordsOf(path: string): string[] {
-  return split(path, /[^\p{L}\p{N}]+|(?<=\p{L})(?=\p{N})|(?<=\p{N})(?=\p{L})/u);
-}
-
-/** The name of an object, for people: digits stay where they are in a word. */
-export const titleOf = (path: string): string => split(path, /[^\p{L}\p{N}]+/u).join(" ");
-
-function split(path: string, at: RegExp): string[] {
+  const at = /[^\p{L}\p{N}]+|(?<=\p{L})(?=\p{N})|(?<=\p{N})(?=\p{L})/u;
   const parts = path.replace(/\.[^./]+$/, "").split("/");
   const words = (text: string) =>
     text
@@ -35,6 +29,20 @@ function split(path: string, at: RegExp): string[] {
   const own = words(parts.at(-1) ?? "");
   // "cup/mask.png" is named by its folder.
   return own.length > 0 ? own : words(parts.at(-2) ?? "");
+}
+
+/** The name of an object as its file has it, without the words at either end that tell the kind of the file. */
+export function titleOf(path: string): string {
+  const [own = "", folder = ""] = path.split("/").reverse();
+  return trimmed(own.replace(/\.[^./]+$/, "")) || trimmed(folder);
+}
+
+function trimmed(name: string): string {
+  const parts = name.split(/([^\p{L}\p{N}]+)/u);
+  const isKind = (part: string | undefined) => part !== undefined && (part === "" || kindWords.has(part.toLowerCase()));
+  while (parts.length > 0 && isKind(parts[0])) parts.splice(0, 2);
+  while (parts.length > 0 && isKind(parts.at(-1))) parts.splice(-2);
+  return parts.join("");
 }
 
 /** How well the names of a mask and a mesh agree, 0 to 1. */

@@ -5,6 +5,8 @@ import type { Role, Typed } from "../load/inputs.js";
 export const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
 const photoExtensions = ["jpg", "jpeg", "webp"];
 export const resourceExtensions = ["bin", "mtl"];
+/** Files of depth models. */
+const depthExtensions = ["npz", "exr", "tif", "tiff", "pfm"];
 
 /** Whether a name contains one of the words, between characters that are no letters. */
 const says = (name: string, words: string) => new RegExp(`(^|[^a-z])(${words})(s?)([^a-z]|$)`).test(name);
@@ -35,6 +37,7 @@ async function roleOf(file: NamedFile): Promise<Role> {
   const name = baseName(file.path).toLowerCase();
   const byName = pixelRole(name) ?? pixelRole(folderOf(file.path));
   if (photoExtensions.includes(ending)) return byName === "unused" ? byName : "photo";
+  if (depthExtensions.includes(ending)) return byName === "unused" || byName === "mask" ? "unused" : "depth";
   if (ending !== "png" && ending !== "npy") return "unused";
   return byName ?? pixelRoleOf(ending, await headOf(file, 1 << 10));
 }

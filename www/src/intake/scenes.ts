@@ -202,8 +202,11 @@ async function objectsOf(
 function objectName(path: string, mesh: MeshSource | undefined, count: number, i: number): string {
   const words = titleOf(path);
   const others = mesh === undefined ? "" : titleOf(mesh.file.path);
-  const name = /^[\d ]*$/.test(words) && /\p{L}/u.test(others) ? others : words;
-  return /^[\d ]*$/.test(name) && count > 1 ? `Object ${name.split(" ").at(-1) || i + 1}` : name || "Object";
+  const hasLetters = (text: string) => /\p{L}/u.test(text);
+  const name = hasLetters(words) ? words : hasLetters(others) ? others : words;
+  const number = name.match(/\d+/g)?.at(-1);
+  if (!hasLetters(name) && count > 1) return `Object ${number === undefined ? i + 1 : Number(number)}`;
+  return name || "Object";
 }
 
 /** The true pose beside a mask, or the only one for the only mask. */

@@ -1,4 +1,5 @@
 /** The inputs of a scene: which file is what, and which mask belongs to which mesh. Nothing is read yet. */
+import type { DepthKind } from "sim3align";
 import type { NamedFile } from "./files.js";
 
 /** What a file is used for; `resource` is a file that a mesh refers to. */
@@ -60,13 +61,18 @@ export interface ObjectFiles {
 
 /** The inputs. */
 export interface Inputs {
+  /** By which the scene is listed and kept; empty for samples, which are neither. */
+  id: string;
   name: string;
   /** The id of the sample, or null for the user's own files. */
   sample: string | null;
   depth: NamedFile | null;
   /** Metres per unit of depth; null is the default of the reader. */
   depthScale: number | null;
+  /** What the values of the depth map are; null is what the file suggests. */
+  depthKind: DepthKind | null;
   photo: NamedFile | null;
+  /** Without one, it is that of the depth file, that of the photo's EXIF data, or estimated together with the poses. */
   camera: CameraSource | null;
   /** The image in files that describe several. */
   imageId: string | null;
@@ -80,10 +86,12 @@ export interface Inputs {
 }
 
 export const noInputs: Inputs = {
+  id: "",
   name: "",
   sample: null,
   depth: null,
   depthScale: null,
+  depthKind: null,
   photo: null,
   camera: null,
   imageId: null,
@@ -92,6 +100,10 @@ export const noInputs: Inputs = {
   resizeMasks: false,
   files: [],
 };
+
+/** The inputs of the user's own scene, with an id. */
+export const withId = (inputs: Inputs): Inputs =>
+  inputs.id !== "" ? inputs : { ...inputs, id: `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}` };
 
 /** The input fields. */
 export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";

@@ -1,15 +1,17 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
 import { draft } from "../state/draft.js";
+import type { Listed } from "../state/opened.js";
 import { page } from "../state/page.js";
 import type { NamedFile } from "./files.js";
+import type { Inputs } from "./inputs.js";
 import { readInputs, sceneOf } from "./read-scene.js";
 import { type Sample, sampleInputs } from "./samples.js";
 
-const { announce, inputs, isReading, queue, scene, show } = page;
+const { announce, inputs, isReading, list, objects, scene, show } = page;
 
 /** The number of the last call of `openSample`. The results of earlier calls are discarded. */
 let lastCall = 0;
-scene.subscribe(() => {
+objects.subscribe(() => {
   lastCall++;
 });
 
@@ -30,7 +32,6 @@ export async function openSample(sample: Sample): Promise<boolean> {
     announce(`${next.name}: ${reading.problems.map(({ message }) => message).join(" ")}`, "failed");
     return false;
   }
-  queue.value = [];
   show(opened, next);
   return true;
 }
@@ -41,18 +42,62 @@ const intake = () => import("../intake/draft.js");
 export async function openFiles(files: readonly NamedFile[]): Promise<void> {
   if (files.length === 0) return;
   announce("Reading files …", "working");
-  await (await intake()).propose(files);
+  await attempt(async () => (await intake()).propose(files));
+}
+
+/** Parts of the page that were not needed before cannot be loaded without a connection. */
+async function attempt(work: () => Promise<unknown>): Promise<void> {
+  try {
+    await work();
+  } catch (cause) {
+    const isOffline = navigator.onLine === false || cause instanceof TypeError;
+    const lost = "A part of this page could not be loaded. Connect to the network, and try again.";
+    announce(isOffline ? lost : `${cause}`, "failed");
+  }
 }
 
 /** Makes the inputs of the scene that is shown a draft. */
 export async function editInputs(): Promise<void> {
-  if (draft.peek() === null) await (await intake()).edit(inputs.peek());
+  if (draft.peek() === null) await attempt(async () => (await intake()).edit(inputs.peek()));
 }
 
-/** Opens the next scene of the drop. */
+/** Opens a scene of the list, as it was left. */
+export async function openListed({ id }: Inputs): Promise<void> {
+  const inputs = list.peek().find((one) => one.inputs.id === id)?.inputs;
+  if (inputs === undefined) return;
+  announce(`Reading ${inputs.name} …`, "working");
+  await attempt(async () => {
+    const { reopen } = await import("../session/index.js");
+    if (!(await reopen(inputs))) await (await intake()).proposeScenes([inputs]);
+  });
+}
+
+/** How far the work on a scene of the list is. */
+export function progressOf({ inputs: { id }, progress }: Listed): Listed["progress"] {
+  if (id !== inputs.value.id || scene.value === null) return progress;
+  const all = objects.value;
+  return { objects: all.length, accepted: all.filter(({ isAccepted }) => isAccepted.value).length };
+}
+
+/** Whether an object of a scene is still to be accepted. */
+export function isOpen(one: Listed): boolean {
+  const progress = progressOf(one);
+  return progress === null || progress.accepted < progress.objects;
+}
+
+/** The next scene of the list that is open, after the one that is shown. */
+export function nextListed(): Inputs | null {
+  const all = list.value;
+  const at = all.findIndex((one) => one.inputs.id === inputs.value.id);
+  return [...all.slice(at + 1), ...all.slice(0, Math.max(at, 0))].find(isOpen)?.inputs ?? null;
+}
+
+/** Opens it or, if all are done, the one that follows. */
 export async function openNext(): Promise<void> {
-  const [next, ...rest] = queue.peek();
-  if (next !== undefined) await (await intake()).proposeScenes([next, ...rest]);
+  const all = list.peek();
+  const at = all.findIndex((one) => one.inputs.id === inputs.peek().id);
+  const next = nextListed() ?? all[(at + 1) % all.length]?.inputs;
+  if (next !== undefined) await openListed(next);
 }
 
 page.fileActions.value = { edit: editInputs, next: openNext };

@@ -1,23 +1,21 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
-import type { MeshArrays } from "sim3align";
+import type { DepthKind, MeshArrays } from "sim3align";
 import { type MeshFromFile, type PixelArray, readCamera, readPose } from "sim3align/formats";
+import type { RawView } from "../state/calibration.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
-import type { NamedFile } from "./files.js";
+import { cameraOf, knownCamera, type ReadCamera, readDepthMap, viewOf } from "./depth-view.js";
 import type { CameraSource, Field, Inputs, TruthSource } from "./inputs.js";
 import { atSize, maskOf } from "./masks.js";
 import { meshOf } from "./meshes.js";
 import { type Photo, readPhoto } from "./photo.js";
 import { errorOf, type Problem } from "./problems.js";
-import { readDepth } from "./reader.js";
 import { visibleExtent } from "./visible-extent.js";
 
 /** Colours of objects, distinguishable on light and dark backgrounds and with most colour vision deficiencies. */
 const colours = ["#f08a24", "#3c9ee5", "#2fa36b", "#c65fd0", "#d64545", "#a58a00"];
 
 export const colourOf = (index: number): string => colours[index % colours.length] ?? "#f08a24";
-
-type Intrinsics = Scene["camera"];
 
 /** An object, as far as it could be read. */
 export interface ReadObject {
@@ -29,8 +27,15 @@ export interface ReadObject {
 
 /** The inputs, as far as they could be read. */
 export interface Reading {
+  /** Metres, or what is shown until it is calibrated. */
   depth: PixelArray<Float32Array> | null;
-  camera: Intrinsics | null;
+  /** What is to be calibrated. */
+  raw: RawView | null;
+  depthKind: DepthKind;
+  depthUnit: string;
+  camera: Scene["camera"] | null;
+  /** Where the camera comes from, if none was given. */
+  cameraSource: string | null;
   photo: Photo | null;
   objects: readonly ReadObject[];
   /** Found by the readers. */
@@ -68,20 +73,17 @@ export async function readInputs(
   const cameraBytes = source?.kind === "file" ? await attempt("camera", () => source.file.bytes()) : null;
   const integerDepthScale = cameraBytes === null ? undefined : await depthScaleOf(cameraBytes, imageId);
   const depthScale = inputs.depthScale ?? undefined;
-  const depth =
-    depthFile === null
-      ? null
-      : await attempt("depth", async () => readDepth(await depthFile.bytes(), { depthScale, integerDepthScale }));
-  const size = depth ?? { width: 0, height: 0 };
-  const [camera, photo, objects] = await Promise.all([
-    source === null || depth === null
-      ? null
-      : attempt("camera", () => intrinsicsOf(source, cameraBytes, size, imageId)),
-    inputs.photo === null || depth === null ? null : attempt("photo", () => readPhoto(inputs.photo as NamedFile, size)),
+  const scales = { depthScale, integerDepthScale };
+  const read =
+    depthFile === null ? null : await attempt("depth", () => readDepthMap(depthFile, inputs.depthKind, scales));
+  const size = read ?? { width: 0, height: 0 };
+  const { photo: photoFile } = inputs;
+  const [photo, objects] = await Promise.all([
+    photoFile === null || read === null ? null : attempt("photo", () => readPhoto(photoFile, size)),
     Promise.all(
       inputs.objects.map(async ({ mask, mesh, truth }, i): Promise<ReadObject> => {
         const [readMask, readMesh, readTruth] = await Promise.all([
-          mask === null || depth === null
+          mask === null || read === null
             ? null
             : attempt("mask", async () => atSize(await maskOf(mask), size.width, size.height, inputs.resizeMasks), i),
           mesh === null ? null : attempt("mesh", () => meshOf(mesh), i),
@@ -91,16 +93,29 @@ export async function readInputs(
       }),
     ),
   ]);
-  const { warnings = [], ...intrinsics } = camera ?? {};
+  const camera =
+    read === null
+      ? null
+      : await attempt("camera", async () =>
+          source === null
+            ? cameraOf(read, photo && photoFile && { ...photo, bytes: await photoFile.bytes() })
+            : intrinsicsOf(source, cameraBytes, size, imageId),
+        );
+  const view = read && viewOf(read, camera);
   return {
-    ...{ depth, photo, objects, problems, warnings },
-    camera: camera === null ? null : (intrinsics as Intrinsics),
+    ...{ photo, objects, problems, warnings: camera?.warnings ?? [] },
+    depth: view && { data: view.depthM, width: size.width, height: size.height },
+    raw: view?.raw ?? null,
+    depthKind: read?.depthKind ?? "metric",
+    depthUnit: read?.unit ?? "",
+    camera: camera?.camera ?? null,
+    cameraSource: camera?.source ?? null,
   };
 }
 
 /** The scene, or null while a part is missing. A frame of a video may lack its mask. */
 export function sceneOf(inputs: Inputs, reading: Reading, isFrame = false): Scene | null {
-  const { depth, camera, photo, objects, warnings } = reading;
+  const { depth, camera, photo, objects, raw, depthUnit, cameraSource, warnings } = reading;
   if (depth === null || camera === null) return null;
   const models: ObjectModel[] = [];
   for (const [i, { mask: ownMask, mesh, glb, truth }] of objects.entries()) {
@@ -108,12 +123,15 @@ export function sceneOf(inputs: Inputs, reading: Reading, isFrame = false): Scen
     if (mask === null || mesh === null) return null;
     const { name } = inputs.objects[i] as Inputs["objects"][number];
     const parts = { id: `${i}`, name, colour: colourOf(i), mask, mesh: mesh as MeshArrays, glb, truth };
-    models.push(new ObjectModel({ ...parts, visible: visibleExtent(depth, mask, camera) }));
+    models.push(new ObjectModel(parts, visibleExtent(depth, mask, camera)));
   }
   if (models.length === 0) return null;
   const { data: depthM, width, height } = depth;
   const { name, sample } = inputs;
-  return { ...{ name, sample, depthM, width, height, camera, warnings }, rgba: photo?.rgba ?? null, objects: models };
+  return {
+    ...{ name, sample, depthM, width, height, camera, raw, depthUnit, cameraSource, warnings },
+    ...{ calibration: null, rgba: photo?.rgba ?? null, objects: models },
+  };
 }
 
 /** The depth scale of a camera file. Errors are left to the reading of the intrinsics, which needs the image size. */
@@ -132,25 +150,22 @@ async function intrinsicsOf(
   bytes: Uint8Array | null,
   { width, height }: { width: number; height: number },
   imageId: string | null,
-): Promise<Intrinsics & { warnings: readonly string[] }> {
+): Promise<ReadCamera> {
   if (source.kind === "assumed") {
     const { fovYDeg } = source;
     if (!(fovYDeg >= FOV_RANGE[0] && fovYDeg <= FOV_RANGE[1])) {
       throw new Error(`The vertical field of view must be between ${FOV_RANGE[0]}° and ${FOV_RANGE[1]}°.`);
     }
-    const { fx, fy, cx, cy } = await readCamera({ fovYDeg }, { width, height });
     const warning = `The camera is assumed (vertical field of view ${fovYDeg}°), so the size is approximate.`;
-    return { fx, fy, cx, cy, warnings: [warning] };
+    return { ...(await knownCamera({ fovYDeg }, { width, height })), warnings: [warning] };
   }
-  if (source.kind === "numbers") return { ...entered(source), warnings: [] };
+  if (source.kind === "numbers") return { camera: entered(source), source: null, focalUncertainty: 0, warnings: [] };
   if (bytes === null) throw new Error("The camera file could not be read.");
-  const options = imageId === null ? { width, height } : { width, height, imageId };
-  const { fx, fy, cx, cy, warnings } = await readCamera(bytes, options);
-  return { fx, fy, cx, cy, warnings };
+  return knownCamera(bytes, imageId === null ? { width, height } : { width, height, imageId });
 }
 
 /** Intrinsics that were typed. */
-function entered({ fx, fy, cx, cy }: Extract<CameraSource, { kind: "numbers" }>): Intrinsics {
+function entered({ fx, fy, cx, cy }: Extract<CameraSource, { kind: "numbers" }>): Scene["camera"] {
   if (fx === null || fy === null || cx === null || cy === null) {
     const missing = Object.entries({ fx, fy, cx, cy }).flatMap(([name, value]) => (value === null ? [name] : []));
     throw new Error(`Enter ${missing.join(", ")}, or choose a camera file.`);

@@ -1,6 +1,6 @@
 /** The rough position and size of the visible part of an object, for its start pose. */
 import type { DepthImage } from "sim3align/formats";
-import type { ObjectParts } from "../state/object-model.js";
+import type { VisibleExtent } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 
 /** Upper bound on the readings that are used. */
@@ -13,7 +13,7 @@ export function visibleExtent(
   { data, width }: Pick<DepthImage, "data" | "width">,
   mask: Uint8Array,
   { fx, fy, cx, cy }: Scene["camera"],
-): ObjectParts["visible"] {
+): VisibleExtent {
   const isReading = (pixel: number) => mask[pixel] !== 0 && (data[pixel] as number) > 0;
   // An odd step looks at all columns.
   const step = 2 * Math.floor(mask.length / MOST_PIXELS) + 1;

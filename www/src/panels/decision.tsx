@@ -8,7 +8,7 @@ export function accept(workspace: Workspace): void {
   const { announce, select, selected } = workspace;
   const object = selected.peek();
   if (object === null || !object.isPlaced) return;
-  object.isAccepted.value = true;
+  object.accept();
   const next = nextOpen(workspace, object);
   announce(`Accepted ${object.name}.${next === null ? " All objects are accepted." : ""}`);
   if (next !== null) select(next.id);
@@ -29,12 +29,12 @@ export function fix({ gizmo }: Workspace, { currentTarget }: Event): void {
 
 /** Selects the next object that is not accepted yet, or else the next one; after the last one, opens the next scene. */
 export function next(workspace: Workspace): void {
-  const { fileActions, queue, scene, select, selected } = workspace;
+  const { fileActions, list, scene, select, selected } = workspace;
   const objects = scene.peek()?.objects ?? [];
   const object = selected.peek();
   if (object === null) return;
   const open = nextOpen(workspace, object);
-  if (open === null && queue.peek().length > 0) fileActions.peek()?.next();
+  if (open === null && list.peek().length > 1) fileActions.peek()?.next();
   else select((open ?? objects[(objects.indexOf(object) + 1) % objects.length])?.id ?? null);
 }
 
@@ -47,9 +47,9 @@ function nextOpen({ scene }: Workspace, object: ObjectModel): ObjectModel | null
 
 export function Decision({ object }: { object: ObjectModel | null }) {
   const workspace = useWorkspace();
-  const { queue, scene } = workspace;
+  const { list, scene } = workspace;
   const isAccepted = object?.isAccepted.value === true;
-  const hasNext = (scene.value?.objects.length ?? 0) > 1 || queue.value.length > 0;
+  const hasNext = (scene.value?.objects.length ?? 0) > 1 || list.value.length > 1;
   return (
     <fieldset class="decision" disabled={object === null}>
       <legend class="visually-hidden">Decision</legend>

@@ -2,17 +2,12 @@
 import type { Stage } from "sim3align";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
-import { Tip } from "../ui/controls.js";
-import { orDash, significant } from "../ui/format.js";
-import { type MetricText, metricTexts, stageTitles } from "../ui/texts.js";
+import { orDash, significant, small } from "../ui/format.js";
+import { metricTexts, stageTitles } from "../ui/texts.js";
+import { useWorkspace } from "../ui/workspace.js";
+import { inputRows } from "./input-rows.js";
+import { MAIN, MetricTable } from "./metrics.js";
 import { quietWarningsOf } from "./sureness.js";
-
-/** The metrics that are always shown. */
-const MAIN = 3;
-
-export const MainMetrics = ({ object }: { object: ObjectModel | null }) => (
-  <MetricTable object={object} metrics={metricTexts.slice(0, MAIN)} id="metrics" />
-);
 
 export function Details({ object }: { object: ObjectModel | null }) {
   return (
@@ -31,50 +26,24 @@ export function Details({ object }: { object: ObjectModel | null }) {
   );
 }
 
-interface MetricTableProps {
-  object: ObjectModel | null;
-  metrics: readonly MetricText[];
-  id: string;
-}
-
-function MetricTable({ object, metrics: texts, id }: MetricTableProps) {
-  const metrics = object?.metrics.value ?? null;
-  return (
-    <dl class="metrics" id={id}>
-      {texts.map(({ name, title, about, better, show }) => (
-        <div key={name}>
-          <dt>
-            {title}
-            <Tip label={title}>
-              {about} {better === "higher" ? "Higher is better." : "Lower is better."}
-            </Tip>
-          </dt>
-          <dd data-metric={name} data-value={metrics?.[name] ?? ""}>
-            {metrics === null ? (object === null ? "–" : "…") : orDash(metrics[name], show)}
-          </dd>
-        </div>
-      ))}
-    </dl>
-  );
-}
-
 function Pose({ object }: { object: ObjectModel | null }) {
+  const { scene, unit: shownUnit } = useWorkspace();
+  const unit = shownUnit.value;
   const uncertainty = isResult(object?.pose.value.source) ? object?.precise?.uncertainty : null;
   // One standard deviation.
-  const within = (value: number | undefined, unit: string) =>
-    value === undefined ? "" : ` ± ${significant(value, 2)}${unit}`;
+  const within = (text: string | null | undefined) => (text ? ` ± ${text}` : "");
   const transform = object?.pose.value.transform;
   const list = (numbers: readonly number[] | undefined) => numbers?.map((x) => x.toFixed(3)).join(", ") ?? "–";
+  const scale = orDash(transform?.scale, (s) => significant(s / (unit ?? 1), 5));
+  const centre = list(object?.box.value.centreM.map((x) => x / (unit ?? 1)));
   const rows = [
     [
       "Scale",
-      `${orDash(transform?.scale, (s) => significant(s, 5))} m per mesh unit${within(uncertainty ? 100 * uncertainty.scale : undefined, " %")}`,
+      `${scale} ${unit === null ? "m " : ""}per mesh unit${within(uncertainty && `${significant(100 * uncertainty.scale, 2)} %`)}`,
     ],
-    [
-      "Centre",
-      `${list(object?.box.value.centreM)} m${within(uncertainty ? 1000 * uncertainty.distanceM : undefined, " mm")}`,
-    ],
-    ["Rotation", `${list(transform?.rotation)}${within(uncertainty?.rotationDeg, "°")}`],
+    ["Centre", `${centre}${unit === null ? " m" : ""}${within(uncertainty && small(uncertainty.distanceM, unit))}`],
+    ["Rotation", `${list(transform?.rotation)}${within(uncertainty && `${significant(uncertainty.rotationDeg, 2)}°`)}`],
+    ...(scene.value === null ? [] : inputRows(scene.value)),
   ];
   return (
     <dl class="facts">

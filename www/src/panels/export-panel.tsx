@@ -1,8 +1,8 @@
 /** Buttons that copy or save results. */
-import { allExports, videoExport } from "../export/export.js";
+import { allExports, listExport, videoExport } from "../export/export.js";
 import { page } from "../state/page.js";
 
-const { scene, selected, video } = page;
+const { list, scene, selected, video } = page;
 
 export function ExportPanel() {
   const [whole, object] = [scene.value, selected.value];
@@ -13,7 +13,11 @@ export function ExportPanel() {
       </summary>
       <fieldset class="exports" disabled={whole === null || !object?.isPlaced}>
         <legend class="visually-hidden">Poses, files and images</legend>
-        {[...(video.value === null ? [] : [videoExport]), ...allExports].map(([title, act]) => (
+        {[
+          ...(video.value === null ? [] : [videoExport]),
+          ...allExports,
+          ...(list.value.length > 1 ? [listExport] : []),
+        ].map(([title, act]) => (
           <button key={title} type="button" onClick={() => whole !== null && object !== null && act(whole, object)}>
             {title}
           </button>

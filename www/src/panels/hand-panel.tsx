@@ -78,7 +78,7 @@ const steps: readonly Steps[] = [
 
 export function HandPanel() {
   const workspace = useWorkspace();
-  const { canRedo, canUndo, gizmo, gizmoSettings, isRunning, nudge, redo, selected, space, undo } = workspace;
+  const { canRedo, canUndo, gizmo, gizmoSettings, isRunning, nudge, redo, selected, space, undo, unit } = workspace;
   const object = selected.value;
   const lockScale = object !== null && object.knownScale.value !== null;
   const isReady = object !== null && !isRunning.value && !object.isLocked.value;
@@ -153,7 +153,7 @@ export function HandPanel() {
           id="lock-scale"
           title="Lock scale"
           checked={lockScale}
-          disabled={object === null}
+          disabled={object === null || unit.value !== null}
           onCheck={(checked) => object?.lockScale(checked)}
         />
       </div>

@@ -31,10 +31,11 @@ export function HelpDialog() {
         with it.
       </p>
       <p>
-        Drop a folder, a zip archive or single files anywhere on the page: <code>depth.png</code> or{" "}
-        <code>depth.npy</code>, <code>mask.png</code>, <code>mesh.glb</code>, <code>camera.json</code>, and optionally a
-        photo. For several objects, use matching names: <code>mask-cup.png</code> goes with <code>mesh-cup.glb</code>.
-        Everything is computed in this browser; nothing is uploaded.
+        Drop a folder, a zip archive or single files anywhere on the page: a depth map (PNG, NPY, NPZ, EXR, TIFF or
+        PFM), <code>mask.png</code>, <code>mesh.glb</code>, and optionally a photo and <code>camera.json</code>. Without
+        a camera, its focal length is that of the depth file or of the photo, or estimated. Relative depth gives sizes
+        without a unit, until you enter a known one. For several objects, use matching names: <code>mask-cup.png</code>{" "}
+        goes with <code>mesh-cup.glb</code>. Everything is computed in this browser; nothing is uploaded.
       </p>
       <h3>Keyboard shortcuts</h3>
       <dl class="keys">

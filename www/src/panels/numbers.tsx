@@ -9,7 +9,7 @@ import { useWorkspace } from "../ui/workspace.js";
 
 const axes = ["x", "y", "z"] as const;
 const axisChoices = axes.map((axis) => [axis, axis] as const);
-const unit = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] } satisfies Record<(typeof axes)[number], Vector3>;
+const directions = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] } satisfies Record<(typeof axes)[number], Vector3>;
 
 interface NumbersProps {
   object: ObjectModel | null;
@@ -17,9 +17,11 @@ interface NumbersProps {
 }
 
 export function Numbers({ object, isReady }: NumbersProps) {
-  const { nudge } = useWorkspace();
+  const { nudge, unit } = useWorkspace();
   const [axis, setAxis] = useState<(typeof axes)[number]>("y");
   const centre = object?.box.value.centreM;
+  // Metres per unit that is shown.
+  const shown = unit.value ?? 0.01;
   const apply = (change: Nudge) => {
     if (object !== null) nudge(object, change);
   };
@@ -30,17 +32,17 @@ export function Numbers({ object, isReady }: NumbersProps) {
   };
   return (
     <fieldset class="numbers" disabled={!isReady}>
-      <legend>Centre in the camera's frame, cm</legend>
+      <legend>Centre in the camera's frame, {unit.value === null ? "cm" : "relative"}</legend>
       {axes.map((name, k) => (
         <label key={name} class="field-inline">
           <span>{name}</span>
           <input
             id={`centre-${name}`}
             type="number"
-            step="0.1"
+            step={unit.value === null ? "0.1" : "0.01"}
             inputMode="decimal"
-            value={centre === undefined ? "" : (100 * (centre[k] ?? 0)).toFixed(2)}
-            onChange={({ currentTarget }) => move(k, currentTarget.valueAsNumber / 100)}
+            value={centre === undefined ? "" : ((centre[k] ?? 0) / shown).toFixed(2)}
+            onChange={({ currentTarget }) => move(k, currentTarget.valueAsNumber * shown)}
           />
         </label>
       ))}
@@ -55,7 +57,7 @@ export function Numbers({ object, isReady }: NumbersProps) {
           onChange={({ currentTarget }) => {
             const degrees = currentTarget.valueAsNumber;
             currentTarget.value = "";
-            if (Number.isFinite(degrees)) apply({ rotation: rotationAbout(unit[axis], degrees) });
+            if (Number.isFinite(degrees)) apply({ rotation: rotationAbout(directions[axis], degrees) });
           }}
         />
         <span>° about</span>

@@ -1,16 +1,18 @@
 /** The outliner: the objects of the scene, each to be selected, shown, locked, renamed and removed. */
 import { useState } from "preact/hooks";
 import type { ObjectModel, Run } from "../state/object-model.js";
-import { percent } from "../ui/format.js";
+import { percent, type Unit } from "../ui/format.js";
 import { Icon } from "../ui/icons.js";
 import { useWorkspace } from "../ui/workspace.js";
 
-function stateOf(run: Run, object: ObjectModel): string {
+function stateOf(run: Run, object: ObjectModel, unit: Unit): string {
   if (run.state === "waiting") return "waiting";
   if (run.state === "running") return `${Math.round(100 * run.fraction)} %`;
   if (run.state === "failed") return "failed";
   if (!object.isPlaced) return run.state === "cancelled" ? "cancelled" : "not aligned";
-  return `${object.box.value.sizeM.map((side) => Math.round(100 * side)).join("×")} cm`;
+  const { sizeM } = object.box.value;
+  if (unit !== null) return sizeM.map((side) => (side / unit).toFixed(2)).join("×");
+  return `${sizeM.map((side) => Math.round(100 * side)).join("×")} cm`;
 }
 
 export function ObjectsPanel() {
@@ -116,9 +118,9 @@ function Toggle({ label, isOn, icon, onToggle }: ToggleProps) {
 }
 
 function ObjectButton({ object, onRename }: { object: ObjectModel; onRename(): void }) {
-  const { select, selected } = useWorkspace();
+  const { select, selected, unit } = useWorkspace();
   const { id, name, colour, run, isAccepted } = object;
-  const confidence = object.precise?.confidence ?? null;
+  const { confidence } = object;
   return (
     <button
       type="button"
@@ -131,7 +133,7 @@ function ObjectButton({ object, onRename }: { object: ObjectModel; onRename(): v
     >
       <span class="swatch" style={{ background: colour }} />
       <span class="name">{name}</span>
-      <span class="state">{stateOf(run.value, object)}</span>
+      <span class="state">{stateOf(run.value, object, unit.value)}</span>
       <span class="confidence">{isAccepted.value ? "✓" : confidence === null ? "" : percent(confidence)}</span>
     </button>
   );

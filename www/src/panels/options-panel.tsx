@@ -81,7 +81,8 @@ function NumberField({ name, title, about, unit = "" }: NumberProps) {
 }
 
 export function OptionsPanel() {
-  const { options } = useWorkspace();
+  const { options, unit } = useWorkspace();
+  const metres = unit.value === null ? "m" : "";
   const isPaper = options.value.preset === "paper";
   return (
     <details class="panel options-panel" part="options" id="options">
@@ -97,13 +98,13 @@ export function OptionsPanel() {
         name="scaleMin"
         title="Minimum scale"
         about="Lower bound of the scale in metres per mesh unit. For a mesh in metres, enter 1 in both fields."
-        unit="m"
+        unit={metres}
       />
       <NumberField
         name="scaleMax"
         title="Maximum scale"
         about="Upper bound of the scale in metres per mesh unit."
-        unit="m"
+        unit={metres}
       />
       <Select {...up} />
       <Select {...symmetry} />

@@ -2,7 +2,6 @@
 import { alignSelected } from "../run/align.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
-import { isResult } from "../state/pose.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { fix } from "./decision.js";
 import { KnownSize } from "./known-size.js";
@@ -16,8 +15,7 @@ const ups: readonly (readonly [Options["up"], string])[] = [
 export function Remedies({ object }: { object: ObjectModel | null }) {
   const workspace = useWorkspace();
   const { isRunning, options, setOption } = workspace;
-  const confidence = object?.precise?.confidence ?? 1;
-  const isAsked = confidence < SURE && isResult(object?.pose.value.source);
+  const isAsked = (object?.confidence ?? 1) < SURE;
   if (object === null || !isAsked || object.isAccepted.value) return null;
   const alternatives = object.precise?.alternatives.length ?? 0;
   const align = (change: () => void) => () => {

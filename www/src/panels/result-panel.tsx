@@ -3,17 +3,16 @@
  * layout does not shift.
  */
 import type { PoseErrors } from "sim3align";
-import { hiddenShare } from "../draw/hidden.js";
+import { occlusionOf } from "../draw/hidden.js";
 import { fieldOf } from "../load/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { Tip } from "../ui/controls.js";
-import { centimetres, orDash, percent, significant } from "../ui/format.js";
+import { orDash, percent, significant, size, small, type Unit } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { Alternatives } from "./alternatives.js";
 import { Decision } from "./decision.js";
-import { Details, MainMetrics } from "./details.js";
-import { Remedies } from "./remedies.js";
+import { Alternatives, Details, Remedies } from "./later.js";
+import { MainMetrics } from "./metrics.js";
 import { SURE, warningsOf } from "./sureness.js";
 
 export function ResultPanel() {
@@ -71,19 +70,27 @@ function Failure({ error }: { error: Error }) {
 const sides = ["width", "height", "depth"];
 
 function Size({ object }: { object: ObjectModel | null }) {
+  const unit = useWorkspace().unit.value;
   const sizeM = object?.box.value.sizeM ?? [null, null, null];
   const largestM = Math.max(...sizeM.map((side) => side ?? 0));
   return (
     <div class="size">
-      <p class="dimensions" title="Width × height × depth along x, y and z of the mesh">
+      <p
+        class="dimensions"
+        title={
+          unit === null
+            ? "Width × height × depth, along the sides of the smallest box"
+            : "The depth map has no unit: multiples of the longest side of the first object"
+        }
+      >
         <span id="dimensions">
           {sizeM.map((side, i) => (
             <span key={sides[i]}>
               {i > 0 && <span class="times"> × </span>}
-              {orDash(side, (m) => centimetres(m, largestM))}
+              {orDash(side, (m) => size(m, unit, largestM).split(" ")[0] ?? "")}
             </span>
           ))}{" "}
-          <span class="unit">cm</span>
+          <span class="unit">{unit === null ? "cm" : "relative"}</span>
         </span>
       </p>
       <Confidence object={object} />
@@ -94,9 +101,9 @@ function Size({ object }: { object: ObjectModel | null }) {
 function Confidence({ object }: { object: ObjectModel | null }) {
   const { frameIndex, framePoses } = useWorkspace();
   const isTracked = object?.pose.value.source === "tracked";
-  const tracked = isTracked ? (framePoses.value[frameIndex.value]?.confidence ?? null) : null;
-  const confidence = tracked ?? object?.precise?.confidence ?? null;
-  const reason = reasonForNoConfidence(object);
+  const frame = framePoses.value[frameIndex.value] ?? null;
+  const confidence = isTracked ? (frame?.confidence ?? null) : (object?.confidence ?? null);
+  const reason = isTracked && frame?.isCorrected ? "Set by hand" : reasonForNoConfidence(object);
   if (confidence === null || reason !== null) {
     return (
       <p class="badge" data-level="none">
@@ -128,7 +135,8 @@ function reasonForNoConfidence(object: ObjectModel | null): string | null {
 
 /** Errors of the pose compared with the true one, if that is known. */
 function Truth({ object }: { object: ObjectModel | null }) {
-  const { inputs } = useWorkspace();
+  const { inputs, unit } = useWorkspace();
+  if (unit.value !== null) return null;
   const isKnown = object === null ? inputs.value.objects.some(({ truth }) => truth !== null) : object.truth !== null;
   if (!isKnown) return null;
   return (
@@ -145,16 +153,28 @@ const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErro
     `${significant(1000 * translationErrorM, 2)} mm`,
   ].join(", ");
 
-/** An overlap below this is explained if a part of the mesh is hidden. */
+/** An overlap below this is explained, if a part of the mesh is hidden. */
 const LOW_IOU = 0.85;
+/** Without such an explanation, an overlap below this means that something is wrong. */
+const WRONG_IOU = 0.7;
+
+/** Why the overlap is low. */
+function overlapText(whole: Scene, object: ObjectModel, iou: number): string | null {
+  const { hidden, visibleIou, isBehindSomething } = occlusionOf(whole, object);
+  if (isBehindSomething && visibleIou >= LOW_IOU)
+    return `The overlap is low because ${percent(hidden)} of the object is behind something else.`;
+  if (iou >= WRONG_IOU || (isBehindSomething && visibleIou >= WRONG_IOU)) return null;
+  return `Mesh and mask overlap by ${percent(iou)} only, and nothing in front explains it: the pose, the mask or the mesh is wrong.`;
+}
 
 function Warnings({ object }: { object: ObjectModel | null }) {
-  const { scene } = useWorkspace();
+  const { scene, unit } = useWorkspace();
   const iou = object?.metrics.value?.iou ?? 1;
-  const hidden = object !== null && scene.value !== null && iou < LOW_IOU ? hiddenShare(scene.value, object) : 0;
-  const contact = object === null ? null : contactText(scene.value, object);
+  const overlap =
+    object !== null && scene.value !== null && iou < LOW_IOU ? overlapText(scene.value, object, iou) : null;
+  const contact = object === null ? null : contactText(scene.value, object, unit.value);
   const warnings = [
-    ...(hidden > 0.05 ? [`The overlap is low because ${percent(hidden)} of the object is behind something else.`] : []),
+    ...(overlap === null ? [] : [overlap]),
     ...(scene.value?.warnings ?? []),
     ...(object === null ? [] : warningsOf(object).map(({ message }) => message)),
   ];
@@ -173,7 +193,7 @@ function Warnings({ object }: { object: ObjectModel | null }) {
 }
 
 /** What the object rests on, if the alignment of the scene says so. */
-function contactText(whole: Scene | null, object: ObjectModel): string | null {
+function contactText(whole: Scene | null, object: ObjectModel, unit: Unit): string | null {
   const contact = object.alignment.value?.contact;
   if (contact === undefined || object.pose.value.source !== "aligned") return null;
   const { restsOn, gapM } = contact;
@@ -184,6 +204,6 @@ function contactText(whole: Scene | null, object: ObjectModel): string | null {
       : restsOn === "level"
         ? "a level above the ground"
         : (whole?.objects[restsOn]?.name ?? "another object");
-  const gap = gapM === null ? "" : `, ${significant(Math.abs(1000 * gapM), 2)} mm ${gapM < 0 ? "sunk in" : "above it"}`;
+  const gap = gapM === null ? "" : `, ${small(Math.abs(gapM), unit)} ${gapM < 0 ? "sunk in" : "above it"}`;
   return `Stands on ${what}${gap}.`;
 }

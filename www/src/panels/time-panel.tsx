@@ -14,7 +14,8 @@ const stateTitles = { tracking: "tracked", uncertain: "uncertain", lost: "lost" 
 
 function titleOf(pose: FramePose | null): string {
   if (pose === null) return "not tracked";
-  return `${pose.isCorrected ? "corrected" : stateTitles[pose.state]}, ${percent(pose.confidence)}`;
+  const title = pose.isCorrected ? "corrected" : stateTitles[pose.state];
+  return pose.confidence === null ? title : `${title}, ${percent(pose.confidence)}`;
 }
 
 export function TimePanel() {

@@ -1,13 +1,14 @@
 /** Aligns objects and reports their progress. */
-import { batch } from "@preact/signals";
 import type { Progress, SceneObjectInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
-import type { PoseSource } from "../state/pose.js";
+import type { AnyAlignment } from "../state/alignment.js";
+import { inCalibration } from "../state/calibration.js";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Pose, PoseSource } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 import type { Status } from "../state/status.js";
 import type { Workspace } from "../state/workspace.js";
-import { aligner, inputOf, viewOf } from "./aligner.js";
+import { aligner, givenViewOf, inputOf, viewOf } from "./aligner.js";
 
 /** Aligns the selected object from scratch. */
 export const alignSelected = (workspace: Workspace) => searchSelected(workspace, "global");
@@ -18,6 +19,10 @@ export const refine = (workspace: Workspace) => searchSelected(workspace, "local
 async function searchSelected(workspace: Workspace, search: "global" | "local"): Promise<void> {
   const object = workspace.selected.peek();
   if (object === null || object.isLocked.peek()) return;
+  const whole = workspace.scene.peek();
+  // A view is calibrated by all its objects; the poses of the others are kept.
+  const isFirst = whole?.raw != null && (whole.calibration === null || whole.objects.length === 1);
+  if (search === "global" && isFirst) return alignAll(workspace);
   await run(workspace, [object], (whole, signal) => alone(workspace, whole, object, search, signal));
 }
 
@@ -26,7 +31,8 @@ export async function alignAll(workspace: Workspace): Promise<void> {
   const whole = workspace.scene.peek();
   const objects = whole?.objects.filter(({ isLocked }) => !isLocked.peek()) ?? [];
   const [only] = objects;
-  if (whole?.objects.length === 1 && only !== undefined) {
+  if (whole?.raw != null) await run(workspace, objects, (whole, signal) => together(workspace, whole, objects, signal));
+  else if (whole?.objects.length === 1 && only !== undefined) {
     await run(workspace, objects, (whole, signal) => alone(workspace, whole, only, "global", signal));
   } else if (workspace.options.peek().preset === "paper")
     await run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
@@ -35,8 +41,9 @@ export async function alignAll(workspace: Workspace): Promise<void> {
 
 /** Aligns every object as if it were alone: sooner than together, and without the module that scenes need. */
 export async function alignEach(workspace: Workspace): Promise<void> {
-  const objects = workspace.scene.peek()?.objects ?? [];
-  if (objects.length < 2) return alignAll(workspace);
+  const whole = workspace.scene.peek();
+  const objects = whole?.objects ?? [];
+  if (objects.length < 2 || whole?.raw != null) return alignAll(workspace);
   await run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
 }
 
@@ -64,8 +71,11 @@ async function run(
       run.value = abort.signal.aborted ? { state: "cancelled" } : { state: "failed", error: error as Error };
     }
   } finally {
-    controller.value = null;
-    status.value = summary(objects, abort.signal.aborted, performance.now() - started);
+    // Another scene may have taken its place, and be aligning already.
+    if (controller.peek() === abort) {
+      controller.value = null;
+      status.value = summary(objects, abort.signal.aborted, performance.now() - started);
+    }
   }
 }
 
@@ -121,7 +131,9 @@ async function together(
   objects: readonly ObjectModel[],
   signal: AbortSignal,
 ): Promise<void> {
-  const { constraintsOf, sceneOptions, support } = workspace;
+  const { constraintsOf, recalibrate, record, sceneOptions, support } = workspace;
+  // Poses that are locked are in the present calibration.
+  const calibrates = whole.raw !== null && objects.length === whole.objects.length;
   const inputs = whole.objects.map((object): SceneObjectInput => {
     const { mask, mesh } = object;
     // A locked pose counts for the others.
@@ -133,15 +145,26 @@ async function together(
   const onProgress = (progress: Progress & { index: number }) => {
     if (!signal.aborted) listeners[progress.index]?.(progress);
   };
-  const input = { ...viewOf(whole), objects: inputs };
+  const input = { ...(calibrates ? givenViewOf(whole) : viewOf(whole)), objects: inputs };
   const result = await (await aligner()).alignScene(input, { ...sceneOptions(), signal, onProgress });
-  batch(() => {
+  const { depthCalibration, warnings } = result;
+  record(objects[0] as ObjectModel, () => {
+    if (depthCalibration !== undefined) {
+      const more = warnings.map(({ message }) => message);
+      recalibrate(inCalibration(whole, depthCalibration, more));
+    }
     support.value = result.support;
     result.objects.forEach((found, i) => {
       const object = whole.objects[i];
       if (object === undefined || !objects.includes(object)) return;
-      if (found.error === undefined) finish(workspace, object, found, "aligned");
-      else object.run.value = { state: "failed", error: found.error };
+      if (found.error === undefined) {
+        object.pose.value = poseOf(found, "aligned");
+        object.run.value = { state: "done" };
+      } else {
+        // A pose in another calibration means nothing.
+        if (depthCalibration !== undefined) object.pose.value = object.start.value;
+        object.run.value = { state: "failed", error: found.error };
+      }
     });
   });
 }
@@ -152,10 +175,13 @@ const progressOf =
     run.value = { state: "running", stage, fraction };
   };
 
+const poseOf = (alignment: AnyAlignment, source: PoseSource): Pose => ({
+  ...{ transform: toSim3(alignment), source, alignment },
+});
+
 function finish({ place }: Workspace, object: ObjectModel, alignment: AnyAlignment, source: PoseSource): void {
-  object.alignment.value = alignment;
   object.run.value = { state: "done" };
-  place(object, { transform: toSim3(alignment), source });
+  place(object, poseOf(alignment, source));
 }
 
 function summary(objects: readonly ObjectModel[], isAborted: boolean, ms: number): Status {

@@ -17,14 +17,26 @@ export function aligner(): Promise<Aligner> {
   return created;
 }
 
-/** What all objects of a scene share. */
-export const viewOf = ({ depthM, width, height, camera, rgba }: Scene) => ({
-  depth: depthM,
-  width,
-  height,
-  camera,
-  ...(rgba === null ? {} : { image: { data: rgba, width, height } }),
-});
+const photoOf = ({ rgba, width, height }: Scene) => (rgba === null ? {} : { image: { data: rgba, width, height } });
+
+/** What all objects of a scene share, in its present calibration. */
+export const viewOf = (scene: Scene) => {
+  const { depthM, width, height, camera } = scene;
+  return { depth: depthM, width, height, camera, ...photoOf(scene) };
+};
+
+/** The same as it was given, for alignments that calibrate it. */
+export function givenViewOf(scene: Scene) {
+  const { raw, width, height } = scene;
+  if (raw === null) return viewOf(scene);
+  const { depth, depthKind, camera, focalUncertainty } = raw;
+  const isGuess = focalUncertainty > 0;
+  return {
+    ...{ depth, width, height, depthKind },
+    camera: isGuess ? { ...camera, focalUncertainty } : camera,
+    ...photoOf(scene),
+  };
+}
 
 /** The input of `align` and `evaluate` for an object. */
 export const inputOf = (scene: Scene, { mask, mesh }: ObjectModel): AlignInput => ({ ...viewOf(scene), mask, mesh });

@@ -13,7 +13,9 @@ export function applyAlternative({ place }: Workspace, object: ObjectModel, inde
   const transform = toSim3(chosen);
   place(
     object,
-    index < 0 ? { transform, source: "aligned" } : { transform, source: "alternative", alternative: index },
+    index < 0
+      ? { transform, source: "aligned", alignment }
+      : { transform, source: "alternative", alternative: index, alignment },
   );
 }
 

@@ -1,16 +1,17 @@
 /** Shows and tracks the frames of a video. */
-import { computed, signal } from "@preact/signals";
+import { batch, computed, signal } from "@preact/signals";
 import type { Tracker, ViewInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
+import { inCalibration } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
 import type { FramePose, Video } from "../state/video.js";
-import { aligner, viewOf } from "./aligner.js";
+import { aligner, givenViewOf } from "./aligner.js";
 
-const { announce, constraintsOf, frameIndex, framePoses, inputs, scene, sceneOptions, show, video } = page;
+const { announce, constraintsOf, frameIndex, framePoses, inputs, recalibrate, scene, sceneOptions, show, video } = page;
 
 const controller = signal<AbortController | null>(null);
 export const isTracking = computed(() => controller.value !== null);
@@ -24,7 +25,7 @@ export function openVideo(opened: Video, first: Scene): void {
   video.value = opened;
   framePoses.value = opened.frames.map(() => null);
   frameIndex.value = 0;
-  show(first, opened.frames[0] as Inputs);
+  show(first, opened.frames[0] as Inputs, false);
 }
 
 /** Forgets the video, for another scene. */
@@ -65,10 +66,19 @@ function put(index: number, frame: Inputs, opened: Scene): void {
   const [object] = opened.objects;
   const before = scene.peek()?.objects[0];
   const pose = framePoses.peek()[index];
-  if (object !== undefined && pose != null) object.pose.value = { transform: pose.transform, source: "tracked" };
   if (object !== undefined && before !== undefined) object.knownScale.value = before.knownScale.peek();
-  frameIndex.value = index;
-  show(opened, frame);
+  batch(() => {
+    frameIndex.value = index;
+    show(opened, frame, false);
+    if (object !== undefined && pose != null) showPose(object, pose);
+  });
+}
+
+/** Shows the pose of the frame that is shown, in its depth. */
+function showPose(object: ObjectModel, { calibration, transform }: FramePose): void {
+  const whole = scene.peek();
+  if (calibration !== null && whole !== null) recalibrate(inCalibration(whole, calibration));
+  object.pose.value = { transform, source: "tracked" };
 }
 
 /** Runs work on the frames, unless other work is running; it can be stopped. */
@@ -111,11 +121,11 @@ export const trackAll = () =>
       const read = await readFrame(frame);
       const object = read?.objects[0];
       if (read === null || object === undefined) return;
-      const { depthM, width, height, camera } = read;
-      const found = await tracker.next({ depth: depthM, width, height, camera, ...maskOf(frame, object) });
+      const { image: _, ...view } = givenViewOf(read);
+      const found = await tracker.next({ ...view, ...maskOf(frame, object) });
       if (video.peek() !== opened) return;
-      const { confidence, state } = found;
-      const pose: FramePose = { transform: toSim3(found), confidence, state, isCorrected: false };
+      const { confidence, depthCalibration: calibration = null, state } = found;
+      const pose: FramePose = { transform: toSim3(found), confidence, state, isCorrected: false, calibration };
       framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
       put(index, frame, read);
     }
@@ -134,18 +144,19 @@ export const alignFrames = () =>
       const object = read?.objects[0];
       const cameraToWorld = opened.cameras?.[index];
       if (read === null || object === undefined || cameraToWorld === undefined) return;
-      views.push({ ...viewOf(read), ...maskOf(frame, object), cameraToWorld });
+      views.push({ ...givenViewOf(read), ...maskOf(frame, object), cameraToWorld });
     }
     announce(`Aligning ${views.length} views together …`, "working");
     const settings = { ...sceneOptions(), ...scaleOf(first), signal };
     const found = await (await aligner()).alignViews({ mesh: first.mesh, views }, settings);
     if (video.peek() !== opened) return;
     framePoses.value = found.views.map((view): FramePose => {
-      const state = view.confidence >= 0.5 ? "tracking" : "uncertain";
-      return { transform: toSim3(view), confidence: view.confidence, state, isCorrected: false };
+      const { confidence, depthCalibration: calibration = null } = view;
+      const state = confidence >= 0.5 ? "tracking" : "uncertain";
+      return { transform: toSim3(view), confidence, state, isCorrected: false, calibration };
     });
     const [shown, pose] = [scene.peek()?.objects[0], framePoses.peek()[frameIndex.peek()]];
-    if (shown !== undefined && pose != null) shown.pose.value = { transform: pose.transform, source: "tracked" };
+    if (shown !== undefined && pose != null) showPose(shown, pose);
     announce(`Aligned ${views.length} views together, ${Math.round(100 * found.confidence)} %.`);
   });
 
@@ -163,8 +174,10 @@ export async function correctFrame(): Promise<void> {
       if (before == null) continue;
       const isOwn = found.frame === index;
       poses[found.frame] = {
+        ...before,
         transform: toSim3(found),
-        confidence: isOwn ? 1 : before.confidence,
+        // What the tracker said of the pose before says nothing of this one.
+        confidence: null,
         state: isOwn ? "tracking" : before.state,
         isCorrected: isOwn || before.isCorrected,
       };

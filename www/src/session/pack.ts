@@ -1,8 +1,11 @@
 /** A session as plain data: the files of a scene, and what was done with its objects. */
+import type { DepthCalibration, DepthKind } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import { baseName, type NamedFile } from "../load/files.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, Role, TruthSource } from "../load/inputs.js";
-import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
+import type { AnyAlignment } from "../state/alignment.js";
+import { inCalibration } from "../state/calibration.js";
+import type { ObjectModel } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
 import type { PoseSource } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
@@ -22,13 +25,15 @@ interface PackedObject {
   mask: (Omit<MaskSource, "file"> & { file: Ref }) | null;
   mesh: Ref | null;
   truth: (Omit<TruthSource, "file"> & { file: Ref }) | null;
-  state: PackedState;
+  /** Null if the scene was not opened yet. */
+  state: PackedState | null;
 }
 
 /** What was done with an object. */
 export interface PackedState {
   matrix: readonly number[];
   source: PoseSource;
+  alternative?: number | undefined;
   isAccepted: boolean;
   isShown: boolean;
   isLocked: boolean;
@@ -42,6 +47,9 @@ export interface Packed {
   name: string;
   depth: Ref | null;
   depthScale: number | null;
+  depthKind: DepthKind | null;
+  /** In whose depth the poses are. */
+  calibration: DepthCalibration | null;
   photo: Ref | null;
   camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref } | null;
   imageId: string | null;
@@ -52,26 +60,39 @@ export interface Packed {
 }
 
 /** The session of a scene, and its files in the order of their indices. */
-export function packed(inputs: Inputs, scene: Scene, options: Options): { session: Packed; files: NamedFile[] } {
+export function packed(inputs: Inputs, scene: Scene | null, options: Options): { session: Packed; files: NamedFile[] } {
   const files: NamedFile[] = [];
   const ref = (file: NamedFile): Ref => {
     const known = files.indexOf(file);
     return known >= 0 ? known : files.push(file) - 1;
   };
   const optional = (file: NamedFile | null): Ref | null => (file === null ? null : ref(file));
-  const { camera, depthScale, imageId, name, resizeMasks } = inputs;
+  const { camera, depthScale, depthKind, imageId, name, resizeMasks } = inputs;
+  const calibration = scene?.calibration ?? null;
   const objects = inputs.objects.map(({ name, mask, mesh, truth }, i): PackedObject => {
     for (const sibling of mesh?.siblings ?? []) if (isResource(sibling.path)) ref(sibling);
+    const object = scene?.objects[i];
     return {
-      name: scene.objects[i]?.name ?? name,
+      name: object?.name ?? name,
       mask: mask && { ...mask, file: ref(mask.file) },
       mesh: mesh && ref(mesh.file),
       truth: truth && { ...truth, file: ref(truth.file) },
-      state: stateOf(scene.objects[i] as ObjectModel),
+      state: object === undefined ? null : stateOf(object),
     };
   });
   const session: Packed = {
-    ...{ version: VERSION, name, depthScale, imageId, resizeMasks, objects, roles: [], options },
+    ...{
+      version: VERSION,
+      name,
+      depthScale,
+      depthKind,
+      calibration,
+      imageId,
+      resizeMasks,
+      objects,
+      roles: [],
+      options,
+    },
     depth: optional(inputs.depth),
     photo: optional(inputs.photo),
     camera: camera?.kind === "file" ? { kind: "file", file: ref(camera.file) } : camera,
@@ -85,24 +106,24 @@ const isResource = (path: string) => /\.(bin|mtl|png|jpe?g|webp)$/i.test(baseNam
 
 /** What was done with an object. */
 export function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, alignment }: ObjectModel): PackedState {
-  const { transform, source } = pose.value;
+  const { transform, source, alternative } = pose.value;
   return {
-    ...{ matrix: [...transform.matrix], source },
+    ...{ matrix: [...transform.matrix], source, alternative },
     ...{ isAccepted: isAccepted.value, isShown: isShown.value, isLocked: isLocked.value },
     ...{ knownScale: knownScale.value, alignment: alignment.value },
   };
 }
 
 /** The inputs of a session; null for one of another version. */
-export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs | null {
+export function unpacked(session: Packed, files: readonly NamedFile[], id = ""): Inputs | null {
   if (session.version !== VERSION) return null;
   const at = (ref: Ref): NamedFile => files[ref] as NamedFile;
   const optional = (ref: Ref | null) => (ref === null ? null : at(ref));
-  const { camera, depthScale, imageId, name, resizeMasks } = session;
+  const { camera, depthScale, depthKind = null, imageId, name, resizeMasks } = session;
   const meshes = new Map<Ref, MeshSource>();
   for (const { mesh } of session.objects) if (mesh !== null) meshes.set(mesh, { file: at(mesh), siblings: files });
   return {
-    ...{ name, sample: null, depthScale, imageId, resizeMasks },
+    ...{ id, name, sample: null, depthScale, depthKind, imageId, resizeMasks },
     depth: optional(session.depth),
     photo: optional(session.photo),
     camera: camera?.kind === "file" ? { kind: "file", file: at(camera.file) } : camera,
@@ -118,20 +139,28 @@ export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs |
   };
 }
 
-/** Gives the objects of a scene the poses and settings of a session. */
-export function applyState(
-  { objects, options: chosen }: { objects: readonly { state: PackedState }[]; options: Partial<Options> },
-  scene: Scene,
-  { options }: Workspace,
-): void {
+/** What a session says of a scene that is there. */
+interface SessionState {
+  objects: readonly { state: PackedState | null }[];
+  options: Partial<Options>;
+  calibration?: DepthCalibration | null | undefined;
+}
+
+/** Gives the objects of the scene that is shown the poses and settings of a session. */
+export function applyState({ objects, options: chosen, calibration }: SessionState, workspace: Workspace): void {
+  const { options, recalibrate, scene } = workspace;
+  const whole = scene.peek();
+  if (whole === null) return;
   options.value = { ...options.peek(), ...chosen };
-  scene.objects.forEach((object, i) => {
+  if (calibration) recalibrate(inCalibration(whole, calibration));
+  whole.objects.forEach((object, i) => {
     const state = objects[i]?.state;
-    if (state === undefined) return;
-    object.alignment.value = state.alignment;
-    object.run.value = { state: state.alignment === null ? "idle" : "done" };
-    object.pose.value = { transform: toSim3(state.matrix), source: state.source };
-    object.isAccepted.value = state.isAccepted;
+    if (state == null) return;
+    const { matrix, source, alternative, alignment } = state;
+    object.run.value = { state: alignment === null ? "idle" : "done" };
+    const pose = { transform: toSim3(matrix), source, alignment };
+    object.pose.value = alternative === undefined ? pose : { ...pose, alternative };
+    if (state.isAccepted) object.accept();
     object.isShown.value = state.isShown;
     object.isLocked.value = state.isLocked;
     object.knownScale.value = state.knownScale;

@@ -1,9 +1,22 @@
-/** Keeps one session in the browser's own database. */
+/** Keeps the user's own scenes in the browser's own database, each by its id. */
 import type { NamedFile } from "../load/files.js";
 import type { Packed } from "./pack.js";
 
 const NAME = "sim3align";
-const STORE = "session";
+/** What was done with each scene, and its files: the former changes with every step, the latter hardly ever. */
+const [WORK, FILES] = ["work", "files"] as const;
+
+/** What was done with a scene. */
+export interface Work {
+  id: string;
+  session: Packed;
+  /** Its results, as they are exported; null if it was not opened yet. */
+  result: object | null;
+  /** Its place in the list. */
+  order: number;
+  /** When it was last shown, in the milliseconds of `Date.now`; 0 if never. */
+  shownAt: number;
+}
 
 /** A file in the database. */
 interface StoredFile {
@@ -14,23 +27,28 @@ interface StoredFile {
 
 function database(): Promise<IDBDatabase> {
   return new Promise((resolve, reject) => {
-    const request = indexedDB.open(NAME, 2);
+    const request = indexedDB.open(NAME, 3);
     request.onupgradeneeded = () => {
+      const { result } = request;
       // What another version has stored is not read.
-      if (request.result.objectStoreNames.contains(STORE)) request.result.deleteObjectStore(STORE);
-      request.result.createObjectStore(STORE);
+      for (const name of [...result.objectStoreNames]) result.deleteObjectStore(name);
+      for (const name of [WORK, FILES]) result.createObjectStore(name);
     };
     request.onsuccess = () => resolve(request.result);
     request.onerror = () => reject(request.error);
   });
 }
 
-async function transact<T>(mode: IDBTransactionMode, work: (store: IDBObjectStore) => IDBRequest<T>[]): Promise<T[]> {
+/** Makes requests in one transaction: all of them take effect, or none. */
+async function transact(
+  mode: IDBTransactionMode,
+  work: (work: IDBObjectStore, files: IDBObjectStore) => IDBRequest[],
+): Promise<unknown[]> {
   const opened = await database();
   try {
     return await new Promise((resolve, reject) => {
-      const transaction = opened.transaction(STORE, mode);
-      const requests = work(transaction.objectStore(STORE));
+      const transaction = opened.transaction([WORK, FILES], mode);
+      const requests = work(transaction.objectStore(WORK), transaction.objectStore(FILES));
       transaction.oncomplete = () => resolve(requests.map(({ result }) => result));
       transaction.onabort = () => reject(transaction.error);
     });
@@ -39,32 +57,38 @@ async function transact<T>(mode: IDBTransactionMode, work: (store: IDBObjectStor
   }
 }
 
-/** Stores the files of a new scene. */
-export async function storeFiles(files: readonly NamedFile[]): Promise<void> {
-  const read = await Promise.all(
-    files.map(async ({ path, bytes }): Promise<StoredFile> => {
-      const content = (await bytes()) as Uint8Array<ArrayBuffer>;
-      return { path, content: new Blob([content]) };
-    }),
-  );
-  await transact("readwrite", (store) => [store.put(read, "files")]);
+/** Stores what was done with a scene and, if they have changed, its files. */
+export async function storeWork(work: Work, files: readonly NamedFile[] | null): Promise<void> {
+  const read =
+    files &&
+    (await Promise.all(
+      files.map(async ({ path, bytes }): Promise<StoredFile> => {
+        const content = (await bytes()) as Uint8Array<ArrayBuffer>;
+        return { path, content: new Blob([content]) };
+      }),
+    ));
+  await transact("readwrite", (works, contents) => [
+    works.put(JSON.stringify(work), work.id),
+    ...(read === null ? [] : [contents.put(read, work.id)]),
+  ]);
 }
 
-/** Stores what was done with the objects. */
-export async function storeSession(session: Packed): Promise<void> {
-  await transact("readwrite", (store) => [store.put(JSON.stringify(session), "session")]);
+/** All scenes that are stored, with those of other tabs, in their order. */
+export async function storedWorks(): Promise<Work[]> {
+  const [texts] = await transact("readonly", (works) => [works.getAll()]);
+  return (texts as string[]).map((text) => JSON.parse(text) as Work).sort((a, b) => a.order - b.order);
 }
 
-export async function storedSession(): Promise<{ session: Packed; files: NamedFile[] } | null> {
-  const [text, stored] = await transact<unknown>("readonly", (store) => [store.get("session"), store.get("files")]);
-  if (typeof text !== "string" || !Array.isArray(stored)) return null;
-  const files = (stored as StoredFile[]).map(({ path, content }) => ({
+/** The files of a scene. */
+export async function storedFiles(id: string): Promise<NamedFile[]> {
+  const [stored] = await transact("readonly", (_, files) => [files.get(id)]);
+  return (stored as StoredFile[]).map(({ path, content }) => ({
     path,
     bytes: async () => new Uint8Array(await content.arrayBuffer()),
   }));
-  return { session: JSON.parse(text) as Packed, files };
 }
 
-export async function clearSession(): Promise<void> {
-  await transact("readwrite", (store) => [store.clear()] as IDBRequest<undefined>[]);
+/** Forgets a scene. */
+export async function forgetWork(id: string): Promise<void> {
+  await transact("readwrite", (works, files) => [works.delete(id), files.delete(id)]);
 }

@@ -1,59 +1,93 @@
-/** Undo and redo of poses. */
-import { computed, type Signal, signal } from "@preact/signals";
+/** Undo and redo: of poses with their alignments, of known sizes, and of the calibration that they are in. */
+import { batch, computed, type Signal, signal } from "@preact/signals";
 import type { ObjectModel } from "./object-model.js";
 import { type Nudge, nudged, type Pose } from "./pose.js";
-import type { SceneState } from "./scene.js";
+import type { Scene, SceneState } from "./scene.js";
+
+/** What steps restore. */
+interface Snapshot {
+  scene: Scene | null;
+  objects: Map<ObjectModel, { pose: Pose; knownScale: number | null }>;
+}
 
 interface Step {
   object: ObjectModel;
-  before: Pose;
-  after: Pose;
+  before: Snapshot;
+  after: Snapshot;
 }
 
 /** Older steps are dropped. */
 const MAX_STEPS = 200;
 
 /** The undo steps of a scene. */
-export function historyState({ scene, select }: SceneState) {
+export function historyState({ objects, recalibrate, scene, select }: SceneState) {
   const undoSteps = signal<readonly Step[]>([]);
   const redoSteps = signal<readonly Step[]>([]);
 
   const canUndo = computed(() => undoSteps.value.length > 0);
   const canRedo = computed(() => redoSteps.value.length > 0);
 
-  /** Sets the pose of an object, as a step that can be undone. */
-  function place(object: ObjectModel, after: Pose, before = object.pose.peek()): void {
-    object.pose.value = after;
-    undoSteps.value = [...undoSteps.peek().slice(1 - MAX_STEPS), { object, before, after }];
+  const snapshot = (): Snapshot => ({
+    scene: scene.peek(),
+    objects: new Map(
+      objects.peek().map((one) => [one, { pose: one.pose.peek(), knownScale: one.knownScale.peek() }] as const),
+    ),
+  });
+
+  /** Makes a change, as one step that can be undone. It is shown at this object. */
+  function record(object: ObjectModel, change: () => void, before = snapshot()): void {
+    batch(change);
+    undoSteps.value = [...undoSteps.peek().slice(1 - MAX_STEPS), { object, before, after: snapshot() }];
     redoSteps.value = [];
   }
 
-  /** Changes the pose of an object by hand. */
-  function nudge(object: ObjectModel, change: Nudge): void {
-    place(object, {
-      transform: nudged(object.box.peek().centreM, object.pose.peek().transform, change),
-      source: "hand",
-    });
+  /** Sets the pose of an object, as a step that can be undone. */
+  function place(object: ObjectModel, after: Pose, from = object.pose.peek()): void {
+    const before = snapshot();
+    before.objects.set(object, { pose: from, knownScale: object.knownScale.peek() });
+    record(
+      object,
+      () => {
+        object.pose.value = after;
+      },
+      before,
+    );
   }
 
-  /** Moves the last step from one list to the other, and shows the pose on one side of it. */
+  /** The pose of an object after a change by hand. */
+  function byHand(object: ObjectModel, change: Nudge): Pose {
+    const transform = nudged(object.box.peek().centreM, object.pose.peek().transform, change);
+    return { transform, source: "hand", alignment: object.alignment.peek() };
+  }
+
+  /** Changes the pose of an object by hand. */
+  const nudge = (object: ObjectModel, change: Nudge) => place(object, byHand(object, change));
+
+  /** Moves the last step from one list to the other, and shows the state on one side of it. */
   function move(from: Signal<readonly Step[]>, to: Signal<readonly Step[]>, side: "before" | "after"): void {
     const step = from.peek().at(-1);
     if (step === undefined) return;
     from.value = from.peek().slice(0, -1);
     to.value = [...to.peek(), step];
-    select(step.object.id);
-    step.object.pose.value = step[side];
+    const { scene: whole, objects: states } = step[side];
+    batch(() => {
+      select(step.object.id);
+      if (whole !== null && whole !== scene.peek()) recalibrate(whole);
+      for (const [object, { pose, knownScale }] of states) {
+        object.pose.value = pose;
+        object.knownScale.value = knownScale;
+      }
+    });
   }
 
   const undo = () => move(undoSteps, redoSteps, "before");
   const redo = () => move(redoSteps, undoSteps, "after");
 
-  // A new scene has new objects, so the steps of the previous one are cleared.
-  scene.subscribe(() => {
+  // Another scene has other objects, so the steps of the previous one are cleared.
+  objects.subscribe(() => {
     undoSteps.value = [];
     redoSteps.value = [];
   });
 
-  return { canUndo, canRedo, place, nudge, undo, redo };
+  return { canUndo, canRedo, record, place, byHand, nudge, undo, redo };
 }

@@ -1,8 +1,9 @@
 /** An object of a scene: its mask, its mesh, and the state of its alignment. */
-import { computed, type Signal, signal } from "@preact/signals";
-import type { AlignmentByPreset, Contact, MeshArrays, Metrics, PoseErrors, Sim3AlignError, Stage } from "sim3align";
+import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
+import type { MeshArrays, Metrics, PoseErrors, Sim3AlignError, Stage } from "sim3align";
 import type { Sim3Like, Vector3 } from "sim3align/conventions";
-import { type Bounds, boundsOf, type PlacedBox, type Pose, placed, startPose } from "./pose.js";
+import type { AnyAlignment, PreciseAlignment } from "./alignment.js";
+import { boundsOf, isResult, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
 
 /** The state of an alignment. */
 export type Run =
@@ -12,14 +13,6 @@ export type Run =
   | { readonly state: "done" }
   | { readonly state: "cancelled" }
   | { readonly state: "failed"; readonly error: Sim3AlignError | Error };
-
-/** The result of an alignment, with any preset. The result of a scene also says what the object rests on. */
-export type AnyAlignment = (PreciseAlignment | Omit<AlignmentByPreset["paper"], "input">) & {
-  readonly contact?: Contact;
-};
-
-/** The result with the preset `precise`. */
-export type PreciseAlignment = Omit<AlignmentByPreset["precise"], "input">;
 
 /** The inputs of an object. */
 export interface ObjectParts {
@@ -33,8 +26,12 @@ export interface ObjectParts {
   glb: Uint8Array | null;
   /** The true pose and the symmetry to compare with, if known. */
   truth: { transform: Sim3Like; symmetry: "none" | "auto" } | null;
-  /** Centre and extent of the depth readings in the mask, metres. */
-  visible: { centreM: Vector3; sizeM: number };
+}
+
+/** Centre and extent of the depth readings in the mask of an object, metres. */
+export interface VisibleExtent {
+  centreM: Vector3;
+  sizeM: number;
 }
 
 /** An object of a scene. The inputs are constant; signals hold the state. */
@@ -45,32 +42,34 @@ export class ObjectModel implements Readonly<ObjectParts> {
   readonly mesh: MeshArrays;
   readonly glb: Uint8Array | null;
   readonly truth: ObjectParts["truth"];
-  readonly visible: ObjectParts["visible"];
-  private readonly bounds: Bounds;
+  /** Changes with the calibration of the depth map. */
+  readonly visible: Signal<VisibleExtent>;
   /** The pose before any alignment. */
-  readonly start: Pose;
+  readonly start: ReadonlySignal<Pose>;
 
   readonly title: Signal<string>;
   readonly isShown = signal(true);
   /** Whether alignments of the whole scene, and handles, leave the pose unchanged. */
   readonly isLocked = signal(false);
-  /** Whether a person has accepted the present pose. */
-  readonly isAccepted = signal(false);
+  /** The pose that a person has accepted. */
+  private readonly accepted = signal<Pose | null>(null);
+  /** Whether that is the present one: another pose has to be accepted anew. */
+  readonly isAccepted = computed(() => this.accepted.value === this.pose.value);
   /** The known scale in metres per mesh unit, which every alignment keeps; null if it is free. */
   readonly knownScale = signal<number | null>(null);
   readonly run = signal<Run>({ state: "idle" });
   /** The last alignment, also after the pose was changed by hand. */
-  readonly alignment = signal<AnyAlignment | null>(null);
+  readonly alignment = computed<AnyAlignment | null>(() => this.pose.value.alignment ?? null);
   /** The current pose. */
   readonly pose: Signal<Pose>;
   /** Metrics of the current pose; null while they are computed. */
   readonly metrics = signal<Metrics | null>(null);
   /** Errors of the current pose, if the true pose is known. */
   readonly errors = signal<PoseErrors | null>(null);
-  /** The bounding box at the current pose. */
-  readonly box = computed<PlacedBox>(() => placed(this.bounds, this.pose.value.transform));
+  /** The smallest box around the object at the current pose. */
+  readonly box = computed<PlacedBox>(() => placed(tightBoundsOf(this.mesh), this.pose.value.transform));
 
-  constructor(parts: ObjectParts) {
+  constructor(parts: ObjectParts, visible: VisibleExtent) {
     this.id = parts.id;
     this.title = signal(parts.name);
     this.colour = parts.colour;
@@ -78,14 +77,15 @@ export class ObjectModel implements Readonly<ObjectParts> {
     this.mesh = parts.mesh;
     this.glb = parts.glb;
     this.truth = parts.truth;
-    this.visible = parts.visible;
-    this.bounds = boundsOf(parts.mesh);
-    this.start = { transform: startPose(this.bounds, parts.visible), source: "start" };
-    this.pose = signal<Pose>(this.start);
-    // Another pose has to be accepted anew.
-    this.pose.subscribe(() => {
-      this.isAccepted.value = false;
-    });
+    this.visible = signal(visible);
+    const bounds = boundsOf(parts.mesh);
+    this.start = computed<Pose>(() => ({ transform: startPose(bounds, this.visible.value), source: "start" }));
+    this.pose = signal<Pose>(this.start.peek());
+  }
+
+  /** Accepts the present pose. */
+  accept(): void {
+    this.accepted.value = this.pose.peek();
   }
 
   get name(): string {
@@ -100,6 +100,11 @@ export class ObjectModel implements Readonly<ObjectParts> {
   /** Whether the object has a pose other than the start pose. */
   get isPlaced(): boolean {
     return this.pose.value.source !== "start";
+  }
+
+  /** The confidence in the present pose; null for one that no alignment has found. */
+  get confidence(): number | null {
+    return isResult(this.pose.value.source) ? (this.precise?.confidence ?? null) : null;
   }
 
   /** The last alignment, if it is one of the preset `precise`. */

@@ -1,6 +1,6 @@
 /** The inputs of the scene that is shown. */
 import { batch, signal } from "@preact/signals";
-import { type Inputs, noInputs } from "../load/inputs.js";
+import { type Inputs, noInputs, withId } from "../load/inputs.js";
 import type { DisplayState } from "./display.js";
 import type { ObjectModel } from "./object-model.js";
 import type { Scene, SceneState } from "./scene.js";
@@ -10,8 +10,15 @@ import type { StatusState } from "./status.js";
 export interface FileActions {
   /** Changes the files of the scene. */
   edit(): void;
-  /** Opens the next scene of the drop. */
+  /** Opens the next scene of the list. */
   next(): void;
+}
+
+/** One of the user's own scenes. */
+export interface Listed {
+  inputs: Inputs;
+  /** Objects, and those of them that are accepted, when it was last shown; null if it was not opened yet. */
+  progress: { objects: number; accepted: number } | null;
 }
 
 /** The state of what is opened. */
@@ -19,16 +26,31 @@ export function openedState({ scene }: SceneState, { layers, setLayer }: Display
   /** The inputs of the scene that is shown, or of the sample that is being read. */
   const inputs = signal<Inputs>(noInputs);
   const isReading = signal(false);
-  /** Scenes of the last drop that are still to be looked at. */
-  const queue = signal<readonly Inputs[]>([]);
+  /** The user's own scenes in the order in which they came, with those that are still to be opened. */
+  const list = signal<readonly Listed[]>([]);
+  /** The names of scenes that other tabs of this browser show and keep. */
+  const othersScenes = signal<readonly string[]>([]);
   const fileActions = signal<FileActions | null>(null);
 
-  /** Makes a scene the one that is shown. */
-  function show(opened: Scene, from: Inputs): void {
+  /** Adds scenes to the list, or replaces those with the same ids. */
+  function enlist(scenes: readonly Inputs[]): void {
+    const known = list.peek();
+    const replaced = known.map((one) => {
+      const other = scenes.find(({ id }) => id === one.inputs.id);
+      return other === undefined ? one : { ...one, inputs: other };
+    });
+    const fresh = scenes.filter(({ id }) => !known.some((one) => one.inputs.id === id));
+    list.value = [...replaced, ...fresh.map((inputs) => ({ inputs, progress: null }))];
+  }
+
+  /** Makes a scene the one that is shown. It is listed, unless it is a sample or a frame of a video. */
+  function show(opened: Scene, from: Inputs, isListed = opened.sample === null): void {
+    const own = isListed ? withId(from) : from;
     batch(() => {
       isReading.value = false;
-      inputs.value = from;
+      inputs.value = own;
       scene.value = opened;
+      if (isListed) enlist([own]);
       const base = opened.rgba === null ? "depth" : "photo";
       if (layers.peek().base !== base) setLayer("base", base);
     });
@@ -47,5 +69,5 @@ export function openedState({ scene }: SceneState, { layers, setLayer }: Display
     announce(`Removed ${object.name}.`);
   }
 
-  return { inputs, isReading, queue, fileActions, show, removeObject };
+  return { inputs, isReading, list, othersScenes, fileActions, enlist, show, removeObject };
 }

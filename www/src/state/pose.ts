@@ -1,6 +1,8 @@
 /** Poses of a mesh (camera from mesh, OpenCV camera frame, metres) and the bounding box that they transform. */
 import type { MeshArrays } from "sim3align";
-import { applyToPoints, compose, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
+import { applyToPoints, compose, objectDimensions, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
+import { once } from "../load/once.js";
+import type { AnyAlignment } from "./alignment.js";
 
 /** The origin of a pose. */
 export type PoseSource = "start" | "aligned" | "alternative" | "refined" | "hand" | "tracked";
@@ -11,24 +13,40 @@ export interface Pose {
   readonly source: PoseSource;
   /** The index of the alternative, for poses with that source. */
   readonly alternative?: number;
+  /** The last alignment, which has found this pose or one before it. */
+  readonly alignment?: AnyAlignment | null;
 }
 
 /** Whether a pose is as an alignment has found it. */
 export const isResult = (source: PoseSource | undefined): boolean => source === "aligned" || source === "refined";
 
-/** A bounding box along the mesh's axes, in the mesh's frame and unit. */
+/** A bounding box, in the mesh's frame and unit. */
 export interface Bounds {
   readonly centre: Vector3;
   readonly sides: Vector3;
 }
 
-/** The bounding box at a pose: centre in the camera frame; sides along the mesh's x, y and z; metres. */
+/** The smallest box around a mesh, in the mesh's frame and unit; its sides are named after the nearest axes. */
+export interface TightBounds extends Bounds {
+  /** Bit k of an index is the side on axis k. */
+  readonly corners: readonly Vector3[];
+}
+
+/** The box at a pose: centre in the camera frame; width, height and depth along its own axes; metres. */
 export interface PlacedBox {
   readonly centreM: Vector3;
   readonly sizeM: Vector3;
 }
 
-/** The bounding box of a mesh's triangles. */
+const identity = { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] };
+
+/** Files are often tilted in their own axes, along which no person would measure. */
+export const tightBoundsOf = once((mesh: MeshArrays): TightBounds => {
+  const { centerM, sizeM, corners } = objectDimensions(mesh, identity, { box: "minimal" });
+  return { centre: centerM, sides: sizeM, corners };
+});
+
+/** The bounding box of a mesh's triangles along its axes. */
 export function boundsOf({ positions, indices }: MeshArrays): Bounds {
   const low: Vector3 = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY];
   const high: Vector3 = [Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY];
@@ -45,7 +63,7 @@ export function boundsOf({ positions, indices }: MeshArrays): Bounds {
   return { centre: combine((a, b) => (a + b) / 2), sides: combine((a, b) => b - a) };
 }
 
-/** The bounding box at a pose. */
+/** A bounding box at a pose. */
 export function placed({ centre, sides }: Bounds, pose: Sim3): PlacedBox {
   const [x = 0, y = 0, z = 0] = applyToPoints(pose, Float64Array.from(centre));
   return { centreM: [x, y, z], sizeM: sides.map((side) => pose.scale * side) as Vector3 };

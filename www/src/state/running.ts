@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import type { SceneState } from "./scene.js";
 
 /** The state of the alignments of a scene. */
-export function runningState({ scene, support }: SceneState) {
+export function runningState({ objects, support }: SceneState) {
   /** Aborts the alignment that is running; null while there is none. */
   const controller = signal<AbortController | null>(null);
 
@@ -11,7 +11,7 @@ export function runningState({ scene, support }: SceneState) {
 
   /** Progress of all objects that are being aligned, 0 to 1. */
   const fraction = computed(() => {
-    const runs = (scene.value?.objects ?? []).map(({ run }) => run.value).filter(({ state }) => state !== "idle");
+    const runs = objects.value.map(({ run }) => run.value).filter(({ state }) => state !== "idle");
     const parts = runs.map((run) => (run.state === "running" ? run.fraction : run.state === "waiting" ? 0 : 1));
     return parts.length === 0 ? 0 : parts.reduce((sum, part) => sum + part, 0) / parts.length;
   });
@@ -20,9 +20,10 @@ export function runningState({ scene, support }: SceneState) {
     controller.peek()?.abort();
   }
 
-  // Running alignments belong to the previous scene.
-  scene.subscribe(() => {
+  // Running alignments belong to the previous scene, and the new one need not wait for their end.
+  objects.subscribe(() => {
     cancel();
+    controller.value = null;
     // The support is that of the previous scene.
     support.value = null;
   });

@@ -1,6 +1,8 @@
 /** The scene: a depth map with its camera, an optional photo, and the objects in it. */
-import { computed, signal } from "@preact/signals";
-import type { PinholeCamera, Support } from "sim3align";
+import { batch, computed, signal } from "@preact/signals";
+import type { DepthCalibration, PinholeCamera, Support } from "sim3align";
+import { visibleExtent } from "../load/visible-extent.js";
+import { isMetric, type RawView } from "./calibration.js";
 import type { ObjectModel } from "./object-model.js";
 
 export interface Scene {
@@ -15,8 +17,22 @@ export interface Scene {
   /** The photo, resized to the depth map. */
   readonly rgba: Uint8ClampedArray | null;
   readonly objects: readonly ObjectModel[];
-  /** Warnings of the file readers. */
+  /** What is given of a view whose depth or focal length are not fully known; otherwise null. */
+  readonly raw: RawView | null;
+  /** What such a view was taken to be in the last alignment of the whole scene, in whose depth the poses are. */
+  readonly calibration: DepthCalibration | null;
+  /** The unit of the depth map, and why it was taken. */
+  readonly depthUnit: string;
+  /** Where the camera comes from, if none was given. */
+  readonly cameraSource: string | null;
+  /** Warnings of the file readers and of the calibration. */
   readonly warnings: readonly string[];
+}
+
+/** How lengths of a scene are shown: null in metres, otherwise as multiples of this one, the longest side of the first object. */
+export function unitOf(scene: Scene): number | null {
+  const [first] = scene.objects;
+  return first === undefined || isMetric(scene) ? null : Math.max(...first.box.value.sizeM) || 1;
 }
 
 /** The state of a scene: what is shown, and which object is selected. */
@@ -28,11 +44,28 @@ export function sceneState() {
 
   const selectedId = signal<string | null>(null);
 
+  /** Only another scene has other ones: the same list means the same scene, perhaps in another calibration. */
+  const objects = computed<readonly ObjectModel[]>(() => scene.value?.objects ?? []);
+
   /** The object that panels and handles apply to. */
-  const selected = computed<ObjectModel | null>(() => {
-    const objects = scene.value?.objects ?? [];
-    return objects.find(({ id }) => id === selectedId.value) ?? objects[0] ?? null;
-  });
+  const selected = computed<ObjectModel | null>(
+    () => objects.value.find(({ id }) => id === selectedId.value) ?? objects.value[0] ?? null,
+  );
+
+  /** How lengths are shown. */
+  const unit = computed<number | null>(() => scene.value && unitOf(scene.value));
+
+  /** Shows the scene in the depth of another calibration. */
+  function recalibrate(whole: Scene): void {
+    const { depthM: data, width, camera } = whole;
+    batch(() => {
+      scene.value = whole;
+      for (const object of whole.objects) {
+        object.visible.value = visibleExtent({ data, width }, object.mask, camera);
+        if (!object.isPlaced) object.pose.value = object.start.value;
+      }
+    });
+  }
 
   function select(id: string | null): void {
     if (id !== null) selectedId.value = id;
@@ -45,7 +78,7 @@ export function sceneState() {
     return current.objects.find(({ mask, isShown }) => isShown.value && mask[y * current.width + x] !== 0) ?? null;
   }
 
-  return { scene, support, selected, select, objectAt };
+  return { scene, objects, support, selected, unit, recalibrate, select, objectAt };
 }
 
 export type SceneState = ReturnType<typeof sceneState>;

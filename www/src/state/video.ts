@@ -1,16 +1,19 @@
 /** The video: frames with one object, and its tracked poses. */
 import { signal } from "@preact/signals";
-import type { TrackState } from "sim3align";
+import type { DepthCalibration, TrackState } from "sim3align";
 import type { Sim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
 
 /** The pose of a frame. */
 export interface FramePose {
   readonly transform: Sim3;
-  readonly confidence: number;
+  /** Null for a pose that a person has set, or that was changed with it. */
+  readonly confidence: number | null;
   readonly state: TrackState;
   /** Whether a person has set it. */
   readonly isCorrected: boolean;
+  /** In whose depth the pose is, of frames whose depth is not fully known. */
+  readonly calibration: DepthCalibration | null;
 }
 
 export interface Video {

@@ -3,10 +3,13 @@ import { signal } from "@preact/signals";
 import type { ComponentType } from "preact";
 import { useEffect } from "preact/hooks";
 
-/** A component that renders nothing until `isWanted` says so and its script is there. */
-export function lazy(isWanted: () => boolean, load: () => Promise<ComponentType>): ComponentType {
-  const loaded = signal<ComponentType | null>(null);
-  return function Lazy() {
+/** A component that renders nothing until `isWanted`, which may use hooks, says so and its script is there. */
+export function lazy<P extends object = object>(
+  isWanted: () => boolean,
+  load: () => Promise<ComponentType<P>>,
+): ComponentType<P> {
+  const loaded = signal<ComponentType<P> | null>(null);
+  return function Lazy(properties: P) {
     const wanted = isWanted();
     useEffect(() => {
       if (!wanted || loaded.peek() !== null) return;
@@ -15,6 +18,6 @@ export function lazy(isWanted: () => boolean, load: () => Promise<ComponentType>
       }, console.error);
     }, [wanted]);
     const Loaded = loaded.value;
-    return wanted && Loaded !== null ? <Loaded /> : null;
+    return wanted && Loaded !== null ? <Loaded {...properties} /> : null;
   };
 }

@@ -83,9 +83,10 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "?", title: "?", about: "This help", act: toggleHelp },
 ];
 
-function toggleScaleLock({ selected }: Workspace): void {
+function toggleScaleLock({ selected, unit }: Workspace): void {
   const object = selected.peek();
-  object?.lockScale(object.knownScale.peek() === null);
+  // In an unknown unit, no scale is known.
+  if (unit.peek() === null) object?.lockScale(object.knownScale.peek() === null);
 }
 
 function cancelOrHideHandles({ cancel, gizmo, isRunning }: Workspace): void {

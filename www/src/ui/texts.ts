@@ -1,16 +1,16 @@
 /** Titles and explanations of metrics and stages. */
 import type { Metrics, Stage } from "sim3align";
-import { percent, significant } from "./format.js";
+import { percent, significant, small, type Unit } from "./format.js";
 
 export interface MetricText {
   name: keyof Metrics;
   title: string;
   better: "higher" | "lower";
   about: string;
-  show(value: number): string;
+  show(value: number, unit: Unit): string;
 }
 
-const mm = (value: number) => `${significant(value, 3)} mm`;
+const mm = (value: number, unit: Unit) => small(value / 1000, unit, 3);
 
 export const metricTexts: readonly MetricText[] = [
   {

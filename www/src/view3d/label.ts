@@ -11,8 +11,9 @@ function spriteOf(canvas: HTMLCanvasElement, renderOrder: number): Sprite {
 /** The height of a label in CSS pixels, with some space around its text. */
 const LABEL_PX = 28;
 
-/** A length in centimetres, or metres from one metre on. */
-export function lengthText(m: number): string {
+/** A length in centimetres, or metres from one metre on; or, with a `unit`, as a multiple of it. */
+export function lengthText(m: number, unit: number | null): string {
+  if (unit !== null) return (m / unit).toFixed(2);
   return m >= 1 ? `${m.toFixed(2)} m` : `${(100 * m).toFixed(m < 0.1 ? 2 : 1)} cm`;
 }
 

@@ -24,10 +24,10 @@ export class Measures {
     this.object.add(this.lines);
   }
 
-  /** Shows these lines only. */
-  show(measures: readonly Measure[]): void {
+  /** Shows these lines only; their lengths in metres or, with a `unit`, as multiples of it. */
+  show(measures: readonly Measure[], unit: number | null = null): void {
     const positions = measures.flatMap(({ from, to }) => [...from.toArray(), ...to.toArray()]);
-    const key = positions.map((x) => x.toFixed(5)).join();
+    const key = `${unit}: ${positions.map((x) => x.toFixed(5)).join()}`;
     if (key === this.shown) return;
     this.shown = key;
     this.object.visible = measures.length > 0;
@@ -35,11 +35,11 @@ export class Measures {
     this.lines.geometry = geometryOf(positions);
     for (const label of this.labels.splice(measures.length)) release(label);
     for (const [i, { from, to, label }] of measures.entries())
-      this.labelAt(i, from.distanceTo(to)).position.copy(label);
+      this.labelAt(i, lengthText(from.distanceTo(to), unit)).position.copy(label);
   }
 
-  private labelAt(i: number, lengthM: number): Sprite {
-    const [known, text] = [this.labels[i], lengthText(lengthM)];
+  private labelAt(i: number, text: string): Sprite {
+    const known = this.labels[i];
     if (known?.userData.text === text) return known;
     release(known);
     const label = labelOf(text);

@@ -23,6 +23,15 @@ import { matrixOf, type Pose, poseOf, shifted } from "./pose.js";
 import type { Display, Matrix, ObjectInput } from "./types.js";
 
 const white = new Color(0xffffff);
+
+/** The corners of the box around an object along its axes. */
+function cornersAround(content: Object3D): Vector3[] {
+  const { min, max } = new Box3().setFromObject(content, true);
+  const side = (bit: number, low: number, high: number) => (bit === 0 ? low : high);
+  return [0, 1, 2, 3, 4, 5, 6, 7].map(
+    (i) => new Vector3(side(i & 1, min.x, max.x), side(i & 2, min.y, max.y), side(i & 4, min.z, max.z)),
+  );
+}
 /** The outline's width as a share of the mesh's box diagonal. */
 const outlineWidth = 0.006;
 
@@ -33,20 +42,23 @@ export class Model {
   readonly centre = new Vector3();
   /** Half the diagonal of the bounding box. */
   readonly radius: number;
+  readonly colour: Color;
   private readonly outlines = new Group();
   private readonly materials: Material[] = [];
-  private readonly box: Box3;
+  private readonly box: readonly Vector3[];
   private isPlaced = false;
 
   private constructor(
     readonly id: string,
     private readonly content: Object3D,
-    readonly colour: Color,
+    { colour, corners }: ObjectInput,
   ) {
+    this.colour = new Color(colour);
     content.updateMatrixWorld(true);
-    this.box = new Box3().setFromObject(content, true);
-    this.box.getCenter(this.centre);
-    this.radius = this.box.getSize(new Vector3()).length() / 2;
+    this.box = corners?.map((corner) => new Vector3(...corner)) ?? cornersAround(content);
+    const [first, last] = [this.box[0] as Vector3, this.box[7] as Vector3];
+    this.centre.lerpVectors(first, last, 0.5);
+    this.radius = first.distanceTo(last) / 2;
     const frame = new Group();
     frame.position.copy(this.centre).negate();
     frame.add(content, this.outlines);
@@ -56,16 +68,17 @@ export class Model {
   }
 
   /** Loads a mesh. The frame of a GLB is that of its scene, with node transforms applied. */
-  static async load({ id, colour, mesh }: ObjectInput): Promise<Model> {
+  static async load(object: ObjectInput): Promise<Model> {
+    const { id, mesh } = object;
     if ("glb" in mesh) {
       // A copy, because the loader keeps views of the buffer.
       const { scene } = await new GLTFLoader().parseAsync(mesh.glb.slice().buffer, "");
-      return new Model(id, new Group().add(scene), new Color(colour));
+      return new Model(id, new Group().add(scene), object);
     }
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
     geometry.setIndex(new BufferAttribute(mesh.indices, 1));
-    return new Model(id, new Group().add(new Mesh(geometry)), new Color(colour));
+    return new Model(id, new Group().add(new Mesh(geometry)), object);
   }
 
   /** All meshes of the content. */
@@ -139,16 +152,13 @@ export class Model {
     applyToObject3D(this.pivot, matrixOf(shifted(poseOf(pose), this.centre)), { frame: "opencv" });
   }
 
-  /** The corners of the bounding box in the OpenCV camera frame, bit k of an index for axis k; `null` while it is hidden. */
+  /** The corners of the box in the OpenCV camera frame, bit k of an index for side k; `null` while it is hidden. */
   corners(): Vector3[] | null {
     if (!this.pivot.visible) return null;
-    const { min, max } = this.box;
-    return [0, 1, 2, 3, 4, 5, 6, 7].map((bits) => {
-      const side = (k: number, low: number, high: number) => ((bits & (1 << k)) === 0 ? low : high);
-      const corner = new Vector3(side(0, min.x, max.x), side(1, min.y, max.y), side(2, min.z, max.z));
-      const { position, quaternion, scale } = this.pivot;
-      return corner.sub(this.centre).multiply(scale).applyQuaternion(quaternion).add(position);
-    });
+    const { position, quaternion, scale } = this.pivot;
+    return this.box.map((corner) =>
+      corner.clone().sub(this.centre).multiply(scale).applyQuaternion(quaternion).add(position),
+    );
   }
 
   /** Applies display settings and the highlight. */

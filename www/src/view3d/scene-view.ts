@@ -8,7 +8,7 @@ import { Gizmo } from "./gizmo.js";
 import { groundOf } from "./ground.js";
 import { markOf } from "./label.js";
 import { floorOf, frustumOf, type Lines } from "./lines.js";
-import { Measures } from "./measures.js";
+import { type Measure, Measures } from "./measures.js";
 import { Model } from "./model.js";
 import { pick } from "./picker.js";
 import { Pointer } from "./pointer.js";
@@ -42,6 +42,7 @@ export class SceneView {
   private readonly gizmo: Gizmo;
   private readonly mark = markOf();
   private readonly ruler = new Measures(0xffd23f, 4);
+  private measured: readonly Measure[] = [];
   private floor: Lines | null = null;
   private plane: PlaneInput | null = null;
   private gizmoSettings: GizmoSettings = { isLocal: false, snaps: false };
@@ -259,8 +260,8 @@ export class SceneView {
   /** Shows the distance of two points (OpenCV camera frame, metres); fewer points hide it. */
   measure(points: readonly (readonly [number, number, number])[]): void {
     const [from, to] = points.map((point) => new Vector3(...point));
-    this.ruler.show(from && to ? [{ from, to, label: from.clone().lerp(to, 0.5) }] : []);
-    this.stage.invalidate();
+    this.measured = from && to ? [{ from, to, label: from.clone().lerp(to, 0.5) }] : [];
+    this.update();
   }
 
   setDisplay(display: Display): void {
@@ -354,9 +355,9 @@ export class SceneView {
   }
 
   private showSizes(): void {
-    const { display, animations } = this;
-    const isShown = (id: string) => display.dimensions === true && !animations.isRunning(id);
-    this.sizes.update(this.models, this.selected, isShown);
+    const { dimensions, unit = null } = this.display;
+    this.sizes.update(this.models, this.selected, unit, (id) => dimensions === true && !this.animations.isRunning(id));
+    this.ruler.show(this.measured, unit);
   }
 
   /** A description for screen readers. */

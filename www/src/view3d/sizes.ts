@@ -15,8 +15,13 @@ export class Sizes {
 
   constructor(private readonly root: Group) {}
 
-  /** Shows the sizes of those models that `isShown` allows. */
-  update(models: ReadonlyMap<string, Model>, selected: string | null, isShown: (id: string) => boolean): void {
+  /** Shows the sizes of those models that `isShown` allows, in metres or as multiples of a `unit`. */
+  update(
+    models: ReadonlyMap<string, Model>,
+    selected: string | null,
+    unit: number | null,
+    isShown: (id: string) => boolean,
+  ): void {
     for (const [id, measures] of this.measures) {
       if (models.has(id)) continue;
       measures.dispose();
@@ -29,7 +34,7 @@ export class Sizes {
       const corners = (id === selected || models.size <= FEW) && isShown(id) ? model.corners() : null;
       const sides = corners === null ? [] : sidesOf(corners);
       const lengths = sides.map(({ from, to }) => from.distanceTo(to));
-      measures.show(id === selected ? sides : sides.filter((_, i) => lengths[i] === Math.max(...lengths)));
+      measures.show(id === selected ? sides : sides.filter((_, i) => lengths[i] === Math.max(...lengths)), unit);
     }
   }
 

@@ -28,6 +28,8 @@ export interface ObjectInput {
   mask: Uint8Array;
   /** A GLB or arrays, in the frame of the mesh. */
   mesh: { glb: Uint8Array } | { positions: Float32Array; indices: Uint32Array };
+  /** The corners of the box whose sides are its sizes, bit k of an index for side k; by default, along the mesh's axes. */
+  corners?: readonly (readonly [number, number, number])[] | undefined;
 }
 
 /** Display settings. */
@@ -40,6 +42,8 @@ export interface Display {
   theme: "light" | "dark";
   /** Whether the sizes of the objects are shown. */
   dimensions?: boolean | undefined;
+  /** What lengths are shown as multiples of; by default, they are in metres. */
+  unit?: number | null | undefined;
   /** The ids of the objects that are not shown. */
   hidden?: readonly string[] | undefined;
 }

@@ -5,6 +5,7 @@ import { differenceLimit } from "sim3align/pictures/colours";
 import { depthGradient } from "../draw/colours.js";
 import type { Workspace } from "../state/workspace.js";
 import { Check } from "../ui/controls.js";
+import { depth, small } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 import { pointerOf } from "./image-pointer.js";
@@ -27,7 +28,7 @@ const switches: readonly [name: "outline" | "silhouette" | "difference" | "zoom"
 
 export function ImageView() {
   const workspace = useWorkspace();
-  const { imageCanvas, layers, scene, selected, setLayer } = workspace;
+  const { imageCanvas, layers, scene, selected, setLayer, unit } = workspace;
   const { after, draw, drawn, ground, zoom } = imageOf(workspace);
   const { hover, focusOn, startDrag, move, wheel } = useMemo(() => pointerOf(workspace), [workspace]);
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -55,7 +56,7 @@ export function ImageView() {
   const { base: shownBase, wipe, difference } = layers.value;
   const ratio = whole === null ? 4 / 3 : whole.width / whole.height;
   const { factor, x, y } = zoom.value;
-  const limit = selected.value === null ? null : 1000 * differenceLimit(selected.value.visible.sizeM);
+  const limit = selected.value && small(differenceLimit(selected.value.visible.value.sizeM), unit.value);
   return (
     <section class="view image" part="image" aria-labelledby="image-title">
       <div class="view-head">
@@ -117,9 +118,9 @@ export function ImageView() {
         </label>
         {difference && limit !== null ? (
           <p class="legend">
-            <span>{limit} mm nearer</span>
+            <span>{limit} nearer</span>
             <span class="legend-bar" />
-            <span>{limit} mm farther</span>
+            <span>{limit} farther</span>
           </p>
         ) : (
           <Readout />
@@ -151,11 +152,12 @@ function DepthLegend() {
   const workspace = useWorkspace();
   const range = imageOf(workspace).depthRangeOfScene.value;
   if (workspace.layers.value.base !== "depth" || range === null) return null;
+  const unit = workspace.unit.value;
   return (
     <p class="legend" id="depth-legend">
-      <span>{range.nearM.toFixed(2)} m</span>
+      <span>{depth(range.nearM, unit)}</span>
       <span class="legend-bar" style={{ background: depthGradient }} />
-      <span>{range.farM.toFixed(2)} m</span>
+      <span>{depth(range.farM, unit)}</span>
     </p>
   );
 }
@@ -164,16 +166,16 @@ function DepthLegend() {
 function Readout() {
   const workspace = useWorkspace();
   const { hoveredPixel, scene } = workspace;
-  const [pixel, whole] = [hoveredPixel.value, scene.value];
+  const [pixel, whole, unit] = [hoveredPixel.value, scene.value, workspace.unit.value];
   if (pixel === null || whole === null) return <p class="readout quiet">Hover over the image to read its depth.</p>;
   const at = pixel.y * whole.width + pixel.x;
   const measured = whole.depthM[at] ?? 0;
   const mesh = imageOf(workspace).meshDepthAt(pixel);
-  const difference = measured > 0 && Number.isFinite(mesh) ? 1000 * (mesh - measured) : null;
+  const difference = measured > 0 && Number.isFinite(mesh) ? mesh - measured : null;
   return (
     <p class="readout">
-      {pixel.x}, {pixel.y}: {measured > 0 ? `${measured.toFixed(3)} m` : "no reading"}
-      {difference !== null && `, mesh ${difference < 0 ? "−" : "+"}${Math.abs(difference).toFixed(1)} mm`}
+      {pixel.x}, {pixel.y}: {measured > 0 ? depth(measured, unit, 3) : "no reading"}
+      {difference !== null && `, mesh ${difference < 0 ? "−" : "+"}${small(Math.abs(difference), unit)}`}
     </p>
   );
 }

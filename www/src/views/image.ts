@@ -41,7 +41,7 @@ export const imageOf = once((workspace: Workspace) => {
     const [whole, view] = [scene.value, drawn.value];
     return whole === null || view === null
       ? []
-      : whole.objects.map((object) => drawObject(view, object, object.start.transform.matrix));
+      : whole.objects.map((object) => drawObject(view, object, object.start.value.transform.matrix));
   });
 
   /** One signal per object, so that a changed pose renders one mesh only. */

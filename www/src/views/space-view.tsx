@@ -3,11 +3,10 @@ import { useEffect, useRef } from "preact/hooks";
 import { samples, sampleUrl } from "../load/samples.js";
 import type { Display3d } from "../state/display.js";
 import { Check } from "../ui/controls.js";
-import { centimetres } from "../ui/format.js";
+import { size, type Unit } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
-import { mountSpace } from "./space.js";
 
 const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
   ["cloud", "Points"],
@@ -25,7 +24,7 @@ const viewpoints = [
 
 export function SpaceView() {
   const workspace = useWorkspace();
-  const { display3d, isSettled, measured, showsBefore, space } = workspace;
+  const { display3d, isSettled, measured, showsBefore, space, unit } = workspace;
   const set = (change: Partial<Display3d>) => {
     display3d.value = { ...display3d.peek(), ...change };
   };
@@ -33,7 +32,15 @@ export function SpaceView() {
   const isWanted = isSettled.value;
   useEffect(() => {
     const shown = new AbortController();
-    if (isWanted && host.current !== null) mountSpace(workspace, host.current, shown.signal);
+    const own = host.current;
+    if (isWanted && own !== null) {
+      import("./space.js").then(
+        ({ mountSpace }) => mountSpace(workspace, own, shown.signal),
+        () => {
+          space.value = { kind: "none", reason: "The 3D view could not be loaded." };
+        },
+      );
+    }
     return () => shown.abort();
   }, [workspace, isWanted]);
   const state = space.value;
@@ -85,7 +92,7 @@ export function SpaceView() {
           >
             Measure
           </button>
-          {measured.value !== null && <output id="measured">{measuredText(measured.value)}</output>}
+          {measured.value !== null && <output id="measured">{measuredText(measured.value, unit.value)}</output>}
         </fieldset>
         <fieldset class="viewpoints" disabled={state.kind !== "ready"}>
           <legend class="visually-hidden">Viewpoint</legend>
@@ -113,11 +120,11 @@ export function SpaceView() {
 }
 
 /** The distance of the measured points, or what to do. */
-function measuredText(points: readonly (readonly [number, number, number])[]): string {
+function measuredText(points: readonly (readonly [number, number, number])[], unit: Unit): string {
   const [from, to] = points;
   if (from === undefined) return "Click a point in either view.";
   if (to === undefined) return "Click a second point.";
-  return `${centimetres(Math.hypot(...from.map((x, k) => x - (to[k] ?? 0))))} cm`;
+  return size(Math.hypot(...from.map((x, k) => x - (to[k] ?? 0))), unit);
 }
 
 /** The address of the photo of the sample that the page opens first. */

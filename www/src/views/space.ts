@@ -3,7 +3,7 @@ import { effect } from "@preact/signals";
 import { compose, invert, toSim3 } from "sim3align/conventions";
 import { depthImage } from "../draw/colours.js";
 import type { ObjectModel } from "../state/object-model.js";
-import type { Pose } from "../state/pose.js";
+import { type Pose, tightBoundsOf } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import type { SceneView } from "../view3d/scene-view.js";
@@ -27,7 +27,7 @@ export async function mountSpace(workspace: Workspace, host: HTMLElement, signal
           const object = scene.peek()?.objects.find((object) => object.id === id);
           if (object === undefined) return;
           dragged ??= { object, from: object.pose.peek() };
-          const pose: Pose = { transform: toSim3(matrix), source: "hand" };
+          const pose: Pose = { transform: toSim3(matrix), source: "hand", alignment: object.alignment.peek() };
           if (phase === "end") {
             place(object, pose, dragged.from);
             dragged = undefined;
@@ -58,6 +58,7 @@ export async function mountSpace(workspace: Workspace, host: HTMLElement, signal
 const objectInput = ({ id, name, colour, mask, mesh, glb }: ObjectModel): ObjectInput => ({
   ...{ id, name, colour, mask },
   mesh: viewMesh(mesh, glb),
+  corners: tightBoundsOf(mesh).corners,
 });
 
 /** The meshes of the view. The frames of a video have one in common, which is loaded once. */
@@ -84,7 +85,8 @@ const sceneInput = ({ layers }: Workspace, { depthM, width, height, camera, rgba
 });
 
 function subscribe(workspace: Workspace, view: SceneView, isDragging: () => boolean): () => void {
-  const { display3d, frameIndex, gizmo, gizmoSettings, measured, scene, selected, support, theme, video } = workspace;
+  const { display3d, frameIndex, gizmo, gizmoSettings, measured, scene, selected, support, theme, unit, video } =
+    workspace;
   const stops: (() => void)[] = [];
   const follow = (apply: () => void) => stops.push(effect(apply));
   let stopPoses: (() => void)[] = [];
@@ -103,7 +105,7 @@ function subscribe(workspace: Workspace, view: SceneView, isDragging: () => bool
   });
   follow(() => {
     const hidden = (scene.value?.objects ?? []).filter(({ isShown }) => !isShown.value).map(({ id }) => id);
-    view.setDisplay({ ...display3d.value, hidden, theme: theme.value });
+    view.setDisplay({ ...display3d.value, hidden, theme: theme.value, unit: unit.value });
   });
   follow(() => {
     const cameras = video.value?.cameras ?? null;
@@ -132,9 +134,9 @@ function followPose(
   isDragging: () => boolean,
 ): () => void {
   // If the view loads after the alignment, it still animates from the start pose.
-  let shown: Pose = object.start;
+  let shown: Pose = object.start.peek();
   return effect(() => {
-    const pose = showsBefore.value ? object.start : object.pose.value;
+    const pose = showsBefore.value ? object.start.value : object.pose.value;
     if (isDragging()) {
       shown = pose;
       return;

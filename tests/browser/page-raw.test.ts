@@ -1,0 +1,177 @@
+/** Depth that a model guessed, and cameras that nobody has given: sizes without a unit, until one of them is known. */
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import type { Page } from "playwright-core";
+import { otherPose } from "../support/case-folder.js";
+import { repository } from "../support/environment.js";
+import { tiff, withExif } from "../support/exif.js";
+import { png } from "../support/files.js";
+import {
+  cameraFile,
+  depthNpy,
+  drop,
+  type Files,
+  files,
+  HEIGHT,
+  maskPng,
+  pinhole,
+  seen,
+  WIDTH,
+} from "../support/page-files.js";
+import { mesh, render, truth } from "../support/scene.js";
+import { pageTests, type SitePage } from "../support/site.js";
+
+const test = pageTests();
+
+/** Disparity as a model draws it: 256 grey levels, near is bright, of which nobody knows the scale and the shift. */
+function disparityPng(depth: Float32Array): Uint8Array {
+  const inverse = depth.map((z) => 1 / z);
+  const [low, high] = [Math.min(...inverse), Math.max(...inverse)];
+  return png(
+    Uint8Array.from(inverse, (d) => Math.round(20 + (220 * (d - low)) / (high - low))),
+    WIDTH,
+    HEIGHT,
+  );
+}
+
+/** A JPEG of the size of the depth map, whose EXIF data state the focal length of its camera: 300 pixels are 65 mm. */
+async function photo(page: Page): Promise<Uint8Array> {
+  const address = await page.evaluate(
+    ([width, height]) => {
+      const canvas = document.createElement("canvas");
+      [canvas.width, canvas.height] = [width, height];
+      canvas.getContext("2d")?.fillRect(0, 0, width / 2, height);
+      return canvas.toDataURL("image/jpeg");
+    },
+    [WIDTH, HEIGHT] as const,
+  );
+  const jpeg = Buffer.from(address.split(",")[1] ?? "", "base64");
+  return withExif(jpeg, tiff({ make: "Maker" }, { focal35: 65, pixelX: WIDTH, pixelY: HEIGHT }, true));
+}
+
+/** A unit of length after a number, or alone. */
+const UNIT = /(\d\s*|\b)(mm|cm|m)\b/;
+
+const shownText = ({ page }: SitePage) => page.evaluate(() => document.querySelector(".page")?.textContent ?? "");
+
+test("a photo, relative disparity, a mask and a mesh without a camera are aligned, in no unit", async (opened, page) => {
+  const dropped: Files = {
+    "photo.jpg": await photo(page),
+    "depth.png": disparityPng(seen.depth),
+    "mask.png": maskPng(seen.mask),
+    "mesh.obj": files["mesh.obj"] as Uint8Array,
+  };
+  await drop(opened, dropped);
+  const sheet = await opened.sheet();
+  assert.equal(await page.inputValue("#depth-kind"), "affine-invariant-disparity");
+  assert.match((await page.textContent("#depth-unit")) ?? "", /No unit/);
+  assert.match((await sheet.locator('[data-field="camera"]').textContent()) ?? "", /EXIF: 65 mm/);
+  assert.match((await sheet.textContent()) ?? "", /looks like relative disparity/);
+  await page.click("#intake-open");
+  await opened.shows("Own files");
+  assert.ok((await opened.metric("iou")) > 0.9);
+  const sizes = await opened.dimensions();
+  assert.equal(Math.max(...sizes), 1);
+  await page.click(".details summary");
+  await page.click(".hand-panel .more summary");
+  await page.selectOption('[aria-label="Background"]', "depth");
+  await page.hover(".image canvas");
+  const text = await shownText(opened);
+  assert.doesNotMatch(text.replace(/(\d+) mm \(35 mm equivalent\)/g, ""), UNIT);
+  assert.match(text, /Disparity, near is large; no unit.*shift.*Focal length \d+ px ± \d+ %; EXIF/s);
+  const json = JSON.parse(`${(await opened.saved("JSON")).bytes}`);
+  assert.equal(json._about.units, "unknown");
+  assert.equal(json._about.depthCalibration.isMetric, false);
+  assert.ok(!("sizeM" in json.Object), "a size in metres");
+
+  // The longest side of the blob, which nobody has told yet.
+  const longest = 100 * Math.max(...trueSides());
+  await page.selectOption('.hand-panel [aria-label="Side"]', "3");
+  await page.fill("#known-size", longest.toFixed(2));
+  await page.press("#known-size", "Enter");
+  await page.locator("#dimensions", { hasText: "cm" }).waitFor();
+  const metric = await opened.dimensions();
+  assert.ok(Math.abs(Math.max(...metric) - longest) < 0.1, `${metric}, known is ${longest}`);
+  const distance = Number.parseFloat((await page.textContent("#centre"))?.split(",")[2] ?? "");
+  assert.ok(Math.abs(distance / truth.translation[2] - 1) < 0.25, `${distance} m away`);
+  const known = JSON.parse(`${(await opened.saved("JSON")).bytes}`);
+  assert.equal(known._about.units, "metres");
+  // Undoing it leaves what was shown before.
+  await page.click("#undo");
+  await page.locator("#dimensions", { hasText: "relative" }).waitFor();
+  assert.deepEqual(await opened.dimensions(), sizes);
+  await page.click("#redo");
+  // It is kept by the next alignment.
+  await page.click("#align");
+  await page.locator("#cancel").waitFor({ state: "detached" });
+  await opened.aligned();
+  assert.ok(Math.abs(Math.max(...(await opened.dimensions())) - longest) < 0.1);
+  assert.deepEqual(await opened.violations(), []);
+});
+
+/** Files as depth cameras and models write them, and what the sheet says of each. */
+const written: readonly (readonly [file: string, unit: RegExp, camera: RegExp])[] = [
+  ["depth-depth-pro.npz", /^Unit: /, /From the depth file/],
+  ["depth-opencv.exr", /^Unit: metres/, /Estimated/],
+  ["depth-uint16.tiff", /^Unit: 0\.001 m/, /Estimated/],
+  ["depth-opencv.pfm", /^Unit: metres/, /Estimated/],
+];
+
+test("files of depth models are read, and their units and cameras shown", async (opened, page) => {
+  for (const [file, unit, camera] of written) {
+    const bytes = Uint8Array.from(readFileSync(join(repository, "tests", "fixtures", file)));
+    await drop(opened, { [file]: bytes });
+    const sheet = await opened.sheet();
+    assert.match((await sheet.locator('[data-field="depth"]').textContent()) ?? "", /\d+ × \d+/, file);
+    assert.match((await page.textContent("#depth-unit")) ?? "", unit, file);
+    assert.match((await sheet.locator('[data-field="camera"]').textContent()) ?? "", camera, file);
+    await page.click("#intake-cancel");
+  }
+});
+
+test("several objects calibrate a scene together, and one known size makes all of them metric", async (opened, page) => {
+  const other = render(mesh, otherPose(2), pinhole, WIDTH, HEIGHT);
+  // The nearer surface of both.
+  const depth = seen.depth.map((z, i) => Math.min(z, other.depth[i] ?? z));
+  const isNearer = (own: Float32Array) => (inside: number, i: number) => (own[i] === depth[i] ? inside : 0);
+  await drop(opened, {
+    "disparity.npy": depthNpy(depth.map((z) => 3 / z - 1.5)),
+    "camera.json": cameraFile,
+    "mask-a.png": maskPng(seen.mask.map(isNearer(seen.depth))),
+    "mask-b.png": maskPng(other.mask.map(isNearer(other.depth))),
+    "mesh-a.obj": files["mesh.obj"] as Uint8Array,
+    "mesh-b.obj": files["mesh.obj"] as Uint8Array,
+  });
+  await opened.sheet();
+  await page.click("#intake-open");
+  await opened.shows("Own files");
+  const sizes = await page.locator(".objects .state").allTextContents();
+  assert.doesNotMatch(sizes.join(), UNIT);
+  const longest = (text: string) => Math.max(...Array.from(text.matchAll(/[\d.]+/g), Number));
+  assert.equal(longest(sizes[0] ?? ""), 1);
+  const ratio = otherPose(2).scale / truth.scale;
+  assert.ok(Math.abs(longest(sizes[1] ?? "") / ratio - 1) < 0.1, `${sizes}, true ratio is ${ratio}`);
+  // The size of the second one tells that of the first one.
+  await page.locator(".objects .select").nth(1).click();
+  await page.selectOption('.hand-panel [aria-label="Side"]', "3");
+  await page.fill("#known-size", (100 * ratio * Math.max(...trueSides())).toFixed(2));
+  await page.press("#known-size", "Enter");
+  await page.locator(".objects .select").nth(0).click();
+  const first = Math.max(...(await opened.dimensions())) / 100;
+  assert.ok(Math.abs(first / Math.max(...trueSides()) - 1) < 0.1, `${first} m`);
+  const iou = await opened.metric("iou");
+  assert.ok(iou > 0.9, `${iou}`);
+  // Refining goes on in the calibrated depth.
+  await page.click("#refine");
+  await opened.isNow("refined");
+  assert.ok((await opened.metric("iou")) > iou - 0.02);
+});
+
+/** The sides of the box around the blob at its true size along its own axes, metres. */
+function trueSides(): number[] {
+  return [0, 1, 2].map((k) => {
+    const along = mesh.positions.filter((_, i) => i % 3 === k);
+    return truth.scale * (Math.max(...along) - Math.min(...along));
+  });
+}

@@ -1,0 +1,162 @@
+/** Several scenes: in one list, in several tabs, and one after the other while alignments run. */
+import assert from "node:assert/strict";
+import type { Page } from "playwright-core";
+import { violations } from "../support/axe.js";
+import { depthNpy, drop, dropFolder, type Files, files, inFolder, seen } from "../support/page-files.js";
+import { PATIENCE, pageTests, SitePage, until } from "../support/site.js";
+
+const test = pageTests();
+
+/** The same scene, farther away: another depth map. */
+const farther = (byM: number): Files => ({ ...files, "depth.npy": depthNpy(seen.depth.map((z) => z + byM)) });
+
+/** Four scenes, each in a folder of its own. */
+const four: Files = Object.assign({}, ...[1, 2, 3, 4].map((i) => inFolder(`IMG_00${i}`, farther(0.01 * i))));
+
+const isShown = (page: Page, scene: string) => page.locator(`main[data-scene="${scene}"]`).waitFor(PATIENCE);
+
+/** Waits until the browser has kept everything. */
+const kept = (page: Page) =>
+  until(
+    () => page.evaluate(() => !dispatchEvent(new Event("beforeunload", { cancelable: true }))),
+    (asks) => !asks,
+  );
+
+const states = (page: Page) => page.locator(".scenes li").allTextContents();
+
+test("the work on all scenes of a drop is kept: in the list, in one file, and after a reload", async (opened, page) => {
+  await dropFolder(opened, four);
+  await opened.sheet();
+  await page.click("#intake-open");
+  await opened.shows("IMG_001");
+  await page.click("#accept");
+  const [size] = await opened.dimensions();
+  await page.click("#next");
+  await opened.shows("IMG_002");
+  await page.click(".hand-panel .more summary");
+  await opened.press("Move left");
+  await opened.isNow("hand");
+  await page.click("#accept");
+  const moved = await page.textContent("#centre");
+  await page.click("#next-scene");
+  await opened.shows("IMG_003");
+  assert.deepEqual(
+    (await states(page)).map((text) => text.replace(/^IMG_00\d /, "")),
+    ["✓ accepted", "✓ accepted", "0 of 1 accepted", "not opened"],
+  );
+  assert.deepEqual(await opened.violations(), []);
+  type Result = Record<string, { accepted: boolean; sizeM: number[]; source: string }>;
+  const { name, bytes } = await opened.saved("JSON of all scenes");
+  assert.equal(name, "scenes.json");
+  const all = JSON.parse(`${bytes}`) as Record<string, Result | null>;
+  assert.deepEqual(Object.keys(all), ["IMG_001", "IMG_002", "IMG_003", "IMG_004"]);
+  assert.equal(all.IMG_004, null);
+  const [first, second] = [Object.values(all.IMG_001 ?? {})[0], Object.values(all.IMG_002 ?? {})[0]];
+  assert.deepEqual([first?.accepted, second?.accepted, second?.source], [true, true, "hand"]);
+  assert.equal((100 * (first?.sizeM[0] ?? 0)).toFixed(1), size?.toFixed(1));
+
+  await kept(page);
+  await page.reload();
+  await isShown(page, "IMG_003");
+  assert.equal(await page.locator(".scenes li").count(), 4);
+  await page.locator(".scenes button", { hasText: "IMG_002" }).click();
+  await isShown(page, "IMG_002");
+  await opened.isNow("hand");
+  assert.equal(await page.textContent("#centre"), moved);
+  assert.match((await page.textContent("#accept")) ?? "", /Accepted/);
+  // The last one was never opened: it is aligned as from a drop.
+  await page.locator(".scenes button", { hasText: "IMG_004" }).click();
+  await opened.shows("IMG_004");
+  await page.click("#forget");
+  await isShown(page, "IMG_003");
+  assert.equal(await page.locator(".scenes li").count(), 3);
+});
+
+test("two tabs keep their scenes apart, and the second one says so", async (opened, page) => {
+  await drop(opened, files);
+  await opened.shows("Own files");
+  await kept(page);
+  const [tab] = await Promise.all([page.waitForEvent("popup"), page.evaluate(() => void open(location.href))]);
+  const other = new SitePage(tab, []);
+  await other.aligned();
+  assert.notEqual(await tab.getAttribute("main", "data-scene"), "Own files");
+  assert.match((await tab.textContent("#other-tabs")) ?? "", /Another tab has Own files open/);
+  assert.deepEqual(await violations(tab), []);
+  await dropFolder(other, inFolder("second", farther(0.2)));
+  await other.shows("second");
+  await tab.click("#accept");
+  await kept(tab);
+  const centreOf = async (one: Page) => (await one.textContent("#centre"))?.split(" m")[0];
+  const centres = [await centreOf(page), await centreOf(tab)];
+  assert.notEqual(centres[0], centres[1]);
+  // The first tab works on, then both are loaded again.
+  await page.click(".hand-panel .more summary");
+  await opened.press("Move left");
+  await opened.press("Move right");
+  await page.click("#accept");
+  await kept(page);
+  await tab.reload();
+  await isShown(tab, "second");
+  await page.reload();
+  await isShown(page, "Own files");
+  assert.deepEqual([await centreOf(page), await centreOf(tab)], centres);
+  for (const each of [page, tab]) {
+    assert.equal(await each.locator(".scenes li").count(), 0);
+    assert.match((await each.textContent("#accept")) ?? "", /Accepted/);
+    assert.ok((await new SitePage(each, []).metric("iou")) > 0.9);
+  }
+  await tab.close();
+});
+
+test(
+  "a scene that is chosen while another one is aligned is aligned by itself",
+  "#sample=desk",
+  async (opened, page) => {
+    await opened.closeWorkerGate();
+    await page.click("#align-all");
+    await page.locator("#cancel").waitFor(PATIENCE);
+    await drop(opened, files);
+    await isShown(page, "Own files");
+    await opened.openWorkerGate();
+    await opened.shows("Own files");
+    assert.equal(await opened.source(), "aligned");
+    // And back, to a sample.
+    await opened.closeWorkerGate();
+    await page.click("#align");
+    await page.locator("#cancel").waitFor(PATIENCE);
+    await page.selectOption("#sample", "mug");
+    await isShown(page, "Mug");
+    await opened.openWorkerGate();
+    await opened.shows("Mug");
+  },
+);
+
+test("files can be dropped without a connection, once the page is loaded", async (opened, page) => {
+  // It loads the rest of itself after the first alignment.
+  await page.waitForFunction(
+    () => performance.getEntriesByType("resource").some(({ name }) => /\/intake-[^/]+\.js$/.test(name)),
+    undefined,
+    PATIENCE,
+  );
+  await page.waitForLoadState("networkidle");
+  await page.context().setOffline(true);
+  await drop(opened, files);
+  await opened.shows("Own files");
+});
+
+test(
+  "without a connection, the page says that a part of it is missing",
+  {
+    isLoading: true,
+  },
+  async (opened, page) => {
+    const isIntake = /\/(intake|draft)-[^/]+\.js$/;
+    await page.route(isIntake, (route) => route.abort());
+    await page.reload();
+    await opened.aligned();
+    await drop(opened, files);
+    await opened.says(/could not be loaded\. Connect/);
+    // The browser logs the requests that failed.
+    opened.errors.length = 0;
+  },
+);

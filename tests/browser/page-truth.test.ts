@@ -1,0 +1,72 @@
+/** What the page says is so: sizes along an object's own sides, and why mask and mesh differ. */
+import assert from "node:assert/strict";
+import { obj } from "../support/files.js";
+import { depthNpy, drop, files, HEIGHT, maskPng, pinhole, seen, WIDTH } from "../support/page-files.js";
+import { cuboid, render, transformed, truth } from "../support/scene.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
+
+const test = pageTests();
+
+/** A box of sugar, in metres. */
+const SIDES_M = [0.045, 0.092, 0.176] as const;
+const box = cuboid(SIDES_M[0] / 2, SIDES_M[1] / 2, SIDES_M[2] / 2);
+
+/** The same in a file whose axes are tilted against its sides, in another unit, as generated meshes are. */
+const tilted = {
+  positions: Float32Array.from(
+    transformed(box.positions, { ...truth, scale: 7, rotation: [0.42, 0.36, -0.18, 0.814], translation: [1, 2, 3] }),
+  ),
+  indices: box.indices,
+};
+
+const sorted = (sides: readonly number[]) => [...sides].sort((a, b) => a - b);
+
+test("sizes are those of the object's sides, in a file of any axes", async (opened, page) => {
+  const view = render(box, { ...truth, scale: 1 }, pinhole, WIDTH, HEIGHT);
+  await drop(opened, {
+    ...files,
+    "depth.npy": depthNpy(view.depth),
+    "mask.png": maskPng(view.mask),
+    "mesh.obj": obj(tilted),
+  });
+  await opened.shows("Own files");
+  const sides = sorted(await opened.dimensions());
+  for (const [k, side] of SIDES_M.entries()) {
+    assert.ok(Math.abs((sides[k] ?? 0) / (100 * side) - 1) < 0.04, `${sides}, true are ${SIDES_M}`);
+  }
+  const json = JSON.parse(`${(await opened.saved("JSON")).bytes}`) as Record<string, { sizeM: number[] }>;
+  const saved = sorted(Object.values(json)[0]?.sizeM ?? []);
+  for (const [k, side] of saved.entries()) assert.ok(Math.abs(100 * side - (sides[k] ?? 0)) < 0.06, `${saved}`);
+  // A known side leaves the others in proportion.
+  await page.selectOption('.hand-panel [aria-label="Side"]', "3");
+  await page.fill("#known-size", "25");
+  await page.press("#known-size", "Enter");
+  await opened.isNow("hand");
+  const known = sorted(await opened.dimensions());
+  for (const [k, side] of SIDES_M.entries())
+    assert.ok(Math.abs((known[k] ?? 0) * (0.176 / 25) - side) < 0.002, `${known}`);
+});
+
+const warnings = async ({ page }: SitePage) => (await page.locator(".warnings").allTextContents()).join(" ");
+
+test("only what stands in front of an object explains a low overlap", "#sample=occluded", async (opened, page) => {
+  assert.match(await warnings(opened), /\d+ % of the object is behind something else/);
+  // Dragged behind the wall, the object is hidden as well, but not where it was seen.
+  await page.click(".hand-panel .more summary");
+  await page.fill("#centre-z", "500");
+  await page.press("#centre-z", "Enter");
+  await opened.isNow("hand");
+  await page.locator(".warnings", { hasText: "nothing in front explains it" }).waitFor(PATIENCE);
+  assert.doesNotMatch(await warnings(opened), /behind something else/);
+  assert.equal(await page.textContent(".badge"), "Moved by hand");
+});
+
+test("the mesh of another object on a bare surface is not explained by what hides it", async (opened, page) => {
+  // A patch of the wall, whose mask shows no object at all.
+  const mask = new Uint8Array(WIDTH * HEIGHT);
+  for (let v = 8; v < 40; v++) mask.fill(1, v * WIDTH + 8, v * WIDTH + 48);
+  await drop(opened, { ...files, "depth.npy": depthNpy(seen.depth), "mask.png": maskPng(mask) });
+  await page.locator('main[data-scene="Own files"]').waitFor(PATIENCE);
+  await page.locator("#cancel").waitFor({ state: "detached", ...PATIENCE });
+  assert.doesNotMatch(await warnings(opened), /behind something else/);
+});

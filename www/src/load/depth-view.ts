@@ -1,0 +1,67 @@
+/** Depth maps with their cameras, as far as both are known. */
+import type { DepthKind } from "sim3align";
+import { type DepthImage, type DepthReading, readCamera, readExif } from "sim3align/formats";
+import { foundCamera } from "sim3align/input/lens";
+import { corrected, provisional, type RawView } from "../state/calibration.js";
+import type { Scene } from "../state/scene.js";
+import type { NamedFile } from "./files.js";
+import { readDepth } from "./reader.js";
+
+/** A depth map that has been read. */
+export interface ReadDepthMap extends DepthImage {
+  depthKind: DepthKind;
+}
+
+/** What the values of a depth file probably are: 256 grey levels hold no distances, but what a relative model has drawn. */
+function suggestedKind({ path }: Pick<NamedFile, "path">, bytes: Uint8Array): DepthKind {
+  const isGrey8 = bytes[1] === 0x50 && bytes[2] === 0x4e && (bytes[24] ?? 16) <= 8 && bytes[25] === 0;
+  return isGrey8 || /disp(arity)?([^a-z]|$)/i.test(path) ? "affine-invariant-disparity" : "metric";
+}
+
+/** Reads a depth file as what it is said or seems to be. */
+export async function readDepthMap(
+  file: NamedFile,
+  kind: DepthKind | null,
+  scales: Omit<DepthReading, "depthKind">,
+): Promise<ReadDepthMap> {
+  const bytes = await file.bytes();
+  const depthKind = kind ?? suggestedKind(file, bytes);
+  return { ...(await readDepth(bytes, { ...scales, depthKind })), depthKind };
+}
+
+/** A camera, and where it comes from if it was not given. */
+export interface ReadCamera {
+  camera: Scene["camera"];
+  source: string | null;
+  focalUncertainty: number;
+  warnings: readonly string[];
+}
+
+/** The camera of a depth map for which none was given. */
+export async function cameraOf(
+  { width, height, camera }: Pick<DepthImage, "width" | "height" | "camera">,
+  photo: { bytes: Uint8Array; width: number; height: number } | null,
+): Promise<ReadCamera> {
+  const exif = photo === null ? undefined : await readExif(photo.bytes).catch(() => undefined);
+  const hints = { inDepth: camera, photo: exif && photo ? { exif, size: photo } : undefined };
+  const found = foundCamera({ width, height }, hints);
+  const warnings = found.warnings.map(({ message }) => message);
+  return { camera: found.camera, source: found.source, focalUncertainty: found.focalDeviation ?? 0, warnings };
+}
+
+/** Intrinsics of a file, an entry of a dataset or a field of view, which are known. */
+export async function knownCamera(...given: Parameters<typeof readCamera>): Promise<ReadCamera> {
+  const { fx, fy, cx, cy, warnings } = await readCamera(...given);
+  return { camera: { fx, fy, cx, cy }, source: null, focalUncertainty: 0, warnings };
+}
+
+/** The depth map as it is shown until it is calibrated, and what there is to calibrate. */
+export function viewOf(
+  { data, depthKind }: Pick<ReadDepthMap, "data" | "depthKind">,
+  read: ReadCamera | null,
+): { depthM: Float32Array; raw: RawView | null } {
+  const depthM = corrected({ depth: data, depthKind }, provisional(data, depthKind));
+  if (read === null || (depthKind === "metric" && read.focalUncertainty === 0)) return { depthM, raw: null };
+  const { camera, focalUncertainty, warnings } = read;
+  return { depthM, raw: { depth: data, depthKind, camera, focalUncertainty, warnings } };
+}

@@ -1,0 +1,63 @@
+/** Makes a length of an object known. */
+import { compose, toSim3 } from "sim3align/conventions";
+import type { AnyAlignment, PreciseAlignment } from "../state/alignment.js";
+import { inCalibration, isMetric } from "../state/calibration.js";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Pose } from "../state/pose.js";
+import type { Workspace } from "../state/workspace.js";
+
+/**
+ * Scales an object by a factor, after which it has its known size. If the unit of the depth map is unknown, the whole scene is
+ * scaled: it is metric from then on.
+ */
+export function setKnownSize(workspace: Workspace, object: ObjectModel, factor: number): void {
+  const { byHand, recalibrate, record, scene, support } = workspace;
+  const whole = scene.peek();
+  record(object, () => {
+    if (whole === null || isMetric(whole) || whole.calibration === null) {
+      object.pose.value = byHand(object, { scale: factor });
+    } else {
+      const { calibration } = whole;
+      recalibrate(
+        inCalibration(whole, { ...calibration, isMetric: true, scale: calibration.scale * factor }, whole.warnings),
+      );
+      for (const one of whole.objects) if (one.isPlaced) one.pose.value = poseInUnit(one.pose.peek(), factor);
+      const plane = support.peek();
+      if (plane !== null) support.value = { ...plane, d: plane.d * factor };
+    }
+    object.lockScale(true);
+  });
+}
+
+const unitOf = (factor: number) => ({ scale: factor, rotation: [0, 0, 0, 1], translation: [0, 0, 0] });
+
+/** The pose in a unit of which the present one has `factor`. */
+function poseInUnit(pose: Pose, factor: number): Pose {
+  const alignment = pose.alignment ? inUnit(pose.alignment, factor) : null;
+  // To the last bit that of the alignment, so that it still counts as found by it.
+  const isFound = alignment !== null && (pose.source === "aligned" || pose.source === "refined");
+  return { ...pose, transform: isFound ? toSim3(alignment) : compose(unitOf(factor), pose.transform), alignment };
+}
+
+/** The result in a unit of which the present one has `factor`. */
+function inUnit(alignment: AnyAlignment, factor: number): AnyAlignment {
+  const scaled = <T extends AnyAlignment | PreciseAlignment["alternatives"][number]>(of: T): T => ({
+    ...of,
+    ...compose(unitOf(factor), of),
+  });
+  const { contact, metrics, ...of } = alignment;
+  const { depthMaeMm, uniChamferMm, chamferMm } = metrics;
+  const length = (value: number | null) => value && value * factor;
+  return {
+    ...scaled(of as AnyAlignment),
+    metrics: {
+      ...metrics,
+      ...{ depthMaeMm: length(depthMaeMm), uniChamferMm: length(uniChamferMm), chamferMm: length(chamferMm) },
+    },
+    ...("alternatives" in of ? { alternatives: of.alternatives.map(scaled) } : {}),
+    ...("uncertainty" in of && of.uncertainty
+      ? { uncertainty: { ...of.uncertainty, distanceM: of.uncertainty.distanceM * factor } }
+      : {}),
+    ...(contact === undefined ? {} : { contact: { ...contact, gapM: length(contact.gapM) } }),
+  } as AnyAlignment;
+}
