@@ -45,14 +45,14 @@ struct Sums {
 impl Sums {
     /// The step towards where the distance is smallest.
     fn step(&self) -> Vec3 {
-        let Mat3 { x_axis, y_axis, z_axis } = self.hessian;
-        let damping = DAMPING / 3.0 * (x_axis.x + y_axis.y + z_axis.z);
-        if damping > 0.0 {
-            let damped = self.hessian + Mat3::from_diagonal(Vec3::splat(damping));
-            (damped.inverse() * -self.gradient).clamp_length_max(MAX_STEP)
-        } else {
-            Vec3::ZERO
+        if self.weight == 0.0 {
+            return Vec3::ZERO;
         }
+        // Relative to the weight, which may be so small that the determinant would be 0.
+        let hessian = self.hessian * (1.0 / self.weight);
+        let trace = hessian.x_axis.x + hessian.y_axis.y + hessian.z_axis.z;
+        let damped = hessian + Mat3::from_diagonal(Vec3::splat(DAMPING / 3.0 * trace));
+        (damped.inverse() * (self.gradient * (-1.0 / self.weight))).clamp_length_max(MAX_STEP)
     }
 }
 
