@@ -1,10 +1,12 @@
 //! What the modules of file readers share: JavaScript's bytes, options, images and errors.
 
-use js_sys::{ArrayBuffer, Float32Array, Object, Reflect, Uint8Array};
+use glam::Vec3;
+use js_sys::{Array, ArrayBuffer, Float32Array, Object, Reflect, Uint8Array, Uint32Array};
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
+use crate::colored_mesh::ColoredMesh;
 use crate::depth::{DepthImage, DepthReadOptions};
 use crate::guard::{MAX_BUFFER_BYTES, too_large};
 use sim3align_geometry::depth_kind::DepthKind;
@@ -128,6 +130,38 @@ pub fn depth_image(depth: &DepthImage) -> JsValue {
         properties.push(("camera", object(&numbers.map(|(name, number)| (name, number.into())))));
     }
     object(&properties)
+}
+
+/// `{ positions, indices, samples, warnings }`.
+pub fn mesh_arrays(ColoredMesh { mesh, colors, problem }: &ColoredMesh) -> JsValue {
+    let warnings = problem.iter().map(|problem| JsValue::from(without_colors(problem)));
+    let mut properties = vec![
+        ("positions", flat(mesh.positions()).into()),
+        ("indices", Uint32Array::from(mesh.triangles().as_flattened()).into()),
+        ("warnings", warnings.collect::<Array>().into()),
+    ];
+    if let Some(colors) = colors {
+        let samples = colors.samples();
+        properties.push((
+            "samples",
+            object(&[
+                ("positions", flat(&samples.points).into()),
+                ("normals", flat(&samples.normals).into()),
+                ("colors", Uint8Array::from(colors.colors().as_flattened()).into()),
+            ]),
+        ));
+    }
+    object(&properties)
+}
+
+/// The warning for colours that can't be read.
+fn without_colors(problem: &Error) -> String {
+    format!("The mesh is read without its colours. {problem}")
+}
+
+fn flat(points: &[Vec3]) -> Float32Array {
+    let numbers: Vec<f32> = points.iter().flat_map(|p| p.to_array()).collect();
+    Float32Array::from(numbers.as_slice())
 }
 
 /// A plain object `{ code, argument, found, expected, remedy }`, of which the TypeScript package makes its

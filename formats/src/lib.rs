@@ -34,6 +34,7 @@ mod ply_header;
 mod png;
 mod reducer;
 pub mod resources;
+pub mod splats;
 mod stl;
 pub mod text;
 mod texture;

@@ -37,7 +37,7 @@ impl MeshFormat {
                 ErrorCode::InvalidOption,
                 "options.format",
                 format!("{name:?}"),
-                "\"glb\", \"gltf\", \"obj\", \"ply\" or \"stl\"",
+                "\"glb\", \"gltf\", \"obj\", \"ply\", \"stl\" or \"splat\"",
                 "Omit it to detect the format from the content.",
             )),
         }
@@ -131,7 +131,7 @@ fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result
         None => Err(unsupported(
             "mesh",
             beginning(bytes),
-            "GLB, glTF, OBJ, PLY or STL",
+            "GLB, glTF, OBJ, PLY, STL or .splat",
             "Convert it, for example with Blender or trimesh; if it is one of these, it is damaged.",
         )),
     }

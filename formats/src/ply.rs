@@ -20,7 +20,7 @@ use sim3align_geometry::surface_colors::Rgb;
 /// [`ErrorCode::IndexOutOfRange`] and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
 pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let (header, body) = Header::read(bytes)?;
-    let mut body = Body { encoding: header.encoding, cursor: Cursor::new("mesh", body) };
+    let mut body = Body::new("mesh", header.encoding, body);
     let mut builder = MeshBuilder::default();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
@@ -49,7 +49,7 @@ pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`].
 pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
     let (header, body) = Header::read(bytes)?;
-    let mut body = Body { encoding: header.encoding, cursor: Cursor::new("cloud", body) };
+    let mut body = Body::new("cloud", header.encoding, body);
     let mut points = Vec::new();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
@@ -143,7 +143,7 @@ fn read_faces(element: &Element, body: &mut Body<'_>, push: &mut dyn FnMut(&[u32
 }
 
 /// Calls `visit` with the position of each property and its values (one, or the list), record by record.
-fn read_records(
+pub(crate) fn read_records(
     element: &Element,
     body: &mut Body<'_>,
     mut visit: impl FnMut(usize, &[f64]) -> Result<()>,
@@ -166,14 +166,19 @@ fn read_records(
 }
 
 /// The numbers after the header.
-struct Body<'a> {
+pub(crate) struct Body<'a> {
     encoding: Encoding,
     cursor: Cursor<'a>,
 }
 
-impl Body<'_> {
+impl<'a> Body<'a> {
+    /// The numbers of a file after its header; `argument` names the file in errors.
+    pub fn new(argument: &'static str, encoding: Encoding, bytes: &'a [u8]) -> Self {
+        Self { encoding, cursor: Cursor::new(argument, bytes) }
+    }
+
     /// Checks a count against the remaining bytes, before anything is read or allocated.
-    fn check_count(&self, element: &Element) -> Result<()> {
+    pub fn check_count(&self, element: &Element) -> Result<()> {
         // One more byte: the last number of an ASCII file need not be followed by a space.
         let available = self.cursor.remaining().len() + 1;
         match element.count.checked_mul(element.min_bytes(self.encoding)) {

@@ -17,6 +17,11 @@ export interface AlignerOptions {
    */
   depthFilesWasm?: WasmSource | undefined;
   /**
+   * The splats module, loaded when 3D Gaussians are first passed as a mesh. Default: `wasm/splats_bg.wasm` next to this
+   * script.
+   */
+  splatsWasm?: WasmSource | undefined;
+  /**
    * The registration module, loaded when `register`, `estimateSim3` or `preset: "paper"` is first used. Default:
    * `wasm/registration_bg.wasm` next to this script.
    */
@@ -49,6 +54,7 @@ export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;
   depthFilesWasm?: LazySource;
+  splatsWasm?: LazySource;
   registrationWasm?: LazySource;
   jointWasm?: LazySource;
   workerScript?: string;
@@ -68,6 +74,7 @@ const alignerOptions: readonly string[] = [
   "wasm",
   "formatsWasm",
   "depthFilesWasm",
+  "splatsWasm",
   "registrationWasm",
   "jointWasm",
   "workers",

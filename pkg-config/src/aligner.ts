@@ -50,6 +50,7 @@ import { classNames as sceneClassNames } from "./scene/read-scene.js";
 import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
+import { splatsModule } from "./splats-module.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
@@ -90,7 +91,7 @@ export class Aligner {
 
   /** @internal */
   static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
-    const { wasm, formatsWasm, depthFilesWasm, registrationWasm, jointWasm, ...given } = {
+    const { wasm, formatsWasm, depthFilesWasm, splatsWasm, registrationWasm, jointWasm, ...given } = {
       ...assets,
       ...withoutUndefined(checkedAlignerOptions(options)),
     };
@@ -100,6 +101,7 @@ export class Aligner {
       core: await coreModule.load(wasm),
       formats: () => formatsModule.load(formatsWasm),
       depthFiles: () => depthFilesModule.load(depthFilesWasm),
+      splats: () => splatsModule.load(splatsWasm),
       registrar: () => registrationModule.load(registrationWasm),
       joint: () => jointModule.load(jointWasm),
     };
@@ -116,6 +118,7 @@ export class Aligner {
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
       "depth-files": () => depthFilesModule.compile(depthFilesWasm),
+      splats: () => splatsModule.compile(splatsWasm),
       registration: () => registrationModule.compile(registrationWasm),
       joint: () => jointModule.compile(jointWasm),
     };

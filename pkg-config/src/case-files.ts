@@ -34,7 +34,7 @@ export interface Case {
 export const caseFiles = {
   depth: ["depth.npy", "depth.png", "depth.npz", "depth.exr", "depth.tiff", "depth.tif", "depth.pfm"],
   mask: ["mask.png", "mask.npy", "mask.json"],
-  mesh: ["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"],
+  mesh: ["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl", "mesh.splat"],
   camera: ["camera.json", "scene_camera.json"],
   image: ["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"],
 } as const satisfies { mesh: readonly `mesh.${MeshFormat}`[]; [part: string]: readonly string[] };

@@ -41,6 +41,7 @@ export { wxyzFromXyzw, xyzwFromWxyz } from "./conventions/rotation.js";
 export { fromSam3d, type Nested, type Sam3dLayout, type Sam3dVertices, toSam3d } from "./conventions/sam3d.js";
 export { exportSceneGlb, type SceneGlbObject, type SceneGlbOptions } from "./conventions/scene-glb.js";
 export { applyToPoints, compose, invert, toRowMajor, toSim3 } from "./conventions/similarity.js";
+export { placeSplats, type SplatOptions } from "./conventions/splats.js";
 export { type StretchLike, stretchGlb, stretchMesh } from "./conventions/stretch.js";
 export { depthFromTensor, type MaskChoice, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";

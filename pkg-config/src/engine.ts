@@ -85,7 +85,7 @@ export class MainThreadEngine implements Engine {
         check();
         return module;
       };
-    const { core, formats, depthFiles, registrar, joint } = this.#modules;
+    const { core, formats, depthFiles, splats, registrar, joint } = this.#modules;
     const loadJoint = async () => {
       this.#joint = await joint();
       return this.#joint;
@@ -94,6 +94,7 @@ export class MainThreadEngine implements Engine {
       core,
       formats: checked(formats),
       depthFiles: checked(depthFiles),
+      splats: checked(splats),
       registrar: checked(registrar),
       joint: checked(loadJoint),
     };

@@ -15,6 +15,7 @@ import { type Formats, formatsModule } from "./formats-module.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import type { DepthImage, DepthReading } from "./input/depth-reading.js";
+import { decodeMesh } from "./input/mesh-file.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
 import type { ColorSamples } from "./prepared-mesh.js";
@@ -115,8 +116,10 @@ export async function readExif(file: EncodedBytes): Promise<Exif> {
 }
 
 /**
- * Reads a GLB, glTF, OBJ, PLY or STL file. Merges all parts, and applies node transforms. The result can be passed as
- * `mesh`, with its colours.
+ * Reads a GLB, glTF, OBJ, PLY or STL file. Merges all parts, and applies node transforms. Of 3D Gaussians (a PLY of 3D
+ * Gaussian Splatting, or a `.splat`), another module, `wasm/splats_bg.wasm` next to this script, makes a closed mesh of the
+ * surface that the opaque ones show. The result can be
+ * passed as `mesh`, with its colours.
  * @param options.format by default detected from the content
  * @param options.resources the files that the mesh file refers to, by name: see {@link externalResources}
  * @param options.colors whether to read the colours, `true` by default
@@ -132,7 +135,7 @@ export async function readMesh(
 ): Promise<MeshFromFile> {
   const given = optionsOf(options);
   const bytes = await requiredBytes("file", file);
-  return call(bytes, (readers) => readers.readMesh(bytes, given));
+  return decodeMesh("file", bytes, given, fileReaders);
 }
 
 /**
@@ -166,8 +169,8 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 }
 
 /**
- * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, and optionally
- * `camera.json` or `scene_camera.json`, `rgb.png|jpg` or `image.png|jpg`, and `gt.json`.
+ * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl|splat`, and
+ * optionally `camera.json` or `scene_camera.json`, `rgb.png|jpg` or `image.png|jpg`, and `gt.json`.
  * @param files by name, relative to the folder
  *
  * @example

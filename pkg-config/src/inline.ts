@@ -19,6 +19,7 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
     wasm: () => bytesOf(core),
     formatsWasm: async () => bytesOf((await import("inlined:formats")).default),
     depthFilesWasm: async () => bytesOf((await import("inlined:depth-files")).default),
+    splatsWasm: async () => bytesOf((await import("inlined:splats")).default),
     jointWasm: async () => bytesOf((await import("inlined:joint")).default),
     registrationWasm: async () => bytesOf((await import("inlined:registration")).default),
     workerScript,

@@ -30,6 +30,12 @@ declare module "inlined:registration" {
   export default base64;
 }
 
+declare module "inlined:splats" {
+  /** The splats module, base64. */
+  const base64: string;
+  export default base64;
+}
+
 declare module "inlined:worker" {
   /** The complete worker script. */
   const script: string;

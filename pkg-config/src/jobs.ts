@@ -97,7 +97,7 @@ export async function perform(
   listener: CoreListener | undefined,
   slices: Slices = all,
 ): Promise<unknown> {
-  const { core, formats, registrar, joint } = modules;
+  const { core, registrar, joint } = modules;
   const { options } = job;
   checkAttached("input", job.data);
   switch (job.method) {
@@ -116,7 +116,7 @@ export async function perform(
       const read: CalibrationObject[] = [];
       for (const object of objects) {
         // What is wrong with a mesh is told where it is aligned.
-        const mesh = await readCoreMesh(object.mesh, formats, false).catch((error) => {
+        const mesh = await readCoreMesh(object.mesh, modules, false).catch((error) => {
           if (!isOfInput(error)) throw error;
         });
         if (mesh) read.push({ ...object, mesh: mesh.mesh });
@@ -152,7 +152,7 @@ export async function perform(
     }
     case "openTracker": {
       // Any frame may have a photo.
-      const { mesh } = await readCoreMesh(job.data.mesh, formats, true, job.meshId);
+      const { mesh } = await readCoreMesh(job.data.mesh, modules, true, job.meshId);
       const module = await joint();
       checkAttached("mesh", mesh);
       module.call((j) => {
@@ -178,7 +178,7 @@ export async function perform(
       return withNotes(evaluation, notes);
     }
     case "prepareMesh": {
-      const { mesh, warnings } = await readMesh(job.data.mesh, formats, true);
+      const { mesh, warnings } = await readMesh(job.data.mesh, modules, true);
       checkAttached("mesh", mesh);
       core.call((c) => c.prepareMesh({ ...mesh, id: job.meshId }));
       return { mesh, warnings };

@@ -8,12 +8,14 @@ import type { JointAligner } from "./joint-module.js";
 import type { LazyName, Reply, Request } from "./pool/protocol.js";
 import { buffersOf } from "./pool/transfer.js";
 import type { Registrar } from "./registration-module.js";
+import type { Splats } from "./splats-module.js";
 // Imported statically, because some bundlers put a worker script into a single file without dynamic imports.
 import * as coreGlue from "./wasm/core.js";
 import * as depthFilesGlue from "./wasm/depth-files.js";
 import * as formatsGlue from "./wasm/formats.js";
 import * as jointGlue from "./wasm/joint.js";
 import * as registrationGlue from "./wasm/registration.js";
+import * as splatsGlue from "./wasm/splats.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
 
 const caches: readonly MeshCache[] = ["core", "joint"];
@@ -26,6 +28,7 @@ class WorkerHost {
   #core: WasmModule<Core> | undefined;
   readonly #formats = this.#lazy<Formats>("formats", formatsGlue);
   readonly #depthFiles = this.#lazy<DepthFiles>("depth-files", depthFilesGlue as unknown as DepthFiles);
+  readonly #splats = this.#lazy<Splats>("splats", splatsGlue as unknown as Splats);
   readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
   readonly #joint = this.#lazy<JointAligner>("joint", jointGlue as unknown as JointAligner);
   /** Receives the answer to `needs-module`. */
@@ -86,6 +89,7 @@ class WorkerHost {
         core,
         formats: () => this.#formats.load(),
         depthFiles: () => this.#depthFiles.load(),
+        splats: () => this.#splats.load(),
         registrar: () => this.#registrar.load(),
         joint: () => this.#joint.load(),
       };

@@ -3,6 +3,7 @@
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_formats::splats::read_splats;
 
 use crate::formats_fixtures::{MESHES, fixture};
 use crate::prelude::*;
@@ -26,6 +27,10 @@ fn mesh(bytes: &[u8]) -> Result<(), ErrorCode> {
     checked(read_mesh(bytes, &MeshReadOptions::default()))
 }
 
+fn splat(bytes: &[u8]) -> Result<(), ErrorCode> {
+    checked(read_splats(bytes, true).map(|read| read.mesh))
+}
+
 fn depth(bytes: &[u8]) -> Result<(), ErrorCode> {
     read_depth(bytes, &DepthReadOptions::default()).map(drop).map_err(|error| error.code)
 }
@@ -35,7 +40,7 @@ fn mask(bytes: &[u8]) -> Result<(), ErrorCode> {
 }
 
 /// Every kind of file but the text formats OBJ, PLY and STL: whatever is cut off is missed.
-const MUST_BE_WHOLE: [(&str, &[u8], Reader); 24] = [
+const MUST_BE_WHOLE: [(&str, &[u8], Reader); 25] = [
     ("GLB", fixture!("mesh.glb"), mesh),
     ("GLB scene", fixture!("scene.glb"), mesh),
     ("glTF", fixture!("mesh-data-uri.gltf"), mesh),
@@ -43,6 +48,7 @@ const MUST_BE_WHOLE: [(&str, &[u8], Reader); 24] = [
     ("PLY big-endian", fixture!("mesh-big.ply"), mesh),
     ("STL", fixture!("mesh.stl"), mesh),
     ("STL, solid", fixture!("mesh-solid-header.stl"), mesh),
+    ("splat", fixture!("splat.ply"), splat),
     ("depth f4", fixture!("depth-f4.npy"), depth),
     ("depth f8", fixture!("depth-f8-fortran.npy"), depth),
     ("depth >f4", fixture!("depth-f4-big.npy"), depth),
@@ -90,6 +96,12 @@ fn a_text_mesh_cut_short_is_refused_where_the_cut_can_be_seen() {
             assert!(unseen || result.is_err(), "fixture {i}, {format}, cut to {length}");
         }
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn splat_records_with_random_damage_never_panic() {
+    let refused = refusals(200, fixture!("mesh.splat"), splat);
+    assert!(refused > 0 && refused < 300, "{refused}");
 }
 
 #[wasm_bindgen_test(unsupported = test)]

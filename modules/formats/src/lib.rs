@@ -1,11 +1,11 @@
 //! The exports of the formats module: the readers of meshes, photos, masks, and depth maps as PNG and NPY.
 
-use glam::Vec3;
-use js_sys::{Array, Float32Array, Reflect, Uint8Array, Uint32Array};
-use sim3align_formats::bindings::{Options, depth_image, depth_options, image, object, string, to_bytes, to_js};
+use js_sys::{Array, Reflect, Uint8Array};
+use sim3align_formats::bindings::{
+    Options, depth_image, depth_options, image, mesh_arrays, object, string, to_bytes, to_js,
+};
 use sim3align_formats::colored_mesh::ColoredMesh;
 use sim3align_formats::depth::read_depth_image;
-use sim3align_formats::error::Error;
 use sim3align_formats::exif::read_exif as exif_from_bytes;
 use sim3align_formats::mask::read_mask as mask_from_bytes;
 use sim3align_formats::mesh::{
@@ -131,34 +131,7 @@ pub fn read_mesh(
         }
         mesh_from_bytes(&bytes, &with_resources)
     };
-    let ColoredMesh { mesh, colors, problem } = read().map_err(|error| to_js(&error))?;
-    let mut properties = vec![
-        ("positions", flat(mesh.positions()).into()),
-        ("indices", Uint32Array::from(mesh.triangles().as_flattened()).into()),
-        ("warnings", problem.iter().map(|problem| JsValue::from(without_colors(problem))).collect::<Array>().into()),
-    ];
-    if let Some(colors) = &colors {
-        let samples = colors.samples();
-        properties.push((
-            "samples",
-            object(&[
-                ("positions", flat(&samples.points).into()),
-                ("normals", flat(&samples.normals).into()),
-                ("colors", Uint8Array::from(colors.colors().as_flattened()).into()),
-            ]),
-        ));
-    }
-    Ok(object(&properties))
-}
-
-/// The warning for colours that can't be read.
-fn without_colors(problem: &Error) -> String {
-    format!("The mesh is read without its colours. {problem}")
-}
-
-fn flat(points: &[Vec3]) -> Float32Array {
-    let numbers: Vec<f32> = points.iter().flat_map(|p| p.to_array()).collect();
-    Float32Array::from(numbers.as_slice())
+    read().map(|mesh| mesh_arrays(&mesh)).map_err(|error| to_js(&error))
 }
 
 /// The files that a mesh file refers to: what `readMesh` needs as `resources`. The libraries of an OBJ refer to files

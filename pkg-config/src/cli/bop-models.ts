@@ -1,6 +1,6 @@
 /** The models of a BOP dataset. */
 import { readBopModel } from "../bop-folder.js";
-import { formatsModule } from "../formats-module.js";
+import { fileReaders } from "../file-readers.js";
 import { readMesh } from "../input/mesh.js";
 import { oncePerKey } from "../values.js";
 
@@ -8,6 +8,6 @@ import { oncePerKey } from "../values.js";
 export const bopModelsIn = (folder: string, withColors: boolean): ((objectId: number) => Promise<object>) =>
   oncePerKey(async (objectId) => {
     const file = await readBopModel(folder, objectId);
-    const { mesh, warnings } = await readMesh(file, () => formatsModule.load(), withColors);
+    const { mesh, warnings } = await readMesh(file, fileReaders, withColors);
     return { ...mesh, warnings };
   });

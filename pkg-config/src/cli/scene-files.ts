@@ -3,8 +3,8 @@ import { mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import type { Command } from "commander";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
+import { fileReaders } from "../file-readers.js";
 import { parseCameraFile } from "../formats/camera-file.js";
-import { formatsModule } from "../formats-module.js";
 import type { SceneInput, SceneResult } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import type { MeshArrays } from "../input/types.js";
@@ -120,7 +120,7 @@ async function simulatorObjects({ input }: SceneOnDisk, { objects }: SceneResult
   for (const [i, object] of objects.entries()) {
     const given = input.objects[i]?.mesh;
     if (object.error !== undefined || given === undefined) continue;
-    const { mesh } = await readMesh(given, () => formatsModule.load(), true);
+    const { mesh } = await readMesh(given, fileReaders, true);
     const { restsOn } = object.contact;
     const on = typeof restsOn === "number" ? (places.get(restsOn) ?? null) : restsOn;
     found.push({ name: object.name, mesh: mesh as MeshArrays, transform: object, restsOn: on });
@@ -145,7 +145,7 @@ async function glbOf(
     const given = input.objects[i]?.mesh;
     if (object.error !== undefined || given === undefined) continue;
     const { bytes, format } = given as { bytes: Uint8Array; format?: string };
-    const mesh = format === "glb" ? bytes : (await readMesh(given, () => formatsModule.load(), false)).mesh;
+    const mesh = format === "glb" ? bytes : (await readMesh(given, fileReaders, false)).mesh;
     placed.push({ name: object.name, mesh, transform: object });
   }
   return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });

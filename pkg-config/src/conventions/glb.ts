@@ -1,10 +1,9 @@
 /** Export of placed meshes, and placement of existing GLB files. */
-import { checkAttached } from "../attached.js";
 import { describe, failure } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
-import { isBuffer } from "../kinds.js";
 import type { Sim3Like } from "../sim3.js";
-import { isRecord, isTypedArray, oneOf, optionsOf, wrongKind } from "../values.js";
+import { isRecord, oneOf, optionsOf } from "../values.js";
+import { bytesOfFile } from "./file-bytes.js";
 import { inFrame } from "./frames.js";
 import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
 import type { GltfParts } from "./merged-gltf.js";
@@ -163,9 +162,7 @@ function glbOf(json: object, others: readonly (readonly [type: number, content: 
 }
 
 function chunksOf(glb: unknown): { json: Record<string, unknown>; others: [number, Uint8Array][] } {
-  if (isBuffer(glb) || isTypedArray(glb, "Uint8Array")) checkAttached("glb", glb);
-  const bytes = isBuffer(glb) ? new Uint8Array(glb) : isTypedArray<Uint8Array>(glb, "Uint8Array") ? glb : null;
-  if (bytes === null) throw wrongKind("glb", glb, "the bytes of a GLB file", "Uint8Array");
+  const bytes = bytesOfFile("glb", glb, "the bytes of a GLB file");
   const corrupt = (found: string) =>
     failure("CORRUPT_FILE", "glb", found, "a complete GLB file", "Pass the aligned file unchanged.");
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);

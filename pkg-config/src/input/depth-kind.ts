@@ -1,8 +1,5 @@
 /** What the values of a depth map are. */
 
-/** The kinds, the default first; the readers and the aligner know the same. */
-export const depthKinds = ["metric", "scale-invariant", "affine-invariant", "affine-invariant-disparity"] as const;
-
 /**
  * What the values of a depth map are:
  *
@@ -11,7 +8,12 @@ export const depthKinds = ["metric", "scale-invariant", "affine-invariant", "aff
  * - `"affine-invariant"`: such distances times an unknown factor, plus an unknown shift;
  * - `"affine-invariant-disparity"`: inverse distances times an unknown factor, plus an unknown shift; near is large.
  */
-export type DepthKind = (typeof depthKinds)[number];
+export type DepthKind = "metric" | "scale-invariant" | "affine-invariant" | "affine-invariant-disparity";
+
+/** The kinds, the default first; the readers and the aligner know the same. */
+export const depthKinds: readonly DepthKind[] = [
+  ...(["metric", "scale-invariant", "affine-invariant", "affine-invariant-disparity"] as const),
+];
 
 /** Whether values of this kind have no zero: those that are zero or negative are values, and 8 bits may hold them. */
 export const isAffineInvariant = (kind: DepthKind | undefined): boolean =>

@@ -57,7 +57,7 @@ export async function resolveViews(input: unknown, readers: FileReaders, meshId?
   const resolved = [];
   for (const [k, view] of views.entries()) resolved.push(await resolveView(view, k, readers));
   const isColored = resolved.some(({ core }) => core.image !== undefined);
-  const read = await readCoreMesh(mesh, readers.formats, isColored, meshId);
+  const read = await readCoreMesh(mesh, readers, isColored, meshId);
   const core = { mesh: read.mesh, views: resolved.map((view) => view.core) };
   // Colours matter only where there is a photo to compare them with.
   const notesOf = ({ core, notes }: ResolvedFrame) =>

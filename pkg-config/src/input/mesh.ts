@@ -1,15 +1,15 @@
 /** Meshes from arrays or mesh files. */
 
 import { failure, invalidArgument } from "../error.js";
-import type { LoadFormats } from "../formats-module.js";
 import type { ColorSamples, CoreMesh } from "../prepared-mesh.js";
 import { isRecord, isTypedArray, oneOf, record, stringsIn, withoutUndefined, wrongKind } from "../values.js";
-import { callReader, fileBytes } from "./bytes.js";
+import { fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
+import { decodeMesh, type MeshReaders } from "./mesh-file.js";
 import type { MeshFile } from "./types.js";
 
 const kinds =
-  "{ positions, indices? }, or the bytes of a GLB, glTF, OBJ, PLY or STL file (also as { bytes, format?, resources? })";
+  "{ positions, indices? }, or the bytes of a GLB, glTF, OBJ, PLY, STL or .splat file (also as { bytes, format?, resources? })";
 
 /** A mesh for the core, and why it has no colours. */
 export interface MeshAndWarnings {
@@ -21,7 +21,7 @@ export interface MeshAndWarnings {
  * The arrays of a mesh.
  * @param withColors whether the colours are needed
  */
-export async function readMesh(mesh: unknown, formats: LoadFormats, withColors: boolean): Promise<MeshAndWarnings> {
+export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: boolean): Promise<MeshAndWarnings> {
   if (isRecord(mesh) && "positions" in mesh) {
     // `readMesh` of `sim3align/formats` adds warnings.
     return { mesh: arrays(mesh, withColors), warnings: stringsIn(mesh.warnings) };
@@ -31,7 +31,7 @@ export async function readMesh(mesh: unknown, formats: LoadFormats, withColors: 
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh to align.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = { ...withoutUndefined({ format, resources }), colors: withColors };
-  const read = await callReader(formats, "mesh", bytes, (readers) => readers.readMesh(bytes, options), ofMesh);
+  const read = await decodeMesh("mesh", bytes, options, readers, ofMesh);
   const { warnings, ...found } = read;
   return { mesh: found, warnings };
 }
@@ -42,12 +42,12 @@ export async function readMesh(mesh: unknown, formats: LoadFormats, withColors: 
  */
 export async function readCoreMesh(
   mesh: unknown,
-  formats: LoadFormats,
+  readers: MeshReaders,
   withColors: boolean,
   meshId?: number,
 ): Promise<MeshAndWarnings> {
   // A prepared mesh is cached with its colours: a later call may have a photo.
-  const { mesh: arrays, warnings } = await readMesh(mesh, formats, withColors || meshId !== undefined);
+  const { mesh: arrays, warnings } = await readMesh(mesh, readers, withColors || meshId !== undefined);
   return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, warnings };
 }
 

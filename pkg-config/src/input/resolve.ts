@@ -63,7 +63,7 @@ export async function resolveInput(input: unknown, readers: FileReaders, meshId?
   const { resizeMask } = input;
   const { view, notes } = await readFrame(input, readers);
   const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
-  const mesh = await readCoreMesh(input.mesh, readers.formats, view.image !== undefined, meshId);
+  const mesh = await readCoreMesh(input.mesh, readers, view.image !== undefined, meshId);
   // Colours matter only where there is a photo to compare them with.
   const colors = view.image === undefined ? [] : mesh.warnings;
   const core = {

@@ -107,8 +107,8 @@ export interface UnknownCamera extends CameraSize, NoPinhole {
  */
 export type CameraFileInput = EncodedBytes | string | Readonly<Record<string, unknown>>;
 
-/** The supported mesh formats. */
-export type MeshFormat = "glb" | "gltf" | "obj" | "ply" | "stl";
+/** The supported mesh formats. A PLY file may hold 3D Gaussians, as a `.splat` does. */
+export type MeshFormat = "glb" | "gltf" | "obj" | "ply" | "stl" | "splat";
 
 /** A mesh as arrays. */
 export interface MeshArrays {
@@ -157,7 +157,10 @@ export interface PhotoOfView {
   image?: PhotoInput | undefined;
 }
 
-/** The object's mesh, in its own frame: arrays, a GLB, glTF, OBJ, PLY or STL file (node transforms are applied), or a prepared mesh. */
+/**
+ * The object's mesh, in its own frame: arrays, a GLB, glTF, OBJ, PLY or STL file (node transforms are applied), 3D
+ * Gaussians (a PLY or `.splat` file), of which a mesh of their surface is made, or a prepared mesh.
+ */
 export type MeshInput = MeshArrays | MeshFile | EncodedBytes | PreparedMesh;
 
 /** The mask and the mesh of an input. */

@@ -20,7 +20,7 @@ export type Request =
   | { type: "module"; name: LazyName; module: WebAssembly.Module | ErrorParts };
 
 /** The modules that a worker asks for when a job first needs them. */
-export type LazyName = "formats" | "depth-files" | "joint" | "registration";
+export type LazyName = "formats" | "depth-files" | "splats" | "joint" | "registration";
 
 /** Messages from the worker. */
 export type Reply =

@@ -2,6 +2,7 @@
 import * as conventions from "sim3align/conventions";
 import type { Random } from "../random.js";
 import { blob, columnMajor, truth } from "../scene.js";
+import { splatOf, splatPly, splatRecords } from "../splats.js";
 import { mutate } from "./mutations.js";
 import { oddValue, pick, proxied } from "./odd-values.js";
 
@@ -24,6 +25,7 @@ const valid = {
     positions: mesh.positions.slice(),
     indices: random.between(0, 1) < 0.8 ? mesh.indices.slice() : null,
   }),
+  splats: (random: Random) => pick(random, [splatPly, splatRecords])(splatOf(mesh, 20, 1)),
   glb: () => conventions.exportGlb(mesh, columnMajor(truth)),
   depth: () => ({ data: new Float32Array(count).fill(1.5), ...image }),
   mask: () => ({ data: Uint8Array.from({ length: count }, (_, i) => i % 3), ...image }),
@@ -79,6 +81,7 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
   ["stretchMesh", "mesh", "stretch"],
   ["stretchGlb", "glb", "stretch"],
   ["placeGlb", "glb", "transform", () => ({ frame: "opencv", name: "mug" })],
+  ["placeSplats", "splats", "transform", () => ({ frame: "ros" })],
   ["toGltfNode", "transform", () => ({ metrics: { iou: 0.9 }, name: "mug" })],
   ["fromLabelStudioRle", () => new Uint8Array([0, 0, 0, 192, 58, 8, 0, 1, 255, 7, 9, 9]), () => ({ ...image })],
   ["pointMapFromMoge", () => ({ points: valid.points().data, ...image, intrinsics: [1, 0, 0.5, 0, 1, 0.5, 0, 0, 1] })],

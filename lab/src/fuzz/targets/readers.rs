@@ -4,6 +4,7 @@ use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, external_resources, read_colored_mesh};
 use sim3align_formats::photo::{MAX_PHOTO_PIXELS, read_photo};
+use sim3align_formats::splats::read_splats;
 use sim3align_geometry::surface_colors::COLOR_SAMPLES;
 
 use crate::fuzz::call::{Answer, Call, typed};
@@ -16,7 +17,7 @@ macro_rules! files {
 }
 
 /// Files of every format and variant.
-const FILES: [(&str, &[u8]); 45] = files![
+const FILES: [(&str, &[u8]); 47] = files![
     "mesh.glb",
     "scene.glb",
     "mesh-data-uri.gltf",
@@ -62,6 +63,8 @@ const FILES: [(&str, &[u8]); 45] = files![
     "photo-grey.jpg",
     "photo-cmyk.jpg",
     "photo-exif-6.jpg",
+    "splat.ply",
+    "mesh.splat",
 ];
 
 /// Numbers that replace numbers in text.
@@ -167,6 +170,13 @@ fn read(bytes: &[u8], format: Option<&str>, scale: Option<f64>) -> Result<Answer
         }
         Err(error) => typed(&error, false)?,
     };
+    match read_splats(bytes, true) {
+        Ok(read) if !read.mesh.positions().iter().all(|p| p.is_finite()) => {
+            return Err("result: a surface of Gaussians that is not finite".into());
+        }
+        Ok(_) => {}
+        Err(error) => drop(typed(&error, false)?),
+    }
     if let Err(error) = external_resources(bytes) {
         typed(&error, false)?;
     }
