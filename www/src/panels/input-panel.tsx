@@ -5,8 +5,9 @@ import { samples } from "../load/samples.js";
 import { alignAll } from "../run/align.js";
 import type { Listed } from "../state/opened.js";
 import { page } from "../state/page.js";
+import type { Scene } from "../state/scene.js";
 
-const { inputs, list, othersScenes, scene } = page;
+const { inputs, list, othersScenes, scene, unit } = page;
 
 /** Forgets the scene, and shows the next one or, without any, the first sample. */
 async function forget(): Promise<void> {
@@ -24,7 +25,7 @@ export function InputPanel() {
   const source = whole?.cameraSource === "estimate" ? "estimated" : (whole?.cameraSource ?? "–");
   const rows = [
     ["Depth map", depth === null ? "–" : baseName(depth.path)],
-    ["Unit", whole === null || whole.depthUnit === "" ? "–" : whole.depthUnit],
+    ["Unit", whole === null ? "–" : unitText(whole)],
     [
       "Camera",
       camera === null ? source : camera.kind === "file" ? baseName(camera.file.path) : unknownCamera[camera.kind],
@@ -67,6 +68,12 @@ export function InputPanel() {
       <Scenes />
     </details>
   );
+}
+
+/** The unit of the depth map, in plain words. */
+function unitText({ depthUnit, raw }: Scene): string {
+  if (raw === null || raw.depthKind === "metric") return depthUnit;
+  return unit.value === null ? "from a known size" : "none: sizes are relative";
 }
 
 function stateOf(one: Listed): string {
