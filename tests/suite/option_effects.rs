@@ -3,7 +3,7 @@
 use sim3align::align::{align, align_paper};
 use sim3align::options::Options;
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::options::ExtentAxis;
+use sim3align::precise::options::{ExtentAxis, Proportions};
 use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::report::Registration;
@@ -116,6 +116,10 @@ const PRECISE: &[Effect<AlignOptions, Alignment, SearchCounts>] = &[
     }),
     ("maxObservedPoints", |t| t.count(|o| o.max_observed_points = 333).target_points == 333),
     ("surfaceSamples", |t| t.count(|o| o.surface_samples = 222).source_points == 222),
+    ("proportions", |t| {
+        let found = |proportions| t.with(|o| o.proportions = proportions).proportions.map(|found| found.stretch);
+        t.usual.proportions.is_none() && found(Proportions::Axes) != found(Proportions::Full)
+    }),
     ("metrics", |t| {
         let without = t.with(|o| o.metrics = false);
         t.usual.metrics.is_some() && without.metrics.is_none() && without.camera_from_mesh == t.usual.camera_from_mesh
