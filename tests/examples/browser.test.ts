@@ -166,7 +166,7 @@ test("10-react draws the mesh where the photo shows it, at any size, and follows
   };
   const settled = async (test: (iou: number) => boolean) => {
     let iou = await overlap();
-    for (let i = 0; i < 20 && !test(iou); i++) iou = await overlap();
+    for (let i = 0; i < 300 && !test(iou); i++) iou = await overlap();
     assert.ok(test(iou), `IoU of the drawn mesh and the mask: ${iou}`);
   };
   await settled((iou) => iou > 0.85);
