@@ -30,10 +30,8 @@ function observe(whole: Scene, object: ObjectModel): () => void {
     abort = new AbortController();
     clearTimeout(timer);
     const alignment = object.alignment.peek();
-    // Of a calibrated view, metrics are measured in the depth that is drawn.
     const isSame =
       alignment !== null &&
-      whole.raw === null &&
       isResult(pose.source) &&
       toSim3(alignment).matrix.every((x, i) => x === pose.transform.matrix[i]);
     object.metrics.value = isSame ? alignment.metrics : null;
