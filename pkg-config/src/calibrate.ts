@@ -42,7 +42,7 @@ export const mayBeRaw = (input: unknown): boolean => {
 /** The view in the depth and with the camera of its calibration. */
 export function inCalibration<V extends Omit<CoreFrame, "mask">>(view: V, { depth, calibration }: Calibrated): V {
   const { depthScale: _, depthKind: __, focalDeviation: ___, pointMap: ____, ...rest } = view;
-  return { ...rest, depth, camera: calibration.camera } as unknown as V;
+  return { ...rest, depth, camera: calibration.camera, uncertainty: calibration.uncertainty } as unknown as V;
 }
 
 /** The listener of the calibration, and that of what follows. */

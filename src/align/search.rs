@@ -16,6 +16,7 @@ use crate::precise::drawn::equivalence::DIFFERENT;
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::judged::color::{Judgment, agreement, judgment};
+use crate::precise::judged::confidence::certainty_of_relief;
 use crate::precise::judged::stretch::stretch;
 use crate::precise::judged::verdict;
 use crate::precise::judged::verdict::Certainty;
@@ -202,11 +203,12 @@ impl<'a> Search<'a> {
     /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus).
     pub fn finish(mut self, mut clouds: Clouds, searched: Searched, colors: Option<&Judgment>) -> Result<Alignment> {
         let Searched { rounds, solution, certainty } = searched;
-        let (solution, certainty) = match colors {
+        let (solution, mut certainty) = match colors {
             Some(judgment) => verdict::conclude(&rounds, Some(judgment))?,
             None => (solution, certainty),
         };
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
+        certainty.confidence *= certainty_of_relief(observation.relief_deviation());
         let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
         if let Some(metrics) = &mut metrics {
             let (clean, pose) = (rounds.search.observation.clone(), &solution.camera_from_mesh);

@@ -25,6 +25,11 @@ const STEPS: f64 = 0.25;
 /// entirely, they are up to 0.9.
 const TOWARDS_CAMERA: f64 = 0.95;
 
+/// The largest values of maps that were normalised to the range from 0: floats, and integers of 16 bits as millimetres.
+const FULL_RANGE_M: [f32; 2] = [1.0, 65.535];
+/// Largest share of their pixels that is 0. Of sensors, which lack readings, it is 3 to 98 %.
+const FEW_ZEROS: f64 = 1e-3;
+
 /// Warnings about depth and mask.
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let (width, height) = (observation.mask().width(), observation.mask().height());
@@ -77,6 +82,12 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
             ),
         });
     }
+    if looks_normalised(observation.depth().data()) {
+        warnings.push(Warning {
+            code: WarningCode::DepthLooksNormalised,
+            message: "The depth map spans exactly the range from 0 to 1, or that of 16 bits, as one that was normalised: its values are no lengths. Pass depthKind \"affine-invariant-disparity\" if near is large in it, otherwise \"affine-invariant\".".into(),
+        });
+    }
     let all_pixels = observation.mask().data().len();
     if mask_pixels as f64 >= WHOLE_IMAGE * all_pixels as f64 {
         warnings.push(Warning {
@@ -101,6 +112,13 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
         });
     }
     warnings
+}
+
+/// Whether depths are those of a map that was normalised: some, but few, are at 0, and the largest is at the end of the range.
+fn looks_normalised(depth: &[f32]) -> bool {
+    let zeros = depth.iter().filter(|z| **z <= 0.0).count();
+    let most = depth.iter().fold(0.0, |most: f32, z| most.max(*z));
+    zeros > 0 && zeros as f64 <= FEW_ZEROS * depth.len() as f64 && FULL_RANGE_M.contains(&most)
 }
 
 /// The share of the steps of the depth out of the mask that go towards the camera; `None` if there are few steps.

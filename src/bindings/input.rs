@@ -6,6 +6,7 @@ use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
 use super::object::{check_bytes, get, number, required_number, size, to_colors, to_f32s, to_u8s, wrong_type};
+use crate::calibrate::calibration::CalibrationUncertainty;
 use crate::calibrate::frames::RawFrame;
 use crate::calibrate::raw_view::{Focal, RawView};
 use crate::error::{Error, ErrorCode, Result};
@@ -24,7 +25,8 @@ const MAX_FOCAL_DEVIATION: f64 = 1.0;
 /// Default metres per unit of integer depth: millimetres.
 const DEFAULT_DEPTH_SCALE: f64 = 0.001;
 
-/// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask?, image?, others? }`.
+/// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask?, image?, others?, uncertainty? }`,
+/// the last that of the calibration of the view.
 #[inline(never)]
 pub fn observation(input: &JsValue) -> Result<Observation> {
     let (depth, camera) = view(input)?;
@@ -32,6 +34,11 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
     let mut observation = Observation::new(depth, mask(input, width, height)?, camera)?;
     if let Some(image) = get(input, "image") {
         observation = observation.with_photo(photo(&image)?)?;
+    }
+    if let Some(uncertainty) = get(input, "uncertainty") {
+        let of = |key| required_number(&uncertainty, "uncertainty", key);
+        let relief = CalibrationUncertainty { shift: of("shift")?, focal: of("focal")? }.relief();
+        observation = observation.with_relief_deviation(relief);
     }
     match get(input, "others") {
         Some(others) => observation.with_others(Image::new("occluders", width, height, to_u8s(&others, "occluders")?)?),

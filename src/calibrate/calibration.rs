@@ -77,6 +77,15 @@ pub struct CalibrationUncertainty {
     pub focal: f64,
 }
 
+impl CalibrationUncertainty {
+    /// Of the relief of the objects beside their width, relative to it: the shift determines it together with the focal
+    /// length, and where the shift is known, that alone.
+    pub fn relief(&self) -> f64 {
+        let Self { shift, focal } = *self;
+        if shift > 0.0 { libm::sqrt((shift * shift - focal * focal).max(0.0)) } else { focal }
+    }
+}
+
 impl DepthCalibration {
     /// The calibration of a view.
     pub fn new(

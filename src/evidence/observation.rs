@@ -38,6 +38,7 @@ pub struct Observation {
     camera: Pinhole,
     photo: Option<Arc<Photo>>,
     others: Option<Arc<Mask>>,
+    relief_deviation: f64,
 }
 
 impl Observation {
@@ -52,7 +53,7 @@ impl Observation {
         check_pixels(&depth)?;
         camera.check_field_of_view(depth.width(), depth.height())?;
         depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
-        let observation = Self { depth, mask, camera, photo: None, others: None };
+        let observation = Self { depth, mask, camera, photo: None, others: None, relief_deviation: 0.0 };
         observation.check_readings()?;
         Ok(observation)
     }
@@ -85,6 +86,17 @@ impl Observation {
             return Err(Error::new(ErrorCode::SizeMismatch, "occluders", found, "masks of one size", remedy));
         }
         Ok(Self { others: Some(Arc::new(others)), ..self })
+    }
+
+    /// The observation in depth whose relief, beside the width of the object, is an estimate with this relative standard
+    /// deviation.
+    pub fn with_relief_deviation(self, relief_deviation: f64) -> Self {
+        Self { relief_deviation, ..self }
+    }
+
+    /// That standard deviation; 0 for measured depth.
+    pub fn relief_deviation(&self) -> f64 {
+        self.relief_deviation
     }
 
     /// The pixels of other objects, if they are known.

@@ -24,6 +24,8 @@ pub enum WarningCode {
     DepthLooksTooSmall,
     /// The surroundings of the object are nearer than it: near may be large in this depth map.
     DepthLooksInverted,
+    /// The depth map spans exactly the range of a normalised one: its values are relative.
+    DepthLooksNormalised,
     /// The mask covers the whole image: it is probably inverted, or no mask.
     MaskCoversImage,
     /// The mask touches the image border: part of the object is outside the view.

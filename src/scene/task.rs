@@ -26,6 +26,8 @@ pub struct Scene<'m> {
     pub depth: DepthMap,
     /// Its camera.
     pub camera: Pinhole,
+    /// See [`Observation::relief_deviation`].
+    pub relief_deviation: f64,
     /// The objects.
     pub objects: Vec<SceneObject<'m>>,
     /// Masks of what else is known to stand there, without a mesh.
@@ -69,7 +71,7 @@ pub struct SceneAlignment {
 /// # Errors
 /// Those of [`Plan::next`].
 pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignment> {
-    let Scene { depth, camera, objects, occluders, support, snap } = scene;
+    let Scene { depth, camera, relief_deviation, objects, occluders, support, snap } = scene;
     let masks: Vec<&Mask> = objects.iter().map(|object| &object.mask).chain(occluders).collect();
     let view = || {
         let taken = union_of(depth.width(), depth.height(), masks.iter().copied());
@@ -83,7 +85,7 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
         for (k, SceneObject { mesh, options, .. }) in objects.iter().enumerate() {
             let mut place = || {
                 aligned[k].clone()?;
-                let observation = observation_of(depth, camera, &masks, k)?;
+                let observation = observation_of(depth, camera, &masks, k)?.with_relief_deviation(*relief_deviation);
                 finished(place(&observation, mesh, options.clone(), plan.told(k)?, host, &Pauses::none()))
             };
             let (placement, alignment) = place().map_or_else(|error| (None, Err(error)), |(p, a)| (Some(p), Ok(a)));

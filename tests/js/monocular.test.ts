@@ -59,6 +59,16 @@ test("relative depth: the pose, and the shift that makes the depth map true to s
   assert.equal(expected.depthUnit, "none (affine-invariant-disparity)");
 });
 
+test("the confidence counts how well the shift is known", async () => {
+  const { depthCalibration: calibration, matrix, confidence } = expected;
+  assert.ok(calibration !== undefined);
+  const depth = correctDepth(disparity.depth as Float32Array, calibration);
+  const measured = await here.align({ ...input, depth, camera: calibration.camera }, quick);
+  assert.deepEqual(measured.matrix, matrix);
+  const certainty = 1 - (calibration.uncertainty.shift / 0.43) ** 2;
+  assert.ok(Math.abs(confidence - certainty * measured.confidence) < 1e-9, `${confidence}`);
+});
+
 test("affine-invariant depth has the same pose", async () => {
   const found = await here.align(relative("affine-invariant"), quick);
   assertLooksLike(found, truth);

@@ -1,6 +1,7 @@
 //! Calibration of views: the shift, the scale and the focal length that an image was made with are found again.
 
-use sim3align::calibrate::calibration::Calibration;
+use sim3align::align::align;
+use sim3align::calibrate::calibration::{Calibration, CalibrationUncertainty};
 use sim3align::calibrate::frames::{RawFrame, Sequence, calibrate_views};
 use sim3align::calibrate::raw_view::{Focal, RawView};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
@@ -193,4 +194,22 @@ fn what_cannot_be_calibrated_is_named() {
     let (views, options) = ([unmasked], quick());
     let error = finished(calibrate_views(&views, &prepared, &options, &mut Silent, &Pauses::none())).unwrap_err();
     assert_eq!((error.code, error.argument.as_ref()), (ErrorCode::InvalidArgument, "views[0].mask"));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_confidence_counts_how_well_the_relief_is_known() {
+    let (mesh, seen) = (body(), observe(&body(), &truth()));
+    let found =
+        |deviation: f64| align(&seen.clone().with_relief_deviation(deviation), &mesh, &quick(), &mut Silent).unwrap();
+    let measured = found(0.0);
+    assert!(measured.confidence > 0.9);
+    for deviation in [0.05, 0.2, 0.43, 2.0] {
+        let estimated = found(deviation);
+        assert_eq!(estimated.camera_from_mesh, measured.camera_from_mesh);
+        let most = (1.0 - (deviation / 0.43) * (deviation / 0.43)).max(0.0);
+        assert!((estimated.confidence / measured.confidence - most).abs() < 1e-9, "{deviation}: {most}");
+    }
+    let relief = |shift, focal| CalibrationUncertainty { shift, focal }.relief();
+    assert_eq!([relief(0.0, 0.0), relief(0.2, 0.0), relief(0.0, 0.1), relief(0.1, 0.2)], [0.0, 0.2, 0.1, 0.0]);
+    assert!((relief(0.5, 0.3) - 0.4).abs() < 1e-12);
 }

@@ -95,6 +95,32 @@ fn doubtful_depths_are_left_out_and_all_others_stay() {
     }
 }
 
+/// A plate before a wall, as sensors see it and as a network predicts it, whose edges are ramps.
+#[wasm_bindgen_test(unsupported = test)]
+fn readings_on_ramps_are_left_out() {
+    const STEP: f64 = 0.1;
+    let mask = |u: usize, v: usize| (30..90).contains(&u) && (20..70).contains(&v);
+    // Readings amid two sides, and the largest share of the step that one of them has made.
+    let kept = |sigma: f64| {
+        let below = |x: f64| 0.5 * (1.0 + libm::erf(x / (sigma * 2f64.sqrt())));
+        let within = |x: f64, [low, high]: [f64; 2]| below(x - low) - below(x - high);
+        let share = |u: usize, v: usize| 1.0 - within(u as f64, [29.5, 89.5]) * within(v as f64, [19.5, 69.5]);
+        let scene = |u: usize, v: usize| (0.5 + STEP * share(u, v) + 1e-4 * ((u + v) % 2) as f64) as f32;
+        let clean = CleanObservation::new(&observation(mask, scene));
+        let at = |i: usize| (clean.origin[0] + i % clean.width, clean.origin[1] + i / clean.width);
+        let amid = clean.depth.iter().enumerate().filter(|(i, z)| **z > 0.0 && (40..50).contains(&at(*i).1));
+        let shares: Vec<f64> = amid.map(|(i, _)| share(at(i).0, at(i).1)).collect();
+        (shares.len(), shares.into_iter().fold(0.0, f64::max))
+    };
+    // Two pixels at either side, and none on a step.
+    assert_eq!(kept(0.01), (10 * 56, 0.0));
+    for sigma in [2.5, 3.0, 4.0] {
+        let (count, most) = kept(sigma);
+        // A normal distribution beyond one and a half standard deviations is 0.07, and pixels are whole.
+        assert!(most < 0.1 && count as f64 > 10.0 * (60.0 - 4.4 * sigma), "{sigma}: {count} with {most}");
+    }
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn the_object_is_where_most_readings_of_one_depth_are() {
     // Bands of a mask that holds more background than object; the median of all is 1.2 m.

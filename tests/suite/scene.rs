@@ -104,7 +104,7 @@ fn scene_with<'m>(
         options: options(),
     };
     let objects = things.iter().zip(masks).map(object).collect();
-    Scene { depth, camera: camera(), objects, occluders: Vec::new(), support, snap }
+    Scene { depth, camera: camera(), relief_deviation: 0.0, objects, occluders: Vec::new(), support, snap }
 }
 
 fn pose(scene: &SceneAlignment, i: usize) -> Similarity {

@@ -68,3 +68,30 @@ fn depth_that_is_near_where_it_is_large_is_warned_of() {
     assert_eq!(seen(width, metres), [WarningCode::DepthLooksInverted]);
     assert_eq!(seen(width, disparity), []);
 }
+
+#[wasm_bindgen_test(unsupported = test)]
+fn depth_that_was_normalised_is_warned_of() {
+    let whole = observe(&body(), &truth());
+    let (width, height) = (whole.mask().width(), whole.mask().height());
+    let wall = 1.8;
+    let scene: Vec<f32> = whole.depth().data().iter().map(|z| if *z > 0.0 { *z } else { wall }).collect();
+    let [near, far] = [f32::min, f32::max].map(|of| scene.iter().copied().reduce(of).unwrap());
+    let seen = |depth: Vec<f32>| {
+        let depth = DepthMap::from_metres(width, height, depth).unwrap();
+        codes(&about_observation(&Observation::new(depth, whole.mask().clone(), whole.camera()).unwrap()))
+    };
+    // Depth with a single nearest pixel, from 0 to 1; the same in integers of 16 bits that are taken for millimetres.
+    let mut normalised: Vec<f32> = scene.iter().map(|z| 0.05 + 0.95 * (z - near) / (far - near)).collect();
+    normalised[0] = 0.0;
+    let integers: Vec<f32> = normalised.iter().map(|z| (f64::from((z * 65535.0).round()) * 0.001) as f32).collect();
+    for map in [&normalised, &integers] {
+        assert_eq!(seen(map.clone()), [WarningCode::DepthLooksNormalised]);
+    }
+    // A sensor whose range ends at a metre lacks readings, a rendered map without a pixel at 0 was not normalised, and a
+    // map that ends elsewhere neither.
+    let mut holed = normalised.clone();
+    holed.iter_mut().step_by(50).for_each(|z| *z = 0.0);
+    assert_eq!(seen(holed), []);
+    assert_eq!(seen(normalised.iter().map(|z| z.max(0.01)).collect()), []);
+    assert_eq!(seen(normalised.iter().map(|z| 1.1 * z).collect()), []);
+}

@@ -186,6 +186,7 @@ impl BenchScene {
         let scene = Scene {
             depth: self.depth.clone(),
             camera: self.camera,
+            relief_deviation: 0.0,
             objects: self.objects.iter().map(object).collect(),
             occluders: Vec::new(),
             support: SupportChoice::Auto,

@@ -4,7 +4,7 @@ use super::calibration::Calibration;
 use super::picture::Thing;
 use super::prediction::{GivenCamera, Prediction, guessed_range};
 use crate::prelude::*;
-use sim3align::calibrate::calibration::DepthCalibration;
+use sim3align::calibrate::calibration::{CalibrationUncertainty, DepthCalibration};
 use sim3align::calibrate::raw_view::{Focal, RawView};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
 use sim3align::pauses::{Pauses, finished};
@@ -35,8 +35,8 @@ pub struct Reading {
     pub calibration: Calibration,
     /// Whether the unit is said to be metres.
     pub is_metric: bool,
-    /// Standard deviations of shift and focal length, relative; 0 for what was not estimated.
-    pub deviations: [f64; 2],
+    /// Standard deviations of what was estimated.
+    pub deviations: CalibrationUncertainty,
 }
 
 impl Reading {
@@ -61,7 +61,7 @@ impl Reading {
         let (width, height) = (prediction.map.width(), prediction.map.height());
         let metres = prediction.map.data().iter().map(|value| calibration.depth(f64::from(*value)) as f32).collect();
         let depth = DepthMap::from_metres(width, height, metres)?;
-        Ok(Self { depth, calibration, is_metric: true, deviations: [0.0; 2] })
+        Ok(Self { depth, calibration, is_metric: true, deviations: CalibrationUncertainty::default() })
     }
 
     fn estimated(prediction: &Prediction, objects: &[(&Thing, &AlignOptions)]) -> Result<Self> {
@@ -81,7 +81,7 @@ impl Reading {
         let is_inverse = prediction.kind == DepthKind::AffineInvariantDisparity;
         let scale = if is_inverse { 1.0 / scale } else { scale };
         let calibration = Calibration { is_inverse, scale, shift, camera };
-        Ok(Self { depth, calibration, is_metric, deviations: [uncertainty.shift, uncertainty.focal] })
+        Ok(Self { depth, calibration, is_metric, deviations: uncertainty })
     }
 }
 

@@ -101,7 +101,8 @@ fn told(picture: &Picture) -> Option<(usize, f64)> {
 fn alone(picture: &Picture, thing: &Thing, prediction: &Prediction, settings: &Settings) -> Result<Answer> {
     let options = &settings.options;
     let reading = Reading::new(prediction, settings.treatment, &[(thing, options)])?;
-    let mut observation = Observation::new(reading.depth.clone(), thing.mask.clone(), reading.calibration.camera)?;
+    let mut observation = Observation::new(reading.depth.clone(), thing.mask.clone(), reading.calibration.camera)?
+        .with_relief_deviation(reading.deviations.relief());
     if let Some(photo) = &picture.photo {
         observation = observation.with_photo(photo.clone())?;
     }
@@ -131,6 +132,7 @@ fn together(
         let scene = Scene {
             depth: reading.depth.clone(),
             camera: reading.calibration.camera,
+            relief_deviation: reading.deviations.relief(),
             objects: objects.iter().map(object).collect(),
             occluders: Vec::new(),
             support: SupportChoice::Auto,
@@ -159,7 +161,7 @@ fn completed(blank: Record, thing: &Thing, answer: Result<Answer>) -> Record {
                 confidence: alignment.confidence,
                 calibration: Some(reading.calibration),
                 is_metric: reading.is_metric,
-                deviations: Some(reading.deviations),
+                deviations: Some([reading.deviations.shift, reading.deviations.focal]),
                 ..blank
             }
         }

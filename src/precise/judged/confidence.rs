@@ -20,6 +20,16 @@ const SLOPES: [f64; 6] = [4.971, 5.276, 3.319, 2.546, -3.013, -1.763];
 const SCALE: [f64; 2] = [1e-3, 1.0];
 const ROTATION_DEG: [f64; 2] = [0.03, 90.0];
 
+/// Relative error of the relief that turns a pose by about 10°: as much as it turns a surface that is slanted by 45°.
+const WRONG_RELIEF: f64 = 0.43;
+
+/// The probability that the relief of an observation is not so wrong that the pose is, given the standard deviation of its
+/// estimate: at least this, by Chebyshev's inequality. The errors of such estimates have long tails.
+pub(crate) fn certainty_of_relief(deviation: f64) -> f64 {
+    let share = deviation / WRONG_RELIEF;
+    (1.0 - share * share).max(0.0)
+}
+
 /// The probability that a pose is correct, 0 to 1.
 pub(crate) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
     let score = f64::from(best.score.total);

@@ -3,6 +3,7 @@
 //! Masks have pinholes and stray islands, depth maps have flying pixels at discontinuities, and masks include
 //! background by mistake. Doubtful pixels are excluded from the evidence.
 
+use super::ramp::ramp_width;
 use super::rim::{RimImages, rim_offset};
 use super::thinning::Thinning;
 use crate::evidence::observation::Observation;
@@ -34,6 +35,8 @@ const OTHER_MARGIN: f64 = 1.5;
 /// networks, whose inputs are about 400 pixels wide, and the least and the most of it; then one pixel.
 const RIM_WIDTH: f64 = 0.011;
 const RIM_WIDTHS: [f64; 2] = [2.0, 4.0];
+/// Width of a rim without ramps, relative to theirs: half of a ramp is inside the outline, and those of a blur have no end.
+const RAMP_SHARE: f64 = 0.6;
 /// Share of the mask that must remain without each of these rims, and the number of readings.
 const INNER_SHARES: [f64; 2] = [0.3, 0.2];
 const INNER_READINGS: usize = 32;
@@ -257,9 +260,14 @@ impl Crop {
         let bounds = bounds_of(&self.mask, self.width, |set| *set);
         let extent_px = longer_side(&bounds);
         let outline = signed_distance(&self.mask, self.width, self.height);
-        let inner = self.inner_readings(&pixels, &outline);
+        let mut inner = self.inner_readings(&pixels, &outline, 0.0);
         let (median, spread) = self.densest_window(&inner, extent_px);
         let extent_m = extent_px / self.camera.fx * median;
+        let images = RimImages { width: self.width, height: self.height, outline: &outline, scene: &self.scene };
+        let ramp = ramp_width(images, pixels.len(), [extent_m, median]);
+        if ramp > 0.0 {
+            inner = self.inner_readings(&pixels, &outline, RAMP_SHARE * ramp);
+        }
         let reach = (FAR[0] * extent_m).max(FAR[1] * spread);
         let is_near = |i: &usize| (f64::from(self.scene[*i]) - median).abs() < reach;
         let near: Vec<usize> = inner.into_iter().filter(is_near).collect();
@@ -287,11 +295,12 @@ impl Crop {
         }
     }
 
-    /// Those of the mask's pixels that have a reading, excluding its rim if enough remain.
-    fn inner_readings(&self, pixels: &[usize], outline: &[f32]) -> Vec<usize> {
+    /// Those of the mask's pixels that have a reading, excluding its rim, which is at least this wide, if enough remain.
+    fn inner_readings(&self, pixels: &[usize], outline: &[f32], least: f64) -> Vec<usize> {
         let count = pixels.len() as f64;
         let wide = (RIM_WIDTH * count.sqrt()).clamp(RIM_WIDTHS[0], RIM_WIDTHS[1]);
-        for (rim, share) in [(wide, INNER_SHARES[0]), (1.0, INNER_SHARES[1]), (0.0, 0.0)] {
+        let [widest, wide] = [wide.max(least), wide].map(|rim| (rim, INNER_SHARES[0]));
+        for (rim, share) in [widest, wide, (1.0, INNER_SHARES[1]), (0.0, 0.0)] {
             let inner = || pixels.iter().copied().filter(|i| 0.5 - f64::from(outline[*i]) > rim);
             let readings: Vec<usize> = inner().filter(|i| self.scene[*i] > 0.0).collect();
             let enough = inner().count() as f64 >= share * count;

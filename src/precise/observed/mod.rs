@@ -7,6 +7,7 @@
 pub mod anchors;
 pub mod clean;
 pub mod grid;
+pub mod ramp;
 pub mod resolution;
 pub mod rim;
 pub mod thinning;

@@ -49,29 +49,15 @@ pub struct RimImages<'a> {
 /// The most likely offset of the outline from that of the mask, pixels: positive if the mask is too small; 0 if the depth map
 /// does not show it.
 pub fn rim_offset(images: RimImages<'_>, jump_m: f64) -> f64 {
-    let RimImages { width, height, outline: signed, .. } = images;
     let (mut rim, mut offsets, mut side) = (0usize, Vec::new(), [0.0, 0.0]);
-    for v in 2..height.saturating_sub(2) {
-        for u in 2..width.saturating_sub(2) {
-            let i = v * width + u;
-            // The outermost pixels of the mask.
-            if signed[i] >= 0.0 || signed[i] < -0.5 {
-                continue;
-            }
-            rim += 1;
-            let slope =
-                [f64::from(signed[i + 2] - signed[i - 2]), f64::from(signed[i + 2 * width] - signed[i - 2 * width])];
-            let length = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
-            if length < 1.0 {
-                continue;
-            }
-            let ray = Ray { images, start: [u as f64, v as f64], direction: [slope[0] / length, slope[1] / length] };
-            if let Some(t) = ray.crossing(jump_m) {
-                offsets.push((t - 0.5) as f32);
-                side.iter_mut().zip(ray.direction).for_each(|(sum, x)| *sum += x);
-            }
+    images.rays(|ray| {
+        rim += 1;
+        let Some(ray) = ray else { return };
+        if let Some(t) = ray.crossing(jump_m) {
+            offsets.push((t - 0.5) as f32);
+            side.iter_mut().zip(ray.direction).for_each(|(sum, x)| *sum += x);
         }
-    }
+    });
     if offsets.len() < MIN_RAYS || (offsets.len() as f64) < MIN_SHARE * rim as f64 {
         return 0.0;
     }
@@ -95,8 +81,31 @@ fn most_likely(measured: f64, variance: f64) -> f64 {
     if mean > 0.0 { measured * mean / (usual.0 + rare.0) } else { 0.0 }
 }
 
+impl<'a> RimImages<'a> {
+    /// Visits the rays across the rim: one for each of the outermost pixels of the mask, `None` where the outline has no
+    /// direction.
+    pub fn rays(self, mut visit: impl FnMut(Option<Ray<'a>>)) {
+        let Self { width, height, outline: signed, .. } = self;
+        for v in 2..height.saturating_sub(2) {
+            for u in 2..width.saturating_sub(2) {
+                let i = v * width + u;
+                if signed[i] >= 0.0 || signed[i] < -0.5 {
+                    continue;
+                }
+                let slope = [
+                    f64::from(signed[i + 2] - signed[i - 2]),
+                    f64::from(signed[i + 2 * width] - signed[i - 2 * width]),
+                ];
+                let length = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+                let direction = slope.map(|x| x / length);
+                visit((length >= 1.0).then_some(Ray { images: self, start: [u as f64, v as f64], direction }));
+            }
+        }
+    }
+}
+
 /// A line across the rim.
-struct Ray<'a> {
+pub struct Ray<'a> {
     images: RimImages<'a>,
     start: [f64; 2],
     direction: [f64; 2],
@@ -104,7 +113,7 @@ struct Ray<'a> {
 
 impl Ray<'_> {
     /// The reading `t` pixels outwards from the start; `None` if there is none.
-    fn depth(&self, t: f64) -> Option<f64> {
+    pub fn depth(&self, t: f64) -> Option<f64> {
         let z = self.images.scene[self.pixel(t)?];
         (z > 0.0).then_some(f64::from(z))
     }
@@ -125,7 +134,8 @@ impl Ray<'_> {
         median(depths.map(|z| z as f32)).map(f64::from)
     }
 
-    fn outline(&self, t: f64) -> f32 {
+    /// The signed distance to the outline of the mask there.
+    pub fn outline(&self, t: f64) -> f32 {
         self.pixel(t).map_or(f32::INFINITY, |i| self.images.outline[i])
     }
 
