@@ -19,6 +19,8 @@ import { decodeMesh } from "./input/mesh-file.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
 import type { ColorSamples } from "./prepared-mesh.js";
+import { sam3dFrom } from "./scene/sam3d-files.js";
+import { type SceneFiles, sceneFrom } from "./scene/scene-files.js";
 import { ownArgument, ownOptions } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
@@ -33,6 +35,8 @@ export type { DepthImage, DepthReading } from "./input/depth-reading.js";
 export type { AlignInput, CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 export type { WasmSource } from "./platform.js";
 export type { ColorSamples } from "./prepared-mesh.js";
+export type { SceneFiles } from "./scene/scene-files.js";
+export type { KnownOfObject, LabelMap, Plane, SceneInput, SceneObjectInput } from "./scene/types.js";
 export type { Sim3 } from "./sim3.js";
 
 /** A mask from a file: row-major, 1 is the object. */
@@ -179,10 +183,44 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readCase(files: CaseFiles, settings: CaseSettings = {}): Promise<Case> {
-  if (!isRecord(files)) {
-    throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
-  }
-  return caseFrom(ownArgument("files", files), optionsOf(settings), () => formatsModule.load());
+  return caseFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+}
+
+/**
+ * Reads a scene folder: a depth map and, optionally, a camera and a photo, as in a case folder; and
+ * `objects/NAME/` with `mask.*`, `mesh.*` and, optionally, `initial.json` (a pose to start from) and `gt.json`.
+ * @param files by path, relative to the folder
+ *
+ * @example
+ * const { input, truths } = await readScene({ "depth.png": depth, "objects/mug/mask.png": mask, "objects/mug/mesh.glb": mesh });
+ * const result = await aligner.alignScene(input);
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ */
+export async function readScene(files: CaseFiles, settings: CaseSettings = {}): Promise<SceneFiles> {
+  return sceneFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+}
+
+/**
+ * Reads an output of SAM 3D Objects as a scene: `pointmap.npy` (or a `.npz` of MoGe, or a depth map), the photo, and for each
+ * object its mask, its GLB or the PLY of its Gaussians, and `pose.json` with `rotation` (w, x, y, z), `translation` and
+ * `scale`, in `objects/NAME/` or with NAME in their names. Its frames are converted. Where it put an object is the object's
+ * `initial`: one candidate among those of the search. The depth of its point maps is `"scale-invariant"`, unless `depthKind`
+ * says otherwise.
+ * @param files by path, relative to the folder
+ *
+ * @example
+ * const { input } = await readSam3d({ "pointmap.npy": points, "0.png": mask, "0.glb": mesh, "0.json": pose });
+ * const result = await aligner.alignScene(input);
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` for an object without mask or mesh, `CORRUPT_FILE`, and the errors of
+ * `fromSam3d` with the name of the file
+ */
+export async function readSam3d(files: CaseFiles, settings: CaseSettings = {}): Promise<SceneFiles> {
+  return sam3dFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+}
+
+function ownFiles(files: CaseFiles): CaseFiles {
+  if (isRecord(files)) return ownArgument("files", files);
+  throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
 }
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {
