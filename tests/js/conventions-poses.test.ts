@@ -8,6 +8,8 @@ import {
   fromBop,
   fromFrame,
   fromSam3d,
+  type GeneratorFrame,
+  generatorFrames,
   invert,
   type Sim3Like,
   toBop,
@@ -224,6 +226,26 @@ test("SAM 3D Objects' layouts put GLB vertices where its formula puts them, and 
     const pose = random.pose();
     assertNear(fromSam3d(toSam3d(pose)).matrix, columnMajor(pose), seed);
   });
+});
+
+test("an asymmetric object is upright, and seen from its front, by the frame of each generator's file", () => {
+  const along = (vertices: number[][], [x, y, z]: readonly [number, number, number]) =>
+    vertices.map(([a = 0, b = 0, c = 0]) => x * a + y * b + z * c);
+  const tested = fixtures.generators.map(({ generator, file, vertices, heights, towardsCamera }) => {
+    const frames: { mesh: GeneratorFrame; gaussians?: GeneratorFrame } = generatorFrames[generator] as never;
+    const { up, front } = frames[file] as GeneratorFrame;
+    assertNear(along(vertices, up), heights, `${generator}, ${file}: up`);
+    assert.equal(front === null, towardsCamera === null, generator);
+    if (front !== null && towardsCamera !== null)
+      assertNear(along(vertices, front), towardsCamera, `${generator}: front`);
+    return `${generator} ${file}`;
+  });
+  const all = Object.entries(generatorFrames).flatMap(([name, files]) =>
+    Object.keys(files).map((file) => `${name} ${file}`),
+  );
+  assert.deepEqual(tested.sort(), all.sort());
+  // The vertices of SAM 3D's layouts have z up.
+  assert.deepEqual(generatorFrames.sam3d.gaussians.up, [0, 0, 1]);
 });
 
 test("glTF's nodes have the transform in parts, and what is known in extras", () => {
