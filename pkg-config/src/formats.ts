@@ -19,8 +19,8 @@ import { decodeMesh } from "./input/mesh-file.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
 import type { ColorSamples } from "./prepared-mesh.js";
-import { sam3dFrom } from "./scene/sam3d-files.js";
-import { type SceneFiles, sceneFrom } from "./scene/scene-files.js";
+// The readers of scenes load when they are called: pages that read files need neither, at first.
+import type { SceneFiles } from "./scene/scene-files.js";
 import { ownArgument, ownOptions } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
@@ -197,6 +197,7 @@ export async function readCase(files: CaseFiles, settings: CaseSettings = {}): P
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readScene(files: CaseFiles, settings: CaseSettings = {}): Promise<SceneFiles> {
+  const { sceneFrom } = await import("./scene/scene-files.js");
   return sceneFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
 }
 
@@ -215,6 +216,7 @@ export async function readScene(files: CaseFiles, settings: CaseSettings = {}): 
  * `fromSam3d` with the name of the file
  */
 export async function readSam3d(files: CaseFiles, settings: CaseSettings = {}): Promise<SceneFiles> {
+  const { sam3dFrom } = await import("./scene/sam3d-files.js");
   return sam3dFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
 }
 

@@ -4,8 +4,6 @@ import { failure } from "../error.js";
 /** The text before the elements: `{'descr': '<f4', 'fortran_order': False, 'shape': (480, 640, 3), }`. */
 const header = /'descr':\s*'([^']+)',\s*'fortran_order':\s*(\w+),\s*'shape':\s*\((?:1,\s*)?(\d+),\s*(\d+),\s*3\)/;
 
-const latin = (bytes: Uint8Array) => new TextDecoder("latin1").decode(bytes);
-
 /** The points of a map, x, y, z per pixel. */
 interface PointMapFile {
   points: Float32Array | Float64Array;
@@ -38,10 +36,10 @@ export function viewOfPointMap(path: string, bytes: Uint8Array): { depth: Uint8A
 
 function parsed(path: string, bytes: Uint8Array): PointMapFile {
   const start = 10 + (bytes[8] ?? 0) + 256 * (bytes[9] ?? 0);
-  const text = latin(bytes.subarray(0, start));
+  const text = new TextDecoder("latin1").decode(bytes.subarray(0, start));
   const [, descr = "", order, ...sides] = header.exec(text) ?? [];
   const size = { "<f4": 4, "<f8": 8 }[descr];
-  if (!text.startsWith("\x93NUMPY") || bytes[6] !== 1 || size === undefined || order !== "False") {
+  if (!text.startsWith("NUMPY", 1) || bytes[6] !== 1 || size === undefined || order !== "False") {
     const found = /\{.*\}/.exec(text)?.[0] ?? "a file of another kind";
     const remedy = 'numpy.save(path, output["pointmap"].float().cpu().numpy())';
     throw failure("UNSUPPORTED_FORMAT", path, found, "a .npy array of float32, height × width × 3", remedy);

@@ -62,7 +62,6 @@ export async function sam3dFrom(
  * are unchanged.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` for missing parts; for poses that are none, the errors of `fromSam3d`,
  * with the names of their files
- * @internal
  */
 export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeScene> {
   const root = commonFolder(Object.keys(files));

@@ -1,0 +1,29 @@
+/** Outputs of SAM 3D Objects, dropped as they are. */
+import assert from "node:assert/strict";
+import { glb } from "../support/files.js";
+import { dropFolder, HEIGHT, inFolder, jsonFile, maskPng, pinhole, seen, WIDTH } from "../support/page-files.js";
+import { layoutOf, pointMapNpy } from "../support/sam3d.js";
+import { mesh, truth } from "../support/scene.js";
+import { pageTests } from "../support/site.js";
+
+const test = pageTests();
+
+const view = { depth: seen.depth, width: WIDTH, height: HEIGHT, camera: pinhole };
+const output = {
+  "pointmap.npy": pointMapNpy(view),
+  "0.png": maskPng(seen.mask),
+  "0.glb": glb(mesh),
+  "0.json": jsonFile(layoutOf({ ...truth, scale: 1.05 * truth.scale })),
+};
+
+test("an output opens as a scene without a question, and is aligned without units", async (opened) => {
+  await dropFolder(opened, inFolder("desk", output));
+  await opened.shows("desk");
+  assert.ok((await opened.metric("iou")) > 0.95);
+});
+
+test("what is missing in an output is said", async (opened) => {
+  const { "0.png": _, ...rest } = output;
+  await dropFolder(opened, inFolder("desk", rest));
+  await opened.says(/no mask of 0/);
+});
