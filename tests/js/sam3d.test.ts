@@ -105,6 +105,10 @@ test("a point map may be in OpenCV's frame, and depth in metres goes before it",
     "camera.json": camera,
   });
   assert.equal(metric.input.depthKind, "metric");
+  const moge = readFileSync(join(repository, "tests", "fixtures", "depth-moge.npz"));
+  const ofMoge = await read({ ...own, "moge.npz": moge });
+  assert.equal(ofMoge.input.depth, moge);
+  assert.equal(ofMoge.input.depthKind, "scale-invariant");
 });
 
 test("three sizes count as their mean, and a placement at the camera is none", async () => {
@@ -167,6 +171,14 @@ test("an absurd placement does not hurt, and a first pose of a scene folder is a
   );
   assertNear(matrixOf(input), columnMajor(pose), "initial.json");
   aligner.dispose();
+});
+
+test("a scale that is given goes before the placements", () => {
+  writeCase("whole", whole);
+  const { scale } = pose;
+  succeeds(`scene --sam3d whole --quality fast --scale ${1.01 * scale},${2 * scale} --json s.json`);
+  assert.equal(results("s.json").whole.objects.a.error, undefined);
+  assert.equal(results("s.json").whole.depthUnit, "unknown (scale-invariant)");
 });
 
 /** The sample with a table, as its generator might have placed the meshes: sizes 4 % off, turned by 6°, moved by 2 cm. */

@@ -1,7 +1,7 @@
 /** The output of SAM 3D Objects as the files of a scene. The guide "Meshes of generators" describes the folder. */
-import { type CaseFiles, type CaseSettings, caseFiles, fileNotFound } from "../case-files.js";
+import { type CaseFiles, type CaseSettings, caseFiles } from "../case-files.js";
 import { fromSam3d } from "../conventions/sam3d.js";
-import { renamed, Sim3AlignError } from "../error.js";
+import { failure, renamed, Sim3AlignError } from "../error.js";
 import { parsedJson } from "../formats/json.js";
 import { holdsGaussians } from "../formats/splat-files.js";
 import type { LoadFormats } from "../formats-module.js";
@@ -18,7 +18,7 @@ const pointMaps = ["pointmap", "point_map", "moge", "points"].flatMap((name) => 
 export const viewNames: readonly string[] = [...caseFiles.depth, ...pointMaps];
 
 /** Formats of the mesh of an object, in order of preference: only GLB has materials. */
-const meshFormats = ["glb", "gltf", "obj", "stl", "ply", "splat"];
+const meshFormats = ["glb", "obj", "stl", "ply", "splat"];
 
 /** Words in paths that tell the kind of a file, or nothing; the others name the object. */
 const kindWords =
@@ -88,7 +88,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
     return found.find((path) => path !== undefined);
   };
   const [view, image] = [named(viewNames), named([...caseFiles.image, "input.png", "input.jpg"])];
-  if (view === undefined) throw fileNotFound("sam3d", `no point map in ${place}`, "pointmap.npy, or depth.*");
+  if (view === undefined) throw missing("sam3d", `no point map in ${place}`, "pointmap.npy, or depth.*");
   const isPointMap = pointMaps.includes(baseName(view).toLowerCase());
   if (isPointMap && extension(view) === "npy") {
     const { depth, camera } = viewOfPointMap(view, await bytesOf(view));
@@ -107,8 +107,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
   for (const [name, { mask, meshes, pose, truth }] of objects) {
     // Most masks of an image are of objects that were not reconstructed.
     if (meshes.length === 0 && pose === undefined) continue;
-    const lacks = (what: string, expected: string) =>
-      fileNotFound(`objects/${name}`, `no ${what} in ${place}`, expected);
+    const lacks = (what: string, expected: string) => missing(`objects/${name}`, `no ${what} in ${place}`, expected);
     const rank = (path: string) => meshFormats.indexOf(extension(path));
     const [mesh] = meshes.sort((a, b) => rank(a) - rank(b));
     if (mesh === undefined) throw lacks(`mesh of ${name}`, "mesh.glb, or the PLY of its Gaussians");
@@ -122,6 +121,11 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
     if (initial !== null) made[`objects/${name}/${INITIAL_FILE}`] = initial;
   }
   return { files: made, depthKind: isPointMap ? "scale-invariant" : "metric" };
+}
+
+function missing(argument: string, found: string, expected: string): Sim3AlignError {
+  const remedy = 'See "sim3align scene --help", or the guide "Meshes of generators", for the layout.';
+  return failure("FILE_NOT_FOUND", argument, found, expected, remedy);
 }
 
 /** The name of an object in a path: its words that tell no kind, or `object`. Numbers are the same with and without zeros. */
