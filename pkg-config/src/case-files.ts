@@ -1,12 +1,13 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { failure, Sim3AlignError } from "./error.js";
+import { failure, invalidArgument, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { DepthKind } from "./input/depth-kind.js";
 import type { ViewInput } from "./input/frame-types.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
+import { ownArgument } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
 /** Files by name, relative to the folder of the case: bytes, or a function that reads them on demand. */
@@ -38,6 +39,9 @@ export const caseFiles = {
   camera: ["camera.json", "scene_camera.json"],
   image: ["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"],
 } as const satisfies { mesh: readonly `mesh.${MeshFormat}`[]; [part: string]: readonly string[] };
+
+/** The file of an object of a scene with a first pose: one candidate among those of the search. */
+export const INITIAL_FILE = "initial.json";
 
 /** Frames whose files have been read, but not decoded. */
 export interface FrameFiles {
@@ -204,6 +208,12 @@ function decoded(uri: string): string {
   } catch {
     return uri;
   }
+}
+
+/** The files of a call, read once. */
+export function ownFiles(files: CaseFiles): CaseFiles {
+  if (isRecord(files)) return ownArgument("files", files);
+  throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
 }
 
 /** The error for a missing file of a case. */

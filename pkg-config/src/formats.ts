@@ -3,9 +3,8 @@
  * these files directly; use the readers to inspect their content.
  * @packageDocumentation
  */
-import { type Case, type CaseFiles, type CaseSettings, caseFrom } from "./case-files.js";
+import { type Case, type CaseFiles, type CaseSettings, caseFrom, ownFiles } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { invalidArgument } from "./error.js";
 import { fileReaders } from "./file-readers.js";
 import { type CameraFile, type CameraFileOptions, parseCameraFile } from "./formats/camera-file.js";
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
@@ -19,8 +18,6 @@ import { decodeMesh } from "./input/mesh-file.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
 import type { ColorSamples } from "./prepared-mesh.js";
-// The readers of scenes load when they are called: pages that read files need neither, at first.
-import type { SceneFiles } from "./scene/scene-files.js";
 import { ownArgument, ownOptions } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
@@ -35,8 +32,6 @@ export type { DepthImage, DepthReading } from "./input/depth-reading.js";
 export type { AlignInput, CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 export type { WasmSource } from "./platform.js";
 export type { ColorSamples } from "./prepared-mesh.js";
-export type { SceneFiles } from "./scene/scene-files.js";
-export type { KnownOfObject, LabelMap, Plane, SceneInput, SceneObjectInput } from "./scene/types.js";
 export type { Sim3 } from "./sim3.js";
 
 /** A mask from a file: row-major, 1 is the object. */
@@ -184,45 +179,6 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  */
 export async function readCase(files: CaseFiles, settings: CaseSettings = {}): Promise<Case> {
   return caseFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
-}
-
-/**
- * Reads a scene folder: a depth map and, optionally, a camera and a photo, as in a case folder; and
- * `objects/NAME/` with `mask.*`, `mesh.*` and, optionally, `initial.json` (a pose to start from) and `gt.json`.
- * @param files by path, relative to the folder
- *
- * @example
- * const { input, truths } = await readScene({ "depth.png": depth, "objects/mug/mask.png": mask, "objects/mug/mesh.glb": mesh });
- * const result = await aligner.alignScene(input);
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
- */
-export async function readScene(files: CaseFiles, settings: CaseSettings = {}): Promise<SceneFiles> {
-  const { sceneFrom } = await import("./scene/scene-files.js");
-  return sceneFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
-}
-
-/**
- * Reads an output of SAM 3D Objects as a scene: `pointmap.npy` (or a `.npz` of MoGe, or a depth map), the photo, and for each
- * object its mask, its GLB or the PLY of its Gaussians, and `pose.json` with `rotation` (w, x, y, z), `translation` and
- * `scale`, in `objects/NAME/` or with NAME in their names. Its frames are converted. Where it put an object is the object's
- * `initial`: one candidate among those of the search. The depth of its point maps is `"scale-invariant"`, unless `depthKind`
- * says otherwise.
- * @param files by path, relative to the folder
- *
- * @example
- * const { input } = await readSam3d({ "pointmap.npy": points, "0.png": mask, "0.glb": mesh, "0.json": pose });
- * const result = await aligner.alignScene(input);
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` for an object without mask or mesh, `CORRUPT_FILE`, and the errors of
- * `fromSam3d` with the name of the file
- */
-export async function readSam3d(files: CaseFiles, settings: CaseSettings = {}): Promise<SceneFiles> {
-  const { sam3dFrom } = await import("./scene/sam3d-files.js");
-  return sam3dFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
-}
-
-function ownFiles(files: CaseFiles): CaseFiles {
-  if (isRecord(files)) return ownArgument("files", files);
-  throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
 }
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {

@@ -1,17 +1,15 @@
 /** The frames of the files that generators of meshes write. */
-
-/** An axis of a file. */
-type Axis = readonly [x: number, y: number, z: number];
+import type { Vector3 } from "../values.js";
 
 /** The frame of a file. */
 export interface GeneratorFrame {
   /** The direction that is up, where the generator makes objects upright. */
-  readonly up: Axis;
+  readonly up: Readonly<Vector3>;
   /**
    * The horizontal direction to the camera of the photo; `null` where the generator turns each object as it sees fit.
    * How far the camera looks down is not known.
    */
-  readonly front: Axis | null;
+  readonly front: Readonly<Vector3> | null;
 }
 
 /** The frames of the files of a generator: of its meshes. */
@@ -24,7 +22,7 @@ export interface GaussianFrames extends MeshFrames {
   readonly gaussians: GeneratorFrame;
 }
 
-const frame = (up: Axis, front: Axis | null = null): GeneratorFrame => ({ up, front });
+const frame = (up: Vector3, front: Vector3 | null = null): GeneratorFrame => ({ up, front });
 
 /**
  * Which way is up, and which way is the camera, in the files that generators write: SAM 3D Objects (`sam3d`), TRELLIS,

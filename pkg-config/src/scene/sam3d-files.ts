@@ -1,5 +1,5 @@
 /** The output of SAM 3D Objects as the files of a scene. The guide "Meshes of generators" describes the folder. */
-import { type CaseFiles, type CaseSettings, caseFiles } from "../case-files.js";
+import { type CaseFiles, type CaseSettings, caseFiles, INITIAL_FILE } from "../case-files.js";
 import { fromSam3d } from "../conventions/sam3d.js";
 import { failure, renamed, Sim3AlignError } from "../error.js";
 import { parsedJson } from "../formats/json.js";
@@ -9,7 +9,7 @@ import { requiredBytes } from "../input/bytes.js";
 import type { DepthKind } from "../input/depth-kind.js";
 import { flattened, isRecord } from "../values.js";
 import { viewOfPointMap } from "./point-map-file.js";
-import { INITIAL_FILE, type SceneFiles, sceneFrom } from "./scene-files.js";
+import { type SceneFiles, sceneFrom } from "./scene-files.js";
 
 /** Names of point maps, in order of preference. */
 const pointMaps = ["pointmap", "point_map", "moge", "points"].flatMap((name) => [`${name}.npy`, `${name}.npz`]);

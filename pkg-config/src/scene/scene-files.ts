@@ -1,5 +1,5 @@
 /** A scene from files: one view, and the mask and the mesh of each object. */
-import { type CaseFiles, type CaseSettings, fileNotFound, filesOf, meshFile } from "../case-files.js";
+import { type CaseFiles, type CaseSettings, fileNotFound, filesOf, INITIAL_FILE, meshFile } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import type { LoadFormats } from "../formats-module.js";
 import { withoutUndefined } from "../values.js";
@@ -12,9 +12,6 @@ export interface SceneFiles {
   /** The true pose of each object; `null` if unknown. */
   truths: (KnownPose | null)[];
 }
-
-/** The file of an object with a first pose: one candidate among those of the search. */
-export const INITIAL_FILE = "initial.json";
 
 /**
  * Reads a scene folder: the view in it, and `objects/NAME/{mask.*, mesh.*, initial.json, gt.json}`.

@@ -1,5 +1,5 @@
 /** The role of each file of a drop: by its name, and where the name says nothing, by how the file begins. */
-import { INITIAL_FILE } from "sim3align/scene/scene-files";
+import { INITIAL_FILE } from "sim3align/case-files";
 import { baseName, extension, type NamedFile } from "../load/files.js";
 import type { Role, Typed } from "../load/inputs.js";
 
