@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { createAligner, type SceneInput } from "sim3align";
 import { type CaseFiles, readCamera, readDepth, readPose } from "sim3align/formats";
 import { readSam3d, readScene } from "sim3align/scenes";
-import { folder, results, succeeds, writeCase } from "../support/command-line.js";
+import { folder, refusesUsage, results, succeeds, writeCase } from "../support/command-line.js";
 import { repository } from "../support/environment.js";
 import { type Fault, rejectsWith } from "../support/errors.js";
 import { type Files, maskPng, obj } from "../support/files.js";
@@ -174,8 +174,9 @@ test("an absurd placement does not hurt, and a first pose of a scene folder is a
   aligner.dispose();
 });
 
-test("a scale that is given goes before the placements", () => {
+test("a scale that is given goes before the placements, and simulators need metres", () => {
   writeCase("whole", whole);
+  refusesUsage({ "scene --sam3d whole --usd w.usda": /--depth-kind metric/ });
   const { scale } = pose;
   succeeds(`scene --sam3d whole --quality fast --scale ${1.01 * scale},${2 * scale} --json s.json`);
   assert.equal(results("s.json").whole.objects.a.error, undefined);
