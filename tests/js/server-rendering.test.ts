@@ -25,7 +25,9 @@ const script = (entry: string) => `
   console.log(JSON.stringify({ touched: [...touched], names: Object.keys(module).length, handles: process.getActiveResourcesInfo() }));
 `;
 
-for (const entry of ["", "/inline", "/formats", "/conventions", "/simulators"].map((path) => `sim3align${path}`)) {
+for (const entry of ["", "/inline", "/formats", "/conventions", "/scenes", "/simulators"].map(
+  (path) => `sim3align${path}`,
+)) {
   test(`importing ${entry} touches no browser globals`, () => {
     const args = ["--input-type=module", "--eval", script(entry)];
     const found = JSON.parse(execFileSync(process.execPath, args, { cwd: installDir, encoding: "utf8" }));
@@ -35,3 +37,8 @@ for (const entry of ["", "/inline", "/formats", "/conventions", "/simulators"].m
     assert.deepEqual(workers, [], "nothing runs");
   });
 }
+
+test("the element may be imported where there are no elements, and defines none", () => {
+  const args = ["--input-type=module", "--eval", 'console.log(Object.keys(await import("sim3align/element")))'];
+  assert.match(execFileSync(process.execPath, args, { cwd: installDir, encoding: "utf8" }), /Sim3AlignElement/);
+});
