@@ -44,6 +44,7 @@ const known = ["--known-extent", String(extentM)];
 
 writeCase("metric", { ...files, "gt.json": gt });
 writeCase("taken", { ...uncalibrated, "rgb.jpg": photo });
+writeFileSync(join(folder, "d.npz"), zip([deflated("depth.npy", files["depth.npy"] as Uint8Array)]));
 writeCase("alone", uncalibrated);
 writeCase("relative", { ...files, "depth.npy": disparity(view), "gt.json": gt });
 const { "depth.npy": __, ...withoutDepth } = uncalibrated;
@@ -57,7 +58,8 @@ function hasNoMetres(printed: string): void {
 
 test("the photo gives the focal length: as an argument, by --image, and in a case folder", () => {
   const parts = ["--depth", "taken/depth.npy", "--mask", "taken/mask.png", "--mesh", "taken/mesh.glb", ...quick];
-  const { stdout } = succeeds("align", "taken/rgb.jpg", ...parts, "--json", "argument.json");
+  const [, , ...others] = parts;
+  const { stdout } = succeeds("align", "taken/rgb.jpg", "--depth", "d.npz", ...others, "--json", "argument.json");
   assert.match(stdout, /depth unit +metres \(float values, assumed\)\n/);
   assert.match(stdout, /focal length +\d{3}\.\d px ± \d\.\d %, EXIF: 65 mm \(35 mm equivalent\)\n/);
   const { mesh: found } = results("argument.json");
