@@ -58,8 +58,16 @@ export type Job = { [M in keyof Calls]: JobOf<M> }[keyof Calls];
 /** The result of each call. */
 export type Results = { [M in keyof Calls]: Calls[M]["result"] };
 
-/** An object of a scene, the pixels of the others, and the plan of the scene, which only the joint module reads. */
-export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; plan?: Uint8Array | undefined; index: number };
+/**
+ * An object of a scene, the pixels of the others, the plan of the scene, which only the joint module reads, and the
+ * uncertainty of its calibration.
+ */
+export type PlaceInput = AlignInput & {
+  others?: Uint8Array | undefined;
+  plan?: Uint8Array | undefined;
+  index: number;
+  uncertainty?: object | undefined;
+};
 
 /** A view in the form of the core, and the objects by which it is calibrated, whose meshes have not been read. */
 export type CalibrateInput = CoreView & { objects: (Omit<CalibrationObject, "mesh"> & { mesh: unknown })[] };
@@ -125,9 +133,9 @@ export async function perform(
       return runTask(await joint(), (j) => j.beginCalibrate(input, listener), input, slices);
     }
     case "place": {
-      const { others, plan, index, ...own } = job.data;
+      const { others, plan, index, uncertainty, ...own } = job.data;
       const { core: input, notes } = await resolveInput(own, modules, job.meshId);
-      const observed = { ...input, others };
+      const observed = { ...input, others, uncertainty };
       const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener);
       const placed = await runTask(await joint(), begin, observed, slices);
       if (placed.alignment === undefined) return placed;

@@ -19,8 +19,8 @@ const STEEP: f64 = 0.5;
 const INSIDE: f32 = -2.0;
 /// Least step, relative to the width of the object and to its distance.
 const JUMP: [f64; 2] = [0.25, 0.017];
-/// Edges are ramps if no more than this share of them is sharper than this width, pixels. That share is at .8 to 1.01 on real
-/// objects of four sensors, whose holes may be filled, and at 2.5 to 8 where a fortieth of the object blurs them.
+/// Edges are ramps if no more than this share of them is narrower than this width, pixels. That quantile is .8 to 1.06 on real
+/// objects of four sensors, also with holes filled, and 2.5 to 8 where a fortieth of the object blurs them.
 const SHARPER: f64 = 0.1;
 const SHARP: f32 = 2.0;
 /// Minimum number of rays that cross an edge, and their minimum share of the rays: flat objects on a table have fewer.
