@@ -1,6 +1,6 @@
 /** The joint module: the WebAssembly module with `alignScene`, `alignViews` and `track`. */
 import type { Calibrated, CalibrationObject } from "./calibrate.js";
-import type { CoreListener, Task } from "./core.js";
+import type { CoreHelpers, CoreListener, Helper, Task } from "./core.js";
 import type {
   Alignment,
   Contact,
@@ -38,7 +38,14 @@ export interface JointAligner extends Glue {
     plan: Uint8Array | undefined,
     object: number,
     onProgress: CoreListener | undefined,
+    helpers: CoreHelpers | undefined,
   ): Task<Placed>;
+  beginHelp(
+    input: CoreInput & { others: Uint8Array | undefined },
+    options: object,
+    plan: Uint8Array | undefined,
+    object: number,
+  ): Helper;
   planScene(
     scene: object,
     plan: Uint8Array | undefined,

@@ -70,6 +70,16 @@ impl Request {
         Ok(Self { options, efforts, setup })
     }
 
+    /// The options.
+    pub fn options(&self) -> &AlignOptions {
+        &self.options
+    }
+
+    /// The settings of the searches, with increasing effort.
+    pub fn efforts(&self) -> &[SearchSettings] {
+        &self.efforts
+    }
+
     /// With other settings of the searches than those that follow from the options, for ablations.
     pub fn with_efforts(self, efforts: Vec<SearchSettings>) -> Self {
         Self { efforts, ..self }
@@ -101,6 +111,9 @@ impl<'a> Search<'a> {
         pauses: &'a Pauses,
     ) -> Result<Self> {
         let stages = Stopwatch::new(host, precise::PLAN);
+        if request.efforts.first().is_some_and(SearchSettings::is_long) {
+            pauses.ask_for_help().await;
+        }
         mesh.check()?;
         pauses.here().await;
         Ok(Self { observation, mesh, request, stages, pauses })
@@ -134,6 +147,9 @@ impl<'a> Search<'a> {
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
+            if settings.is_long() {
+                pauses.ask_for_help().await;
+            }
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
             pauses.here().await;
             start::run(&mut rounds, &efforts::share(index, efforts.len()), pauses, stages).await;

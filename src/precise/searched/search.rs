@@ -130,6 +130,11 @@ impl Search {
         distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
     }
 
+    /// Makes all grids.
+    pub fn make_grids(&self) {
+        (0..GRIDS).for_each(|grid| _ = self.grid(grid));
+    }
+
     /// The evidence on the grid with this index.
     pub fn grid(&self, index: usize) -> &CropGrid {
         self.grids[index].get_or_init(|| CropGrid::new(&self.observation, self.settings.grids[index].cells))
