@@ -117,39 +117,19 @@ impl Helpers {
         let mut results: Vec<Option<T::Result>> = Vec::new();
         results.resize_with(tasks.count(), || None);
         let mut seen = 0;
-        let mut has_ended = results.is_empty();
-        while !has_ended {
-            if let Some(link) = &self.link {
-                while let Some(message) = link.receive() {
-                    let Some((&helper, message)) = message.split_first() else { continue };
-                    share_of(&mut shares, helper as usize).is_orphaned = message.is_empty();
-                    let Some((&[of_list, first], mut message)) = message.split_first_chunk() else { continue };
-                    if of_list as usize == list {
-                        for result in results.iter_mut().skip(first as usize) {
-                            let Some(found) = T::read_result(&mut message) else { break };
-                            *result = Some(found);
-                        }
+        loop {
+            for message in self.link.iter().flat_map(|link| core::iter::from_fn(|| link.receive())) {
+                let Some((&helper, message)) = message.split_first() else { continue };
+                share_of(&mut shares, helper as usize).is_orphaned = message.is_empty();
+                let Some((&[of_list, first], mut message)) = message.split_first_chunk() else { continue };
+                if of_list as usize == list {
+                    for result in results.iter_mut().skip(first as usize) {
+                        let Some(found) = T::read_result(&mut message) else { break };
+                        *result = Some(found);
                     }
                 }
-                for Share { left, .. } in &mut shares {
-                    left.start += results[left.clone()].iter().take_while(|result| result.is_some()).count();
-                }
-                balance(&mut shares);
-                for share in &mut shares {
-                    let Some(helper) = share.helper.filter(|_| !share.is_current) else { continue };
-                    let mut message = Vec::new();
-                    put(&mut message, &[list, share.left.start, share.left.end].map(|x| x as f64));
-                    if !share.is_told {
-                        tasks.write(&mut message);
-                    }
-                    link.send(helper, &message);
-                    (share.is_told, share.is_current) = (true, true);
-                }
             }
-            let next = shares[0].left.next();
-            if let Some(task) = next.filter(|&task| results[task].is_none()) {
-                results[task] = Some(tasks.run(task));
-            }
+            let mut has_ended = results.is_empty();
             while !has_ended && let Some(Some(result)) = results.get(seen) {
                 seen += 1;
                 has_ended = ends(result) || seen == results.len();
@@ -157,12 +137,27 @@ impl Helpers {
             if has_ended {
                 break;
             }
-            match (next, &self.link) {
-                (None, Some(link)) => {
-                    link.wait();
-                    pauses.now().await;
+            for Share { left, .. } in &mut shares {
+                left.start += results[left.clone()].iter().take_while(|result| result.is_some()).count();
+            }
+            balance(&mut shares);
+            for share in &mut shares {
+                let (Some(helper), Some(link), false) = (share.helper, &self.link, share.is_current) else { continue };
+                let mut message = Vec::new();
+                put(&mut message, &[list, share.left.start, share.left.end].map(|x| x as f64));
+                if !share.is_told {
+                    tasks.write(&mut message);
                 }
-                _ => pauses.here().await,
+                link.send(helper, &message);
+                (share.is_told, share.is_current) = (true, true);
+            }
+            if let Some(task) = shares[0].left.next() {
+                results[task] = Some(tasks.run(task));
+                pauses.here().await;
+            } else {
+                // Helpers have begun what is left.
+                self.link.iter().for_each(|link| link.wait());
+                pauses.now().await;
             }
         }
         let present = shares.iter().filter(|share| !share.is_orphaned).filter_map(|share| share.helper);

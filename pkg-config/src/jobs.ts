@@ -12,7 +12,7 @@ import type { Core, CoreHelpers, CoreListener, Helper, Task } from "./core.js";
 import { isOfInput, withoutInput } from "./error.js";
 import type { FileReaders } from "./file-readers.js";
 import type { CorrectedFrame } from "./generated/types.js";
-import type { CoreInput, CoreView } from "./input/core-input.js";
+import type { CoreInput, CoreView, CoreViews } from "./input/core-input.js";
 import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import { resolveFrame, resolveViews } from "./input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
@@ -152,7 +152,8 @@ export async function perform(
         return own === undefined ? view : inCalibration(view, own);
       });
       const input = { ...read, views };
-      const result = await runTask(module, (j) => j.beginAlignViews(input, options, then), input, slices);
+      const helpers = helpersOf(slices, { input, options });
+      const result = await runTask(module, (j) => j.beginAlignViews(input, options, then, helpers), input, slices);
       const ofView = (view: ViewAlignment, k: number) =>
         withNotes(calibratedResult(view, calibrated[k]), notes[k] as InputNotes);
       return { ...result, views: result.views.map(ofView) };
@@ -232,7 +233,7 @@ function called<G extends Glue, T>(module: LoadedModule<G>, work: (glue: G) => T
 
 /** The input of a task, for those that help with it. */
 export interface Offer {
-  input: CoreInput;
+  input: CoreInput | CoreViews;
   options: object;
   /** For an object of a scene: what is known of the others. */
   placed?: { plan: Uint8Array | undefined; index: number };
@@ -269,7 +270,7 @@ export async function beginHelp(
   { core, joint }: Modules,
 ): Promise<{ module: LoadedModule<Glue>; helper: Helper }> {
   const { id } = input.mesh;
-  const own = { ...input, mesh: mesh === undefined || id === undefined ? input.mesh : { ...mesh, id } };
+  const ownMesh = mesh === undefined || id === undefined ? input.mesh : { ...mesh, id };
   const kept = <G extends Glue>(module: LoadedModule<G>, begin: (glue: G) => Helper) => {
     const helper = module.call((glue) => {
       const begun = begin(glue);
@@ -278,6 +279,11 @@ export async function beginHelp(
     });
     return { module: module as unknown as LoadedModule<Glue>, helper };
   };
+  if ("views" in input) {
+    const own = { ...input, mesh: ownMesh };
+    return kept(await joint(), (j) => j.beginHelpViews(own, options));
+  }
+  const own = { ...input, mesh: ownMesh };
   if (placed === undefined) return kept(core, (c) => c.beginHelp(own, options));
   const { plan, index } = placed;
   return kept(await joint(), (j) => j.beginHelp({ others: undefined, ...own }, options, plan, index));

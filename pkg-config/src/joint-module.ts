@@ -56,7 +56,13 @@ export interface JointAligner extends Glue {
     onProgress: CoreListener | undefined,
   ): Task<Calibrated>;
   beginCalibrateViews(input: CoreViews & { options: object }, onProgress: CoreListener | undefined): Task<Calibrated[]>;
-  beginAlignViews(input: CoreViews, options: object, onProgress: CoreListener | undefined): Task<ViewsAlignment>;
+  beginAlignViews(
+    input: CoreViews,
+    options: object,
+    onProgress: CoreListener | undefined,
+    helpers: CoreHelpers | undefined,
+  ): Task<ViewsAlignment>;
+  beginHelpViews(input: CoreViews, options: object): Helper;
   openTracker(id: number, input: { mesh: CoreMesh }, options: object): void;
   trackFrame(
     id: number,

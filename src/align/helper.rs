@@ -1,4 +1,4 @@
-//! A helper of an alignment: it runs tasks of the search of another thread, from the same input.
+//! A helper of an alignment: it runs tasks of the searches of another thread, from the same input.
 
 use std::rc::Rc;
 
@@ -14,11 +14,12 @@ use crate::report::Effort;
 
 /// A helper of an alignment.
 pub struct Helper {
+    /// One per view; `None` for a view without a mask.
+    observations: Vec<Option<Observation>>,
     mesh: Rc<PreparedMesh<'static>>,
-    clean: Rc<CleanObservation>,
     request: Request,
     surround: Box<dyn Fn(&mut Search)>,
-    /// One per effort, without and with the surroundings.
+    /// Those that it has had tasks of.
     searches: Vec<Search>,
     /// What is to be run.
     part: Option<Part>,
@@ -26,18 +27,18 @@ pub struct Helper {
 }
 
 impl Helper {
-    /// A helper that is ready for the search with the greatest effort. `surround` sets the surroundings of the object.
+    /// A helper that is ready for the search with the greatest effort in the first view. `request` are the options of one
+    /// view; `surround` sets the surroundings of the object.
     pub fn new(
-        observation: &Observation,
+        observations: Vec<Option<Observation>>,
         mesh: Rc<PreparedMesh<'static>>,
         request: Request,
         surround: impl Fn(&mut Search) + 'static,
     ) -> Self {
-        let clean = Rc::new(CleanObservation::new(observation));
-        let surround = Box::new(surround);
-        let mut helper = Self { mesh, clean, request, surround, searches: Vec::new(), part: None, tasks: None };
+        let (surround, searches) = (Box::new(surround), Vec::new());
+        let mut helper = Self { observations, mesh, request, surround, searches, part: None, tasks: None };
         if let Some(effort) = helper.request.efforts().last().map(|settings| settings.effort) {
-            helper.search(effort, false);
+            helper.search(0, effort, false);
             helper.searches.iter().for_each(Search::make_grids);
         }
         helper
@@ -52,20 +53,26 @@ impl Helper {
 
     /// Runs tasks until it is time; the message about them, or `None` if there is nothing to do.
     pub fn step(&mut self, is_time: impl FnMut() -> bool) -> Option<Vec<f64>> {
-        let (effort, is_surrounded) = self.tasks.as_ref().map(|tasks| (tasks.effort, tasks.is_surrounded))?;
-        let place = self.search(effort, is_surrounded)?;
+        let RoundTasks { view, effort, is_surrounded, .. } = *self.tasks.as_ref()?;
+        let place = self.search(view, effort, is_surrounded)?;
         self.part.as_mut()?.run(&mut self.tasks.as_ref()?.on(&self.searches[place]), is_time)
     }
 
     /// The place of a search in the list.
-    fn search(&mut self, effort: Effort, is_surrounded: bool) -> Option<usize> {
+    fn search(&mut self, view: usize, effort: Effort, is_surrounded: bool) -> Option<usize> {
+        let of_view = |search: &&Search| search.view == view;
         let is_it = |search: &Search| search.effort() == effort && search.is_surrounded() == is_surrounded;
-        if let Some(known) = self.searches.iter().position(is_it) {
+        if let Some(known) = self.searches.iter().position(|search| of_view(&search) && is_it(search)) {
             return Some(known);
         }
+        let clean = match self.searches.iter().find(of_view) {
+            Some(other) => Rc::clone(&other.observation),
+            None => Rc::new(CleanObservation::new(self.observations.get(view)?.as_ref()?)),
+        };
         let settings = self.request.efforts().iter().find(|settings| settings.effort == effort)?;
         let pyramid = self.mesh.pyramid(&settings.grids)?;
-        let mut search = Search::new(Rc::clone(&self.clean), pyramid, *settings);
+        let mut search = Search::new(clean, pyramid, *settings);
+        search.view = view;
         search.assume(Prior::of(self.request.options(), self.mesh.mesh(), &search.mesh.frame));
         if is_surrounded {
             (self.surround)(&mut search);

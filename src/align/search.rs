@@ -111,7 +111,7 @@ impl<'a> Search<'a> {
         pauses: &'a Pauses,
     ) -> Result<Self> {
         let stages = Stopwatch::new(host, precise::PLAN);
-        if request.efforts.first().is_some_and(SearchSettings::is_long) {
+        if request.efforts.first().is_some_and(|settings| settings.is_long(1)) {
             pauses.ask_for_help().await;
         }
         mesh.check()?;
@@ -147,7 +147,7 @@ impl<'a> Search<'a> {
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            if settings.is_long() {
+            if settings.is_long(1) {
                 pauses.ask_for_help().await;
             }
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;

@@ -164,13 +164,13 @@ pub fn place<'a>(
 /// # Errors
 /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
 pub fn helper(
-    observation: &Observation,
+    observation: Observation,
     mesh: Rc<PreparedMesh<'static>>,
     options: AlignOptions,
     told: Option<Told<'_>>,
 ) -> Result<Helper> {
     let known = told.map(|told| told.known).unwrap_or_default();
-    Ok(Helper::new(observation, mesh, Request::new(options)?, move |search| {
+    Ok(Helper::new(vec![Some(observation)], mesh, Request::new(options)?, move |search| {
         search.surround(Surroundings::new(known.clone(), &search.mesh, &search.observation));
     }))
 }

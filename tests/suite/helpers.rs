@@ -192,7 +192,7 @@ fn the_results_of_a_list_are_those_without_helpers() {
 fn aligning(mesh: &Mesh, options: &AlignOptions) -> Work {
     let request = Request::new(options.clone()).unwrap();
     let prepared = Rc::new(PreparedMesh::new(mesh.clone()));
-    let mut helper = Helper::new(&observe(mesh, 1.0), prepared, request, |_| ());
+    let mut helper = Helper::new(vec![Some(observe(mesh, 1.0))], prepared, request, |_| ());
     Box::new(move |message| match message {
         Some(message) => {
             helper.receive(&message);

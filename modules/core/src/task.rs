@@ -1,6 +1,7 @@
 //! An alignment in steps, between which the thread can do other work, and its helpers in other threads.
 
 use core::cell::RefCell;
+use std::rc::Rc;
 
 use js_sys::Function;
 use sim3align::align::align_task;
@@ -12,7 +13,10 @@ use sim3align::bindings::helpers::{JsHelpers, pauses, step};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::Error;
+use sim3align::evidence::observation::Observation;
 use sim3align::pauses::Task;
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::options::AlignOptions;
 use sim3align::report::Alignment;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -20,6 +24,13 @@ use wasm_bindgen::prelude::wasm_bindgen;
 /// A running alignment.
 #[wasm_bindgen(skip_typescript)]
 pub struct AlignTask(RefCell<Task<'static, Alignment>>);
+
+/// The arguments of an alignment.
+#[inline(never)]
+fn given(input: &JsValue, options: &JsValue) -> Result<(Observation, Rc<PreparedMesh<'static>>, AlignOptions), Error> {
+    let options = options::precise(options)?;
+    Ok((input::observation(input)?, mesh::mesh_of(input)?, options))
+}
 
 /// Starts an alignment; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(js_name = beginAlign, skip_typescript)]
@@ -30,8 +41,7 @@ pub fn begin_align(
     helpers: Option<JsHelpers>,
 ) -> Result<AlignTask, JsValue> {
     let begin = || {
-        let options = options::precise(options)?;
-        let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
+        let (observation, mesh, options) = given(input, options)?;
         align_task(observation, mesh, options, JsHost::new(on_progress), pauses(helpers))
     };
     begin().map(|task| AlignTask(RefCell::new(task))).map_err(|error| to_js(&error))
@@ -54,8 +64,8 @@ pub struct AlignHelper(RefCell<Helper>);
 #[wasm_bindgen(js_name = beginHelp, skip_typescript)]
 pub fn begin_help(input: &JsValue, options: &JsValue) -> Result<AlignHelper, JsValue> {
     let begin = || {
-        let request = Request::new(options::precise(options)?)?;
-        Ok(Helper::new(&input::observation(input)?, mesh::mesh_of(input)?, request, |_| ()))
+        let (observation, mesh, options) = given(input, options)?;
+        Ok(Helper::new(vec![Some(observation)], mesh, Request::new(options)?, |_| ()))
     };
     begin().map(|helper| AlignHelper(RefCell::new(helper))).map_err(|error: Error| to_js(&error))
 }

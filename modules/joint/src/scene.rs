@@ -85,7 +85,7 @@ pub fn begin_help(
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
         let plan: Plan = unpacked(plan)?.unwrap_or_default();
-        helper(&observation, mesh, options, plan.told(object)?)
+        helper(observation, mesh, options, plan.told(object)?)
     };
     begin().map(|helper| PlaceHelper(RefCell::new(helper))).map_err(|error: Error| to_js(&error))
 }

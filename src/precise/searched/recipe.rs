@@ -121,7 +121,7 @@ pub const SURE: f64 = 0.9;
 /// millisecond of WebAssembly each on a 2020 laptop.
 const COST: [f64; 3] = [0.06, 0.12, 0.4];
 
-/// Cost from which on a search is worth the copies and preparations of helpers.
+/// Cost from which on searches are worth the copies and preparations of helpers.
 const LONG: f64 = 150.0;
 
 /// [`SearchSettings::max_load`], and the one with a bound on the work of the search.
@@ -198,9 +198,9 @@ impl SearchSettings {
             + COST[2] * (second.keep * fine.work) as f64
     }
 
-    /// Whether helpers make the search faster.
-    pub fn is_long(&self) -> bool {
-        self.cost() > LONG
+    /// Whether helpers make so many of these searches faster.
+    pub fn is_long(&self, searches: usize) -> bool {
+        self.cost() * searches as f64 > LONG
     }
 
     /// Number of turns that are refined.

@@ -7,13 +7,13 @@ use std::borrow::Cow;
 use glam::DQuat;
 
 use super::ranking::{Found, best_of, distinct_up_to};
-use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
+use super::recipe::{FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
 use super::search::Search;
 use super::tasks::{Outcome, RoundTasks};
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawn::pose::CropPose;
-use crate::precise::observed::anchors::{Anchor, anchors};
+use crate::precise::observed::anchors::Anchor;
 
 /// Score below the best pose at which a refined turn of it is not ranked.
 const NEAR: f32 = 0.3;
@@ -55,11 +55,7 @@ impl Rounds {
     /// Starts with the rotation grid or, if the search is not `global`, only with the neighbourhood of `initial`.
     pub fn new(mut search: Search, initial: Option<CropPose>, global: bool) -> Self {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
-        let anchors = if global && search.settings.anchors {
-            anchors(search.grid(COARSE), search.settings.occlusion)
-        } else {
-            vec![Anchor::AS_IT_IS]
-        };
+        let anchors = if global { search.anchors() } else { vec![Anchor::AS_IT_IS] };
         let index = if global { 0 } else { FIRST_REFINEMENT };
         Self {
             found: Vec::new(),
@@ -177,6 +173,7 @@ impl Rounds {
     async fn outcomes(&self, round: Round, allowance: u64, pauses: &Pauses) -> Result<Vec<Found>, TooLong> {
         let search = &self.search;
         let tasks = RoundTasks {
+            view: search.view,
             effort: search.settings.effort,
             is_surrounded: search.is_surrounded(),
             task: round.task,
@@ -184,7 +181,6 @@ impl Rounds {
             work: round.work,
             best: self.best.first().map(|best| best.score.total),
             rotations: Cow::Borrowed(&self.rotations),
-            anchors: Cow::Borrowed(&self.anchors),
             poses: Cow::Borrowed(&self.poses),
         };
         let count = tasks.count();

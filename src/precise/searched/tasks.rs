@@ -23,7 +23,9 @@ const FAR: f32 = 0.8;
 /// The tasks of a round.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoundTasks<'a> {
-    /// The effort of the search, on which its grids depend.
+    /// The view of the search.
+    pub view: usize,
+    /// Its effort, on which its grids depend.
     pub effort: Effort,
     /// Whether it knows the surroundings of the object.
     pub is_surrounded: bool,
@@ -37,8 +39,6 @@ pub struct RoundTasks<'a> {
     pub best: Option<f32>,
     /// The rotations of [`Task::Rotate`], if they are not those of the rotation grid.
     pub rotations: Cow<'a, [DQuat]>,
-    /// Sizes and positions tried for each rotation.
-    pub anchors: Cow<'a, [Anchor]>,
     /// Initial poses of the other tasks.
     pub poses: Cow<'a, [CropPose]>,
 }
@@ -55,6 +55,8 @@ pub struct Outcome {
 pub struct Run<'a> {
     tasks: &'a RoundTasks<'a>,
     search: &'a Search,
+    /// Of [`Task::Rotate`].
+    anchors: Vec<Anchor>,
     coarse: Coarse<'a>,
     refiner: Refiner<'a>,
     canvas: Canvas,
@@ -75,21 +77,19 @@ impl RoundTasks<'_> {
         let objective = search.objective(self.grid);
         let coarse = Coarse { objective, median_m: search.observation.median_m };
         let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
-        Run { tasks: self, search, coarse, refiner, canvas: Canvas::default() }
+        let anchors = if self.task == Task::Rotate { search.anchors() } else { Vec::new() };
+        Run { tasks: self, search, anchors, coarse, refiner, canvas: Canvas::default() }
     }
 
     /// Writes the tasks as numbers, without loss.
     pub fn write(&self, message: &mut Vec<f64>) {
-        let Self { effort, is_surrounded, task, grid, work, best, rotations, anchors, poses } = self;
-        let settings = [*effort as usize, usize::from(*is_surrounded), *task as usize, *grid, *work];
+        let Self { view, effort, is_surrounded, task, grid, work, best, rotations, poses } = self;
+        let settings = [*view, *effort as usize, usize::from(*is_surrounded), *task as usize, *grid, *work];
         put(message, &settings.map(|x| x as f64));
         put(message, &[best.map_or(f64::NAN, f64::from)]);
-        put(message, &[rotations.len(), anchors.len(), poses.len()].map(|x| x as f64));
+        put(message, &[rotations.len(), poses.len()].map(|x| x as f64));
         for rotation in rotations.iter() {
             put(message, &rotation.to_array());
-        }
-        for Anchor { along, zoom, towards: [x, y] } in anchors.iter() {
-            put(message, &[along.map_or(-1.0, |axis| axis as f64), *zoom, *x, *y]);
         }
         for pose in poses.iter() {
             put(message, &pose_numbers(pose));
@@ -100,17 +100,12 @@ impl RoundTasks<'_> {
     pub fn read(message: &[f64]) -> Option<RoundTasks<'static>> {
         const EFFORTS: [Effort; 3] = [Effort::Fast, Effort::Balanced, Effort::Best];
         const TASKS: [Task; 5] = [Task::Rotate, Task::Place, Task::Refine, Task::Turn, Task::Fit];
-        let (&[effort, is_surrounded, task, grid, work, best, rotations, anchors, poses], lists) =
+        let (&[view, effort, is_surrounded, task, grid, work, best, rotations, poses], lists) =
             message.split_first_chunk()?;
         let (rotations, lists) = lists.split_at_checked(4 * rotations as usize)?;
-        let (anchors, lists) = lists.split_at_checked(4 * anchors as usize)?;
         let (poses, _) = lists.split_at_checked(POSE * poses as usize)?;
-        let anchor = |&[along, zoom, x, y]: &[f64; 4]| Anchor {
-            along: (along >= 0.0).then_some(along as usize),
-            zoom,
-            towards: [x, y],
-        };
         Some(RoundTasks {
+            view: view as usize,
             effort: *EFFORTS.iter().find(|known| **known as usize as f64 == effort)?,
             is_surrounded: is_surrounded != 0.0,
             task: *TASKS.iter().find(|known| **known as usize as f64 == task)?,
@@ -118,7 +113,6 @@ impl RoundTasks<'_> {
             work: work as usize,
             best: (!best.is_nan()).then_some(best as f32),
             rotations: rotations.as_chunks().0.iter().map(|rotation| DQuat::from_array(*rotation)).collect(),
-            anchors: anchors.as_chunks().0.iter().map(anchor).collect(),
             poses: poses.as_chunks().0.iter().map(pose_of).collect(),
         })
     }
@@ -134,8 +128,8 @@ impl Tasks for Run<'_> {
     // Each of its callers would have a copy of the search.
     #[inline(never)]
     fn run(&mut self, task: usize) -> Outcome {
-        let Self { tasks, search, coarse, refiner, canvas } = self;
-        let RoundTasks { work, rotations, anchors, poses, best, .. } = tasks;
+        let Self { tasks, search, anchors, coarse, refiner, canvas } = self;
+        let RoundTasks { work, rotations, poses, best, .. } = tasks;
         let mut found = Vec::new();
         canvas.work = 0;
         match tasks.task {
