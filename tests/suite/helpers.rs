@@ -9,6 +9,9 @@ use sim3align::align::search::Request;
 use sim3align::align::{align, align_task};
 use sim3align::helpers::{Helpers, Link, Part, READY, Tasks};
 use sim3align::pauses::{Pauses, finished};
+use sim3align::precise::searched::ranking::Found;
+use sim3align::precise::searched::recipe::Task;
+use sim3align::precise::searched::tasks::{Outcome, RoundTasks, Run};
 
 use crate::prelude::*;
 use crate::shapes::{body, observe};
@@ -185,6 +188,61 @@ fn the_results_of_a_list_are_those_without_helpers() {
             let [with, without] = [&pauses, &Pauses::none()].map(run);
             assert_eq!(with, without, "seed {seed}, list {list}");
         }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn tasks_and_results_arrive_as_they_were_sent() {
+    for seed in 0..50 {
+        let mut random = Random::new(seed, 35);
+        let mut number = || random.uniform() - 0.5;
+        let mut pose = || CropPose {
+            rotation: DQuat::from_xyzw(number(), number(), number(), number()).normalize(),
+            size: number(),
+            place: DVec2::new(number(), 1e-300 * number()),
+            distance: 1e300 * number(),
+        };
+        let poses: Vec<CropPose> = (0..seed % 4).map(|_| pose()).collect();
+        let rotations: Vec<DQuat> = (0..seed % 3).map(|_| pose().rotation).collect();
+        let sent = RoundTasks {
+            view: seed as usize,
+            effort: [Effort::Fast, Effort::Balanced, Effort::Best][seed as usize % 3],
+            is_surrounded: seed % 2 == 0,
+            task: [Task::Rotate, Task::Place, Task::Refine, Task::Turn, Task::Fit][seed as usize % 5],
+            grid: seed as usize % 5,
+            work: 4000,
+            best: (seed % 7 > 0).then(|| number() as f32),
+            rotations: rotations.into(),
+            poses: poses.clone().into(),
+        };
+        let mut message = Vec::new();
+        sent.write(&mut message);
+        assert_eq!(RoundTasks::read(&message).as_ref(), Some(&sent), "seed {seed}");
+        for cut in 0..message.len() {
+            assert_eq!(RoundTasks::read(&message[..cut]), None, "seed {seed}, {cut} numbers");
+        }
+        let mut score = || number() as f32;
+        let score = Score {
+            total: score(),
+            hidden: score(),
+            counts: [score(), f32::MAX, f32::MIN_POSITIVE],
+            ..Score::default()
+        };
+        let found = |pose| Found { pose, score, renders: seed as usize, converged: seed % 2 == 0 };
+        let results: Vec<Outcome> =
+            poses.iter().map(|pose| Outcome { found: vec![found(*pose); 2], work: 1 << 40 }).collect();
+        let mut message = Vec::new();
+        results.iter().for_each(|result| Run::write_result(result, &mut message));
+        let mut rest = message.as_slice();
+        for sent in &results {
+            let read = Run::read_result(&mut rest).unwrap();
+            let numbers = |outcome: &Outcome| {
+                let numbers = |f: &Found| (f.pose, f.score, f.renders, f.converged);
+                (outcome.work, outcome.found.iter().map(numbers).collect::<Vec<_>>())
+            };
+            assert_eq!(numbers(&read), numbers(sent), "seed {seed}");
+        }
+        assert!(Run::read_result(&mut rest).is_none(), "nothing is left");
     }
 }
 
