@@ -15,3 +15,4 @@ pub mod refine;
 pub mod rounds;
 pub mod search;
 pub mod start;
+pub mod tasks;
