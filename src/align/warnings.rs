@@ -3,6 +3,7 @@
 use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
+use crate::precise::drawn::surplus::LeftOut;
 use crate::report::Preset;
 use crate::report::{ScoreTerms, Warning, WarningCode, is_collapsed};
 
@@ -160,6 +161,29 @@ pub fn about_fit(terms: &ScoreTerms) -> Option<Warning> {
             "Even the best pose explains the observation poorly (overlap {}, depth agreement {}; 1 is perfect). Check that the mesh shows the object of the mask, and that mask, depth and camera belong together.",
             number(terms.overlap),
             number(terms.depth)
+        ),
+    })
+}
+
+/// A warning about parts of the mesh that are left out.
+pub fn about_mesh(left_out: &LeftOut) -> Option<Warning> {
+    let &LeftOut { floating, inside, ground } = left_out;
+    let percent = |share: f64| number((1000.0 * share).round() / 10.0);
+    let parts = |(count, share): (usize, f64), where_: &str| {
+        let noun = if count == 1 { "part" } else { "parts" };
+        (count > 0).then(|| format!("{count} {noun} {where_} ({} % of the surface)", percent(share)))
+    };
+    let plate = (ground > 0.0).then(|| format!("a plate below ({} %)", percent(ground)));
+    let named: Vec<String> =
+        [parts(floating, "far from all others"), parts(inside, "inside, seen from nowhere"), plate]
+            .into_iter()
+            .flatten()
+            .collect();
+    (!named.is_empty()).then(|| Warning {
+        code: WarningCode::MeshPartsLeftOut,
+        message: format!(
+            "The alignment leaves out what a generator seems to have added to the mesh: {}. The transform places all of the mesh.",
+            named.join(", ")
         ),
     })
 }

@@ -71,6 +71,7 @@ pub mod singular_values;
 pub mod splat_files;
 pub mod support;
 pub mod surface;
+pub mod surplus;
 pub mod symmetric_eigen;
 pub mod track;
 pub mod triangle_tree;

@@ -1,10 +1,12 @@
 //! A mesh that is validated and decimated once for many alignments.
 
-use core::cell::{Cell, RefCell};
+use core::cell::{Cell, OnceCell, RefCell};
 use std::borrow::Cow;
 use std::rc::Rc;
 
+use super::ground_plate::without_plate;
 use super::mesh_pyramid::MeshPyramid;
+use super::surplus::{LeftOut, Trimmed};
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::check_shape;
@@ -13,13 +15,18 @@ use crate::precise::observed::resolution::{GRIDS, Grid};
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
 /// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part
-/// of the object, and every render would transform them.
+/// of the object, and every render would transform them. So is the [surplus](super::surplus) of generators.
 pub struct PreparedMesh<'a> {
-    mesh: Cow<'a, Mesh>,
+    /// As it was given.
+    whole: Cow<'a, Mesh>,
+    /// The rest, where there is surplus.
+    trimmed: Option<Trimmed>,
     colors: Option<SurfaceColors>,
     is_checked: Cell<bool>,
     /// By number of triangles, which depends on the quality.
     pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
+    /// The mesh without what looks like a ground plate, on first use.
+    without_plate: OnceCell<Option<Box<PreparedMesh<'static>>>>,
 }
 
 impl PreparedMesh<'static> {
@@ -35,14 +42,33 @@ impl<'a> PreparedMesh<'a> {
         Self::of(Cow::Borrowed(mesh))
     }
 
+    /// Borrows a mesh, and takes all of it for the object.
+    pub fn as_given(mesh: &'a Mesh) -> Self {
+        Self::with(Cow::Borrowed(mesh), None, OnceCell::from(None))
+    }
+
     fn of(mesh: Cow<'a, Mesh>) -> Self {
-        let mesh = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
-        Self { mesh, colors: None, is_checked: Cell::new(false), pyramids: RefCell::default() }
+        let whole = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
+        let trimmed = Trimmed::of(&whole);
+        Self::with(whole, trimmed, OnceCell::new())
+    }
+
+    fn with(
+        whole: Cow<'a, Mesh>,
+        trimmed: Option<Trimmed>,
+        without_plate: OnceCell<Option<Box<PreparedMesh<'static>>>>,
+    ) -> Self {
+        let (is_checked, pyramids) = (Cell::new(false), RefCell::default());
+        Self { whole, trimmed, colors: None, is_checked, pyramids, without_plate }
     }
 
     /// The mesh with the colours of its surface, or without any.
     pub fn with_colors(self, colors: impl Into<Option<SurfaceColors>>) -> Self {
-        Self { colors: colors.into(), ..self }
+        let of_object = |colors: SurfaceColors| match &self.trimmed {
+            Some(trimmed) => colors.beside(&trimmed.surplus),
+            None => colors,
+        };
+        Self { colors: colors.into().map(of_object), ..self }
     }
 
     /// The colours of the surface, if they are known.
@@ -50,9 +76,32 @@ impl<'a> PreparedMesh<'a> {
         self.colors.as_ref()
     }
 
-    /// The mesh.
+    /// The mesh of the object, without surplus: what the evidence is compared with.
     pub fn mesh(&self) -> &Mesh {
-        &self.mesh
+        self.trimmed.as_ref().map_or(&self.whole, |trimmed| &trimmed.mesh)
+    }
+
+    /// All of the mesh, as it was given.
+    pub fn whole(&self) -> &Mesh {
+        &self.whole
+    }
+
+    /// What is left out of it.
+    pub fn left_out(&self) -> LeftOut {
+        self.trimmed.as_ref().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
+    }
+
+    /// The mesh without what looks like a ground plate; `None` if it has nothing of the kind.
+    pub fn without_plate(&self) -> Option<&PreparedMesh<'static>> {
+        let of = || {
+            let trimmed = without_plate(self.mesh())?;
+            let left_out = LeftOut { ground: trimmed.left_out.ground, ..self.left_out() };
+            let colors = self.colors.clone().map(|colors| colors.beside(&trimmed.surplus));
+            let whole = Cow::Owned(self.whole.as_ref().clone());
+            let rest = PreparedMesh::with(whole, Some(Trimmed { left_out, ..trimmed }), OnceCell::from(None));
+            Some(Box::new(PreparedMesh { colors, ..rest }))
+        };
+        self.without_plate.get_or_init(of).as_deref()
     }
 
     /// Checks that the surface encloses a volume.
@@ -61,7 +110,7 @@ impl<'a> PreparedMesh<'a> {
     /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
     pub fn check(&self) -> Result<()> {
         if !self.is_checked.get() {
-            check_shape(&self.mesh)?;
+            check_shape(self.mesh())?;
             self.is_checked.set(true);
         }
         Ok(())
@@ -74,7 +123,7 @@ impl<'a> PreparedMesh<'a> {
         if let Some((_, known)) = pyramids.iter().find(|(known, _)| *known == triangles) {
             return Some(known.clone());
         }
-        let pyramid = Rc::new(MeshPyramid::new(&self.mesh, grids)?);
+        let pyramid = Rc::new(MeshPyramid::new(self.mesh(), grids)?);
         pyramids.push((triangles, pyramid.clone()));
         Some(pyramid)
     }

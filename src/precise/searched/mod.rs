@@ -14,4 +14,5 @@ pub mod recipe;
 pub mod refine;
 pub mod rounds;
 pub mod search;
+pub mod shown;
 pub mod start;
