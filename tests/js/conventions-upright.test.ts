@@ -61,7 +61,12 @@ function vertices(object: Group): number[] {
     if (!(child instanceof Mesh) || child.name === "support") return;
     const { position } = (child.geometry as BufferGeometry).attributes;
     for (let i = 0; i < (position?.count ?? 0); i++) {
-      found.push(...new Vector3().fromBufferAttribute(position as never, i).applyMatrix4(child.matrixWorld).toArray());
+      found.push(
+        ...new Vector3()
+          .fromBufferAttribute(position as never, i)
+          .applyMatrix4(child.matrixWorld)
+          .toArray(),
+      );
     }
   });
   return found;
@@ -95,7 +100,12 @@ test("a box that lies askew in its file gets tight axes, its up and its bottom, 
       for (const i of [0, 1, 2].filter((i) => i !== u))
         assertNear([low[i as 0] + high[i as 0]], [0], "the origin is in the middle", 1e-5);
       const { sizeM } = objectDimensions(straight.mesh, straight.transform);
-      assertNear(sizeM, found.map((side) => side * transform.scale), "the box of the upright mesh", 1e-5);
+      assertNear(
+        sizeM,
+        found.map((side) => side * transform.scale),
+        "the box of the upright mesh",
+        1e-5,
+      );
       assertNear(compose(transform, straight.meshFromUpright).matrix, straight.transform.matrix, "the frame", 1e-9);
     }
   });
@@ -157,7 +167,12 @@ test("a GLB and a scene of upright objects have every vertex where it was", asyn
   for (const other of others) {
     const shift = [0, 1, 2].map((k) => (other[k] ?? 0) - (own?.[k] ?? 0));
     assertNear([shift[1] ?? 1], [0], "heights", 1e-5);
-    assertNear(other, (own ?? []).map((x, i) => x + (shift[i % 3] ?? 0)), "the scene", 1e-5);
+    assertNear(
+      other,
+      (own ?? []).map((x, i) => x + (shift[i % 3] ?? 0)),
+      "the scene",
+      1e-5,
+    );
   }
   const { tiltRad } = toCuboid(objectDimensions(straight.mesh, straight.transform), { frame: "opencv" });
   const length = Math.hypot(...support.normal);

@@ -79,5 +79,6 @@ pub mod tukey;
 pub mod umeyama;
 pub mod views;
 pub mod views_joint;
+pub mod views_proportions;
 pub mod voxel_grid;
 pub mod warnings;

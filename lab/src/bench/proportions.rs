@@ -42,8 +42,8 @@ pub fn records(picture: &Picture, seed: u64, most: f64, options: &AlignOptions) 
 /// A table of the errors, in per cent.
 pub fn table(records: &[Record]) -> String {
     let mut lines = vec![
-        "| sides | number | median before | after | 90 % before | after | 90 % of error / uncertainty |".to_owned(),
-        "|---|---|---|---|---|---|---|".into(),
+        "| sides | number | median before | after | 90 % before | after | ≤ 2 % before | after | worse by > .5 % | 90 % of error / uncertainty |".to_owned(),
+        "|---|---|---|---|---|---|---|---|---|---|".into(),
     ];
     for (name, from, to) in [("all", 0.0, f64::INFINITY), ("seen", 0.0, SEEN), ("not seen", SEEN, f64::INFINITY)] {
         let sides = || {
@@ -55,15 +55,21 @@ pub fn table(records: &[Record]) -> String {
             values.sort_by(f64::total_cmp);
             values.get((share * values.len() as f64) as usize).copied()
         };
+        let count = |is: fn(&[f64; 3]) -> bool| {
+            cell(Some(100.0 * sides().filter(is).count() as f64 / sides().count().max(1) as f64), 0)
+        };
         let percent = |share, of| cell(at(share, of).map(|x| 100.0 * x), 2);
         let [before, after] = [|s: &[f64; 3]| s[0], |s: &[f64; 3]| s[1]];
         lines.push(format!(
-            "| {name} | {} | {} | {} | {} | {} | {} |",
+            "| {name} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
             sides().count(),
             percent(0.5, before),
             percent(0.5, after),
             percent(0.9, before),
             percent(0.9, after),
+            count(|s| s[0] <= 0.02),
+            count(|s| s[1] <= 0.02),
+            count(|s| s[1] > s[0] + 0.005),
             cell(at(0.9, |s| s[1] / s[2].max(1e-9)), 2),
         ));
     }

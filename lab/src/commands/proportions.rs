@@ -46,6 +46,7 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
     let threads = arguments.threads("threads")?;
     let rigs: Vec<usize> = (0..arguments.value("rigs", 0)?).collect();
     arguments.end()?;
+    let pictures = if rigs.is_empty() { pictures.some()? } else { pictures };
     let set = RigSet { seed: pictures.seed, views: None, is_printed: false, is_small: false };
     let of_rig = |index: &usize| record_of_views(&set.case(*index)?, pictures.seed, most, freedom);
     let of_views = parallel_map(threads, &rigs, of_rig, |done| print_progress(done, rigs.len()))?;

@@ -14,8 +14,8 @@ import { SIMULATOR_DEFAULTS, type SimulatorObject, type SimulatorScene, simulato
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
 import { withoutUndefined } from "../values.js";
-import { number } from "./parse.js";
 import { type ExportedAs, exportedArrays, exportedMesh } from "./exported-mesh.js";
+import { number } from "./parse.js";
 import { fixed } from "./table.js";
 import { UsageError } from "./usage-error.js";
 import { checkWritable, makeFolder } from "./writable.js";

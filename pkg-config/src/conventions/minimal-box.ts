@@ -80,10 +80,7 @@ function width(points: readonly Point2[], x: number, y: number): number {
  * The direction of the smallest rectangle around points. One of its sides lies along an edge of their convex hull, unless its
  * area is not below this share of that along the axes.
  */
-export function smallestRectangle(
-  points: readonly Point2[],
-  tighter = 1,
-): { cos: number; sin: number; area: number } {
+export function smallestRectangle(points: readonly Point2[], tighter = 1): { cos: number; sin: number; area: number } {
   const corners = hull(points);
   const own = { cos: 1, sin: 0, area: width(corners, 1, 0) * width(corners, 0, 1) };
   let best = { ...own, area: tighter * own.area };

@@ -44,7 +44,11 @@ const TIGHTER = 0.99;
  * const { sizeM: [width, height, depth] } = objectDimensions(straight.mesh, straight.transform);
  * @throws {@link Sim3AlignError} for an invalid mesh, transform or plane, and `INVALID_OPTION`
  */
-export function uprightMesh<M extends MeshArrays>(mesh: M, transform: Sim3Like, options: UprightOptions = {}): Upright<M> {
+export function uprightMesh<M extends MeshArrays>(
+  mesh: M,
+  transform: Sim3Like,
+  options: UprightOptions = {},
+): Upright<M> {
   const frame = uprightFrame(mesh, transform, options);
   const back = sim3Of(inverted(frame));
   const positions = applyToPoints(back, mesh.positions);
@@ -102,7 +106,10 @@ function uprightFrame(mesh: MeshArrays, transform: Sim3Like, options: UprightOpt
   const upward =
     boxAxes === null
       ? turned(toMesh, normalOf(support))
-      : nearest([0, 1, 2].flatMap((k) => bothWays(column(boxAxes, k as 0))), turned(toMesh, [0, -1, 0]));
+      : nearest(
+          [0, 1, 2].flatMap((k) => bothWays(column(boxAxes, k as 0))),
+          turned(toMesh, [0, -1, 0]),
+        );
   // The front is z in files with y up, and −y in those with z up.
   const front: Vector3 = Math.abs(upward[2]) < 0.8 ? [0, 0, 1] : [0, -Math.sign(upward[2]), 0];
   const forward = acrossTo(upward, front);
