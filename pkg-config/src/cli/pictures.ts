@@ -110,9 +110,14 @@ export class Pictures {
   }
 }
 
+/** What is read of an entry of a posed mesh. */
+interface PosedEntry extends Partial<ExportedAs>, Pick<UprightOptions, "support"> {
+  matrix: number[];
+}
+
 /** The posed mesh, in the proportions that were found: a GLB keeps its materials. */
 async function posed({ mesh }: AlignInput, entry: Shown["entry"], isUpright = false): Promise<Uint8Array> {
-  const { matrix, proportions, support } = entry as { matrix: number[] } & Partial<ExportedAs> & UprightOptions;
+  const { matrix, proportions, support } = entry as unknown as PosedEntry;
   const upright = isUpright ? withoutUndefined({ support }) : undefined;
   const placed = await exportedMesh(mesh, { matrix }, { proportions, upright });
   return placed.mesh instanceof Uint8Array

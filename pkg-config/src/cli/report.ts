@@ -188,7 +188,8 @@ export function details({ name, alignment, errors }: Success, style: Style): str
 }
 
 /** The lengths of a mesh in the proportions that were found. */
-function proportionsRows({ proportions }: { proportions?: Stretch }, lengths: Lengths): Row[] {
+function proportionsRows(alignment: object, lengths: Lengths): Row[] {
+  const { proportions } = alignment as { proportions?: Stretch };
   if (proportions === undefined) return [];
   const { sizeM, uncertainty } = proportions;
   const sides = sizeM.map((size, k) => {

@@ -69,8 +69,9 @@ function resultOf(scene: ReadScene, placed: readonly PlacedOrError[], arrangemen
     // Contacts may have moved the pose.
     const moved = { ...named, ...of.alignment, ...arrangement.objects[i] } as SceneAlignment;
     const { proportions } = moved;
-    if (proportions === undefined) return moved;
-    return { ...moved, proportions: shifted(proportions, (k) => moved.translation[k] - of.alignment.translation[k]) };
+    const before = of.alignment?.translation;
+    if (proportions === undefined || before === undefined) return moved;
+    return { ...moved, proportions: shifted(proportions, (k) => moved.translation[k] - before[k]) };
   });
   const result = { objects, support: arrangement.support, metrics: metricsOf(objects), warnings: [] };
   return withNotes<SceneResult>(result, scene.notes);
