@@ -168,22 +168,20 @@ pub fn about_fit(terms: &ScoreTerms) -> Option<Warning> {
 /// A warning about parts of the mesh that are left out.
 pub fn about_mesh(left_out: &LeftOut) -> Option<Warning> {
     let &LeftOut { floating, inside, ground } = left_out;
-    let percent = |share: f64| number((1000.0 * share).round() / 10.0);
-    let parts = |(count, share): (usize, f64), where_: &str| {
-        let noun = if count == 1 { "part" } else { "parts" };
-        (count > 0).then(|| format!("{count} {noun} {where_} ({} % of the surface)", percent(share)))
-    };
-    let plate = (ground > 0.0).then(|| format!("a plate below ({} %)", percent(ground)));
-    let named: Vec<String> =
-        [parts(floating, "far from all others"), parts(inside, "inside, seen from nowhere"), plate]
-            .into_iter()
-            .flatten()
-            .collect();
+    let plate = (usize::from(ground > 0.0), ground);
+    let mut named = String::new();
+    for ((count, share), what) in
+        [(floating, "far from all others"), (inside, "inside, seen from nowhere"), (plate, "below, a plate")]
+    {
+        if count > 0 {
+            let percent = number((1000.0 * share).round() / 10.0);
+            named += &format!(" {} {what} ({percent} % of the surface);", number(count as f64));
+        }
+    }
     (!named.is_empty()).then(|| Warning {
         code: WarningCode::MeshPartsLeftOut,
         message: format!(
-            "The alignment leaves out what a generator seems to have added to the mesh: {}. The transform places all of the mesh.",
-            named.join(", ")
+            "Parts of the mesh seem to be additions of its generator, and do not count:{named} the transform places all of the mesh."
         ),
     })
 }

@@ -127,7 +127,7 @@ fn the_alignment_is_that_of_the_object_and_the_warning_says_what_is_left_out() {
     let alone = align(&observation, &object, &quick(), &mut Silent).unwrap();
     assert!(alone.warnings.is_empty(), "{:?}", alone.warnings);
     let floater = moved(&sphere(0.03, 6), [0.9, 0.2, 0.0]);
-    for (surplus, word) in [(&floater, "1 part far from all others"), (&ground, "a plate below")] {
+    for (surplus, word) in [(&floater, " 1 far from all others ("), (&ground, " 1 below, a plate (")] {
         let mesh = joined(&object, surplus);
         let found = align(&observation, &mesh, &quick(), &mut Silent).unwrap();
         assert_eq!(found.camera_from_mesh, alone.camera_from_mesh, "{word}");

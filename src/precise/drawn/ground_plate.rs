@@ -3,8 +3,6 @@
 //! Table tops, lamp feet and screens have the same form. This only finds what may be such a plate: whether it is one, the
 //! image decides (see [`shown`](crate::precise::searched::shown)).
 
-use core::ops::Range;
-
 use glam::{DMat3, DVec3};
 
 use super::surplus::{LeftOut, Trimmed};
@@ -29,6 +27,8 @@ const HEIGHT: f64 = 0.1;
 const OBJECT: f64 = 0.1;
 /// Directions along the plate in which extents are compared.
 const DIRECTIONS: usize = 4;
+/// Heights by which the thickness of a plate is measured.
+const BINS: usize = 64;
 
 /// A mesh without its ground plate; `None` if it has nothing that looks like one.
 pub fn without_plate(mesh: &Mesh) -> Option<Trimmed> {
@@ -54,7 +54,12 @@ impl Face {
         Self { corners, normal: if twice > 0.0 { cross / twice } else { DVec3::ZERO }, area: 0.5 * twice }
     }
 
+    fn is_flat(&self, down: DVec3) -> bool {
+        self.normal.dot(down).abs() >= FLAT
+    }
+
     /// The interval of the corners along a direction.
+    #[inline(never)]
     fn along(&self, direction: DVec3) -> [f64; 2] {
         let [a, b, c] = self.corners.map(|p| p.dot(direction));
         [a.min(b).min(c), a.max(b).max(c)]
@@ -75,65 +80,80 @@ fn flattest(faces: &[Face]) -> Option<DVec3> {
 /// The mesh without a plate at its end in the direction `down`.
 fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) -> Option<Trimmed> {
     let side = down.any_orthonormal_vector();
-    let across = down.cross(side);
-    let directions = core::array::from_fn::<_, DIRECTIONS, _>(|k| {
+    let directions: [DVec3; DIRECTIONS] = core::array::from_fn(|k| {
         let (sin, cos) = sin_cos(core::f64::consts::PI * k as f64 / DIRECTIONS as f64);
-        side * cos + across * sin
+        side * cos + down.cross(side) * sin
     });
-    let longest = |extents: [Range<f64>; DIRECTIONS]| extents.iter().fold(0.0, |most, e| (e.end - e.start).max(most));
-    let lowest = interval(faces.iter(), down).end;
-    let most = THICKNESS * longest(directions.map(|d| interval(faces.iter(), d)));
-    let is_flat = |face: &Face| face.normal.dot(down).abs() >= FLAT;
-    let mut flat: Vec<(f64, f64)> = (faces.iter())
-        .filter(|face| is_flat(face))
-        .map(|face| (lowest - face.along(down)[0], face.area))
-        .filter(|(height, _)| *height <= most)
-        .collect();
-    flat.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let all: f64 = flat.iter().map(|(_, area)| area).sum();
+    let all = vec![true; faces.len()];
+    let [_, lowest] = interval(faces, &all, true, down);
+    let most = THICKNESS * directions.iter().fold(0.0, |most, d| length(interval(faces, &all, true, *d)).max(most));
+    // The flat area by the height of its upper side.
+    let mut flat = [0.0; BINS];
+    for face in faces.iter().filter(|face| face.is_flat(down)) {
+        let height = BINS as f64 * (lowest - face.along(down)[0]) / most;
+        if height < BINS as f64 {
+            flat[height as usize] += face.area;
+        }
+    }
+    let total: f64 = flat.iter().sum();
     let mut sum = 0.0;
-    let (thickness, _) = flat.iter().find(|(_, area)| {
+    let filled = flat.iter().position(|area| {
         sum += area;
-        sum >= WITHIN * all
+        sum >= WITHIN * total
     })?;
-    let top = lowest - thickness - 0.1 * most;
-    let is_low = |face: &Face| face.along(down)[0] >= top;
+    let top = lowest - most * (filled + 2) as f64 / BINS as f64;
+    let low: Vec<bool> = faces.iter().map(|face| face.along(down)[0] >= top).collect();
 
     // A part of its own, where there is one: the bottom of the object is low, too.
     let mut is_apart = vec![true; parts.map_or(0, |parts| parts.parts.len())];
-    if let Some(parts) = parts {
-        for (face, &part) in faces.iter().zip(&parts.of_triangle) {
-            is_apart[part as usize] &= is_low(face);
-        }
+    let of_triangle = parts.map_or(&[][..], |parts| &parts.of_triangle);
+    for (low, &part) in low.iter().zip(of_triangle) {
+        is_apart[part as usize] &= low;
     }
-    let of_part = |index: usize| parts.is_some_and(|parts| is_apart[parts.of_triangle[index] as usize]);
-    let low: Vec<bool> = faces.iter().map(is_low).collect();
-    let apart: Vec<bool> = (0..faces.len()).map(of_part).collect();
-    let area: f64 = faces.iter().map(|face| face.area).sum();
-    [apart, low].into_iter().find_map(|is_plate| {
-        let of = |side: bool| faces.iter().zip(&is_plate).filter(move |(_, p)| **p == side).map(|(face, _)| face);
-        let [plate_area, object_area] = [true, false].map(|side| of(side).map(|face| face.area).sum::<f64>());
-        let flat_area: f64 = of(true).filter(|face| is_flat(face)).map(|face| face.area).sum();
-        let [plate, object] = [true, false].map(|side| directions.map(|d| interval(of(side), d)));
-        let length = |range: &Range<f64>| range.end - range.start;
-        let is_larger = plate.iter().zip(&object).all(|(plate, object)| {
-            plate.start <= object.start && object.end <= plate.end && length(plate) >= LARGER * length(object)
-        });
-        let rectangle = length(&plate[0]) * length(&plate[DIRECTIONS / 2]);
-        let height = top - interval(of(false), down).start;
-        let is_plate_below = is_larger
-            && flat_area >= FULL * rectangle
-            && object_area >= OBJECT * area
-            && height >= HEIGHT * longest(plate);
-        let left_out = LeftOut { ground: plate_area / area, ..LeftOut::default() };
-        is_plate_below.then(|| Trimmed::split(mesh, left_out, |triangle| is_plate[triangle])).flatten()
+    let apart: Vec<bool> = of_triangle.iter().map(|&part| is_apart[part as usize]).collect();
+    [apart, low].iter().find_map(|is_plate| {
+        if is_plate.is_empty() {
+            return None;
+        }
+        let [mut object, mut plate, mut flat] = [0.0; 3];
+        for (face, is_plate) in faces.iter().zip(is_plate) {
+            if *is_plate {
+                plate += face.area;
+                flat += if face.is_flat(down) { face.area } else { 0.0 };
+            } else {
+                object += face.area;
+            }
+        }
+        let [mut longest, mut rectangle]: [f64; 2] = [0.0, 1.0];
+        for (k, direction) in directions.into_iter().enumerate() {
+            let [own, other] = [true, false].map(|side| interval(faces, is_plate, side, direction));
+            if !(own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)) {
+                return None;
+            }
+            longest = longest.max(length(own));
+            if k % (DIRECTIONS / 2) == 0 {
+                rectangle *= length(own);
+            }
+        }
+        let height = top - interval(faces, is_plate, false, down)[0];
+        let share = plate / (plate + object);
+        let is_ground = flat >= FULL * rectangle && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
+        let left_out = LeftOut { ground: share, ..LeftOut::default() };
+        is_ground.then(|| Trimmed::split(mesh, left_out, &|triangle| is_plate[triangle])).flatten()
     })
 }
 
-/// The interval of some triangles along a direction.
-fn interval<'a>(faces: impl Iterator<Item = &'a Face>, direction: DVec3) -> Range<f64> {
-    faces.fold(f64::INFINITY..f64::NEG_INFINITY, |all, face| {
+/// The interval along a direction of the triangles of which `of` says `side`.
+#[inline(never)]
+fn interval(faces: &[Face], of: &[bool], side: bool, direction: DVec3) -> [f64; 2] {
+    let mut all = [f64::INFINITY, f64::NEG_INFINITY];
+    for (face, _) in faces.iter().zip(of).filter(|(_, of)| **of == side) {
         let [low, high] = face.along(direction);
-        all.start.min(low)..all.end.max(high)
-    })
+        all = [all[0].min(low), all[1].max(high)];
+    }
+    all
+}
+
+fn length([low, high]: [f64; 2]) -> f64 {
+    high - low
 }

@@ -19,9 +19,11 @@ use crate::precise::observed::resolution::{GRIDS, Grid};
 pub struct PreparedMesh<'a> {
     /// As it was given.
     whole: Cow<'a, Mesh>,
-    /// The rest, where there is surplus.
-    trimmed: Option<Trimmed>,
+    /// The rest, where there is surplus; on first use.
+    trimmed: OnceCell<Option<Trimmed>>,
+    /// The colours of all of the mesh, and those of the rest; on first use.
     colors: Option<SurfaceColors>,
+    trimmed_colors: OnceCell<SurfaceColors>,
     is_checked: Cell<bool>,
     /// By number of triangles, which depends on the quality.
     pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
@@ -44,41 +46,44 @@ impl<'a> PreparedMesh<'a> {
 
     /// Borrows a mesh, and takes all of it for the object.
     pub fn as_given(mesh: &'a Mesh) -> Self {
-        Self::with(Cow::Borrowed(mesh), None, OnceCell::from(None))
+        Self::with(Cow::Borrowed(mesh), OnceCell::from(None), OnceCell::from(None))
     }
 
     fn of(mesh: Cow<'a, Mesh>) -> Self {
         let whole = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
-        let trimmed = Trimmed::of(&whole);
-        Self::with(whole, trimmed, OnceCell::new())
+        Self::with(whole, OnceCell::new(), OnceCell::new())
     }
 
     fn with(
         whole: Cow<'a, Mesh>,
-        trimmed: Option<Trimmed>,
+        trimmed: OnceCell<Option<Trimmed>>,
         without_plate: OnceCell<Option<Box<PreparedMesh<'static>>>>,
     ) -> Self {
-        let (is_checked, pyramids) = (Cell::new(false), RefCell::default());
-        Self { whole, trimmed, colors: None, is_checked, pyramids, without_plate }
+        let (is_checked, pyramids, trimmed_colors) = (Cell::new(false), RefCell::default(), OnceCell::new());
+        Self { whole, trimmed, colors: None, trimmed_colors, is_checked, pyramids, without_plate }
     }
 
     /// The mesh with the colours of its surface, or without any.
     pub fn with_colors(self, colors: impl Into<Option<SurfaceColors>>) -> Self {
-        let of_object = |colors: SurfaceColors| match &self.trimmed {
-            Some(trimmed) => colors.beside(&trimmed.surplus),
-            None => colors,
-        };
-        Self { colors: colors.into().map(of_object), ..self }
+        Self { colors: colors.into(), ..self }
     }
 
-    /// The colours of the surface, if they are known.
+    /// The colours of the surface of the object, if they are known.
     pub fn colors(&self) -> Option<&SurfaceColors> {
-        self.colors.as_ref()
+        let colors = self.colors.as_ref()?;
+        Some(match self.trimmed() {
+            Some(trimmed) => self.trimmed_colors.get_or_init(|| colors.clone().beside(&trimmed.surplus)),
+            None => colors,
+        })
+    }
+
+    fn trimmed(&self) -> Option<&Trimmed> {
+        self.trimmed.get_or_init(|| Trimmed::of(&self.whole)).as_ref()
     }
 
     /// The mesh of the object, without surplus: what the evidence is compared with.
     pub fn mesh(&self) -> &Mesh {
-        self.trimmed.as_ref().map_or(&self.whole, |trimmed| &trimmed.mesh)
+        self.trimmed().map_or(&self.whole, |trimmed| &trimmed.mesh)
     }
 
     /// All of the mesh, as it was given.
@@ -88,7 +93,7 @@ impl<'a> PreparedMesh<'a> {
 
     /// What is left out of it.
     pub fn left_out(&self) -> LeftOut {
-        self.trimmed.as_ref().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
+        self.trimmed().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
     }
 
     /// The mesh without what looks like a ground plate; `None` if it has nothing of the kind.
@@ -96,10 +101,11 @@ impl<'a> PreparedMesh<'a> {
         let of = || {
             let trimmed = without_plate(self.mesh())?;
             let left_out = LeftOut { ground: trimmed.left_out.ground, ..self.left_out() };
-            let colors = self.colors.clone().map(|colors| colors.beside(&trimmed.surplus));
             let whole = Cow::Owned(self.whole.as_ref().clone());
-            let rest = PreparedMesh::with(whole, Some(Trimmed { left_out, ..trimmed }), OnceCell::from(None));
-            Some(Box::new(PreparedMesh { colors, ..rest }))
+            let trimmed = OnceCell::from(Some(Trimmed { left_out, ..trimmed }));
+            let rest = PreparedMesh::with(whole, trimmed, OnceCell::from(None));
+            // Without those of what is left out already.
+            Some(Box::new(rest.with_colors(self.colors().cloned())))
         };
         self.without_plate.get_or_init(of).as_deref()
     }

@@ -9,7 +9,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::mesh_parts::{MeshPart, MeshParts};
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use crate::geometry::rotations::super_fibonacci;
+use crate::geometry::rotations::{matrix_of, super_fibonacci};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface::{check_shape, each_surface_sample};
 
@@ -62,23 +62,24 @@ impl Trimmed {
     /// A mesh, whose vertices are all used, without floaters and inner shells; `None` if it has neither.
     pub fn of(mesh: &Mesh) -> Option<Self> {
         let parts = MeshParts::of(mesh)?;
-        let area: f64 = parts.parts.iter().map(|part| part.area).sum();
-        let mut is_left_out = floaters(mesh, &parts, area)?;
-        let share = |is_counted: &dyn Fn(usize) -> bool| {
-            let counted = || parts.parts.iter().enumerate().filter(|(k, _)| is_counted(*k));
-            (counted().count(), counted().map(|(_, part)| part.area).sum::<f64>() / area)
-        };
-        let floating = share(&|k| is_left_out[k]);
-        let shells = shells(mesh, &parts, &is_left_out, area);
-        let inside = shells.as_ref().map_or((0, 0.0), |shells| share(&|k| shells[k]));
-        let shells = shells.unwrap_or_default();
-        is_left_out.iter_mut().zip(shells).for_each(|(left_out, shell)| *left_out |= shell);
-        let left_out = LeftOut { floating, inside, ground: 0.0 };
-        Self::split(mesh, left_out, |triangle| is_left_out[parts.of_triangle[triangle] as usize])
+        let mut is_left_out = floaters(mesh, &parts)?;
+        let mut left_out = LeftOut::default();
+        let all = sum(&parts, &|_| true).area;
+        let shells = shells(mesh, &parts, &is_left_out).unwrap_or_default();
+        for (k, part) in parts.parts.iter().enumerate() {
+            let is_shell = shells.get(k).is_some_and(|shell| *shell);
+            let (count, share) = if is_shell { &mut left_out.inside } else { &mut left_out.floating };
+            if is_shell || is_left_out[k] {
+                is_left_out[k] = true;
+                *count += 1;
+                *share += part.area / all;
+            }
+        }
+        Self::split(mesh, left_out, &|triangle| is_left_out[parts.of_triangle[triangle] as usize])
     }
 
     /// A mesh without these of its triangles; `None` if they are none, or the rest is no shape.
-    pub fn split(mesh: &Mesh, left_out: LeftOut, is_surplus: impl Fn(usize) -> bool) -> Option<Self> {
+    pub fn split(mesh: &Mesh, left_out: LeftOut, is_surplus: &dyn Fn(usize) -> bool) -> Option<Self> {
         let [mut kept, mut surplus] = [Vec::new(), Vec::new()];
         for (index, triangle) in mesh.triangles().iter().enumerate() {
             if is_surplus(index) { &mut surplus } else { &mut kept }.push(*triangle);
@@ -92,38 +93,39 @@ impl Trimmed {
     }
 }
 
+/// The area and the box of some parts together.
+#[inline(never)]
+fn sum(parts: &MeshParts, is_counted: &dyn Fn(usize) -> bool) -> MeshPart {
+    let mut sum = MeshPart { area: 0.0, bounds: Bounds::NOTHING };
+    for (_, part) in parts.parts.iter().enumerate().filter(|(k, _)| is_counted(*k)) {
+        sum = MeshPart { area: sum.area + part.area, bounds: sum.bounds.union(part.bounds) };
+    }
+    sum
+}
+
 /// Which parts are floaters; none, if they do no harm. `None` for a mesh without area.
-fn floaters(mesh: &Mesh, parts: &MeshParts, area: f64) -> Option<Vec<bool>> {
+fn floaters(mesh: &Mesh, parts: &MeshParts) -> Option<Vec<bool>> {
     let mut is_floater = vec![false; parts.parts.len()];
+    let all = sum(parts, &|_| true);
+    let is_small = |part: &MeshPart| part.area <= FLOATER_AREA * all.area;
     for _ in 0..PASSES {
         let cluster = clusters(mesh, parts, &is_floater)?;
-        let clusters = cluster.iter().max().map_or(0, |most| *most as usize + 1);
-        let mut sums = vec![MeshPart { area: 0.0, bounds: Bounds::NOTHING }; clusters];
-        for (k, part) in parts.parts.iter().enumerate().filter(|(k, _)| !is_floater[*k]) {
-            let sum = &mut sums[cluster[k] as usize];
-            *sum = MeshPart { area: sum.area + part.area, bounds: sum.bounds.union(part.bounds) };
-        }
-        let is_small = |part: &MeshPart| part.area <= FLOATER_AREA * area;
+        let count = cluster.iter().max().map_or(0, |most| *most + 1);
+        let sums: Vec<MeshPart> = (0..count).map(|own| sum(parts, &|k| cluster[k] == own && !is_floater[k])).collect();
         let body = sums.iter().filter(|part| !is_small(part)).fold(Bounds::NOTHING, |all, p| all.union(p.bounds));
-        let is_far = |part: &MeshPart| is_small(part) && part.bounds.diagonal() <= FLOATER_SIZE * body.diagonal();
-        let mut is_new = false;
-        for (k, floater) in is_floater.iter_mut().enumerate().filter(|(_, floater)| !**floater) {
-            *floater = is_far(&sums[cluster[k] as usize]);
-            is_new |= *floater;
+        let before = is_floater.clone();
+        for (floater, own) in is_floater.iter_mut().zip(cluster) {
+            let own = &sums[own as usize];
+            *floater |= is_small(own) && own.bounds.diagonal() <= FLOATER_SIZE * body.diagonal();
         }
-        if !is_new {
+        if is_floater == before {
             break;
         }
     }
-    let of = |is_counted: bool| parts.parts.iter().zip(&is_floater).filter(move |(_, f)| **f == is_counted);
-    let floating: f64 = of(true).map(|(part, _)| part.area).sum();
-    let [body, all] = [false, true].map(|with| {
-        let counted = parts.parts.iter().zip(&is_floater).filter(|(_, floater)| with || !**floater);
-        counted.fold(Bounds::NOTHING, |all, (part, _)| all.union(part.bounds))
-    });
-    let growth = (body.min - all.min).max(all.max - body.max).max_element();
-    let is_harmless = growth < HARMLESS_GROWTH * body.diagonal() && floating < HARMLESS_FLOATERS * area;
-    if is_harmless || floating > FLOATERS_AREA * area {
+    let [floating, body] = [true, false].map(|side| sum(parts, &|k| is_floater[k] == side));
+    let growth = (body.bounds.min - all.bounds.min).max(all.bounds.max - body.bounds.max).max_element();
+    let is_harmless = growth < HARMLESS_GROWTH * body.bounds.diagonal() && floating.area < HARMLESS_FLOATERS * all.area;
+    if is_harmless || floating.area > FLOATERS_AREA * all.area {
         is_floater.fill(false);
     }
     Some(is_floater)
@@ -178,40 +180,33 @@ fn clusters(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<u
 }
 
 /// Which parts are inside all others, and seen from nowhere; `None` if they do no harm.
-fn shells(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool], area: f64) -> Option<Vec<bool>> {
-    let kept = parts.parts.iter().zip(is_floater).filter(|(_, floater)| !**floater);
-    let all = kept.fold(Bounds::NOTHING, |all, (part, _)| all.union(part.bounds));
-    let mut is_hidden: Vec<bool> = (parts.parts.iter().zip(is_floater))
-        .map(|(MeshPart { bounds, .. }, is_floater)| {
-            !is_floater && bounds.min.cmpgt(all.min).all() && bounds.max.cmplt(all.max).all()
-        })
-        .collect();
-    let is_harmless = |hidden: &[bool]| {
-        let hidden = parts.parts.iter().zip(hidden).filter(|(_, hidden)| **hidden);
-        hidden.map(|(part, _)| part.area).sum::<f64>() < HARMLESS_SHELLS * area
-    };
+fn shells(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<bool>> {
+    let MeshPart { area, bounds: all } = sum(parts, &|k| !is_floater[k]);
+    let is_inside = |part: &Bounds| part.min.cmpgt(all.min).all() && part.max.cmplt(all.max).all();
+    let mut is_hidden: Vec<bool> =
+        parts.parts.iter().zip(is_floater).map(|(part, floater)| !floater && is_inside(&part.bounds)).collect();
+    let is_harmless = |hidden: &[bool]| sum(parts, &|k| hidden[k]).area < HARMLESS_SHELLS * area;
     if mesh.triangles().len() > MAX_TRIANGLES || is_harmless(&is_hidden) {
         return None;
     }
-    let diagonal = f64::from(all.diagonal());
+    let per_unit = 1.0 / f64::from(all.diagonal());
     let middle = 0.5 * (WIDTH as f64 - 1.0);
     let focal = 0.9 * WIDTH as f64 * DISTANCE;
     let camera = Pinhole::new(focal, focal, middle, middle).ok()?;
     let mut rasteriser = Rasteriser::new();
     for view in 0..VIEWS {
         let rotation = super_fibonacci(view, VIEWS);
-        let center = rotation * all.center().as_dvec3() / diagonal;
-        let rotation = Similarity::rotation_from_xyzw(&rotation.to_array()).ok()?;
-        let at = nalgebra::Vector3::new(-center.x, -center.y, DISTANCE - center.z);
-        let camera_from_mesh = Similarity::from_parts(1.0 / diagonal, rotation, at).ok()?;
+        let center = glam::DVec3::Z * DISTANCE - rotation * all.center().as_dvec3() * per_unit;
+        let camera_from_mesh = Similarity {
+            scale: per_unit,
+            rotation: matrix_of(rotation),
+            translation: nalgebra::Vector3::from(center.to_array()),
+        };
         rasteriser.render(mesh, &camera_from_mesh, &camera, WIDTH, WIDTH);
-        if !rasteriser.is_complete() {
-            return None;
-        }
         for &triangle in rasteriser.triangles().iter().filter(|triangle| **triangle != NO_TRIANGLE) {
             is_hidden[parts.of_triangle[triangle as usize] as usize] = false;
         }
-        if is_harmless(&is_hidden) {
+        if !rasteriser.is_complete() || is_harmless(&is_hidden) {
             return None;
         }
     }
