@@ -265,13 +265,10 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
     run_prepared(case, method, overrides, |mesh| PreparedMesh::borrowed(mesh))
 }
 
+type Prepare = fn(&Mesh) -> PreparedMesh<'_>;
+
 /// [`run_case`] with another way to prepare the mesh.
-pub fn run_prepared(
-    case: &BenchCase,
-    method: &Method,
-    overrides: &[(String, f64)],
-    prepare: fn(&Mesh) -> PreparedMesh<'_>,
-) -> Record {
+pub fn run_prepared(case: &BenchCase, method: &Method, overrides: &[(String, f64)], prepare: Prepare) -> Record {
     let mut searches = match method {
         Method::Precise(options) => efforts::of(options),
         Method::Paper(_) => efforts::of(&AlignOptions::default()),
@@ -343,8 +340,7 @@ pub fn run_method(
     method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<AnyAlignment>,
 ) -> Record {
     let timer = CpuTimer::start();
-    let mesh = case.given.as_ref().unwrap_or(&case.mesh);
-    let outcome = method(&case.observation, mesh, &mut Clock::default());
+    let outcome = method(&case.observation, case.given.as_ref().unwrap_or(&case.mesh), &mut Clock::default());
     let seconds = timer.seconds();
     record_of(case, outcome.map_err(|error| described(&error)), seconds)
 }
