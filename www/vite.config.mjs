@@ -3,19 +3,13 @@ import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { defineConfig } from "vite";
+import { definitions } from "./definitions.mjs";
 
 const www = dirname(fileURLToPath(import.meta.url));
 const repository = dirname(www);
-/** The list of samples. As part of the script, it saves the page a request before those of the samples. */
 const samples = join(www, "samples", "index.json");
 
-/** The option table of the package. The script gets only the rows and fields that the page uses. */
 const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js")).href);
-const rowOf = (name) => OPTIONS.align.find((row) => row.name === name);
-const optionTable = {
-  quality: rowOf("quality").choices,
-  maxSeed: rowOf("seed").max,
-};
 
 /** Scripts that are loaded when they are needed. */
 const later =
@@ -43,8 +37,7 @@ const preloadedModules = {
   },
 };
 
-/** What the page and the element have in common. @type {import("vite").UserConfig} */
-export const shared = {
+export default defineConfig({
   root: www,
   // The site works from any path.
   base: "./",
@@ -55,13 +48,11 @@ export const shared = {
       { find: /^sim3align\/(.+)$/, replacement: join(repository, "pkg", "$1.js") },
     ],
   },
-  define: {
-    SAMPLES: existsSync(samples) ? readFileSync(samples, "utf8") : "[]",
-    OPTION_TABLE: JSON.stringify(optionTable),
-  },
+  define: definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
   // What workers load later has names of its own.
   worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
+  plugins: [preloadedModules],
   build: {
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,
@@ -72,14 +63,6 @@ export const shared = {
     cssTarget: ["chrome123", "firefox120", "safari17.5"],
     // three.js is one chunk, which the page loads last.
     chunkSizeWarningLimit: 1000,
-  },
-};
-
-export default defineConfig({
-  ...shared,
-  plugins: [preloadedModules],
-  build: {
-    ...shared.build,
     // What the page loads at first is one chunk: it compresses better than the parts that others share with it.
     rolldownOptions: { output: { codeSplitting: { groups: [{ name: "page", test: isFirst }] } } },
   },

@@ -2,6 +2,7 @@ import { StrictMode, use, useState } from "react";
 import { createRoot } from "react-dom/client";
 import { Mesh, MeshBasicMaterial } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import "sim3align/element";
 import { PhotoCanvas, Placed } from "./photo-canvas.jsx";
 
 const folder = `${import.meta.env.BASE_URL}mug/`;

@@ -1,7 +1,7 @@
 import { defineConfig } from "vite";
 
 export default defineConfig({
-  // Serves the case folder and the custom element unchanged.
+  // Serves the case folder unchanged.
   publicDir: "../sample",
   // The package locates its worker and its WebAssembly relative to its modules, so Vite must not move these.
   optimizeDeps: { exclude: ["sim3align"] },

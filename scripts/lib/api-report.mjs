@@ -58,7 +58,9 @@ function readDeclarations(folder, path) {
   };
   for (const statement of statementsOf(readFileSync(join(folder, path), "utf8"))) {
     const link = /^(import|export) (?:type )?(?:\{([^}]*)\}|\*(?: as ([\w$]+))?)(?: from "([^"]+)")?;$/.exec(statement);
-    const name = declaration.exec(statement)?.[1];
+    // Who imports an entry gets what it declares for all files, too.
+    const isGlobal = statement.startsWith("declare global {");
+    const name = isGlobal ? "global" : declaration.exec(statement)?.[1];
     if (link !== null) {
       const [, kind, list, star, specifier] = link;
       const file = specifier === undefined ? undefined : target(specifier);
@@ -72,7 +74,7 @@ function readDeclarations(folder, path) {
       } else for (const { name, as } of namesIn(list)) found.exports.set(as, { file, name });
     } else if (name !== undefined) {
       found.statements.set(name, [...(found.statements.get(name) ?? []), statement]);
-      if (statement.startsWith("export ")) found.exports.set(name, { file: undefined, name });
+      if (isGlobal || statement.startsWith("export ")) found.exports.set(name, { file: undefined, name });
     } else if (!/^import "/.test(statement)) throw new Error(`${path}: ${statement} is not understood.`);
   }
   return found;

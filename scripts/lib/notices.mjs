@@ -1,4 +1,4 @@
-/** The licences of other people's code in the package: of the crates in the modules. Its scripts hold none of npm packages. */
+/** The licences of other people's code in the package: of the crates in the modules, and of the npm packages in the element. */
 import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { join } from "node:path";
@@ -86,17 +86,39 @@ async function crates() {
   return [...found.values()].sort((a, b) => (`${a.name} ${a.version}` < `${b.name} ${b.version}` ? -1 : 1));
 }
 
+/** npm packages in the scripts of the element, whose licences the notice has. */
+const bundled = ["@preact/signals", "@preact/signals-core", "preact", "three"];
+
+/** @param {{ inputs: Readonly<Record<string, unknown>> }} metafile of esbuild */
+const npmPackages = ({ inputs }) =>
+  new Set(Object.keys(inputs).flatMap((path) => /.*node_modules\/((?:@[^/]+\/)?[^/]+)/.exec(path)?.[1] ?? []));
+
 /**
- * Checks that a bundle of the package holds no npm package, whose licence the notice would lack.
+ * Checks that a bundle holds no npm package, or just those whose licences the notice has.
  * @param {{ inputs: Readonly<Record<string, unknown>> }} metafile of esbuild
+ * @param {readonly string[]} expected
  */
-export function refuseForeign({ inputs }) {
-  const foreign = Object.keys(inputs).filter((path) => path.includes("node_modules/"));
-  if (foreign.length === 0) return;
+function holdOnly(metafile, expected) {
+  const found = [...npmPackages(metafile)].sort();
+  if (found.join() === expected.join()) return;
   throw new Error(
-    `A script of the package holds ${foreign.join(", ")}. Remedy: add the licence to scripts/lib/notices.mjs.`,
+    `A script of the package holds ${found.join(", ") || "no npm package"}, instead of ${expected.join(", ") || "none"}. Remedy: correct the list in scripts/lib/notices.mjs, and run \`npm run notices\`.`,
   );
 }
+
+/** Checks that a bundle of the package holds no npm package. @param {{ inputs: Readonly<Record<string, unknown>> }} metafile */
+export const refuseForeign = (metafile) => holdOnly(metafile, []);
+
+/** Checks that the element holds those that the notice has. @param {{ inputs: Readonly<Record<string, unknown>> }} metafile */
+export const allowBundled = (metafile) => holdOnly(metafile, bundled);
+
+/** @returns {Part[]} */
+const bundledParts = () =>
+  bundled.map((name) => {
+    const folder = at("node_modules", name);
+    const { version, license } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+    return { name, version, licence: license, folder };
+  });
 
 /**
  * The licence texts of a crate, those of what is taken if it has several.
@@ -130,7 +152,7 @@ async function notice() {
   const owners = new Map();
   const own = readFileSync(at("LICENSE-APACHE"), "utf8").trim();
   const lines = [];
-  for (const part of await crates()) {
+  for (const part of [...(await crates()), ...bundledParts()]) {
     const title = `${part.name} ${part.version}`;
     const taken = takenOf(part.licence);
     if (taken === undefined) {
@@ -150,7 +172,7 @@ async function notice() {
   const head = `Third-party notices of sim3align
 
 The WebAssembly modules in wasm/ and inline/ hold code of the crates below, and of the standard library of Rust
-(MIT OR Apache-2.0; its text is LICENSE-APACHE). Where a crate can be had under several licences, that under which it is used
+(MIT OR Apache-2.0; its text is LICENSE-APACHE). The scripts in element/ hold code of the npm packages ${bundled.join(", ")}. Where a crate can be had under several licences, that under which it is used
 is named. Written by "npm run notices".
 `;
   const texts = [...owners].map(([text, titles]) => `${RULE}\n${titles.join(", ")}\n${RULE}\n\n${text}\n`);

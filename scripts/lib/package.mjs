@@ -4,6 +4,7 @@ import { createHash } from "node:crypto";
 import { chmodSync, copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { once } from "./cache.mjs";
+import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
 import { NOTICE } from "./notices.mjs";
 import { at, glueDir, packageDir, skinDir } from "./paths.mjs";
@@ -24,6 +25,7 @@ export const buildPackage = once(async () => {
     copyFiles();
     await bundleInline();
     await bundleReportPage();
+    await bundleElement();
     await writeBuildInfo(version);
     say(`pkg/ holds sim3align ${version}`);
   });

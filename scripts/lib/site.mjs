@@ -1,4 +1,4 @@
-/** The static site: `www/` with the built package and the samples, and the custom element. */
+/** The static site: `www/` with the built package and the samples. */
 import { cpSync } from "node:fs";
 import { join } from "node:path";
 import { cached, digest, filesBelow, once } from "./cache.mjs";
@@ -16,10 +16,7 @@ export const buildSite = once(async () => {
     const inputs = digest([at("www"), at("package-lock.json"), ...used]);
     const isNew = await cached(at("target", "www.stamp"), inputs, [join(siteDir, "index.html")], async () => {
       const [node, vite] = nodeProgram("vite");
-      // The second one writes to a folder of the first one's output.
-      for (const config of ["vite.config.mjs", "vite.element.config.mjs"])
-        await run(node, [vite, "build", "--config", at("www", config)]);
-      cpSync(at("www", "src", "element", "sim3-align.d.ts"), join(siteDir, "element", "sim3-align.d.ts"));
+      await run(node, [vite, "build", "--config", at("www", "vite.config.mjs")]);
       cpSync(at("www", "samples"), join(siteDir, "samples"), { recursive: true });
     });
     say(isNew ? "target/www" : "target/www, up to date");

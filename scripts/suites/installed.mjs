@@ -5,7 +5,7 @@ import { basename, join } from "node:path";
 import { cached, digest, filesBelow, once } from "../lib/cache.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { print } from "../lib/output.mjs";
-import { at, installDir, packageDir, repository, sampleDir, siteDir } from "../lib/paths.mjs";
+import { at, installDir, packageDir, repository, sampleDir } from "../lib/paths.mjs";
 import { chromium, chromiumRemedy, firefox, redisServer } from "../lib/programs.mjs";
 import { installedPython } from "../lib/python.mjs";
 import { attempt, nodeProgram, run } from "../lib/run.mjs";
@@ -135,7 +135,6 @@ async function installExamples() {
   });
   cpSync(at("examples"), examplesDir, { recursive: true, filter: isSource });
   cpSync(sampleDir, join(examplesDir, "sample", "mug"), { recursive: true });
-  cpSync(join(siteDir, "element"), join(examplesDir, "sample", "element"), { recursive: true });
 }
 
 /** The examples, each as its user runs it. */

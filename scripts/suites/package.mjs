@@ -13,7 +13,7 @@ import { kilobytes, sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
 import { install, packed } from "./installed.mjs";
 
 /** Limits in bytes; the tarball holds the WebAssembly twice, the second time in `inline.js`. */
-const limits = { tarball: 3_100_000, pageScript: 98_000, elementScript: 70_000 };
+const limits = { tarball: 3_500_000, pageScript: 98_000, elementScript: 76_000 };
 
 /** How users' compilers find declarations. */
 const resolutions = { node16: { module: "node16" }, bundler: { module: "esnext", moduleResolution: "bundler" } };
@@ -28,7 +28,7 @@ async function compileStrictly(name) {
   const compilerOptions = { ...resolutions[name], strict: true, noEmit: true, target: "es2022", types: [] };
   // Nothing of the repository's: the compiler looks for packages in the folders above.
   const lib = ["es2022", "esnext.disposable", "dom", "dom.iterable"];
-  const files = ["types", "conventions"].map((of) => `tests/js/${of}.test-d.ts`);
+  const files = ["types", "conventions", "element"].map((of) => `tests/js/${of}.test-d.ts`);
   writeFileSync(project, JSON.stringify({ compilerOptions: { ...compilerOptions, lib }, files }));
   const [node, tsc] = nodeProgram("typescript", "tsc");
   await run(node, [tsc, "--project", project]);
@@ -122,9 +122,8 @@ async function checkPage(say) {
  * The script of `<sim3-align>`, and what it imports at once.
  * @param {(note: string) => void} say
  */
-async function checkElement(say) {
-  await buildSite();
-  const folder = join(siteDir, "element");
+function checkElement(say) {
+  const folder = join(packageDir, "element");
   const found = new Set([join(folder, "sim3-align.js")]);
   for (const file of found) {
     const imports = readFileSync(file, "utf8").matchAll(/(?:\bfrom|\bimport) ?"(\.[^"]+)"/g);

@@ -1,12 +1,12 @@
 /** The custom element `<sim3-align>`, its page for iframes, and scenes by address. */
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
 import { zipSync } from "fflate";
 import type { Page } from "playwright-core";
 import { createAligner } from "sim3align";
 import { browserFor, WEBGL } from "../support/browser.js";
-import { repository } from "../support/environment.js";
+import { crossOriginHost, elementFolder, servedFolder } from "../support/element-host.js";
+import { obj } from "../support/files.js";
 import { type Files, files, HEIGHT, inFolder, jsonFile, pinhole, seen, WIDTH } from "../support/page-files.js";
 import { mesh } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
@@ -39,9 +39,7 @@ declare global {
   }
 }
 
-const siteFolder = join(repository, "target");
-
-const browser = browserFor(siteFolder, WEBGL);
+const browser = browserFor(servedFolder, WEBGL);
 
 /** Leaves the scene in the page, as arrays. */
 async function giveArrays(page: Page): Promise<void> {
@@ -65,13 +63,13 @@ const give = (page: Page, id: string, properties: object = {}) =>
 
 /** A page of a host, with the script of the element and a record of all events. */
 async function host(html: string): Promise<{ page: Page; errors: string[] }> {
-  const opened = await browser.open("www/element/frame.html");
+  const opened = await browser.open(`${elementFolder}/frame.html`);
   const { page } = opened;
   await page.setContent(html);
   await giveArrays(page);
   await page.evaluate(() => {
     window.told = [];
-    for (const element of document.querySelectorAll("sim3-align")) {
+    for (const element of document.querySelectorAll<HTMLElement>("sim3-align")) {
       for (const type of ["ready", "progress", "align", "posechange", "accept", "error"]) {
         element.addEventListener(type, (event) =>
           window.told.push({ of: element.id, type, detail: (event as CustomEvent).detail }),
@@ -79,7 +77,7 @@ async function host(html: string): Promise<{ page: Page; errors: string[] }> {
       }
     }
   });
-  await page.evaluate(`import("/www/element/sim3-align.js")`);
+  await page.evaluate(`import("/${elementFolder}/sim3-align.js")`);
   return opened;
 }
 
@@ -161,6 +159,39 @@ test("an element aligns what it is given to the same bits as Node, and says so",
   await page.close();
 });
 
+test("one script tag loads the element from another origin, with its workers and its readers", async () => {
+  const host = await crossOriginHost();
+  const { page, errors } = await browser.open(host.path);
+  try {
+    await giveArrays(page);
+    await page.evaluate(() => {
+      window.told = [];
+      document
+        .querySelector("sim3-align")
+        ?.addEventListener("align", (event) =>
+          window.told.push({ of: "a", type: "align", detail: (event as CustomEvent).detail }),
+        );
+    });
+    // Files of more than a megabyte are read in a worker.
+    const comment = Buffer.from(`# ${"a".repeat(1 << 20)}\n`);
+    await serveFiles(page, "files", { "mesh.obj": Buffer.concat([comment, obj(mesh)]) });
+    await page.evaluate(async () => {
+      const [object] = (window.arrays as { objects: object[] }).objects;
+      const mesh = await (await fetch("/files/mesh.obj")).blob();
+      window.arrays = { ...window.arrays, objects: [{ ...object, mesh }] };
+    });
+    await give(page, "a");
+    const { objects } = await told<{ objects: Element["results"] }>(page, "a", "align");
+    assert.ok((objects[0]?.metrics?.iou ?? 0) > 0.9, `${objects[0]?.metrics?.iou}`);
+    const workers = page.workers().map((worker) => new URL(worker.url()).protocol);
+    assert.ok(workers.length > 0 && workers.every((protocol) => protocol === "blob:"), `${workers}`);
+    assert.deepEqual(errors, []);
+  } finally {
+    await page.close();
+    await host.close();
+  }
+});
+
 test("instances on one page are independent: scene, pose, undo, options, decision", async () => {
   const { page, errors } = await host(`<sim3-align id="a"></sim3-align><sim3-align id="b" manual></sim3-align>`);
   await page.evaluate(() => {
@@ -203,14 +234,14 @@ test("instances on one page are independent: scene, pose, undo, options, decisio
 });
 
 test("properties that were set before the script was loaded become those of the element", async () => {
-  const { page } = await browser.open("www/element/frame.html");
+  const { page } = await browser.open(`${elementFolder}/frame.html`);
   // A page of the same origin that has not loaded the script.
   const body = `<!doctype html><sim3-align id="a" manual></sim3-align>`;
   await page.route("**/blank.html", (route) => route.fulfill({ contentType: "text/html", body }));
   await page.goto(new URL("blank.html", page.url()).href);
   await giveArrays(page);
   await give(page, "a", { selected: "none" });
-  await page.evaluate(`import("/www/element/sim3-align.js")`);
+  await page.evaluate(`import("/${elementFolder}/sim3-align.js")`);
   await page.locator('#a .embedded[data-scene="Blob"]').waitFor(PATIENCE);
   assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).selected), "blob");
   await page.close();
@@ -289,24 +320,24 @@ test("src names a zip archive, a session or an index, and what cannot be opened 
 });
 
 test("an iframe is controlled by messages of its parent's origin, and of no other", async () => {
-  const other = await serve(siteFolder);
-  const { page } = await browser.open("www/element/frame.html?readonly");
+  const other = await serve(servedFolder);
+  const { page } = await browser.open(`${elementFolder}/frame.html?readonly`);
   try {
     const framed = async (origin: string) => {
       await page.setContent("<iframe width=900 height=600></iframe>");
       await page.evaluate(
-        ([url, own]) => {
+        ([url, folder, own]) => {
           window.told = [];
           addEventListener("message", ({ data, origin }) =>
             window.told.push({ of: origin, type: data.type, detail: data }),
           );
           const frame = document.querySelector("iframe") as HTMLIFrameElement;
-          frame.src = `${url}www/element/frame.html${own === "" ? "" : `?origin=${encodeURIComponent(own)}`}`;
+          frame.src = `${url}${folder}/frame.html${own === "" ? "" : `?origin=${encodeURIComponent(own)}`}`;
           return new Promise((resolve) => {
             frame.onload = resolve;
           });
         },
-        [other.url, origin] as const,
+        [other.url, elementFolder, origin] as const,
       );
     };
     const from = new URL(other.url).origin;
@@ -346,7 +377,7 @@ test("an iframe is controlled by messages of its parent's origin, and of no othe
 });
 
 test("?case= opens a scene on the page, and an address that fails says why", async () => {
-  const { page } = await browser.open("www/element/frame.html?readonly");
+  const { page } = await browser.open(`${elementFolder}/frame.html?readonly`);
   await serveFiles(page, "cases", { "case.zip": zipSync(inFolder("mug", files)) });
   const visit = (path: string) => page.goto(new URL(path, page.url()).href);
   await visit("/www/index.html?case=/cases/case.zip");

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { createAligner } from "sim3align";
 import { work } from "../bundlers/work.js";
-import { repository } from "../support/environment.js";
+import { crossOriginHost, servedFolder } from "../support/element-host.js";
 import { FirefoxTest, skipFirefox } from "../support/firefox.js";
 import { input, mesh } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
@@ -13,7 +13,7 @@ const skip = skipFirefox;
 let firefox: FirefoxTest;
 before(async () => {
   // The package as installed, and the built page.
-  if (!skip) firefox = await FirefoxTest.start(`${repository}/target`);
+  if (!skip) firefox = await FirefoxTest.start(servedFolder);
 });
 after(() => firefox?.stop());
 
@@ -70,8 +70,9 @@ test("the page aligns its sample in Firefox, and poses are changed, undone and a
   await page.close();
 });
 
-test("the element works in Firefox", { skip }, async () => {
-  const { page, errors } = await firefox.open("www/element/frame.html");
+test("the element works in Firefox, also from another origin", { skip }, async () => {
+  const host = await crossOriginHost();
+  const { page, errors } = await firefox.open(host.path);
   const given = {
     depth: Array.from(input.depth),
     mask: Array.from(input.mask),
@@ -104,4 +105,5 @@ test("the element works in Firefox", { skip }, async () => {
   assert.ok(area > 20_000, "the sheets of the element apply");
   assert.deepEqual(errors, []);
   await page.close();
+  await host.close();
 });

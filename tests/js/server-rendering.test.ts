@@ -35,3 +35,8 @@ for (const entry of ["", "/inline", "/formats", "/conventions", "/simulators"].m
     assert.deepEqual(workers, [], "nothing runs");
   });
 }
+
+test("the element may be imported where there are no elements, and defines none", () => {
+  const args = ["--input-type=module", "--eval", 'console.log(Object.keys(await import("sim3align/element")))'];
+  assert.match(execFileSync(process.execPath, args, { cwd: installDir, encoding: "utf8" }), /Sim3AlignElement/);
+});

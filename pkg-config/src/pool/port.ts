@@ -1,6 +1,7 @@
 /** One interface for browser workers and Node worker threads. */
 import { Sim3AlignError } from "../error.js";
 import type { CreateWorker, WorkerLike } from "../platform.js";
+import { startedFromAnywhere } from "./cross-origin.js";
 import type { Request } from "./protocol.js";
 
 type NodeWorker = import("node:worker_threads").Worker;
@@ -67,9 +68,8 @@ export async function workerFactory(script?: string, createWorker?: CreateWorker
   try {
     const [threads, os] = await Promise.all([nodeModule("node:worker_threads"), nodeModule("node:os")]);
     const { Worker: Thread } = threads as typeof import("node:worker_threads");
-    const url = () => new URL(/* webpackIgnore: true */ /* @vite-ignore */ "../worker.js", import.meta.url);
     return {
-      create: () => (script === undefined ? new Thread(url()) : new Thread(script, { eval: true })),
+      create: () => (script === undefined ? new Thread(scriptUrl()) : new Thread(script, { eval: true })),
       cores: (os as typeof import("node:os")).availableParallelism(),
     };
   } catch (cause) {
@@ -86,8 +86,12 @@ export async function workerFactory(script?: string, createWorker?: CreateWorker
   }
 }
 
-/** Bundlers only recognise this form. */
-const fromFile = () => new Worker(new URL("../worker.js", import.meta.url), { type: "module" });
+/** The script as a file of the package: bundlers do not recognise this form. */
+const scriptUrl = () => new URL("../worker.js", String(import.meta.url));
+
+/** Bundlers recognise only this form. */
+const fromFile = () =>
+  startedFromAnywhere(() => new Worker(new URL("../worker.js", import.meta.url), { type: "module" }), scriptUrl);
 
 function fromScript(script: string): CreateWorker {
   // One object URL for all workers, never revoked, because browsers do not report when they have read it.

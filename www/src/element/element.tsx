@@ -21,17 +21,25 @@ import { type ElementSession, plainPose, resultOf, sessionOf } from "./results.j
 import type * as host from "./sim3-align.js";
 import type { ElementEvents, GivenInput, ObjectResult, PlainPose } from "./sim3-align.js";
 
-/** All instances share the sheets. */
-const sheets = [theme, views, controls, panels, own].map((text) => {
-  const sheet = new CSSStyleSheet();
-  sheet.replaceSync(text);
-  return sheet;
-});
+let shared: CSSStyleSheet[] | undefined;
 
-const darkQuery = matchMedia("(prefers-color-scheme: dark)");
+/** The sheets, which all instances share. */
+function sheets(): CSSStyleSheet[] {
+  shared ??= [theme, views, controls, panels, own].map((text) => {
+    const sheet = new CSSStyleSheet();
+    sheet.replaceSync(text);
+    return sheet;
+  });
+  return shared;
+}
+
+const darkQuery = () => matchMedia("(prefers-color-scheme: dark)");
+
+/** Servers that render import the element, but never create one. */
+const Base = globalThis.HTMLElement ?? (class {} as typeof HTMLElement);
 
 /** A scene with its objects, to be aligned and corrected. `docs/guides/embedding.md` describes it. */
-export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignElement {
+export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
   static readonly observedAttributes = ["src", "readonly", "theme"];
 
   readonly #theme = signal<"light" | "dark">("light");
@@ -47,7 +55,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
 
   constructor() {
     super();
-    this.#root.adoptedStyleSheets = sheets;
+    this.#root.adoptedStyleSheets = sheets();
   }
 
   connectedCallback(): void {
@@ -60,9 +68,10 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
     }
     const followTheme = () => this.#followTheme();
     followTheme();
-    darkQuery.addEventListener("change", followTheme);
+    const query = darkQuery();
+    query.addEventListener("change", followTheme);
     this.#stops = [
-      () => darkQuery.removeEventListener("change", followTheme),
+      () => query.removeEventListener("change", followTheme),
       sendEvents(this.#workspace, (type, detail) => this.#send(type, detail)),
       observePoses(this.#workspace),
       listenToKeys(this.#workspace, this.#root),
@@ -219,7 +228,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
   /** Follows the colour scheme of the element, for the parts that CSS does not draw. */
   #followTheme(): void {
     const schemes = this.isConnected ? getComputedStyle(this).colorScheme : "";
-    const isDark = schemes.includes("dark") && (darkQuery.matches || !schemes.includes("light"));
+    const isDark = schemes.includes("dark") && (darkQuery().matches || !schemes.includes("light"));
     this.#theme.value = isDark ? "dark" : "light";
   }
 }

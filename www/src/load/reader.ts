@@ -1,6 +1,7 @@
 /** The readers of files. Small files are read at once; large ones in a worker, so that no frame has to wait for them. */
 import { Sim3AlignError } from "sim3align";
 import * as formats from "sim3align/formats";
+import { startedFromAnywhere } from "sim3align/pool/cross-origin";
 import type { ReaderAnswer, ReaderCall, Readers } from "./reader-worker.js";
 
 /** Larger files are read in the worker. Starting it takes longer than reading smaller ones. */
@@ -17,7 +18,10 @@ const pending = new Map<number, Pending>();
 
 function started(): Worker {
   if (worker !== null) return worker;
-  const own = new Worker(new URL("./reader-worker.ts", import.meta.url), { type: "module" });
+  const own = startedFromAnywhere(
+    () => new Worker(new URL("./reader-worker.ts", import.meta.url), { type: "module" }),
+    () => new URL("./reader-worker.ts", String(import.meta.url)),
+  );
   own.addEventListener("message", ({ data }: MessageEvent<ReaderAnswer>) => {
     const call = pending.get(data.id);
     pending.delete(data.id);

@@ -87,6 +87,20 @@ export function HandPanel() {
       <summary>
         <h2>By hand</h2>
       </summary>
+      <div class="row">
+        <button type="button" id="undo" aria-disabled={!canUndo.value} aria-keyshortcuts="Control+Z" onClick={undo}>
+          Undo
+        </button>
+        <button
+          type="button"
+          id="redo"
+          aria-disabled={!canRedo.value}
+          aria-keyshortcuts="Control+Shift+Z"
+          onClick={redo}
+        >
+          Redo
+        </button>
+      </div>
       <fieldset class="row" disabled={!isReady || space.value.kind !== "ready"}>
         <legend>Handles in the 3D view</legend>
         {modes.map(([mode, title, key]) => (
@@ -156,20 +170,6 @@ export function HandPanel() {
           disabled={object === null || unit.value !== null}
           onCheck={(checked) => object?.lockScale(checked)}
         />
-      </div>
-      <div class="row">
-        <button type="button" id="undo" aria-disabled={!canUndo.value} aria-keyshortcuts="Control+Z" onClick={undo}>
-          Undo
-        </button>
-        <button
-          type="button"
-          id="redo"
-          aria-disabled={!canRedo.value}
-          aria-keyshortcuts="Control+Shift+Z"
-          onClick={redo}
-        >
-          Redo
-        </button>
       </div>
     </details>
   );

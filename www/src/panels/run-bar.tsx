@@ -68,7 +68,7 @@ export function RunBar() {
           <button
             type="button"
             id="align-all"
-            class="primary"
+            class={objects.length > 0 && objects.every(({ isPlaced }) => isPlaced) ? "" : "primary"}
             disabled={running || objects.length === 0}
             onClick={() => alignAll(workspace)}
           >

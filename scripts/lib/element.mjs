@@ -1,0 +1,88 @@
+/** `sim3align/element`: the custom element and its page for iframes, in one folder, which uses the WebAssembly of the package around it. */
+import { readFileSync, writeFileSync } from "node:fs";
+import { basename, dirname, join, relative, sep } from "node:path";
+import { pathToFileURL } from "node:url";
+import { definitions } from "../../www/definitions.mjs";
+import { allowBundled } from "./notices.mjs";
+import { at, packageDir } from "./paths.mjs";
+
+const sources = at("www", "src");
+const folder = join(packageDir, "element");
+
+/** The package's files, style sheets as texts, and addresses of files beside the bundle instead of beside their source. */
+const ownFiles = /** @type {import("esbuild").Plugin} */ ({
+  name: "own-files",
+  setup(build) {
+    build.onResolve({ filter: /^sim3align(\/|$)/ }, ({ path }) => ({ path: join(packageDir, ownModule(path)) }));
+    build.onResolve({ filter: /\.css\?inline$/ }, ({ path, resolveDir }) => ({
+      path: join(resolveDir, path.replace("?inline", "")),
+    }));
+    build.onLoad({ filter: /\.css$/ }, async ({ path }) => {
+      const { transform } = await import("esbuild");
+      const { code } = await transform(readFileSync(path, "utf8"), { loader: "css", minify: true });
+      return { contents: code, loader: "text" };
+    });
+    build.onLoad({ filter: /\.[jt]s$/ }, ({ path }) => {
+      const text = readFileSync(path, "utf8");
+      if (path.includes("node_modules")) return undefined;
+      // Browsers lack the modules of Node, and bundlers would warn of these imports.
+      const ofBrowsers = text.replaceAll(/import\(\s*\/\* webpackIgnore: true \*\/[^)]*\)/g, "Promise.reject()");
+      const contents = ofBrowsers.replaceAll(
+        /new URL\(["']([^"']+)["'](?=, (String\()?import\.meta\.url)/g,
+        (_, file) => `new URL(${JSON.stringify(fromBundle(join(dirname(path), file)))}`,
+      );
+      return { contents, loader: path.endsWith(".ts") ? "ts" : "js" };
+    });
+  },
+});
+
+/** @param {string} specifier such as `sim3align/formats` */
+const ownModule = (specifier) => `${specifier.slice("sim3align/".length) || "index"}.js`;
+
+/**
+ * A file as seen from the bundle. The scripts of workers are in it.
+ * @param {string} file
+ */
+function fromBundle(file) {
+  const isWorker = /worker\.[jt]s$/.test(file);
+  if (isWorker) return `./${basename(file).replace(/ts$/, "js")}`;
+  return relative(folder, file).split(sep).join("/");
+}
+
+/** Bundles `www/src/element` against the compiler's output in pkg/. */
+export async function bundleElement() {
+  // The set-up installs it first.
+  const { build } = await import("esbuild");
+  const { OPTIONS } = await import(pathToFileURL(join(packageDir, "index.js")).href);
+  const { metafile } = await build({
+    entryPoints: {
+      "sim3-align": join(sources, "element", "index.ts"),
+      frame: join(sources, "element", "frame.ts"),
+      "reader-worker": join(sources, "load", "reader-worker.ts"),
+      worker: join(packageDir, "worker.js"),
+    },
+    outdir: folder,
+    // Parts that the first alignment does not need are files of their own.
+    ...{
+      bundle: true,
+      splitting: true,
+      minify: true,
+      format: "esm",
+      platform: "browser",
+      target: "es2022",
+    },
+    ...{ jsx: "automatic", jsxImportSource: "preact", logLevel: "warning", legalComments: "none", metafile: true },
+    chunkNames: "part-[hash]",
+    define: definitions(OPTIONS),
+    plugins: [ownFiles],
+  });
+  allowBundled(metafile);
+  const page = readFileSync(at("www", "frame.html"), "utf8");
+  writeFileSync(join(folder, "frame.html"), page.replace("./src/element/frame.ts", "./frame.js"));
+  const declarations = join(sources, "element", "sim3-align.d.ts");
+  const text = readFileSync(declarations, "utf8").replaceAll(
+    /(?<=from ")sim3align(\/\w+)?(?=")/g,
+    (specifier) => `../${ownModule(specifier)}`,
+  );
+  writeFileSync(join(folder, basename(declarations)), text);
+}
