@@ -17,6 +17,7 @@ pub mod distance_transform;
 pub mod error;
 #[cfg(target_arch = "wasm32")]
 mod heap;
+pub mod helpers;
 pub mod image;
 mod kd_nodes;
 pub mod kd_tree;

@@ -9,6 +9,7 @@ use core::task::{Context, Poll, Waker};
 use std::rc::Rc;
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::helpers::{Helpers, Tasks};
 
 /// The pause points of a call, and the work that it has left. Results depend on the work, never on the pauses.
 pub struct Pauses {
@@ -18,6 +19,7 @@ pub struct Pauses {
     /// Work since the clock was asked, and the most that ever was.
     since: Cell<f64>,
     most: Cell<f64>,
+    helpers: Helpers,
 }
 
 /// Work after which the clock is asked: it is a function of JavaScript, which takes as long as several distances.
@@ -27,7 +29,12 @@ impl Pauses {
     /// Pauses by a clock, and a bound on the work, if there is one.
     pub fn new(clock: fn() -> f64, work_budget: Option<f64>) -> Self {
         let [until, left] = [f64::INFINITY, work_budget.unwrap_or(f64::INFINITY)].map(Cell::new);
-        Self { clock, until, left, since: Cell::new(0.0), most: Cell::new(0.0) }
+        Self { clock, until, left, since: Cell::new(0.0), most: Cell::new(0.0), helpers: Helpers::default() }
+    }
+
+    /// With other threads that may help.
+    pub fn with_helpers(self, helpers: Helpers) -> Self {
+        Self { helpers, ..self }
     }
 
     /// No pause, and no bound.
@@ -50,6 +57,22 @@ impl Pauses {
     /// Pauses if it is time, whatever the work was: for calls that have another bound.
     pub fn here(&self) -> Point {
         Point { is_due: self.is_time() }
+    }
+
+    /// Pauses in any case.
+    pub fn now(&self) -> Point {
+        Point { is_due: true }
+    }
+
+    /// Asks for helpers, where there may be some, and pauses: long lists of tasks are to come.
+    pub fn ask_for_help(&self) -> Point {
+        Point { is_due: self.helpers.ask() }
+    }
+
+    /// The results of independent tasks in their order, with a pause point after each task. `ends` sees them in this order,
+    /// and says whether one is the last that is needed.
+    pub async fn list<T: Tasks>(&self, tasks: &mut T, ends: impl FnMut(&T::Result) -> bool) -> Vec<T::Result> {
+        self.helpers.run(tasks, ends, self).await
     }
 
     #[inline(never)]

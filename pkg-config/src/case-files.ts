@@ -1,12 +1,13 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { failure, Sim3AlignError } from "./error.js";
+import { failure, invalidArgument, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { DepthKind } from "./input/depth-kind.js";
 import type { ViewInput } from "./input/frame-types.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
+import { ownArgument } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
 /** Files by name, relative to the folder of the case: bytes, or a function that reads them on demand. */
@@ -38,6 +39,9 @@ export const caseFiles = {
   camera: ["camera.json", "scene_camera.json"],
   image: ["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"],
 } as const satisfies { mesh: readonly `mesh.${MeshFormat}`[]; [part: string]: readonly string[] };
+
+/** The file of an object of a scene with a first pose: one candidate among those of the search. */
+export const INITIAL_FILE = "initial.json";
 
 /** Frames whose files have been read, but not decoded. */
 export interface FrameFiles {
@@ -75,22 +79,31 @@ export async function frameFrom(files: CaseFiles, settings: CaseSettings, place:
   };
 }
 
-/** Finds and reads the files of a case. */
-function filesOf(files: CaseFiles, { image = true }: CaseSettings, place: string) {
+/**
+ * Finds and reads the files of a case.
+ * @param owner whose parts they are, in errors; by default, the parts themselves
+ * @internal
+ */
+export function filesOf(files: CaseFiles, { image = true }: CaseSettings, place: string, owner?: string) {
   /** The name of a part's file; that of the photo only if it is wanted. */
   const find = (part: keyof typeof caseFiles) =>
     part === "image" && !image ? undefined : caseFiles[part].find((candidate) => candidate in files);
   const required = (part: keyof typeof caseFiles) => {
     const name = find(part);
     if (name !== undefined) return name;
-    throw fileNotFound(part, `no such file in ${place}`, caseFiles[part].join(" or "));
+    throw fileNotFound(owner ?? part, `no such file in ${place}`, caseFiles[part].join(" or "));
   };
   const read = async (name: string) => {
     const file = files[name];
     return requiredBytes(name, typeof file === "function" ? await file() : file);
   };
   const optional = (name: string | undefined) => (name !== undefined && name in files ? read(name) : undefined);
-  return { find, required, read, optional };
+  /** Reads a file that the mesh refers to. */
+  const beside = async (path: string) => {
+    if (path in files) return read(path);
+    throw fileNotFound("mesh", `no ${path} in ${place}`, "the files that the mesh refers to");
+  };
+  return { find, required, read, optional, beside };
 }
 
 function cameraPose(bytes: Uint8Array): number[] {
@@ -113,7 +126,7 @@ export async function caseFrom(
   formats: LoadFormats,
   place = "the files",
 ): Promise<Case> {
-  const { find, required, read, optional } = filesOf(files, settings, place);
+  const { find, required, read, optional, beside } = filesOf(files, settings, place);
   const parts = {
     depth: required("depth"),
     mask: required("mask"),
@@ -124,10 +137,7 @@ export async function caseFrom(
     ...[read(parts.depth), read(parts.mask), read(parts.mesh)],
     ...[optional(parts.camera), optional(parts.image), optional("gt.json")],
   ]);
-  const mesh = await meshFile(parts.mesh, meshBytes as Uint8Array, formats, async (path) => {
-    if (path in files) return read(path);
-    throw fileNotFound("mesh", `no ${path} in ${place}`, `the files that ${parts.mesh} refers to`);
-  });
+  const mesh = await meshFile(parts.mesh, meshBytes as Uint8Array, formats, beside);
   const { image: _, ...more } = settings;
   const input = withoutUndefined({ depth, mask, mesh, cameraFile, image, ...more }) as AlignInput;
   return { input, files: parts, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
@@ -198,6 +208,12 @@ function decoded(uri: string): string {
   } catch {
     return uri;
   }
+}
+
+/** The files of a call, read once. */
+export function ownFiles(files: CaseFiles): CaseFiles {
+  if (isRecord(files)) return ownArgument("files", files);
+  throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
 }
 
 /** The error for a missing file of a case. */

@@ -34,7 +34,7 @@ export interface CasePaths {
   image?: string | undefined;
 }
 
-const loadFormats = () => formatsModule.load();
+export const loadFormats = () => formatsModule.load();
 
 /**
  * Reads a case folder.

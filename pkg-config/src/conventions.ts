@@ -22,6 +22,12 @@ export {
   toRos,
   toThree,
 } from "./conventions/frames.js";
+export {
+  type GaussianFrames,
+  type GeneratorFrame,
+  generatorFrames,
+  type MeshFrames,
+} from "./conventions/generators.js";
 export { exportGlb, type GlbOptions, placeGlb } from "./conventions/glb.js";
 export { type GltfNode, type GltfNodeOptions, toGltfNode } from "./conventions/gltf-node.js";
 export { fromLabelStudioRle } from "./conventions/label-studio-rle.js";

@@ -22,9 +22,38 @@ export interface Task<T> {
   free(): void;
 }
 
+/** What a module asks of the helpers of a task: other threads. */
+export interface CoreHelpers {
+  /** Asks for helpers. */
+  ask(): void;
+  send(helper: number, message: Float64Array): void;
+  /** The next message that has arrived. Its first number is the helper; nothing else says that it has left. */
+  receive(): Float64Array | undefined;
+  /** Lets the next turn last until a message arrives. */
+  wait(): void;
+}
+
+/** Runs tasks of a search in another thread. */
+export interface Helper {
+  /** Reads a message of the search. */
+  receive(message: Float64Array): void;
+  /**
+   * Runs tasks for about this long; returns the message about them, whose first number is for the helper, or `undefined` if
+   * there is nothing to do.
+   */
+  step(sliceMs: number): Float64Array<ArrayBuffer> | undefined;
+  free(): void;
+}
+
 /** The functions of the core. They validate their arguments and throw errors with codes. */
 export interface Core extends Glue {
-  beginAlign(input: CoreInput, options: object, onProgress: CoreListener | undefined): Task<Results.Alignment>;
+  beginAlign(
+    input: CoreInput,
+    options: object,
+    onProgress: CoreListener | undefined,
+    helpers: CoreHelpers | undefined,
+  ): Task<Results.Alignment>;
+  beginHelp(input: CoreInput, options: object): Helper;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
   /** The depth of a mesh at a pose, metres; 0 where no mesh is. */
   renderDepth(

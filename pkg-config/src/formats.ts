@@ -3,9 +3,8 @@
  * these files directly; use the readers to inspect their content.
  * @packageDocumentation
  */
-import { type Case, type CaseFiles, type CaseSettings, caseFrom } from "./case-files.js";
+import { type Case, type CaseFiles, type CaseSettings, caseFrom, ownFiles } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { invalidArgument } from "./error.js";
 import { fileReaders } from "./file-readers.js";
 import { type CameraFile, type CameraFileOptions, parseCameraFile } from "./formats/camera-file.js";
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
@@ -179,10 +178,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readCase(files: CaseFiles, settings: CaseSettings = {}): Promise<Case> {
-  if (!isRecord(files)) {
-    throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
-  }
-  return caseFrom(ownArgument("files", files), optionsOf(settings), () => formatsModule.load());
+  return caseFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
 }
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {

@@ -8,17 +8,18 @@ import {
   isRaw,
   partsOf,
 } from "./calibrate.js";
-import type { Core, CoreListener, Task } from "./core.js";
+import type { Core, CoreHelpers, CoreListener, Helper, Task } from "./core.js";
 import { isOfInput, withoutInput } from "./error.js";
 import type { FileReaders } from "./file-readers.js";
 import type { CorrectedFrame } from "./generated/types.js";
-import type { CoreInput, CoreView } from "./input/core-input.js";
+import type { CoreInput, CoreView, CoreViews } from "./input/core-input.js";
 import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import { resolveFrame, resolveViews } from "./input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { JointAligner, LoadJoint, Placed } from "./joint-module.js";
+import type { CoreMesh } from "./prepared-mesh.js";
 import type { LoadRegistrar, Registrar } from "./registration-module.js";
 import {
   type AlignResult,
@@ -108,7 +109,12 @@ export async function perform(
       const input = calibrated === undefined ? read : inCalibration(read, calibrated);
       const result = isOfPaper(options)
         ? called(await registrar(), (r) => r.alignPaper(input, options, then), input)
-        : await runTask(core, (c) => c.beginAlign(input, options, then), input, slices);
+        : await runTask(
+            core,
+            (c) => c.beginAlign(input, options, then, helpersOf(slices, { input, options })),
+            input,
+            slices,
+          );
       return withNotes(calibratedResult(result, calibrated), notes);
     }
     case "calibrate": {
@@ -128,7 +134,8 @@ export async function perform(
       const { others, plan, index, ...own } = job.data;
       const { core: input, notes } = await resolveInput(own, modules, job.meshId);
       const observed = { ...input, others };
-      const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener);
+      const helpers = helpersOf(slices, { input: observed, options, placed: { plan, index } });
+      const begin = (j: JointAligner) => j.beginPlace(observed, options, plan, index, listener, helpers);
       const placed = await runTask(await joint(), begin, observed, slices);
       if (placed.alignment === undefined) return placed;
       // The view belongs to the scene, which reports what its files say.
@@ -145,7 +152,8 @@ export async function perform(
         return own === undefined ? view : inCalibration(view, own);
       });
       const input = { ...read, views };
-      const result = await runTask(module, (j) => j.beginAlignViews(input, options, then), input, slices);
+      const helpers = helpersOf(slices, { input, options });
+      const result = await runTask(module, (j) => j.beginAlignViews(input, options, then, helpers), input, slices);
       const ofView = (view: ViewAlignment, k: number) =>
         withNotes(calibratedResult(view, calibrated[k]), notes[k] as InputNotes);
       return { ...result, views: result.views.map(ofView) };
@@ -223,8 +231,18 @@ function called<G extends Glue, T>(module: LoadedModule<G>, work: (glue: G) => T
   return module.call(work, withoutInput);
 }
 
+/** The input of a task, for those that help with it. */
+export interface Offer {
+  input: CoreInput | CoreViews;
+  options: object;
+  /** For an object of a scene: what is known of the others. */
+  placed?: { plan: Uint8Array | undefined; index: number };
+}
+
 /** How a task runs. */
 export interface Slices {
+  /** The helpers of a task with this input. */
+  helpersFor?(offer: Offer): CoreHelpers;
   /** About how long each slice takes. */
   sliceMs: number;
   /** Called after each slice and each turn; may throw. */
@@ -234,6 +252,42 @@ export interface Slices {
 }
 
 const all: Slices = { sliceMs: Number.POSITIVE_INFINITY, check() {}, async turn() {} };
+
+/** The helpers of a task, if it may have some. A prepared mesh comes to them from where it was prepared. */
+function helpersOf(slices: Slices, { input, ...offer }: Offer): CoreHelpers | undefined {
+  const { id } = input.mesh;
+  const mesh = id === undefined ? input.mesh : { positions: new Float32Array(), id };
+  return slices.helpersFor?.({ ...offer, input: { ...input, mesh } });
+}
+
+/**
+ * Prepares help with a task.
+ * @param mesh the arrays of its prepared mesh, unless the module has them
+ */
+export async function beginHelp(
+  { input, options, placed }: Offer,
+  mesh: CoreMesh | undefined,
+  { core, joint }: Modules,
+): Promise<{ module: LoadedModule<Glue>; helper: Helper }> {
+  const { id } = input.mesh;
+  const ownMesh = mesh === undefined || id === undefined ? input.mesh : { ...mesh, id };
+  const kept = <G extends Glue>(module: LoadedModule<G>, begin: (glue: G) => Helper) => {
+    const helper = module.call((glue) => {
+      const begun = begin(glue);
+      module.keep(begun);
+      return begun;
+    });
+    return { module: module as unknown as LoadedModule<Glue>, helper };
+  };
+  if ("views" in input) {
+    const own = { ...input, mesh: ownMesh };
+    return kept(await joint(), (j) => j.beginHelpViews(own, options));
+  }
+  const own = { ...input, mesh: ownMesh };
+  if (placed === undefined) return kept(core, (c) => c.beginHelp(own, options));
+  const { plan, index } = placed;
+  return kept(await joint(), (j) => j.beginHelp({ others: undefined, ...own }, options, plan, index));
+}
 
 /** What a tracker is called where its module keeps it. */
 export const trackerName = (id: number) => `tracker ${id}`;
@@ -245,7 +299,7 @@ async function runTask<G extends Glue, T>(
   input: object,
   slices: Slices,
 ): Promise<T> {
-  const { sliceMs, check, turn } = slices;
+  const check = () => slices.check();
   // The thread may have been elsewhere since the input was read.
   checkAttached("input", input);
   check();
@@ -257,10 +311,10 @@ async function runTask<G extends Glue, T>(
   const { instance } = module;
   try {
     for (;;) {
-      const result = module.call(() => task.step(sliceMs), withoutInput);
+      const result = module.call(() => task.step(slices.sliceMs), withoutInput);
       check();
       if (result !== undefined) return result;
-      await turn();
+      await slices.turn();
       check();
       // Another call trapped, and the task was lost with its instance.
       if (module.instance !== instance) return await runTask(module, begin, input, slices);

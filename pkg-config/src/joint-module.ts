@@ -1,6 +1,6 @@
 /** The joint module: the WebAssembly module with `alignScene`, `alignViews` and `track`. */
 import type { Calibrated, CalibrationObject } from "./calibrate.js";
-import type { CoreListener, Task } from "./core.js";
+import type { CoreHelpers, CoreListener, Helper, Task } from "./core.js";
 import type {
   Alignment,
   Contact,
@@ -38,7 +38,14 @@ export interface JointAligner extends Glue {
     plan: Uint8Array | undefined,
     object: number,
     onProgress: CoreListener | undefined,
+    helpers: CoreHelpers | undefined,
   ): Task<Placed>;
+  beginHelp(
+    input: CoreInput & { others: Uint8Array | undefined },
+    options: object,
+    plan: Uint8Array | undefined,
+    object: number,
+  ): Helper;
   planScene(
     scene: object,
     plan: Uint8Array | undefined,
@@ -49,7 +56,13 @@ export interface JointAligner extends Glue {
     onProgress: CoreListener | undefined,
   ): Task<Calibrated>;
   beginCalibrateViews(input: CoreViews & { options: object }, onProgress: CoreListener | undefined): Task<Calibrated[]>;
-  beginAlignViews(input: CoreViews, options: object, onProgress: CoreListener | undefined): Task<ViewsAlignment>;
+  beginAlignViews(
+    input: CoreViews,
+    options: object,
+    onProgress: CoreListener | undefined,
+    helpers: CoreHelpers | undefined,
+  ): Task<ViewsAlignment>;
+  beginHelpViews(input: CoreViews, options: object): Helper;
   openTracker(id: number, input: { mesh: CoreMesh }, options: object): void;
   trackFrame(
     id: number,

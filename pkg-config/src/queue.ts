@@ -13,6 +13,16 @@ export class Queue<T> {
     this.#idle = [...items];
   }
 
+  /** Whether an item is free. */
+  get hasIdle(): boolean {
+    return this.#idle.length > 0;
+  }
+
+  /** Takes an item that is free, if there is one. */
+  takeIdle(): T | undefined {
+    return this.#idle.pop();
+  }
+
   /** Whether a call has an item. */
   get isBusy(): boolean {
     return this.#idle.length < this.#size;

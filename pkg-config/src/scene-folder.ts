@@ -1,37 +1,36 @@
 /** Scenes on disk (Node only): scene folders, and images in the layout of BOP. */
-import { readdir } from "node:fs/promises";
+import { readdir, stat } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { bopImageId, bopMaskPath, bopModels, bopName, openBopScene, readBopImage, readBopModel } from "./bop-folder.js";
-import { type CaseSettings, caseFiles, fileNotFound } from "./case-files.js";
-import { read, readMeshFile } from "./case-folder.js";
+import { type CaseFiles, type CaseSettings, fileNotFound } from "./case-files.js";
+import { loadFormats, read } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
-import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
+import type { KnownPose } from "./conventions/pose-file.js";
 import type { MeshFile } from "./input/types.js";
+import { sam3dFrom } from "./scene/sam3d-files.js";
+import { type SceneFiles, sceneFrom } from "./scene/scene-files.js";
 import type { SceneInput, SceneObjectInput } from "./scene/types.js";
-import { withoutUndefined } from "./values.js";
 
-/** A scene whose files have been read, but not decoded. */
-export interface SceneOnDisk {
+/** A scene on disk. */
+export interface SceneOnDisk extends SceneFiles {
   name: string;
-  input: SceneInput;
-  /** The true pose of each object; `null` if unknown. */
-  truths: (KnownPose | null)[];
 }
 
 /** How to read a scene. */
 export interface SceneSettings extends CaseSettings {
+  /** Whether the folder is an output of SAM 3D Objects. */
+  sam3d?: boolean;
   /** The folder of the models of a BOP image. */
   models?: string;
 }
 
 /**
- * Reads a scene: a folder with `depth.*`, optionally `camera.json`, and `objects/NAME/{mask.*, mesh.*, gt.json}`, or a scene of BOP
- * with `depth/`, `mask_visib/`, `scene_camera.json`, `scene_gt.json` and models.
+ * Reads a scene: a scene folder, the output of SAM 3D Objects, or a scene of BOP with `depth/`, `mask_visib/`, `scene_camera.json`, `scene_gt.json` and models.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readSceneFolder(folder: string, settings: SceneSettings = {}): Promise<SceneOnDisk> {
   const names = await namesIn(folder);
-  return isBop(names) ? readBop(folder, settings) : readFolder(folder, names, settings);
+  return isBop(names) ? readBop(folder, settings) : readFolder(folder, settings);
 }
 
 const isBop = (names: readonly string[]) => names.includes("mask_visib") && names.includes("scene_gt.json");
@@ -45,32 +44,39 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
   }
 }
 
-async function readFolder(folder: string, names: string[], { models, ...settings }: SceneSettings) {
-  const depth = await readOne("scene", folder, names, caseFiles.depth);
-  const objects: SceneObjectInput[] = [];
-  const truths: (KnownPose | null)[] = [];
-  for (const name of (await namesIn(join(folder, "objects"))).sort()) {
-    const own = join(folder, "objects", name);
-    const files = await namesIn(own).catch(() => null);
-    if (files === null) continue;
-    const mask = await readOne(`objects/${name}`, own, files, caseFiles.mask);
-    const meshName = oneOf(`objects/${name}`, own, files, caseFiles.mesh);
-    const mesh = await readMeshFile(join(own, meshName));
-    objects.push({ name, mask, mesh, ...resizeOf(settings) } as SceneObjectInput);
-    truths.push(files.includes("gt.json") ? parsePoseFile("truth", await read("truth", join(own, "gt.json"))) : null);
-  }
-  const { resizeMask: _, image: withImage = true, ...view } = settings;
-  const optional = async (part: "camera" | "image") => {
-    const name = caseFiles[part].find((candidate) => names.includes(candidate));
-    return name === undefined ? undefined : read(part, join(folder, name));
-  };
-  const [cameraFile, image] = [await optional("camera"), withImage ? await optional("image") : undefined];
-  const input = withoutUndefined({ depth, cameraFile, objects, image, ...view }) as SceneInput;
-  return { name: basename(resolve(folder)), input, truths };
+async function readFolder(folder: string, { models, sam3d, ...settings }: SceneSettings): Promise<SceneOnDisk> {
+  const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
+  if (!sam3d) paths.push(...(await filesBelow(folder, "objects/", LEVELS)));
+  const files: CaseFiles = Object.fromEntries(paths.map((path) => [path, () => read("scene", join(folder, path))]));
+  const found = sam3d
+    ? await sam3dFrom(files, settings, loadFormats, folder)
+    : await sceneFrom(files, settings, loadFormats, folder);
+  return { ...found, name: basename(resolve(folder)) };
 }
 
+/** Levels of folders in which the files of a scene are looked for. */
+const LEVELS = 4;
+
+/** The paths of the files in a folder below `root`, down to so many levels; links are followed. */
+async function filesBelow(root: string, folder: string, levels: number): Promise<string[]> {
+  const paths: string[] = [];
+  for (const entry of await readdir(join(root, folder), { withFileTypes: true }).catch(() => [])) {
+    const path = `${folder}${entry.name}`;
+    const isFolder = entry.isSymbolicLink() ? await isFolderAt(join(root, path)) : entry.isDirectory();
+    if (!isFolder) paths.push(path);
+    else if (levels > 1) paths.push(...(await filesBelow(root, `${path}/`, levels - 1)));
+  }
+  return paths;
+}
+
+const isFolderAt = (path: string) =>
+  stat(path).then(
+    (entry) => entry.isDirectory(),
+    () => false,
+  );
+
 /** Reads one image of a scene of BOP. */
-async function readBop(folder: string, { models, imageId, ...settings }: SceneSettings) {
+async function readBop(folder: string, { models, imageId, sam3d: _, ...settings }: SceneSettings) {
   const scene = await openBopScene(folder);
   const id = bopImageId(scene, imageId);
   const masks = await namesIn(join(folder, "mask_visib"));
@@ -90,7 +96,7 @@ async function readBop(folder: string, { models, imageId, ...settings }: SceneSe
     objects.push({ name: `${entry.obj_id}-${i}`, mask, mesh, ...resizeOf(settings) } as SceneObjectInput);
     truths.push({ transform: fromBop(entry), symmetry: "auto" });
   }
-  const { resizeMask: _, image: withImage = true, ...view } = settings;
+  const { resizeMask: __, image: withImage = true, ...view } = settings;
   const input = { ...(await readBopImage(scene, id, withImage)), objects, ...view } as SceneInput;
   return { name: `${basename(resolve(folder))}/${bopName(id)}`, input, truths };
 }
@@ -102,12 +108,3 @@ async function namesIn(folder: string): Promise<string[]> {
     throw fileNotFound("scene", `nothing to read at ${folder}`, "a folder with depth and objects", cause);
   });
 }
-
-function oneOf(argument: string, folder: string, names: readonly string[], wanted: readonly string[]): string {
-  const name = wanted.find((candidate) => names.includes(candidate));
-  if (name === undefined) throw fileNotFound(argument, `no such file in ${folder}`, wanted.join(" or "));
-  return name;
-}
-
-const readOne = (argument: string, folder: string, names: readonly string[], wanted: readonly string[]) =>
-  read(argument, join(folder, oneOf(argument, folder, names, wanted)));

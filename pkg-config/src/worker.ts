@@ -1,10 +1,12 @@
-/** Worker script: runs the jobs of its aligner one at a time. */
+/** Worker script: runs the jobs of its aligner, or helps another worker with one, one at a time. */
 import type { Core } from "./core.js";
 import type { DepthFiles } from "./depth-files-module.js";
 import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Formats } from "./formats-module.js";
-import { type Job, type MeshCache, perform } from "./jobs.js";
+import { type Job, type MeshCache, type Modules, perform } from "./jobs.js";
 import type { JointAligner } from "./joint-module.js";
+import { HelpingWorker } from "./pool/helper.js";
+import { Helpers } from "./pool/helpers.js";
 import type { LazyName, Reply, Request } from "./pool/protocol.js";
 import { buffersOf } from "./pool/transfer.js";
 import type { Registrar } from "./registration-module.js";
@@ -31,6 +33,10 @@ class WorkerHost {
   readonly #splats = this.#lazy<Splats>("splats", splatsGlue as unknown as Splats);
   readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
   readonly #joint = this.#lazy<JointAligner>("joint", jointGlue as unknown as JointAligner);
+  /** The helpers of the running job. */
+  #helpers: Helpers | undefined;
+  /** The help that this worker gives. */
+  #help: HelpingWorker | undefined;
   /** Receives the answer to `needs-module`. */
   #receiveModule: ((module: WebAssembly.Module | ErrorParts) => void) | undefined;
 
@@ -42,7 +48,11 @@ class WorkerHost {
     if (message.type === "module") this.#receiveModule?.(message.module);
     else if (message.type === "start") this.#start(message.core);
     else if (message.type === "drop-mesh") this.#dropMesh(message.id);
-    else this.#run(message);
+    else if (message.type === "helper") this.#addHelper(message.port);
+    else if (message.type === "helper-left") this.#helpers?.remove(message.helper);
+    else if (message.type === "stop-helping") this.#help?.stop();
+    else if (message.type === "help") this.#answer(this.#helping(message));
+    else this.#answer(this.#performed(message), message.returnData ? message.job.data : undefined);
   }
 
   #start(core: WebAssembly.Module): void {
@@ -57,11 +67,11 @@ class WorkerHost {
     this.#post({ type: "unreadable" });
   }
 
-  async #run({ job, wantsProgress, returnData }: Request & { type: "job" }): Promise<void> {
-    const data = returnData ? job.data : undefined;
+  /** @param data the data that are returned with the result */
+  async #answer(work: (modules: Modules) => Promise<unknown>, data?: unknown): Promise<void> {
     const instances = async () => (await this.#caching()).map((module) => module?.instance);
     const before = await instances();
-    const answer = await this.#performed(job, wantsProgress);
+    const answer = await this.#done(work);
     const after = await instances();
     const emptied = caches.filter((_, i) => before[i] !== undefined && before[i] !== after[i]);
     try {
@@ -76,9 +86,37 @@ class WorkerHost {
     return Promise.all([this.#core, this.#joint].map((module) => module?.loading?.catch(() => undefined)));
   }
 
-  async #performed(job: Job, wantsProgress: boolean): Promise<Reply & { type: "done" }> {
+  #performed({ job, wantsProgress }: Request & { type: "job" }): (modules: Modules) => Promise<unknown> {
     const listener = (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
       this.#post({ type: "progress", stage, fraction, best });
+    return async (modules) => {
+      const helpers = new Helpers(() => this.#post({ type: "needs-help" }));
+      this.#helpers = helpers;
+      try {
+        return await perform<Job>(job, modules, wantsProgress ? listener : undefined, helpers);
+      } finally {
+        this.#helpers = undefined;
+        helpers.close();
+      }
+    };
+  }
+
+  #helping({ port, mesh }: Request & { type: "help" }): (modules: Modules) => Promise<unknown> {
+    const help = new HelpingWorker(port, mesh);
+    this.#help = help;
+    return async (modules) => {
+      await help.run(modules);
+      return {};
+    };
+  }
+
+  /** Connects a helper to the running job, which may have ended in the meantime. */
+  #addHelper(port: MessagePort): void {
+    if (this.#helpers === undefined) port.close();
+    else this.#helpers.add(port);
+  }
+
+  async #done(work: (modules: Modules) => Promise<unknown>): Promise<Reply & { type: "done" }> {
     try {
       const core = await this.#core?.load().catch((error) => {
         // The pool replaces a worker with an internal error; this one would fail forever.
@@ -93,7 +131,7 @@ class WorkerHost {
         registrar: () => this.#registrar.load(),
         joint: () => this.#joint.load(),
       };
-      return { type: "done", result: await perform(job, modules, wantsProgress ? listener : undefined) };
+      return { type: "done", result: await work(modules) };
     } catch (error) {
       return { type: "done", error: partsOf(error instanceof Sim3AlignError ? error : internalError(error)) };
     }

@@ -1,6 +1,6 @@
 /**
- * `npm run bench:pool`: alignments a second by the number of workers, how long an abort takes, what a lost worker costs,
- * and the memory that a thousand alignments leave.
+ * `npm run bench:pool`: alignments a second by the number of workers, how much faster one hard case becomes, how long an
+ * abort takes, what a lost worker costs, and the memory that a thousand alignments leave.
  */
 import { availableParallelism } from "node:os";
 import { join } from "node:path";
@@ -9,7 +9,7 @@ import { buildPackage } from "../lib/package.mjs";
 import { packageDir } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { bumpyRing, packageModule, pictureOf } from "./inputs.mjs";
+import { bumpyRing, foldersWith, packageModule, pictureOf, readTypedCase } from "./inputs.mjs";
 import { fixed, markdownTable, median } from "./table.mjs";
 
 /** The longest that an abort may take, milliseconds. */
@@ -75,6 +75,36 @@ async function measureThroughput(createAligner, cases, repeats) {
     return [workers, fixed(own / 1000, 2), fixed((1000 * cases) / own, 2), fixed(alone / own, 2)];
   });
   console.log(`\n${markdownTable([`alignAll, ${cases} inputs: workers`, "s", "alignments/s", "times"], rows)}\n`);
+}
+
+/**
+ * The time of one hard case after the other, by the number of workers, which alternate: all share the search.
+ * @param {typeof import("../../pkg/index.js").createAligner} createAligner
+ * @param {number} repeats
+ * @param {readonly string[]} folders
+ */
+async function measureHardCases(createAligner, repeats, folders) {
+  const numbers = [0, 1, 2, 3, 4].filter((workers) => workers <= availableParallelism());
+  const aligners = await Promise.all(numbers.map((workers) => createAligner({ workers })));
+  const cases = [1, 2, 3].map((i) => ({ name: `ring ${i}`, input: inputOf(i) }));
+  for (const folder of foldersWith("depth.npy", folders)) cases.push(await readTypedCase(folder));
+  const rows = [];
+  for (const { name, input } of cases) {
+    /** @type {number[][]} */
+    const times = numbers.map(() => []);
+    for (let repeat = -1; repeat < repeats; repeat++) {
+      for (const [i, aligner] of aligners.entries()) {
+        const ms = await timed(() => aligner.align(input, { quality: "best" }));
+        // The first round compiles.
+        if (repeat >= 0) times[i]?.push(ms);
+      }
+    }
+    const ratios = times.slice(1).map((own) => median(own.map((ms, k) => Number(times[0]?.[k]) / ms)));
+    rows.push([name, fixed(median(times[0] ?? [])), ...ratios.map((ratio) => fixed(ratio, 2))]);
+  }
+  for (const aligner of aligners) aligner.dispose();
+  const head = ["quality best", "without workers, ms", ...numbers.slice(1).map((workers) => `times with ${workers}`)];
+  console.log(`\n${markdownTable(head, rows)}\n`);
 }
 
 /**
@@ -181,16 +211,18 @@ async function measureMemory(createAligner, alignments) {
 
 await command("bench:pool", (program) =>
   program
-    .description("Measures workers: throughput, aborts (fails beyond 100 ms), losses, memory.")
+    .description("Measures workers: throughput, hard cases, aborts (fails beyond 100 ms), losses, memory.")
+    .option("--hard <folders...>", "case folders that are aligned with the quality best, besides generated ones", [])
     .option("--cases <n>", "inputs of alignAll", count, 60)
     .option("--repeats <n>", "how often each is measured, in turn", count, 3)
     .option("--aborts <n>", "how many calls are aborted", count, 100)
     .option("--losses <n>", "how many workers are killed under their job", count, 20)
     .option("--alignments <n>", "how many the memory is watched over", count, 1000)
-    .action(async ({ cases, repeats, aborts, losses, alignments }) => {
+    .action(async ({ cases, repeats, hard, aborts, losses, alignments }) => {
       await buildPackage();
       const { createAligner } = await packageModule("index.js");
       await step("throughput", () => measureThroughput(createAligner, cases, repeats));
+      await step("hard cases", () => measureHardCases(createAligner, repeats, hard));
       const isQuick = await step("aborts", () => measureAborts(createAligner, aborts));
       await step("lost workers", () => measureLosses(createAligner, losses));
       await step("memory", () => measureMemory(createAligner, alignments));

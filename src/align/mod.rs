@@ -1,6 +1,7 @@
 //! Alignment: depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
 pub mod evaluate;
+pub mod helper;
 pub mod method;
 mod outcome;
 pub mod search;
@@ -45,7 +46,7 @@ pub fn align_prepared(
     finished(align_with_pauses(observation, mesh, &request, host, &Pauses::none()))
 }
 
-/// [`align`] in steps. The task owns or borrows its observation and mesh.
+/// [`align`] in steps, with other threads that may help. The task owns or borrows its observation and mesh.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
@@ -54,10 +55,10 @@ pub fn align_task<'a, 'm: 'a>(
     mesh: impl Borrow<PreparedMesh<'m>> + 'a,
     options: AlignOptions,
     mut host: impl Host + 'a,
-    clock: fn() -> f64,
+    pauses: Pauses,
 ) -> Result<Task<'a, Alignment>> {
     let request = Request::new(options)?;
-    Ok(Task::new(Pauses::new(clock, None), |pauses| async move {
+    Ok(Task::new(pauses, |pauses| async move {
         align_with_pauses(observation.borrow(), mesh.borrow(), &request, &mut host, &pauses).await
     }))
 }

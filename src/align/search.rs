@@ -71,6 +71,16 @@ impl Request {
         Ok(Self { options, efforts, setup })
     }
 
+    /// The options.
+    pub fn options(&self) -> &AlignOptions {
+        &self.options
+    }
+
+    /// The settings of the searches, with increasing effort.
+    pub fn efforts(&self) -> &[SearchSettings] {
+        &self.efforts
+    }
+
     /// With other settings of the searches than those that follow from the options, for ablations.
     pub fn with_efforts(self, efforts: Vec<SearchSettings>) -> Self {
         Self { efforts, ..self }
@@ -102,6 +112,9 @@ impl<'a> Search<'a> {
         pauses: &'a Pauses,
     ) -> Result<Self> {
         let stages = Stopwatch::new(host, precise::PLAN);
+        if request.efforts.first().is_some_and(|settings| settings.is_long(1)) {
+            pauses.ask_for_help().await;
+        }
         mesh.check()?;
         pauses.here().await;
         let mesh = match request.efforts.first() {
@@ -144,6 +157,9 @@ impl<'a> Search<'a> {
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
+            if settings.is_long(1) {
+                pauses.ask_for_help().await;
+            }
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
             pauses.here().await;
             start::run(&mut rounds, &efforts::share(index, efforts.len()), pauses, stages).await;

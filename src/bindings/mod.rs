@@ -3,6 +3,7 @@
 
 pub mod answer;
 pub mod error;
+pub mod helpers;
 pub mod host;
 pub mod input;
 pub mod mesh;

@@ -1,6 +1,7 @@
 //! The alignment of a scene: the rounds of its [`Plan`], one object after the other, and the alignment of one object.
 
 use core::ops::ControlFlow;
+use std::rc::Rc;
 
 use super::contact::Contact;
 use super::local::View;
@@ -8,6 +9,7 @@ use super::placement::Placement;
 use super::plan::{Arranged, Arrangement, Plan, missing};
 use super::planes::union_of;
 use super::support::{Support, SupportChoice};
+use crate::align::helper::Helper;
 use crate::align::search::{Request, Search};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
@@ -16,6 +18,7 @@ use crate::geometry::pinhole::Pinhole;
 use crate::pauses::{Boxed, Pauses, boxed, finished};
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
+use crate::precise::scored::surroundings::Surroundings;
 use crate::precise::searched::start::Told;
 use crate::progress::Host;
 use crate::report::{Alignment, Sim3};
@@ -158,4 +161,20 @@ pub fn place<'a>(
         let placement = placement.in_pose_of(&alignment, mesh, observation, normal)?;
         Ok((placement, Some(alignment)))
     })
+}
+
+/// A helper of [`place`] with the same arguments.
+///
+/// # Errors
+/// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
+pub fn helper(
+    observation: Observation,
+    mesh: Rc<PreparedMesh<'static>>,
+    options: AlignOptions,
+    told: Option<Told<'_>>,
+) -> Result<Helper> {
+    let known = told.map(|told| told.known).unwrap_or_default();
+    Ok(Helper::new(vec![Some(observation)], mesh, Request::new(options)?, move |search| {
+        search.surround(Surroundings::new(known.clone(), &search.mesh, &search.observation));
+    }))
 }

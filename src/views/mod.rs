@@ -17,7 +17,9 @@ mod unrelated;
 pub mod world_pose;
 
 use core::borrow::Borrow;
+use std::rc::Rc;
 
+use crate::align::helper::Helper;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::geometry::similarity::Similarity;
@@ -54,7 +56,7 @@ pub fn align_views(
     finished(Request::new(views, options.clone())?.align(mesh, host, &Pauses::none()))
 }
 
-/// [`align_views`] in steps.
+/// [`align_views`] in steps, with other threads that may help.
 ///
 /// # Errors
 /// As [`align_views`].
@@ -63,13 +65,19 @@ pub fn align_views_task<'a, 'm: 'a>(
     mesh: impl Borrow<PreparedMesh<'m>> + 'a,
     options: ViewsOptions,
     mut host: impl Host + 'a,
-    clock: fn() -> f64,
+    pauses: Pauses,
 ) -> Result<Task<'a, ViewsAlignment>> {
     let request = Request::new(views, options)?;
-    Ok(Task::new(
-        Pauses::new(clock, None),
-        |pauses| async move { request.align(mesh.borrow(), &mut host, &pauses).await },
-    ))
+    Ok(Task::new(pauses, |pauses| async move { request.align(mesh.borrow(), &mut host, &pauses).await }))
+}
+
+/// A helper of [`align_views_task`] with the same views, mesh and options.
+///
+/// # Errors
+/// As [`align_views`].
+pub fn views_helper(views: Vec<View>, mesh: Rc<PreparedMesh<'static>>, options: ViewsOptions) -> Result<Helper> {
+    let (request, observations) = Request::new(views, options)?.of_each_view()?;
+    Ok(Helper::new(observations, mesh, request, |_| ()))
 }
 
 /// The error where a mask is needed.

@@ -8,6 +8,7 @@ use super::summary::Summary;
 use super::unrelated::unrelated;
 use super::world_pose::PlacedCamera;
 use super::{MAX_VIEWS, View, no_mask};
+use crate::align::search;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::Observation;
 use crate::options::Options;
@@ -65,6 +66,14 @@ impl Request {
         Ok(Self { views, observations, options, is_known })
     }
 
+    /// What the search in each view is asked for, and its observation.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn of_each_view(self) -> Result<(search::Request, Vec<Option<Observation>>)> {
+        Ok((search::Request::new(self.options.of_one_view())?, self.observations))
+    }
+
     fn camera(&self, index: usize) -> PlacedCamera {
         self.views[index].world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
     }
@@ -93,6 +102,9 @@ impl Request {
             for (effort, settings) in efforts.iter().enumerate() {
                 let share = efforts::share(effort, efforts.len());
                 let before = core::mem::take(&mut searched);
+                if settings.is_long(self.observations.iter().flatten().count()) {
+                    pauses.ask_for_help().await;
+                }
                 for (index, observation) in self.observations.iter().enumerate() {
                     let Some(observation) = observation else { continue };
                     let (place, previous) = ((index, self.camera(index)), before.get(searched.len()));

@@ -46,7 +46,8 @@ impl SearchedView {
         stages: &mut Stopwatch<'_>,
     ) -> Result<Self> {
         let before = previous.map(|view| &view.rounds);
-        let rounds = start::begin(observation, mesh, before, options, settings, stages)?;
+        let mut rounds = start::begin(observation, mesh, before, options, settings, stages)?;
+        rounds.search.view = index;
         Ok(Self { index, camera, rounds, candidates: Vec::new(), color: None })
     }
 

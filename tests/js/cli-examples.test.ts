@@ -9,11 +9,14 @@ import { files, folder, pixels, run, writeCase } from "../support/command-line.j
 import { commandLine } from "../support/environment.js";
 import { cocoRle, glb, npy, obj, png, writeFiles } from "../support/files.js";
 import { frameAt, frameFiles } from "../support/rig.js";
+import { sam3dFiles } from "../support/sam3d.js";
 import { mesh, poseJson, truth, view } from "../support/scene.js";
-import { tableFiles } from "../support/table.js";
+import { masks, poses, standingGlb, tableFiles, tableView } from "../support/table.js";
 import { deflated, zip } from "../support/zip.js";
 
 const write = (path: string, content: Uint8Array | string | object) => writeFiles(folder, { [path]: content });
+
+const tableMask = (i: number) => png(masks[i] as Uint8Array, tableView.width, tableView.height);
 
 /** Frames whose cameras are known only through the object. */
 function writeFrames(name: string, angles: readonly number[]): void {
@@ -37,6 +40,8 @@ before(() => {
   writeFrames("views/mug", [0, 40]);
   writeFrames("videos/mug", [0, 3]);
   writeCase("scenes/desk", tableFiles());
+  const objects = poses.map((pose, i) => ({ name: `thing-${i}`, mask: tableMask(i), glb: standingGlb, pose }));
+  writeCase("outputs/desk", sam3dFiles(tableView, objects));
 
   const found = writeBop(join(folder, "bop", "lmo"));
   // A target is enough.

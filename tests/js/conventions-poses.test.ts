@@ -1,5 +1,7 @@
 /** Transforms in other tools' conventions, against NumPy, three.js and points that were moved by each one's formula. */
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 import {
   applyToPoints,
@@ -8,6 +10,8 @@ import {
   fromBop,
   fromFrame,
   fromSam3d,
+  type GeneratorFrame,
+  generatorFrames,
   invert,
   type Sim3Like,
   toBop,
@@ -24,6 +28,7 @@ import {
 } from "sim3align/conventions";
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { fixtures } from "../support/conventions.js";
+import { repository } from "../support/environment.js";
 import { type Refusals, refuses, rejectsWith } from "../support/errors.js";
 import { assertNear, forSeeds } from "../support/random.js";
 import { columnMajor, type Pose, rotationRows, transformed } from "../support/scene.js";
@@ -224,6 +229,36 @@ test("SAM 3D Objects' layouts put GLB vertices where its formula puts them, and 
     const pose = random.pose();
     assertNear(fromSam3d(toSam3d(pose)).matrix, columnMajor(pose), seed);
   });
+});
+
+test("an asymmetric object is upright, and seen from its front, by the frame of each generator's file", () => {
+  const along = (vertices: number[][], [x, y, z]: readonly [number, number, number]) =>
+    vertices.map(([a = 0, b = 0, c = 0]) => x * a + y * b + z * c);
+  const frameOf = (name: string, file: string) =>
+    (generatorFrames as unknown as Record<string, Record<string, GeneratorFrame>>)[name]?.[file];
+  const tested = fixtures.generators.map(({ generator, file, vertices, heights, towardsCamera }) => {
+    const { up, front } = frameOf(generator, file) ?? assert.fail(`${generator} ${file}`);
+    assertNear(along(vertices, up), heights, `${generator}, ${file}: up`);
+    assert.equal(front === null, towardsCamera === null, generator);
+    if (front !== null && towardsCamera !== null)
+      assertNear(along(vertices, front), towardsCamera, `${generator}: front`);
+    return `${generator} ${file}`;
+  });
+  const all = Object.entries(generatorFrames).flatMap(([name, files]) =>
+    Object.keys(files).map((file) => `${name} ${file}`),
+  );
+  assert.deepEqual(tested.sort(), all.sort());
+  // The guide says the same.
+  const guide = readFileSync(join(repository, "docs", "guides", "generators.md"), "utf8");
+  const axis = (name: string) =>
+    name === "–" ? null : ["x", "y", "z"].map((one) => (name.endsWith(one) ? (name.startsWith("−") ? -1 : 1) : 0));
+  const rows = [...guide.matchAll(/^\| [^|]+ \| `(\w+)\.(\w+)` \| (\S+) \| (\S+) \|/gm)].map((row) => row.slice(1));
+  assert.deepEqual(rows.map(([name, file]) => `${name} ${file}`).sort(), all.sort());
+  for (const [name = "", file = "", up = "", front = ""] of rows) {
+    assert.deepEqual(frameOf(name, file), { up: axis(up), front: axis(front) }, `${name}, ${file}`);
+  }
+  // The vertices of SAM 3D's layouts have z up.
+  assert.deepEqual(generatorFrames.sam3d.gaussians.up, [0, 0, 1]);
 });
 
 test("glTF's nodes have the transform in parts, and what is known in extras", () => {

@@ -7,6 +7,7 @@ import { after, test } from "node:test";
 import { type AlignInput, type AlignOptions, createAligner, type ErrorCode, type Progress } from "sim3align";
 import { depthFromTensor } from "sim3align/conventions";
 import { readCamera, readCase, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
+import { readSam3d, readScene } from "sim3align/scenes";
 import { rejectsWith } from "../support/errors.js";
 import { glb, npy } from "../support/files.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -324,6 +325,8 @@ test("the readers of files refuse them, too", async () => {
     [() => readDepth(plainProxy(new Uint8Array(8))), "file"],
     [() => readMesh(glb(mesh), null as never), "options"],
     [() => readCase(5 as never), "files"],
+    [() => readScene(5 as never), "files"],
+    [() => readSam3d(5 as never), "files"],
   ];
   for (const [call, argument] of refused) await rejectsWith(call, `INVALID_ARGUMENT ${argument}`);
 });

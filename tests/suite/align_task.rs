@@ -1,6 +1,7 @@
 //! Alignments in steps: pauses anywhere change no bit of the result.
 
 use sim3align::align::{align, align_task};
+use sim3align::pauses::Pauses;
 use sim3align::precise::searched::start::prepare;
 use sim3align::progress::Timings;
 
@@ -9,7 +10,7 @@ use crate::shapes::{body, observe};
 
 /// The result of a task that pauses where its clock says, and how often it did.
 fn in_steps(mesh: &PreparedMesh<'_>, options: AlignOptions, clock: fn() -> f64) -> (Alignment, usize) {
-    let mut task = align_task(observe(mesh.mesh(), 1.0), mesh, options, Silent, clock).unwrap();
+    let mut task = align_task(observe(mesh.mesh(), 1.0), mesh, options, Silent, Pauses::new(clock, None)).unwrap();
     let mut pauses = 0;
     loop {
         match task.step(0.0).unwrap() {

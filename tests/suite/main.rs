@@ -26,6 +26,7 @@ pub mod formats_mesh;
 pub mod formats_photos;
 pub mod formats_splats;
 pub mod fpfh;
+pub mod helpers;
 pub mod hostile;
 pub mod icp;
 pub mod image;

@@ -7,6 +7,7 @@ use sim3align::evidence::photo::Photo;
 use sim3align::geometry::rasteriser::NO_TRIANGLE;
 use sim3align::geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors};
 use sim3align::metrics::pose_error::pose_errors;
+use sim3align::pauses::Pauses;
 use sim3align::precise::drawn::turns::dihedral;
 use sim3align::report::ColorVerdict;
 
@@ -202,7 +203,7 @@ fn a_comparison_may_pause_after_any_pose() {
     let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
     let seen = observe(&mesh, &truth()).with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.3), 0)).unwrap();
     let expected = described(solve(seen.clone(), &prepared));
-    let mut task = align_task(seen, &prepared, quick(), Silent, || 0.0).unwrap();
+    let mut task = align_task(seen, &prepared, quick(), Silent, Pauses::none()).unwrap();
     let mut pauses = 0;
     let found = loop {
         pauses += 1;

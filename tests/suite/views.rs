@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use sim3align::evidence::photo::Photo;
 use sim3align::metrics::pose_error::pose_errors;
+use sim3align::pauses::Pauses;
 use sim3align::views::common_size::{SizeEvidence, common_size};
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment, WorldFrame};
@@ -190,7 +191,7 @@ fn pauses_and_repeats_change_no_bit() {
     let bits = |found: &ViewsAlignment| fingerprint(found.world_from_mesh.matrix.map(f64::to_bits));
     let whole = align(&sequence, views_of(&sequence));
     let mesh = PreparedMesh::borrowed(&sequence.mesh);
-    let mut task = align_views_task(views_of(&sequence), &mesh, options(&sequence), Silent, || 0.0).unwrap();
+    let mut task = align_views_task(views_of(&sequence), &mesh, options(&sequence), Silent, Pauses::none()).unwrap();
     let mut steps = 0;
     let paused = loop {
         steps += 1;

@@ -1,6 +1,7 @@
 /** What other programs say, from tests/fixtures/make_conventions.py. */
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
+import type { generatorFrames } from "sim3align/conventions";
 import { repository } from "./environment.js";
 
 /** Points, one after the other. */
@@ -40,6 +41,13 @@ interface Fixtures {
     entry: { cam_R_m2c: number[]; cam_t_m2c: number[]; obj_id: number };
     modelMm: Points;
     inCameraMm: Points;
+  }[];
+  generators: {
+    generator: keyof typeof generatorFrames;
+    file: "mesh" | "gaussians";
+    vertices: Points;
+    heights: number[];
+    towardsCamera: number[] | null;
   }[];
   moge: { width: number; height: number; intrinsics: number[][]; points: (number | null)[][]; mask: boolean[] };
 }

@@ -178,19 +178,7 @@ impl BenchScene {
         let begun = Instant::now();
         let alone: Vec<_> = self.objects.iter().map(|object| self.alone(object, options)).collect();
         let alone_seconds = begun.elapsed().as_secs_f64();
-        let object = |object: &BenchObject| SceneObject {
-            mask: object.mask.clone(),
-            mesh: PreparedMesh::new(object.mesh.clone()),
-            options: options.clone(),
-        };
-        let scene = Scene {
-            depth: self.depth.clone(),
-            camera: self.camera,
-            objects: self.objects.iter().map(object).collect(),
-            occluders: Vec::new(),
-            support: SupportChoice::Auto,
-            snap,
-        };
+        let scene = Scene { snap, ..self.with_options(|_| options.clone()) };
         let begun = Instant::now();
         let aligned = align_scene(&scene, &mut Silent)?;
         let seconds = [alone_seconds, begun.elapsed().as_secs_f64()];
@@ -223,6 +211,23 @@ impl BenchScene {
             plane_errors,
             seconds,
         })
+    }
+
+    /// The scene, whose support is to be found, with the options of each object.
+    pub(super) fn with_options(&self, options: impl Fn(usize) -> AlignOptions) -> Scene<'_> {
+        let object = |(k, object): (usize, &BenchObject)| SceneObject {
+            mask: object.mask.clone(),
+            mesh: PreparedMesh::new(object.mesh.clone()),
+            options: options(k),
+        };
+        Scene {
+            depth: self.depth.clone(),
+            camera: self.camera,
+            objects: self.objects.iter().enumerate().map(object).collect(),
+            occluders: Vec::new(),
+            support: SupportChoice::Auto,
+            snap: false,
+        }
     }
 
     fn alone(&self, object: &BenchObject, options: &AlignOptions) -> Outcome {

@@ -27,3 +27,5 @@ pub(crate) const COUNT_STREAM: u64 = 18;
 pub(crate) const QUALITY_STREAM: u64 = 19;
 /// How objects are held.
 pub(crate) const STANCE_STREAM: u64 = 32;
+/// Simulated placements of generators.
+pub(crate) const PLACEMENT_STREAM: u64 = 33;

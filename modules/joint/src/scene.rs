@@ -11,15 +11,17 @@ use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
+use sim3align::align::helper::Helper;
 use sim3align::bindings::answer::answer;
 use sim3align::bindings::error::to_js;
+use sim3align::bindings::helpers::{JsHelpers, pauses, step};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, required_number, to_numbers, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::geometry::image::{Image, Mask};
 use sim3align::number::number;
-use sim3align::pauses::{Pauses, Task};
+use sim3align::pauses::Task;
 use sim3align::report::Alignment;
 use sim3align::scene::local::View;
 use sim3align::scene::placement::Placement;
@@ -27,7 +29,7 @@ use sim3align::scene::plan::{Plan, missing};
 use sim3align::scene::plane::Plane;
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::SupportChoice;
-use sim3align::scene::task::place;
+use sim3align::scene::task::{helper, place};
 
 /// A running alignment of one object of a scene.
 #[wasm_bindgen(skip_typescript)]
@@ -41,13 +43,14 @@ pub fn begin_place(
     plan: &JsValue,
     object: usize,
     on_progress: Option<Function>,
+    helpers: Option<JsHelpers>,
 ) -> core::result::Result<PlaceTask, JsValue> {
     let begin = || {
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
         let plan: Plan = unpacked(plan)?.unwrap_or_default();
         let mut host = JsHost::new(on_progress);
-        Ok(Task::new(Pauses::new(now_ms, None), move |pauses| async move {
+        Ok(Task::new(pauses(helpers), move |pauses| async move {
             place(&observation, &mesh, options, plan.told(object)?, &mut host, &pauses).await
         }))
     };
@@ -63,6 +66,42 @@ impl PlaceTask {
         let Some((placement, alignment)) = done else { return Ok(JsValue::UNDEFINED) };
         let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;
         Ok(object([("placement", packed(&placement)?), ("alignment", alignment)]))
+    }
+}
+
+/// A helper of the alignment of an object.
+#[wasm_bindgen(skip_typescript)]
+pub struct PlaceHelper(RefCell<Helper>);
+
+/// Prepares a helper of the alignment that [`begin_place`] begins with the same input, options and plan.
+#[wasm_bindgen(js_name = beginHelp, skip_typescript)]
+pub fn begin_help(
+    input: &JsValue,
+    options: &JsValue,
+    plan: &JsValue,
+    object: usize,
+) -> core::result::Result<PlaceHelper, JsValue> {
+    let begin = || {
+        let options = options::precise(options)?;
+        let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
+        let plan: Plan = unpacked(plan)?.unwrap_or_default();
+        helper(observation, mesh, options, plan.told(object)?)
+    };
+    begin().map(|helper| PlaceHelper(RefCell::new(helper))).map_err(|error: Error| to_js(&error))
+}
+
+#[wasm_bindgen]
+impl PlaceHelper {
+    /// Reads a message of the alignment.
+    #[wasm_bindgen(skip_typescript)]
+    pub fn receive(&self, message: &[f64]) {
+        self.0.borrow_mut().receive(message);
+    }
+
+    /// See [`step`].
+    #[wasm_bindgen(skip_typescript)]
+    pub fn step(&self, slice_ms: f64) -> JsValue {
+        step(&mut self.0.borrow_mut(), slice_ms)
     }
 }
 

@@ -5,6 +5,7 @@ import { basename, join, resolve, sep } from "node:path";
 import { text } from "node:stream/consumers";
 import { globSync, isDynamicPattern } from "tinyglobby";
 import { caseFiles } from "../case-files.js";
+import { viewNames } from "../scene/sam3d-files.js";
 import { absolutePath, namesIn } from "./case-identity.js";
 import type { CaseKey } from "./jsonl-file.js";
 import { UsageError } from "./usage-error.js";
@@ -29,6 +30,12 @@ export const sceneKind: FolderKind = {
   noun: "scene",
   mark: "objects",
   is: (folder) => has(folder, "objects") || has(folder, "mask_visib", "scene_gt.json"),
+};
+
+export const sam3dKind: FolderKind = {
+  noun: "scene",
+  mark: "a point map or depth",
+  is: (folder) => namesIn(folder).some((name) => viewNames.includes(name)),
 };
 
 /** A folder to work on. */

@@ -26,7 +26,7 @@ import {
   statusHelp,
 } from "./case-options.js";
 import { depthRows } from "./depth-rows.js";
-import { type FolderToDo, foldersToDo, sceneKind } from "./folders.js";
+import { type FolderToDo, foldersToDo, sam3dKind, sceneKind } from "./folders.js";
 import { isMetric, Lengths } from "./lengths.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
 import { type Failure, failedLine, failureOf, failureText, type Outcome, ofInputJson, outcomeJson } from "./outcome.js";
@@ -41,6 +41,7 @@ interface SceneFlags extends CaseFlags, PictureFlags, SceneFileFlags, BatchFlags
   snap?: boolean;
   support?: string;
   models?: string;
+  sam3d?: boolean;
 }
 
 /** The options of `align`, for every object; a first pose is that of one. */
@@ -51,9 +52,13 @@ A scene folder holds
   depth.npy or .png …                   as a case folder, see "sim3align align --help"; also camera.json and the photo
   objects/NAME/mask.png, .npy or .json  the mask of each object
   objects/NAME/mesh.glb, …              its mesh; textures are kept by --scene-glb
+  objects/NAME/initial.json (optional)  a pose to start from, as gt.json: one candidate among those of the search
   objects/NAME/gt.json (optional)       its true pose
 A scene in the layout of BOP (depth/, mask_visib/, scene_camera.json, scene_gt.json, and models in models/, ../models or
 ../../models) is one as well; --image-id selects the image.
+With --sam3d, a folder is an output of SAM 3D Objects: pointmap.npy or depth.*, the photo, and for each object a mask, a GLB or
+the PLY of its Gaussians, and pose.json { "rotation", "translation", "scale" }, in objects/NAME/ or with NAME in their names.
+Frames are converted; its own placement is one candidate. Its point maps have no unit: pass --depth-kind metric if one has.
 ${conventionsHelp}
   The support is the plane n·x + d = 0 in the camera frame, metres; n points to the side of the objects.
 ${depthKindHelp}
@@ -80,6 +85,7 @@ Examples
   sim3align scene scenes/desk --scale 0.05,0.5
   sim3align scene scenes/desk --snap --scene-glb desk.glb
   sim3align scene scenes/desk --mjcf desk-mujoco --usd desk.usda
+  sim3align scene --sam3d outputs/desk --scene-glb desk.glb
   sim3align scene scenes/desk --depth-kind affine-invariant-disparity
   sim3align scene scenes/* --report report
   sim3align scene bop/test/000048 --image-id 1 --json -
@@ -92,16 +98,22 @@ export function sceneCommand(): Command {
     .description("Aligns the objects of each scene together: one depth map, a mask and a mesh per object.")
     .option("--snap", "put objects exactly onto what they touch")
     .option("--support <auto|none|file>", 'what objects stand on: found, nothing, or a JSON file { "normal", "d" }')
-    .option("--models <folder>", "the models of a BOP scene");
+    .option("--models <folder>", "the models of a BOP scene")
+    .option("--sam3d", "the folders are outputs of SAM 3D Objects");
   addOptionFlags(addCaseOptions(addPictureFlags(command)).optionsGroup("Options of every object:"), rows);
   return command.addHelpText("after", help).action(run);
 }
 
 async function run(args: string[], flags: SceneFlags): Promise<void> {
-  const scenes = await scenesIn(await foldersToDo(sceneKind, args, flags.list), flags);
+  const kind = flags.sam3d ? sam3dKind : sceneKind;
+  const scenes = await scenesIn(await foldersToDo(kind, args, flags.list), flags);
   checkSceneFiles(flags, scenes.length, hasLengths(flags));
   const support = await supportOf(flags.support);
-  const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models: flags.models });
+  const settings: SceneSettings = withoutUndefined({
+    ...caseSettings(flags),
+    models: flags.models,
+    sam3d: flags.sam3d,
+  });
   const output = new Output(flags);
   await runBatch(scenes, flags, output, {
     run: (aligner, scene, live) => alignScene(aligner, scene, flags, { settings, support, style: output.style }, live),
@@ -119,7 +131,7 @@ async function run(args: string[], flags: SceneFlags): Promise<void> {
 }
 
 /** Whether the flags make lengths metric. */
-const hasLengths = ({ depthKind = "metric", knownExtent, scale }: SceneFlags) =>
+const hasLengths = ({ sam3d, depthKind = sam3d ? "scale-invariant" : "metric", knownExtent, scale }: SceneFlags) =>
   depthKind === "metric" || knownExtent !== undefined || typeof scale === "number";
 
 /** A scene to align. */
@@ -152,7 +164,9 @@ async function alignScene(
   try {
     const scene = await readSceneFolder(key.scene, settings);
     const options: SceneOptions = { ...givenOptions(flags, rows), ...withoutUndefined({ snap: flags.snap }) };
-    const input = { ...scene.input, support } as SceneInput;
+    // A scale that is given goes before the first poses of files.
+    const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
+    const input = { ...scene.input, objects, support } as SceneInput;
     const onProgress = live?.progress;
     const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress }));
     const errors = await Promise.all(

@@ -67,7 +67,7 @@ export function checkSceneFiles(
     if (path === undefined) continue;
     if (needsMetres && !isMetric)
       throw new UsageError(
-        `${flag} needs metres, which depth of this kind has not: pass --known-extent, or a number as --scale.`,
+        `${flag} needs metres, which depth of this kind has not: pass --known-extent, or a number as --scale; or --depth-kind metric, if it is in metres.`,
       );
     if (scenes > 1) throw new UsageError(`${flag} takes a single scene.`);
     check(flag, path);

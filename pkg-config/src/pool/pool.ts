@@ -8,6 +8,7 @@ import { isAttached } from "../kinds.js";
 import { checkSignals, onAbort } from "../on-abort.js";
 import type { SignalLike } from "../platform.js";
 import { Queue } from "../queue.js";
+import { Lending } from "./lending.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
 import { buffersOf, copied, isSendable, sendableParts } from "./transfer.js";
 
@@ -23,6 +24,7 @@ export class WorkerPool implements Engine {
   readonly #slots: readonly WorkerSlot[];
   readonly #fallback: MainThreadEngine;
   readonly #queue: Queue<WorkerSlot>;
+  readonly #lending: Lending;
   readonly #ended = new AbortController();
 
   /** @param fallback runs jobs that cannot be cloned; it is disposed with the pool */
@@ -32,11 +34,13 @@ export class WorkerPool implements Engine {
     this.#fallback = fallback;
     this.#slots = Array.from({ length: size }, () => new WorkerSlot(setup));
     this.#queue = new Queue(this.#slots);
+    this.#lending = new Lending(this.#queue);
     for (const slot of this.#slots) startEarly(slot);
   }
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
     const signals = [this.#ended.signal, ...signalsOf(call)];
+    this.#lending.recall();
     const slot = await this.#queue.acquire(signals);
     const stop = (reason: unknown) => {
       slot.end(reason);
@@ -48,7 +52,9 @@ export class WorkerPool implements Engine {
       return await this.#runIn(slot, job, call, signals);
     } finally {
       for (const end of unfollow) end();
+      this.#lending.end(slot);
       this.#queue.release(slot);
+      this.#lending.lend();
     }
   }
 
@@ -74,7 +80,8 @@ export class WorkerPool implements Engine {
         // A call that has ended must not start a worker, which nothing would end.
         checkSignals(signals);
         await slot.ready();
-        const answer = await send(slot, job, call, signals);
+        const needsHelp = () => this.#lending.ask(slot, job);
+        const answer = await send(slot, job, call, signals, needsHelp);
         if (answer === null) {
           // The worker, in which trackers live, does not need the rest; what a pose then lacks is an error there.
           return (await this.#runHere(job, call)) ?? (await this.#runIn(slot, sendableParts(job) as J, call, signals));
@@ -86,6 +93,7 @@ export class WorkerPool implements Engine {
           throw error.error;
         }
         if (!(error instanceof WorkerLost)) throw error;
+        this.#lending.end(slot);
         if (attempt === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
       }
     }
@@ -118,6 +126,7 @@ async function send(
   job: Job,
   { transfer, progress }: Call,
   signals: readonly SignalLike[],
+  onNeedsHelp: () => void,
 ): Promise<Answer | null> {
   const mesh = "meshId" in job && job.meshId !== undefined ? { id: job.meshId, cache: meshCacheOf(job) } : undefined;
   // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.
@@ -130,7 +139,7 @@ async function send(
     try {
       const sent = { ...job, data: sentData(slot, job, isMoved, mesh) } as Job;
       const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;
-      return await slot.request(request, buffersOf(sent.data), progress, mesh);
+      return await slot.request(request, buffersOf(sent.data), { progress, onNeedsHelp }, mesh);
     } catch (error) {
       if (!(error instanceof Unsendable)) throw error;
     }

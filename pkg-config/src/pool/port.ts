@@ -8,7 +8,7 @@ type NodeWorker = import("node:worker_threads").Worker;
 
 /** The pool's end of the connection to a worker. */
 export interface Port {
-  post(message: Request, transfer?: ArrayBuffer[]): void;
+  post(message: Request, transfer?: Transferable[]): void;
   /** Sets whether the worker keeps the process alive: while it is busy. */
   keepAlive(isBusy: boolean): void;
   terminate(): void;
@@ -42,7 +42,7 @@ export function portOf(worker: WorkerLike, { onMessage, onFailure }: PortEvents)
     web.addEventListener("messageerror", unreadable);
   }
   return {
-    post: (message, transfer = []) => worker.postMessage(message, transfer),
+    post: (message, transfer = []) => worker.postMessage(message, transfer as ArrayBuffer[]),
     keepAlive: (isBusy) => (isBusy ? node?.ref?.() : node?.unref?.()),
     terminate: () => void worker.terminate(),
   };

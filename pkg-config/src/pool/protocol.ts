@@ -1,12 +1,13 @@
 /**
- * The messages between a pool and its workers. A worker is started once, says that it is `ready`, and then runs one job at a
- * time; each job ends with one `done`. `emptied` are the caches of meshes that were lost with the instance of their module: its heap had grown too
+ * The messages between a pool and its workers. A worker is started once, says that it is `ready`, and then runs one job, or
+ * helps another worker with one, at a time; each ends with one `done`. `emptied` are the caches of meshes that were lost with the instance of their module: its heap had grown too
  * large, or it was exhausted.
  */
 import { type ErrorParts, isCoded } from "../error.js";
 import type { Stage } from "../generated/types.js";
 import type { Job, MeshCache } from "../jobs.js";
 import { isRecord } from "../kinds.js";
+import type { CoreMesh } from "../prepared-mesh.js";
 
 /** Messages to the worker. */
 export type Request =
@@ -14,6 +15,14 @@ export type Request =
   | { type: "start"; core: WebAssembly.Module }
   /** `returnData` requests the return of the data of the job, which were moved to the worker. */
   | { type: "job"; job: Job; wantsProgress: boolean; returnData: boolean }
+  /** To help the worker at the other end of the port with its job, whose prepared mesh has these arrays. */
+  | { type: "help"; port: MessagePort; mesh: CoreMesh | undefined }
+  /** The answer to `needs-help`, once per helper: it is at the other end of the port. */
+  | { type: "helper"; port: MessagePort }
+  /** The helper that came at this place, from 0, has left. */
+  | { type: "helper-left"; helper: number }
+  /** To stop helping: a job waits for this worker, or that of the other one is done. */
+  | { type: "stop-helping" }
   /** Frees the cached data of a prepared mesh. */
   | { type: "drop-mesh"; id: number }
   /** The answer to `needs-module`: the compiled module, or the reason for the failure to load it. */
@@ -28,6 +37,8 @@ export type Reply =
   | { type: "ready" }
   | { type: "progress"; stage: Stage; fraction: number; best?: Float64Array | undefined }
   | { type: "needs-module"; name: LazyName }
+  /** The running job is long: other workers may help. */
+  | { type: "needs-help" }
   /** A message to the worker could not be read: its content is lost. */
   | { type: "unreadable" }
   | { type: "done"; result: unknown; data?: unknown; error?: undefined; emptied?: readonly MeshCache[] }
@@ -40,7 +51,7 @@ export type Reply =
 export function isReply(message: unknown, hasResult: boolean | undefined): message is Reply {
   if (!isRecord(message)) return false;
   const { type, result, error } = message;
-  if (type !== "done") return ["ready", "progress", "needs-module", "unreadable"].includes(`${type}`);
+  if (type !== "done") return ["ready", "progress", "needs-module", "needs-help", "unreadable"].includes(`${type}`);
   if (hasResult === undefined || error !== undefined) return hasResult !== undefined && isCoded(error);
   return "result" in message && (typeof result === "object" && result !== null) === hasResult;
 }

@@ -39,10 +39,17 @@ export interface WorkerSetup extends Record<LazyName, () => Promise<WebAssembly.
   startMs: number;
 }
 
+/** Who hears what a worker says while it runs a job. */
+export interface Listeners {
+  progress: ProgressListener;
+  /** Called when the job would be faster with helpers. */
+  onNeedsHelp?(): void;
+}
+
 interface Pending {
   resolve(answer: Answer): void;
   reject(reason: unknown): void;
-  progress: ProgressListener;
+  listeners: Listeners;
   /** Whether the job has a result; all but the opening of a tracker have one, an object. */
   hasResult: boolean;
 }
@@ -121,21 +128,22 @@ export class WorkerSlot {
   }
 
   /**
-   * Runs a job in the worker; one at a time.
+   * Runs a job in the worker, or lets it help another one; one at a time.
    * @param mesh the prepared mesh of the job, and the module that caches it
    * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason passed to `end`
    */
   async request(
-    message: Request & { type: "job" },
-    transfer: ArrayBuffer[],
-    progress: ProgressListener,
+    message: Request & { type: "job" | "help" },
+    transfer: Transferable[],
+    listeners: Listeners,
     mesh?: { id: number; cache: MeshCache },
   ): Promise<Answer> {
     const port = this.#started();
     try {
       const answer = await new Promise<Answer>((resolve, reject) => {
         // Before the message is sent: its answer, or the end of the worker, may come at once.
-        this.#pending = { resolve, reject, progress, hasResult: message.job.method !== "openTracker" };
+        const hasResult = message.type === "help" || message.job.method !== "openTracker";
+        this.#pending = { resolve, reject, listeners, hasResult };
         try {
           port.post(message, transfer);
         } catch (cause) {
@@ -152,6 +160,11 @@ export class WorkerSlot {
       port.keepAlive(false);
       for (const id of this.#dropped.splice(0)) this.dropMesh(id);
     }
+  }
+
+  /** Sends a message that needs no answer, to a worker that may be lost. */
+  tell(message: Request, transfer: Transferable[] = []): void {
+    this.#port?.post(message, transfer);
   }
 
   /** Whether the worker holds this mesh in this module: its arrays need not be sent. */
@@ -200,7 +213,9 @@ export class WorkerSlot {
     } else if (message.type === "ready") {
       this.#greeting?.hear();
     } else if (message.type === "progress") {
-      this.#pending?.progress.report(message.stage, message.fraction, message.best);
+      this.#pending?.listeners.progress.report(message.stage, message.fraction, message.best);
+    } else if (message.type === "needs-help") {
+      this.#pending?.listeners.onNeedsHelp?.();
     } else if (message.type === "needs-module") {
       const lost = (error: unknown) => this.#isCurrent(port) && this.end(new WorkerLost(messageOf(error)));
       this.#sendModule(message.name, port).catch(lost);

@@ -16,3 +16,4 @@ pub mod rounds;
 pub mod search;
 pub mod shown;
 pub mod start;
+pub mod tasks;

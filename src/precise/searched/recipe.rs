@@ -121,6 +121,9 @@ pub const SURE: f64 = 0.9;
 /// millisecond of WebAssembly each on a 2020 laptop.
 const COST: [f64; 3] = [0.06, 0.12, 0.4];
 
+/// Cost from which on searches are worth the copies and preparations of helpers.
+const LONG: f64 = 150.0;
+
 /// [`SearchSettings::max_load`], and the one with a bound on the work of the search.
 const MAX_LOAD: [u64; 2] = [64, 12];
 
@@ -193,6 +196,11 @@ impl SearchSettings {
             + COST[0] * rotate.work as f64
             + COST[1] * (place.keep * first.work + first.keep * second.work) as f64
             + COST[2] * (second.keep * fine.work) as f64
+    }
+
+    /// Whether helpers make so many of these searches faster.
+    pub fn is_long(&self, searches: usize) -> bool {
+        self.cost() * searches as f64 > LONG
     }
 
     /// Number of turns that are refined.

@@ -2,24 +2,22 @@
 //!
 //! The results of a round, in the order of its tasks, determine the next round; ties are broken by that order.
 
+use std::borrow::Cow;
+
 use glam::DQuat;
 
-use super::coarse::Coarse;
 use super::ranking::{Found, best_of, distinct_up_to};
-use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
-use super::refine::Refiner;
+use super::recipe::{FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
 use super::search::Search;
-use crate::geometry::rotations::super_fibonacci;
+use super::tasks::{Outcome, RoundTasks};
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawn::pose::CropPose;
-use crate::precise::drawn::render::Canvas;
-use crate::precise::observed::anchors::{Anchor, anchors};
+use crate::precise::observed::anchors::Anchor;
 
-/// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
-const FAR: f32 = 0.8;
+/// Score below the best pose at which a refined turn of it is not ranked.
 const NEAR: f32 = 0.3;
-/// The same as the second, where several poses are turned: after an unsure search, whose best pose is more often wrong.
+/// The same, where several poses are turned: after an unsure search, whose best pose is more often wrong.
 const UNSURE: f32 = 0.5;
 
 /// Rotation by which a search may refine a pose of another one, radians.
@@ -57,11 +55,7 @@ impl Rounds {
     /// Starts with the rotation grid or, if the search is not `global`, only with the neighbourhood of `initial`.
     pub fn new(mut search: Search, initial: Option<CropPose>, global: bool) -> Self {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
-        let anchors = if global && search.settings.anchors {
-            anchors(search.grid(COARSE), search.settings.occlusion)
-        } else {
-            vec![Anchor::AS_IT_IS]
-        };
+        let anchors = if global { search.anchors() } else { vec![Anchor::AS_IT_IS] };
         let index = if global { 0 } else { FIRST_REFINEMENT };
         Self {
             found: Vec::new(),
@@ -115,7 +109,7 @@ impl Rounds {
         list.extend(poses);
     }
 
-    /// The work of the current round that its inputs may ask for; see [`Canvas::work`].
+    /// The work of the current round that its inputs may ask for; see [`Outcome::work`].
     fn allowed(&self, round: Round) -> u64 {
         let settings = &self.search.settings;
         let per_task = match round.task {
@@ -178,47 +172,35 @@ impl Rounds {
     /// The results of the tasks of a round, in order, of as many as its allowance is enough for.
     async fn outcomes(&self, round: Round, allowance: u64, pauses: &Pauses) -> Result<Vec<Found>, TooLong> {
         let search = &self.search;
-        let objective = search.objective(round.grid);
-        let coarse = Coarse { objective, median_m: search.observation.median_m };
-        let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
-        let mut canvas = Canvas::default();
-        let mut outcomes = Vec::new();
-        for task in 0..self.tasks() {
-            match round.task {
-                Task::Rotate => {
-                    let rotation = self.rotations.get(task).copied();
-                    let rotation = rotation.unwrap_or_else(|| super_fibonacci(task, round.work));
-                    coarse.try_anchors(&mut canvas, &search.mesh.outermost, rotation, &self.anchors, &mut outcomes);
-                }
-                Task::Place => outcomes.push(coarse.at_its_distance(&mut canvas, self.poses[task])),
-                Task::Turn | Task::Refine => {
-                    let (mut pose, mut steps) = (self.poses[task], round.work);
-                    if round.task == Task::Turn {
-                        let turned = coarse.at_its_distance(&mut canvas, pose);
-                        pose = turned.pose;
-                        if self.best.first().is_some_and(|best| turned.score.total < best.score.total - FAR) {
-                            steps = 0;
-                        }
-                    }
-                    outcomes.push(refiner.refine(&mut canvas, pose, steps));
-                }
-                Task::Fit => {
-                    let (pose, surface) = (self.poses[task], &search.mesh.surface);
-                    outcomes.push(refiner.refine_in_proportion(&mut canvas, pose, round.work, surface));
-                }
-            }
-            if round.task != Task::Rotate && canvas.work > allowance {
+        let tasks = RoundTasks {
+            view: search.view,
+            effort: search.settings.effort,
+            is_surrounded: search.is_surrounded(),
+            task: round.task,
+            grid: round.grid,
+            work: round.work,
+            best: self.best.first().map(|best| best.score.total),
+            rotations: Cow::Borrowed(&self.rotations),
+            poses: Cow::Borrowed(&self.poses),
+        };
+        let count = tasks.count();
+        let (mut work, mut done, mut too_long) = (0, 0, None);
+        let ends = |outcome: &Outcome| {
+            work += outcome.work;
+            done += 1;
+            if round.task != Task::Rotate {
                 // The poses are sorted, so that the best ones have had their turn.
-                break;
+                return work > allowance;
             }
-            let is_probed = round.task == Task::Rotate && task + 1 == PROBED_ROTATIONS && self.rotations.is_empty();
-            let all = canvas.work * self.tasks() as u64 / (task + 1) as u64;
-            if is_probed && all > allowance && self.tasks() > MIN_ROTATIONS {
-                return Err(TooLong(all));
+            let all = work * count as u64 / done as u64;
+            let is_probed = done == PROBED_ROTATIONS && self.rotations.is_empty();
+            if is_probed && all > allowance && count > MIN_ROTATIONS {
+                too_long = Some(TooLong(all));
             }
-            pauses.here().await;
-        }
-        Ok(outcomes)
+            too_long.is_some()
+        };
+        let outcomes = pauses.list(&mut tasks.on(search), ends).await;
+        too_long.map_or_else(|| Ok(outcomes.into_iter().flat_map(|outcome| outcome.found).collect()), Err)
     }
 
     /// Reduces the rotation grid to as many rotations as are allowed if all of them take this much `work`. The first

@@ -12,7 +12,7 @@ use crate::precise::drawn::equivalence::Equivalence;
 use crate::precise::drawn::mesh_pyramid::MeshPyramid;
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::render::Canvas;
-use crate::precise::observed::anchors::Anchor;
+use crate::precise::observed::anchors::{Anchor, anchors};
 use crate::precise::observed::clean::CleanObservation;
 use crate::precise::observed::grid::CropGrid;
 use crate::precise::scored::conditioning::Conditioning;
@@ -37,6 +37,8 @@ pub struct Search {
     pub mesh: Rc<MeshPyramid>,
     /// The cleaned observation.
     pub observation: Rc<CleanObservation>,
+    /// The index of its view, where an alignment has several.
+    pub view: usize,
     /// Number of renders so far.
     pub renders: usize,
     pub(crate) settings: SearchSettings,
@@ -55,6 +57,7 @@ impl Search {
             mesh,
             grids: Rc::default(),
             observation,
+            view: 0,
             renders: 0,
             settings,
             prior: Prior::default(),
@@ -68,6 +71,7 @@ impl Search {
         Self {
             mesh: Rc::clone(&self.mesh),
             observation: Rc::clone(&self.observation),
+            view: self.view,
             renders: 0,
             settings: self.settings.look(),
             prior: self.prior,
@@ -128,6 +132,16 @@ impl Search {
             |turned: &Found| poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > APART);
         let tried = tried.into_iter().filter(is_new).collect();
         distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
+    }
+
+    /// Sizes and positions tried for each rotation.
+    pub fn anchors(&self) -> Vec<Anchor> {
+        if self.settings.anchors { anchors(self.grid(COARSE), self.settings.occlusion) } else { vec![Anchor::AS_IT_IS] }
+    }
+
+    /// Makes all grids.
+    pub fn make_grids(&self) {
+        (0..GRIDS).for_each(|grid| _ = self.grid(grid));
     }
 
     /// The evidence on the grid with this index.

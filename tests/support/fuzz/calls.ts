@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { type Aligner, createAligner, OPTIONS, type OptionRow, Sim3AlignError, type Tracker } from "sim3align";
 import { externalResources, readCamera, readCase, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
+import { readSam3d, readScene } from "sim3align/scenes";
 import type { Random } from "../random.js";
 import { columnMajor, truth } from "../scene.js";
 import { type Fields, mutate } from "./mutations.js";
@@ -124,7 +125,17 @@ function trackerStep(random: Random): (tracker: Tracker) => unknown {
   return (tracker) => tracker.correct(given as never, number as never);
 }
 
-const readers = [readDepth, readMask, readMesh, readCamera, readPose, readCase, externalResources];
+const readers = [
+  readDepth,
+  readMask,
+  readMesh,
+  readCamera,
+  readPose,
+  readCase,
+  readScene,
+  readSam3d,
+  externalResources,
+];
 
 const calls: readonly Call[] = [
   ...Array<Call>(6).fill((aligner, random) => {

@@ -12,6 +12,7 @@ import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
 import { rolesOf } from "./roles.js";
+import { fromSam3d } from "./sam3d.js";
 import { scenesOfTyped } from "./scenes.js";
 import { isVideo, videoOf } from "./video.js";
 
@@ -24,6 +25,7 @@ let lastChange = 0;
 export async function propose(files: readonly NamedFile[]): Promise<void> {
   const change = ++lastChange;
   let typed: Typed[];
+  let made: Awaited<ReturnType<typeof fromSam3d>> = null;
   try {
     const extracted = await extractArchives(files);
     if (change !== lastChange) return;
@@ -34,7 +36,8 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
       draft.value = null;
       return;
     }
-    typed = await rolesOf(extracted);
+    made = await fromSam3d(extracted);
+    typed = await rolesOf(made?.files ?? extracted);
   } catch (cause) {
     if (change === lastChange) refuse(errorOf("files", cause));
     return;
@@ -46,7 +49,10 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
   }
   const open = draft.peek();
   if (open !== null && !typed.some(({ role }) => role === "depth")) return add(open, typed);
-  await proposeScenes(await scenesOfTyped(typed));
+  const scenes = await scenesOfTyped(typed);
+  // Point maps of large images are smaller than the images.
+  const more = made === null ? {} : { depthKind: made.depthKind, resizeMasks: true };
+  await proposeScenes(scenes.map((one) => ({ ...one, ...more })));
 }
 
 /** Proposes scenes, the first of which is looked at. */

@@ -1,4 +1,5 @@
 /** The role of each file of a drop: by its name, and where the name says nothing, by how the file begins. */
+import { INITIAL_FILE } from "sim3align/case-files";
 import { baseName, extension, type NamedFile } from "../load/files.js";
 import type { Role, Typed } from "../load/inputs.js";
 
@@ -74,6 +75,7 @@ function roleOfJson(file: NamedFile, bytes: Uint8Array): Role {
   if (has("camera_to_world")) return "pose";
   if (/^(meta|results?|scene_gt_info|package|pose|plane)\b/.test(name)) return "unused";
   if (/^(gt|truth)\b/.test(name)) return "truth";
+  if (name === INITIAL_FILE) return "initial";
   if (["fx", "K", "k", "cam_K", "intrinsic_matrix", "fovYDeg", "fov_y_deg", "camera_matrix"].some(has)) return "camera";
   if (has("rotation") || has("matrix")) return "truth";
   return /cam|intrin|calib/.test(name) ? "camera" : "unused";

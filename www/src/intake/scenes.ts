@@ -112,10 +112,17 @@ async function sceneFrom(files: readonly Typed[], id: string | null): Promise<In
     photo,
     camera: camera === undefined ? null : { kind: "file", file: camera },
     imageId: id,
-    objects: await objectsOf(masks, meshes, truths, id),
+    objects: (await objectsOf(masks, meshes, truths, id)).map((object) => withInitial(object, of("initial"))),
     meshes,
     files,
   };
+}
+
+/** An object with the first pose beside its mask. */
+function withInitial(object: ObjectFiles, initials: readonly NamedFile[]): ObjectFiles {
+  const folder = folderOf(object.mask?.file.path ?? "");
+  const initial = initials.find(({ path }) => folderOf(path) === folder);
+  return initial === undefined ? object : { ...object, initial };
 }
 
 const byPath = (files: readonly NamedFile[]) => [...files].sort((a, b) => (a.path < b.path ? -1 : 1));

@@ -109,6 +109,7 @@ const roles: readonly (readonly [Role, string])[] = [
   ["annotations", "COCO annotations"],
   ["mesh", "Mesh"],
   ["truth", "True pose"],
+  ["initial", "First pose"],
   ["pose", "Pose of the camera"],
   ["resource", "Part of a mesh"],
   ["unused", "Not used"],

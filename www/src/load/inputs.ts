@@ -12,6 +12,7 @@ export type Role =
   | "annotations"
   | "mesh"
   | "truth"
+  | "initial"
   | "pose"
   | "resource"
   | "unused";
@@ -55,6 +56,8 @@ export interface ObjectFiles {
   mask: MaskSource | null;
   mesh: MeshSource | null;
   truth: TruthSource | null;
+  /** A pose that is a candidate of its search. */
+  initial?: NamedFile | undefined;
   /** Whether mask and mesh certainly belong together. */
   isSure: boolean;
 }

@@ -23,6 +23,7 @@ export interface ReadObject {
   mesh: MeshFromFile | null;
   glb: Uint8Array | null;
   truth: ObjectParts["truth"];
+  initial?: ObjectParts["initial"];
 }
 
 /** The inputs, as far as they could be read. */
@@ -81,15 +82,17 @@ export async function readInputs(
   const [photo, objects] = await Promise.all([
     photoFile === null || read === null ? null : attempt("photo", () => readPhoto(photoFile, size)),
     Promise.all(
-      inputs.objects.map(async ({ mask, mesh, truth }, i): Promise<ReadObject> => {
-        const [readMask, readMesh, readTruth] = await Promise.all([
+      inputs.objects.map(async ({ mask, mesh, truth, initial }, i): Promise<ReadObject> => {
+        const [readMask, readMesh, readTruth, first] = await Promise.all([
           mask === null || read === null
             ? null
             : attempt("mask", async () => atSize(await maskOf(mask), size.width, size.height, inputs.resizeMasks), i),
           mesh === null ? null : attempt("mesh", () => meshOf(mesh), i),
           truthOf(truth),
+          truthOf(initial === undefined ? null : { file: initial }),
         ]);
-        return { mask: readMask, mesh: readMesh?.mesh ?? null, glb: readMesh?.glb ?? null, truth: readTruth };
+        const { mesh: arrays = null, glb = null } = readMesh ?? {};
+        return { mask: readMask, mesh: arrays, glb, truth: readTruth, initial: first?.transform };
       }),
     ),
   ]);
@@ -118,11 +121,11 @@ export function sceneOf(inputs: Inputs, reading: Reading, isFrame = false): Scen
   const { depth, camera, photo, objects, raw, depthUnit, cameraSource, warnings } = reading;
   if (depth === null || camera === null) return null;
   const models: ObjectModel[] = [];
-  for (const [i, { mask: ownMask, mesh, glb, truth }] of objects.entries()) {
+  for (const [i, { mask: ownMask, mesh, glb, truth, initial }] of objects.entries()) {
     const mask = ownMask ?? (isFrame && inputs.objects[i]?.mask === null ? new Uint8Array(depth.data.length) : null);
     if (mask === null || mesh === null) return null;
     const { name } = inputs.objects[i] as Inputs["objects"][number];
-    const parts = { id: `${i}`, name, colour: colourOf(i), mask, mesh: mesh as MeshArrays, glb, truth };
+    const parts = { id: `${i}`, name, colour: colourOf(i), mask, mesh: mesh as MeshArrays, glb, truth, initial };
     models.push(new ObjectModel(parts, visibleExtent(depth, mask, camera)));
   }
   if (models.length === 0) return null;
@@ -174,7 +177,7 @@ function entered({ fx, fy, cx, cy }: Extract<CameraSource, { kind: "numbers" }>)
   return { fx, fy, cx, cy };
 }
 
-/** The true pose. It only serves for comparison, so an unreadable file counts as a missing one. */
+/** A pose in a file. It only serves for comparison, or as a candidate, so an unreadable file counts as a missing one. */
 async function truthOf(source: TruthSource | null): Promise<ObjectParts["truth"]> {
   if (source === null) return null;
   try {

@@ -115,7 +115,7 @@ async function eachAlone(
   const results =
     options.peek().preset === "paper" || first === undefined
       ? ready.alignAll(inputs, { ...paperOptions(), ...shared })
-      : ready.alignAll(inputs, { ...sceneOptions(), ...constraintsOf(first), ...shared });
+      : ready.alignAll(inputs, { ...sceneOptions(), ...constraintsOf(first), initial: null, ...shared });
   for await (const { index, alignment, error } of results) {
     const object = objects[index];
     if (object === undefined) continue;

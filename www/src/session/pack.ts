@@ -25,6 +25,7 @@ interface PackedObject {
   mask: (Omit<MaskSource, "file"> & { file: Ref }) | null;
   mesh: Ref | null;
   truth: (Omit<TruthSource, "file"> & { file: Ref }) | null;
+  initial?: Ref;
   /** Null if the scene was not opened yet. */
   state: PackedState | null;
 }
@@ -69,7 +70,7 @@ export function packed(inputs: Inputs, scene: Scene | null, options: Options): {
   const optional = (file: NamedFile | null): Ref | null => (file === null ? null : ref(file));
   const { camera, depthScale, depthKind, imageId, name, resizeMasks } = inputs;
   const calibration = scene?.calibration ?? null;
-  const objects = inputs.objects.map(({ name, mask, mesh, truth }, i): PackedObject => {
+  const objects = inputs.objects.map(({ name, mask, mesh, truth, initial }, i): PackedObject => {
     for (const sibling of mesh?.siblings ?? []) if (isResource(sibling.path)) ref(sibling);
     const object = scene?.objects[i];
     return {
@@ -77,6 +78,7 @@ export function packed(inputs: Inputs, scene: Scene | null, options: Options): {
       mask: mask && { ...mask, file: ref(mask.file) },
       mesh: mesh && ref(mesh.file),
       truth: truth && { ...truth, file: ref(truth.file) },
+      ...(initial && { initial: ref(initial) }),
       state: object === undefined ? null : stateOf(object),
     };
   });
@@ -127,11 +129,12 @@ export function unpacked(session: Packed, files: readonly NamedFile[], id = ""):
     depth: optional(session.depth),
     photo: optional(session.photo),
     camera: camera?.kind === "file" ? { kind: "file", file: at(camera.file) } : camera,
-    objects: session.objects.map(({ name, mask, mesh, truth }) => ({
+    objects: session.objects.map(({ name, mask, mesh, truth, initial }) => ({
       name,
       mask: mask && { ...mask, file: at(mask.file) },
       mesh: mesh === null ? null : (meshes.get(mesh) ?? null),
       truth: truth && { ...truth, file: at(truth.file) },
+      ...(initial !== undefined && { initial: at(initial) }),
       isSure: true,
     })),
     meshes: [...meshes.values()],

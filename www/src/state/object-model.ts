@@ -26,6 +26,8 @@ export interface ObjectParts {
   glb: Uint8Array | null;
   /** The true pose and the symmetry to compare with, if known. */
   truth: { transform: Sim3Like; symmetry: "none" | "auto" } | null;
+  /** Where a generator has put it, if known. */
+  initial?: Sim3Like | undefined;
 }
 
 /** Centre and extent of the depth readings in the mask of an object, metres. */
@@ -42,6 +44,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
   readonly mesh: MeshArrays;
   readonly glb: Uint8Array | null;
   readonly truth: ObjectParts["truth"];
+  readonly initial: ObjectParts["initial"];
   /** Changes with the calibration of the depth map. */
   readonly visible: Signal<VisibleExtent>;
   /** The pose before any alignment. */
@@ -77,6 +80,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
     this.mesh = parts.mesh;
     this.glb = parts.glb;
     this.truth = parts.truth;
+    this.initial = parts.initial;
     this.visible = signal(visible);
     const bounds = boundsOf(parts.mesh);
     this.start = computed<Pose>(() => ({ transform: startPose(bounds, this.visible.value), source: "start" }));

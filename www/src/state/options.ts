@@ -62,11 +62,17 @@ export function optionsState() {
   /** What is known of an object: every alignment, from scratch or from its pose, obeys it. */
   function constraintsOf(object: ObjectModel): CallOptions {
     const { scaleMin, scaleMax, up, symmetry } = options.peek();
+    const { initial } = object;
     const known = object.knownScale.peek();
     const hasBounds = scaleMin !== null || scaleMax !== null;
     return {
       symmetry,
-      ...(known !== null ? { scale: known } : hasBounds ? { scale: [scaleMin ?? 1e-9, scaleMax ?? 1e9] } : {}),
+      // A scale that is known goes before a first pose.
+      ...(known !== null
+        ? { scale: known }
+        : hasBounds
+          ? { scale: [scaleMin ?? 1e-9, scaleMax ?? 1e9] }
+          : initial && { initial }),
       ...(up === "unknown" ? {} : { cameraUp: [0, -1, 0], meshUp: up === "y" ? [0, 1, 0] : [0, 0, 1] }),
     };
   }

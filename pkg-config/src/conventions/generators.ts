@@ -1,0 +1,45 @@
+/** The frames of the files that generators of meshes write. */
+import type { Vector3 } from "../values.js";
+
+/** The frame of a file. */
+export interface GeneratorFrame {
+  /** The direction that is up, where the generator makes objects upright. */
+  readonly up: Readonly<Vector3>;
+  /**
+   * The horizontal direction to the camera of the photo; `null` where the generator turns each object as it sees fit.
+   * How far the camera looks down is not known.
+   */
+  readonly front: Readonly<Vector3> | null;
+}
+
+/** The frames of the files of a generator: of its meshes. */
+export interface MeshFrames {
+  readonly mesh: GeneratorFrame;
+}
+
+/** The same, and that of the PLY of its 3D Gaussians. */
+export interface GaussianFrames extends MeshFrames {
+  readonly gaussians: GeneratorFrame;
+}
+
+const frame = (up: Vector3, front: Vector3 | null = null): GeneratorFrame => ({ up, front });
+
+/**
+ * Which way is up, and which way is the camera, in the files that generators write: SAM 3D Objects (`sam3d`), TRELLIS,
+ * Hunyuan3D-2, TripoSR (`run.py`), InstantMesh (`run.py`) and Stable Fast 3D (`sf3d`). The guide "Meshes of generators"
+ * has the source of each.
+ *
+ * @example
+ * // A level camera, and an object that stands upright:
+ * await aligner.align(input, { meshUp: generatorFrames.trellis.mesh.up, cameraUp: [0, -1, 0] });
+ */
+export const generatorFrames: Readonly<
+  Record<"sam3d" | "trellis", GaussianFrames> & Record<"hunyuan3d" | "triposr" | "instantmesh" | "sf3d", MeshFrames>
+> = {
+  sam3d: { mesh: frame([0, 1, 0]), gaussians: frame([0, 0, 1]) },
+  trellis: { mesh: frame([0, 1, 0]), gaussians: frame([0, -1, 0]) },
+  hunyuan3d: { mesh: frame([0, 1, 0]) },
+  triposr: { mesh: frame([0, 0, 1], [1, 0, 0]) },
+  instantmesh: { mesh: frame([0, 0, 1], [1, 0, 0]) },
+  sf3d: { mesh: frame([0, 1, 0], [0, 0, -1]) },
+};

@@ -1,0 +1,83 @@
+//! A helper of an alignment: it runs tasks of the searches of another thread, from the same input.
+
+use std::rc::Rc;
+
+use super::search::Request;
+use crate::evidence::observation::Observation;
+use crate::helpers::Part;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::observed::clean::CleanObservation;
+use crate::precise::scored::prior::Prior;
+use crate::precise::searched::search::Search;
+use crate::precise::searched::tasks::RoundTasks;
+use crate::report::Effort;
+
+/// A helper of an alignment.
+pub struct Helper {
+    /// One per view; `None` for a view without a mask.
+    observations: Vec<Option<Observation>>,
+    mesh: Rc<PreparedMesh<'static>>,
+    request: Request,
+    surround: Box<dyn Fn(&mut Search)>,
+    /// Those that it has had tasks of.
+    searches: Vec<Search>,
+    /// What is to be run.
+    part: Option<Part>,
+    tasks: Option<RoundTasks<'static>>,
+}
+
+impl Helper {
+    /// A helper that is ready for the search with the greatest effort in the first view. `request` are the options of one
+    /// view; `surround` sets the surroundings of the object.
+    pub fn new(
+        observations: Vec<Option<Observation>>,
+        mesh: Rc<PreparedMesh<'static>>,
+        request: Request,
+        surround: impl Fn(&mut Search) + 'static,
+    ) -> Self {
+        let (surround, searches) = (Box::new(surround), Vec::new());
+        let mut helper = Self { observations, mesh, request, surround, searches, part: None, tasks: None };
+        if let Some(effort) = helper.request.efforts().last().map(|settings| settings.effort) {
+            helper.search(0, effort, false);
+            helper.searches.iter().for_each(Search::make_grids);
+        }
+        helper
+    }
+
+    /// Reads a message of the alignment.
+    pub fn receive(&mut self, message: &[f64]) {
+        let Some((part, tasks)) = Part::read(message, self.part.as_ref()) else { return };
+        self.part = Some(part);
+        self.tasks = RoundTasks::read(tasks).or(self.tasks.take());
+    }
+
+    /// Runs tasks until it is time; the message about them, or `None` if there is nothing to do.
+    pub fn step(&mut self, is_time: impl FnMut() -> bool) -> Option<Vec<f64>> {
+        let RoundTasks { view, effort, is_surrounded, .. } = *self.tasks.as_ref()?;
+        let place = self.search(view, effort, is_surrounded)?;
+        self.part.as_mut()?.run(&mut self.tasks.as_ref()?.on(&self.searches[place]), is_time)
+    }
+
+    /// The place of a search in the list.
+    fn search(&mut self, view: usize, effort: Effort, is_surrounded: bool) -> Option<usize> {
+        let of_view = |search: &&Search| search.view == view;
+        let is_it = |search: &Search| search.effort() == effort && search.is_surrounded() == is_surrounded;
+        if let Some(known) = self.searches.iter().position(|search| of_view(&search) && is_it(search)) {
+            return Some(known);
+        }
+        let clean = match self.searches.iter().find(of_view) {
+            Some(other) => Rc::clone(&other.observation),
+            None => Rc::new(CleanObservation::new(self.observations.get(view)?.as_ref()?)),
+        };
+        let settings = self.request.efforts().iter().find(|settings| settings.effort == effort)?;
+        let pyramid = self.mesh.pyramid(&settings.grids)?;
+        let mut search = Search::new(clean, pyramid, *settings);
+        search.view = view;
+        search.assume(Prior::of(self.request.options(), self.mesh.mesh(), &search.mesh.frame));
+        if is_surrounded {
+            (self.surround)(&mut search);
+        }
+        self.searches.push(search);
+        Some(self.searches.len() - 1)
+    }
+}
