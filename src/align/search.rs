@@ -112,10 +112,10 @@ impl<'a> Search<'a> {
         pauses: &'a Pauses,
     ) -> Result<Self> {
         let stages = Stopwatch::new(host, precise::PLAN);
-        if request.efforts.first().is_some_and(|settings| settings.is_long(1)) {
+        mesh.check()?;
+        if request.efforts.first().is_some_and(|settings| settings.is_long(1)) && mesh.has_one_form() {
             pauses.ask_for_help().await;
         }
-        mesh.check()?;
         pauses.here().await;
         let mesh = match request.efforts.first() {
             Some(first) => shown(observation, mesh, &request.options, first, pauses).await?,
@@ -157,7 +157,7 @@ impl<'a> Search<'a> {
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            if settings.is_long(1) {
+            if settings.is_long(1) && mesh.has_one_form() {
                 pauses.ask_for_help().await;
             }
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;

@@ -102,7 +102,7 @@ impl Request {
             for (effort, settings) in efforts.iter().enumerate() {
                 let share = efforts::share(effort, efforts.len());
                 let before = core::mem::take(&mut searched);
-                if settings.is_long(self.observations.iter().flatten().count()) {
+                if settings.is_long(self.observations.iter().flatten().count()) && mesh.has_one_form() {
                     pauses.ask_for_help().await;
                 }
                 for (index, observation) in self.observations.iter().enumerate() {

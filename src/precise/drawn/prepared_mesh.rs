@@ -110,6 +110,12 @@ impl<'a> PreparedMesh<'a> {
         self.without_plate.get_or_init(of).as_deref()
     }
 
+    /// Whether every image of the mesh is compared with the same part of it. Helpers of a search, which have the mesh as it was
+    /// given, take part only then.
+    pub fn has_one_form(&self) -> bool {
+        self.left_out().ground == 0.0 && self.without_plate().is_none()
+    }
+
     /// Checks that the surface encloses a volume.
     ///
     /// # Errors
