@@ -2,6 +2,8 @@
 
 use core::ops::Range;
 
+use super::disjoint_sets::DisjointSets;
+
 /// A connected component (four neighbours).
 pub struct Component {
     /// The pixels as runs of indices within rows, row-major.
@@ -33,16 +35,14 @@ impl Component {
 /// the image.
 pub fn components(set: &[bool], width: usize, height: usize) -> Vec<Component> {
     let mut runs: Vec<Range<u32>> = Vec::new();
-    // An earlier run of the same component; itself in the first one.
-    let mut parents: Vec<u32> = Vec::new();
+    let mut sets = DisjointSets::default();
     let mut above = 0..0;
     for (v, row) in set.chunks_exact(width.max(1)).enumerate() {
         let first = runs.len();
         let mut from = 0;
         while let Some(start) = row[from..].iter().position(|set| *set).map(|skipped| from + skipped) {
             let end = row[start..].iter().position(|set| !*set).map_or(width, |length| start + length);
-            let id = runs.len() as u32;
-            parents.push(id);
+            let id = sets.push();
             runs.push((v * width + start) as u32..(v * width + end) as u32);
             // The runs above are disjoint and in order: those that end before this one touch no later one.
             let column = |index: u32| index as usize - (v - 1) * width;
@@ -50,40 +50,20 @@ pub fn components(set: &[bool], width: usize, height: usize) -> Vec<Component> {
                 above.start += 1;
             }
             let touching = above.clone().take_while(|&other| column(runs[other].start) < end);
-            touching.for_each(|other| join(&mut parents, other as u32, id));
+            touching.for_each(|other| sets.join(other as u32, id));
             from = end;
         }
         above = first..runs.len();
     }
+    let (numbers, count) = sets.numbered();
     let mut list: Vec<Component> = Vec::new();
-    let mut of_root = vec![u32::MAX; runs.len()];
-    for (id, run) in runs.into_iter().enumerate() {
-        let root = root(&mut parents, id as u32) as usize;
-        if of_root[root] == u32::MAX {
-            of_root[root] = list.len() as u32;
-            list.push(Component { runs: Vec::new(), touches_border: false });
-        }
-        let component = &mut list[of_root[root] as usize];
+    list.resize_with(count, || Component { runs: Vec::new(), touches_border: false });
+    for (run, number) in runs.into_iter().zip(numbers) {
+        let component = &mut list[number as usize];
         let [first, end] = [run.start, run.end].map(|i| i as usize);
         component.touches_border |=
             first < width || first + width >= width * height || first % width == 0 || end % width == 0;
         component.runs.push(run);
     }
     list
-}
-
-/// The first run of the component of a run.
-fn root(parents: &mut [u32], mut id: u32) -> u32 {
-    while parents[id as usize] != id {
-        let above = parents[parents[id as usize] as usize];
-        parents[id as usize] = above;
-        id = above;
-    }
-    id
-}
-
-/// Joins the components of two runs. The earlier first run stays the root.
-fn join(parents: &mut [u32], a: u32, b: u32) {
-    let [a, b] = [root(parents, a), root(parents, b)];
-    parents[a.max(b) as usize] = a.min(b);
 }

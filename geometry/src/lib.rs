@@ -12,6 +12,7 @@ pub mod cloud;
 pub mod components;
 pub mod decimate;
 pub mod depth_kind;
+pub mod disjoint_sets;
 pub mod distance_transform;
 pub mod error;
 #[cfg(target_arch = "wasm32")]
@@ -21,6 +22,7 @@ pub mod image;
 mod kd_nodes;
 pub mod kd_tree;
 pub mod mesh;
+pub mod mesh_parts;
 pub mod normal_equations;
 pub mod number;
 pub mod order;

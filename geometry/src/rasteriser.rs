@@ -167,6 +167,11 @@ impl Rasteriser {
         &self.triangles
     }
 
+    /// Whether the last render drew all triangles: too many layers of them are left out.
+    pub fn is_complete(&self) -> bool {
+        self.visited <= MAX_LAYERS * self.depth.len()
+    }
+
     /// Width of the last render, in pixels.
     pub fn width(&self) -> usize {
         self.window.size[0]

@@ -1,15 +1,21 @@
 //! Colours of a surface, at points on it.
 
+use glam::Vec3;
+
 use crate::cloud::Cloud;
 use crate::error::{Error, ErrorCode, Result};
 use crate::mesh::Mesh;
 use crate::surface::{SurfaceSample, each_surface_sample};
+use crate::triangle_tree::TriangleTree;
 
 /// Number of points that represent the colours of a surface: about one for each cell that is compared with a photo.
 pub const COLOR_SAMPLES: usize = 32_768;
 
 /// Seed of the points.
 const SEED: u64 = 0;
+
+/// Distance up to which a point is on a surface, relative to its diagonal: the rounding of f32.
+const ON_SURFACE: f64 = 1e-5;
 
 /// A colour: red, green and blue, sRGB-encoded.
 pub type Rgb = [u8; 3];
@@ -88,6 +94,19 @@ impl SurfaceColors {
         })
     }
 
+    /// The colours of all points that are not on the surface of `other`, a part of the mesh.
+    pub fn beside(self, other: &Mesh) -> Self {
+        let tree = TriangleTree::new(other);
+        let reach = (ON_SURFACE * other.diagonal()) as f32;
+        let is_apart = |point: Vec3| tree.nearest(point).is_none_or(|near| near.distance_squared > reach * reach);
+        let kept: Vec<bool> = self.samples.points.iter().map(|point| is_apart(*point)).collect();
+        let Cloud { points, normals } = self.samples;
+        Self {
+            samples: Cloud { points: retained(points, &kept), normals: retained(normals, &kept) },
+            colors: retained(self.colors, &kept),
+        }
+    }
+
     /// The points and their normals, in the mesh's frame.
     pub fn samples(&self) -> &Cloud {
         &self.samples
@@ -97,6 +116,10 @@ impl SurfaceColors {
     pub fn colors(&self) -> &[Rgb] {
         &self.colors
     }
+}
+
+fn retained<T>(values: Vec<T>, kept: &[bool]) -> Vec<T> {
+    values.into_iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| value).collect()
 }
 
 /// The colour at a point of a triangle, from those of its corners.

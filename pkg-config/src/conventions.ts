@@ -50,6 +50,7 @@ export { applyToPoints, compose, invert, toRowMajor, toSim3 } from "./convention
 export { placeSplats, type SplatOptions } from "./conventions/splats.js";
 export { type StretchLike, stretchGlb, stretchMesh } from "./conventions/stretch.js";
 export { depthFromTensor, type MaskChoice, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
+export { type Upright, type UprightOptions, uprightGlb, uprightMesh } from "./conventions/upright.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export { fromCocoRle, toCocoRle } from "./formats/coco-rle.js";
 export type { StatedCamera } from "./formats/pinhole.js";

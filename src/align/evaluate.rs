@@ -129,6 +129,8 @@ pub fn evaluate_prepared(
     let reconstructed = Extents::of("mesh", &evidence.reconstructed.points)?;
     let initial_scale = initial_scale(&observed, &reconstructed);
     let scale_ratio = camera_from_mesh.scale / initial_scale;
+    let mut warnings = warnings::about_observation(observation);
+    warnings.extend(warnings::about_mesh(&prepared.left_out()));
     let compared = options.truth.map(|truth| {
         let comparison = PoseComparison::new(mesh, camera_from_mesh, &truth, &options.symmetry)?;
         let errors = comparison.errors()?;
@@ -140,7 +142,7 @@ pub fn evaluate_prepared(
         metrics,
         errors,
         layout: layout.flatten(),
-        warnings: warnings::about_observation(observation),
+        warnings,
         diagnostics: EvaluationDiagnostics { initial_scale, scale_ratio, collapsed: is_collapsed(scale_ratio) },
     })
 }

@@ -5,7 +5,7 @@
 //! are bit-identical regardless of pauses.
 
 use super::outcome::{Outcome, Setup, outcome, score};
-use super::warnings::{about_fit, about_search, retain_doubts};
+use super::warnings::{about_fit, about_mesh, about_search, retain_doubts};
 use crate::error::Result;
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
@@ -26,6 +26,7 @@ use crate::precise::scored::surroundings::Neighbourhood;
 use crate::precise::searched::efforts;
 use crate::precise::searched::recipe::{SURE, SearchSettings};
 use crate::precise::searched::rounds::Rounds;
+use crate::precise::searched::shown::shown;
 use crate::precise::searched::start::{self, Findings, Told};
 use crate::progress::{Host, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
@@ -100,10 +101,10 @@ impl Searched {
 }
 
 impl<'a> Search<'a> {
-    /// Begins with a check of the mesh.
+    /// Begins with a check of the mesh, and with what of it the image shows.
     ///
     /// # Errors
-    /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
+    /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh), and those of [`shown`].
     pub async fn begin(
         observation: &'a Observation,
         mesh: &'a PreparedMesh<'a>,
@@ -112,12 +113,21 @@ impl<'a> Search<'a> {
         pauses: &'a Pauses,
     ) -> Result<Self> {
         let stages = Stopwatch::new(host, precise::PLAN);
-        if request.efforts.first().is_some_and(|settings| settings.is_long(1)) {
+        mesh.check()?;
+        if request.efforts.first().is_some_and(|settings| settings.is_long(1)) && mesh.has_one_form() {
             pauses.ask_for_help().await;
         }
-        mesh.check()?;
         pauses.here().await;
+        let mesh = match request.efforts.first() {
+            Some(first) => shown(observation, mesh, &request.options, first, pauses).await?,
+            None => mesh,
+        };
         Ok(Self { observation, mesh, request, stages, pauses })
+    }
+
+    /// The mesh that is aligned: the one given, or that without a ground plate.
+    pub fn mesh(&self) -> &'a PreparedMesh<'a> {
+        self.mesh
     }
 
     /// Samples both clouds, and estimates their normals, if the metrics need them.
@@ -148,7 +158,7 @@ impl<'a> Search<'a> {
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            if settings.is_long(1) {
+            if settings.is_long(1) && mesh.has_one_form() {
                 pauses.ask_for_help().await;
             }
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
@@ -232,8 +242,9 @@ impl<'a> Search<'a> {
         }
         let search = &rounds.search;
         let pose = CropPose::of_similarity(&solution.camera_from_mesh, &search.mesh.frame);
-        let proportions = pose.and_then(|pose| stretch(search, &pose, options.proportions));
-        let outcome = outcome(observation, setup, &clouds, &solution, metrics, self.stages);
+        let proportions = pose.and_then(|pose| stretch(search, mesh.mesh(), &pose, options.proportions));
+        let mut outcome = outcome(observation, setup, &clouds, &solution, metrics, self.stages);
+        outcome.warnings.extend(about_mesh(&mesh.left_out()));
         Ok(Alignment { proportions, ..with_certainty(outcome, certainty, search.renders) })
     }
 }

@@ -3,6 +3,7 @@
 use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
+use crate::precise::drawn::surplus::LeftOut;
 use crate::report::Preset;
 use crate::report::{ScoreTerms, Warning, WarningCode, is_collapsed};
 
@@ -178,6 +179,27 @@ pub fn about_fit(terms: &ScoreTerms) -> Option<Warning> {
             "Even the best pose explains the observation poorly (overlap {}, depth agreement {}; 1 is perfect). Check that the mesh shows the object of the mask, and that mask, depth and camera belong together.",
             number(terms.overlap),
             number(terms.depth)
+        ),
+    })
+}
+
+/// A warning about parts of the mesh that are left out.
+pub fn about_mesh(left_out: &LeftOut) -> Option<Warning> {
+    let &LeftOut { floating, inside, ground } = left_out;
+    let plate = (usize::from(ground > 0.0), ground);
+    let mut named = String::new();
+    for ((count, share), what) in
+        [(floating, "far from all others"), (inside, "inside, seen from nowhere"), (plate, "below, a plate")]
+    {
+        if count > 0 {
+            let percent = number((1000.0 * share).round() / 10.0);
+            named += &format!(" {} {what} ({percent} % of the surface);", number(count as f64));
+        }
+    }
+    (!named.is_empty()).then(|| Warning {
+        code: WarningCode::MeshPartsLeftOut,
+        message: format!(
+            "Parts of the mesh seem to be additions of its generator, and do not count:{named} the transform places all of the mesh."
         ),
     })
 }

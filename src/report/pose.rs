@@ -46,8 +46,22 @@ pub struct Stretch {
     pub camera_from_stretched: Sim3,
     /// S as three rows of three: symmetric, of determinant 1, in the frame of the mesh.
     pub stretch: [[f64; 3]; 3],
+    /// Lengths of the box around the stretched mesh along x, y and z of its frame, in metres.
+    pub size_m: [f64; 3],
     /// Standard deviations of the lengths along x, y and z of the mesh, relative: 0.01 is one per cent.
     pub uncertainty: [f64; 3],
+}
+
+impl Stretch {
+    /// The same, moved in the frame of the camera.
+    pub fn shifted(mut self, by: [f64; 3]) -> Self {
+        let Sim3 { translation, matrix, .. } = &mut self.camera_from_stretched;
+        for (k, by) in by.into_iter().enumerate() {
+            translation[k] += by;
+            matrix[12 + k] = translation[k];
+        }
+        self
+    }
 }
 
 /// Another pose that explains the observation: a transform like the alignment's own.

@@ -40,6 +40,8 @@ pub enum WarningCode {
     NotConverged,
     /// Even the best pose explains the observation poorly: the mesh may be of another object.
     MeshDoubtful,
+    /// Parts of the mesh are not of the object, and do not count: floating ones, inner shells, a ground plate.
+    MeshPartsLeftOut,
     /// A view contradicts the others and does not count (`alignViews`).
     ViewContradicts,
     /// A view shows too little where the object should be, and does not count (`alignViews`).

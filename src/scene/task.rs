@@ -103,8 +103,11 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
     let Arrangement { objects, support } = arrangement;
     let objects = aligned.into_iter().zip(objects).map(|(alignment, arranged)| {
         let (alignment, Arranged { translation, matrix, contact }) = alignment?.zip(arranged).ok_or_else(missing)?;
+        let before = alignment.camera_from_mesh.translation;
+        let shift = [0, 1, 2].map(|k| translation[k] - before[k]);
+        let proportions = alignment.proportions.map(|stretch| stretch.shifted(shift));
         let camera_from_mesh = Sim3 { translation, matrix, ..alignment.camera_from_mesh };
-        Ok(PlacedObject { alignment: Alignment { camera_from_mesh, ..alignment }, contact })
+        Ok(PlacedObject { alignment: Alignment { camera_from_mesh, proportions, ..alignment }, contact })
     });
     Ok(SceneAlignment { objects: objects.collect(), support })
 }
@@ -141,6 +144,7 @@ pub fn place<'a>(
     boxed(async move {
         let request = Request::new(options)?;
         let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
+        let mesh = search.mesh();
         let Some(told) = told else {
             let mut searched = search.search().await?;
             let colors = search.colors(&searched).await;

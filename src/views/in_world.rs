@@ -9,6 +9,7 @@ use super::known::{Part, Ranked, Views};
 use super::predicted_mask::with_predicted_mask;
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
 use super::searched_view::SearchedView;
+use super::stretch::stretch;
 use super::summary::{Summary, SummaryView};
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::error::Result;
@@ -21,6 +22,7 @@ use crate::precise::judged::color::{Judgment, cells};
 use crate::precise::judged::confidence::confidence;
 use crate::precise::no_candidate;
 use crate::precise::observed::clean::CleanObservation;
+use crate::precise::options::Proportions;
 use crate::precise::scored::appearance::PhotoCells;
 use crate::precise::scored::conditioning::{Conditioning, covariance, deviation, fix_roll, widest};
 use crate::precise::scored::score::{NOISE, Score};
@@ -36,7 +38,12 @@ const PREDICTIONS: usize = 2;
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose is in front of a camera and overlaps a mask.
-pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &PreparedMesh<'_>) -> Result<Summary> {
+pub fn in_world(
+    searched: &[SearchedView],
+    views: &[View],
+    mesh: &PreparedMesh<'_>,
+    freedom: Proportions,
+) -> Result<Summary> {
     let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
     let parts: Vec<Part<'_>> = searched.iter().map(SearchedView::part).collect();
     let mut used = Views {
@@ -90,7 +97,8 @@ pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &PreparedMesh<'
         Some(part.search.score(&part.camera.see(&verdict.best.pose)?))
     };
     let shown: Vec<Score> = (0..views.len()).map(|k| shown(k).unwrap_or_default()).collect();
-    summary(verdict, &used, views, &cameras, roles, shown)
+    let proportions = stretch(&used, mesh.mesh(), &verdict.best.pose, freedom);
+    Ok(Summary { proportions, ..summary(verdict, &used, views, &cameras, roles, shown)? })
 }
 
 /// The best pose, and how far it can be trusted.
@@ -183,6 +191,7 @@ fn summary(
         confidence,
         is_sure: by_shape >= SURE,
         alternatives: others.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
+        proportions: None,
         uncertainty: conditioning.map(|own| WorldUncertainty {
             scale: own.scale,
             rotation_deg: own.rotation.0.to_degrees(),

@@ -27,7 +27,7 @@ pub struct Joint<'a> {
     pub views: Vec<JointView<'a>>,
     /// Whether the size of the object is fixed.
     pub lock_scale: bool,
-    canvases: Vec<Canvas>,
+    pub(super) canvases: Vec<Canvas>,
 }
 
 /// The score of a world pose.

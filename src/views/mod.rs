@@ -11,6 +11,7 @@ pub mod predicted_mask;
 pub mod report;
 mod request;
 pub mod searched_view;
+mod stretch;
 mod summary;
 mod unrelated;
 pub mod world_pose;

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::metrics::symmetry::Symmetry;
 use crate::options::scale::ScaleOption;
 use crate::options::{Options, options};
-use crate::precise::options::{AlignOptions, ExtentAxis, Quality};
+use crate::precise::options::{AlignOptions, ExtentAxis, Proportions, Quality};
 
 options! {
     /// Options of `alignViews`. All have defaults.
@@ -20,6 +20,8 @@ options! {
         known_extent_axis: ExtentAxis = ExtentAxis::Longest, Choice;
         /// The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`.
         symmetry: Symmetry = Symmetry::Auto, Symmetry;
+        /// Whether to fit the proportions of the mesh to all views together, as in `align`. Only with given camera poses.
+        proportions: Proportions = Proportions::Keep, Choice;
         /// Whether to compute the `metrics` of each view. Without them the call takes less time.
         metrics: bool = true, Flag;
         /// Seed of all random draws. The same input and seed give the same bits.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::metrics::Metrics;
 use crate::options::choices;
 use crate::progress::Timings;
-use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Sim3, Warning};
+use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Sim3, Stretch, Warning};
 
 choices! {
     /// What the world of a result is.
@@ -132,6 +132,10 @@ pub struct ViewsAlignment {
     pub alternatives: Vec<Alternative>,
     /// How well the views together determine the pose; `null` where they do not.
     pub uncertainty: Option<WorldUncertainty>,
+    /// The mesh in its true proportions, world from stretched mesh; present where they were asked for, and fitted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub proportions: Option<Stretch>,
     /// The object in each view, in the order of the input.
     pub views: Vec<ViewPose>,
     /// Conditions that the caller should know about; the result stands.

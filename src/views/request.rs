@@ -15,6 +15,7 @@ use crate::options::Options;
 use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::searched::efforts;
+use crate::precise::searched::shown::shown;
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Progress at the start of each stage, 0 to 1.
@@ -92,12 +93,16 @@ impl Request {
             mesh.check()?;
             let options = self.options.of_one_view();
             let efforts = efforts::of(&options);
+            let mesh = match self.observations.iter().flatten().next().zip(efforts.first()) {
+                Some((view, settings)) => shown(view, mesh, &options, settings, pauses).await?,
+                None => mesh,
+            };
             let mut searched: Vec<SearchedView> = Vec::new();
             let mut summary = Err(no_mask());
             for (effort, settings) in efforts.iter().enumerate() {
                 let share = efforts::share(effort, efforts.len());
                 let before = core::mem::take(&mut searched);
-                if settings.is_long(self.observations.iter().flatten().count()) {
+                if settings.is_long(self.observations.iter().flatten().count()) && mesh.has_one_form() {
                     pauses.ask_for_help().await;
                 }
                 for (index, observation) in self.observations.iter().enumerate() {
@@ -131,7 +136,7 @@ impl Request {
         pauses: &Pauses,
     ) -> Result<Summary> {
         if self.is_known {
-            return in_world(searched, &self.views, mesh);
+            return in_world(searched, &self.views, mesh, self.options.proportions);
         }
         for view in searched.iter_mut() {
             let photo = self.views[view.index].frame.photo.as_deref();

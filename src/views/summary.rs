@@ -12,7 +12,7 @@ use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::judged::color::agreement;
 use crate::precise::scored::score::Score;
 use crate::progress::Stopwatch;
-use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Warning, WarningCode};
+use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Stretch, Warning, WarningCode};
 
 /// The poses found.
 pub struct Summary {
@@ -28,6 +28,8 @@ pub struct Summary {
     pub alternatives: Vec<Alternative>,
     /// See [`ViewsAlignment`].
     pub uncertainty: Option<WorldUncertainty>,
+    /// See [`ViewsAlignment`].
+    pub proportions: Option<Stretch>,
     /// The object in each view.
     pub views: Vec<SummaryView>,
     /// Sum of the scores.
@@ -115,8 +117,9 @@ impl Summary {
             confidence: self.confidence,
             alternatives: self.alternatives.clone(),
             uncertainty: self.uncertainty,
+            proportions: self.proportions.clone(),
             views,
-            warnings: self.warnings(),
+            warnings: self.warnings(mesh),
             diagnostics: ViewsDiagnostics {
                 seed: options.seed,
                 effort: self.effort,
@@ -129,14 +132,14 @@ impl Summary {
     }
 
     /// Warnings about the views as a whole.
-    fn warnings(&self) -> Vec<Warning> {
+    fn warnings(&self, mesh: &PreparedMesh<'_>) -> Vec<Warning> {
         let of = |role| {
             let views = self.views.iter().enumerate().filter(move |(_, view)| view.role == role);
             let names: Vec<String> = views.map(|(k, _)| k.to_string()).collect();
             names
         };
         let (against, blind) = (of(ViewRole::Contradicting), of(ViewRole::Blind));
-        let mut warnings = Vec::new();
+        let mut warnings: Vec<Warning> = warnings::about_mesh(&mesh.left_out()).into_iter().collect();
         if !against.is_empty() {
             warnings.push(Warning {
                 code: WarningCode::ViewContradicts,

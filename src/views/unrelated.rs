@@ -162,6 +162,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
         confidence,
         is_sure: least >= SURE,
         alternatives: Vec::new(),
+        proportions: None,
         uncertainty,
         score: used().map(|view| f64::from(view.score.total)).sum(),
         converged: common.views.iter().all(|(found, _)| found.converged),

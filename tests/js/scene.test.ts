@@ -111,6 +111,22 @@ test("snap puts objects onto the support, and the pose says so", async () => {
   assert.ok(d > 0);
 });
 
+test("objects are fitted in their proportions, which move with them", async () => {
+  const fitted = async (snap: boolean) =>
+    placed(await here.alignScene(tableScene, { ...quick, snap, proportions: "axes" }));
+  const [before, after] = [await fitted(false), await fitted(true)];
+  for (const [i, object] of after.entries()) {
+    const [own, moved] = [before[i]?.proportions, object.proportions];
+    assert.ok(own !== undefined && moved !== undefined);
+    assert.deepEqual(moved.stretch, own.stretch);
+    assert.deepEqual(moved.matrix.slice(12, 15), moved.translation);
+    for (const k of [0, 1, 2] as const) {
+      const by = object.translation[k] - (before[i]?.translation[k] ?? 0);
+      assert.ok(Math.abs(moved.translation[k] - own.translation[k] - by) < 1e-9, `${i}`);
+    }
+  }
+});
+
 test("a given plane is used, with confidence 1", async () => {
   const { support } = await here.alignScene({ ...tableScene, support: plane }, quick);
   assert.equal(support?.confidence, 1);

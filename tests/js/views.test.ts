@@ -29,6 +29,27 @@ test("known cameras: one pose in the world, and in each view", async () => {
   assert.equal("metrics" in ((await here.alignViews(known, { metrics: false })).views[0] ?? {}), false);
 });
 
+test("known cameras show the proportions of a mesh together", async () => {
+  const narrow = { ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 0.95 * x : x)) };
+  const input = { ...known, mesh: narrow };
+  const { proportions, matrix } = await here.alignViews(input, { proportions: "axes", metrics: false });
+  assert.ok(proportions !== undefined);
+  const [x, y, z] = [0, 1, 2].map((k) => (proportions.stretch[k]?.[k] ?? 0) * proportions.scale) as [
+    number,
+    number,
+    number,
+  ];
+  for (const [length, expected] of [
+    [x, truth.scale / 0.95],
+    [y, truth.scale],
+    [z, truth.scale],
+  ] as const)
+    assert.ok(Math.abs(length / expected - 1) < 0.02, `${length} for ${expected}`);
+  const plain = await here.alignViews(input, { metrics: false });
+  assert.deepEqual(plain.matrix, matrix);
+  assert.equal(plain.proportions, undefined);
+});
+
 test("unknown cameras: one size, and camera poses that follow", async () => {
   const found = await here.alignViews(unknown);
   assert.equal(found.world, "camera");

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sim3align::error::Result;
+use sim3align::precise::drawn::surplus::LeftOut;
 use sim3align_formats::mesh::{MeshReadOptions, external_resources, read_mesh};
 use sim3align_lab::case_folder::case::read_case;
 use sim3align_lab::case_folder::write;
@@ -162,6 +163,29 @@ fn real_meshes_are_what_trimesh_reads() {
         for (found, expected) in bounds(&mesh).as_flattened().iter().zip(expected_bounds) {
             assert_near(f64::from(*found), *expected, 2e-6);
         }
+    }
+}
+
+/// The GLB files in a folder and in those below it.
+fn glb_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let below = |path: PathBuf| match path.is_dir() {
+        true => glb_files(&path),
+        false => vec![path],
+    };
+    entries.flat_map(below).filter(|path| path.extension().is_some_and(|extension| extension == "glb")).collect()
+}
+
+#[test]
+#[ignore = "needs SIM3ALIGN_MESHES"]
+fn nothing_of_a_real_mesh_is_left_out() {
+    let meshes = glb_files(&real_data("SIM3ALIGN_MESHES"));
+    assert!(!meshes.is_empty());
+    for path in meshes {
+        let Ok(mesh) = read_with_files_beside(&path) else { continue };
+        let prepared = PreparedMesh::borrowed(&mesh);
+        assert_eq!(prepared.left_out(), LeftOut::default(), "{}", path.display());
+        assert!(prepared.without_plate().is_none(), "{}", path.display());
     }
 }
 

@@ -214,8 +214,12 @@ fn a_mesh_is_put_into_its_proportions() {
         let seen = observe(&object, &truth());
         let options = AlignOptions { proportions: Freedom::Full, ..quick() };
         let found = align(&seen, &mesh, &options, &mut Silent).unwrap();
-        let Stretch { camera_from_stretched, stretch, uncertainty } = found.proportions.clone().unwrap();
+        let Stretch { camera_from_stretched, stretch, size_m, uncertainty } = found.proportions.clone().unwrap();
         let stretch = DMat3::from_cols_array_2d(&stretch);
+        let extent = Bounds::of(mapped(&mesh, |p| (stretch * p.as_dvec3()).as_vec3()).positions()).unwrap().extent();
+        for (size, extent) in size_m.into_iter().zip(extent.to_array()) {
+            assert!((size / (camera_from_stretched.scale * f64::from(extent)) - 1.0).abs() < 1e-5, "seed {seed}");
+        }
         assert!((stretch - stretch.transpose()).to_cols_array().iter().all(|x| x.abs() < 1e-12), "seed {seed}");
         assert!((stretch.determinant() - 1.0).abs() < 1e-3, "seed {seed}: {}", stretch.determinant());
         for (axis, length) in lengths(camera_from_stretched.scale, &stretch).into_iter().enumerate() {

@@ -47,6 +47,8 @@ pub struct BenchCase {
     pub observation: Observation,
     /// The mesh.
     pub mesh: Mesh,
+    /// What methods get instead, where it has parts that are not of the object.
+    pub given: Option<Mesh>,
     /// Its colours, if it has any.
     pub colors: Option<SurfaceColors>,
     /// The true pose, if known.
@@ -136,6 +138,7 @@ impl From<EvaluationCase> for BenchCase {
             parameters,
             observation: case.observation,
             mesh: case.mesh,
+            given: None,
             colors: case.colors,
             truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
         }
@@ -179,6 +182,7 @@ impl BenchCase {
             parameters: meta.get("parameters").cloned().unwrap_or_default(),
             observation: case.observation,
             mesh: case.mesh,
+            given: None,
             colors: case.colors,
             truth: truth.transpose()?,
         })
@@ -258,6 +262,13 @@ impl Host for Clock {
 ///
 /// `overrides` change single settings of the search (see [`override_setting`]).
 pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) -> Record {
+    run_prepared(case, method, overrides, |mesh| PreparedMesh::borrowed(mesh))
+}
+
+type Prepare = fn(&Mesh) -> PreparedMesh<'_>;
+
+/// [`run_case`] with another way to prepare the mesh.
+pub fn run_prepared(case: &BenchCase, method: &Method, overrides: &[(String, f64)], prepare: Prepare) -> Record {
     let mut searches = match method {
         Method::Precise(options) => efforts::of(options),
         Method::Paper(_) => efforts::of(&AlignOptions::default()),
@@ -269,7 +280,7 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
     }
     let mut record = run_method(case, |observation, mesh, host| match method {
         Method::Precise(options) => {
-            let mesh = PreparedMesh::borrowed(mesh).with_colors(case.colors.clone());
+            let mesh = prepare(mesh).with_colors(case.colors.clone());
             let request = Request::new(options.clone())?.with_efforts(searches.clone());
             align_prepared(observation, &mesh, request, host).map(Into::into)
         }
@@ -329,7 +340,7 @@ pub fn run_method(
     method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<AnyAlignment>,
 ) -> Record {
     let timer = CpuTimer::start();
-    let outcome = method(&case.observation, &case.mesh, &mut Clock::default());
+    let outcome = method(&case.observation, case.given.as_ref().unwrap_or(&case.mesh), &mut Clock::default());
     let seconds = timer.seconds();
     record_of(case, outcome.map_err(|error| described(&error)), seconds)
 }

@@ -31,6 +31,7 @@ mod shadow;
 pub(crate) mod solid;
 mod split;
 pub(crate) mod streams;
+pub mod surplus;
 pub(crate) mod texture;
 pub mod tier;
 mod tools;

@@ -43,7 +43,7 @@ gets wrong. The objects of a scene are aligned each alone, and all together.
 
 /// Runs the command.
 pub fn run(arguments: &mut Arguments) -> Result<(), Failure> {
-    let pictures = Pictures::of(arguments)?;
+    let pictures = Pictures::of(arguments)?.some()?;
     let settings = Settings {
         rows: arguments.list("rows")?.unwrap_or_else(|| Row::ALL.to_vec()),
         ways: arguments.list("ways")?.unwrap_or_else(|| Way::ALL.to_vec()),

@@ -43,11 +43,16 @@ impl Pictures {
             .chain(cases.into_iter().map(Source::Case))
             .chain(scenes.into_iter().map(Source::Scene))
             .collect();
-        if sources.is_empty() {
-            return Err(usage("--generated, --cluttered, --cases or --scenes is expected"));
-        }
         let set = EvaluationSet::new(seed).of(CaseSet::Monocular);
         Ok(Self { sources, seed, set, clutter: SceneSet::new(seed, cluttered) })
+    }
+
+    /// The images, of which there has to be one.
+    pub fn some(self) -> Result<Self, Failure> {
+        if self.sources.is_empty() {
+            return Err(usage("--generated, --cluttered, --cases or --scenes is expected"));
+        }
+        Ok(self)
     }
 
     /// The image of a source.

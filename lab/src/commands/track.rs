@@ -5,6 +5,7 @@ use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackState;
 use sim3align::track::tracker::Tracker;
 use sim3align_lab::bench::benchmark::STRICT;
+use sim3align_lab::bench::proportions::with_wrong_mesh;
 use sim3align_lab::bench::statistics::{cell, median};
 use sim3align_lab::cpu_time::CpuTimer;
 use sim3align_lab::prelude::*;
@@ -19,12 +20,12 @@ pub const COMMAND: Command = Command {
     about: "tracks one object through videos, and prints tables",
     usage: "\
 Usage: sim3align-lab track [--generated N] [--from I] [--frames F] [--seed S] [--threads T] [--printed]
-       [--no-color] [--verbose] [FOLDER...]
+       [--no-color] [--stretch E] [--verbose] [FOLDER...]
 
 Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips,
 losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.
 --from: index of the first generated video. --printed: objects whose print alone tells how they are turned;
---no-color: without their photos.",
+--no-color: without their photos. --stretch: meshes of wrong proportions, with E the largest logarithm of a stretch.",
     run,
 };
 
@@ -124,8 +125,13 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
         is_printed: arguments.flag("printed"),
     };
     let (with_color, verbose) = (!arguments.flag("no-color"), arguments.flag("verbose"));
+    let stretch: f64 = arguments.value("stretch", 0.0)?;
     let sources = Sources::parse(arguments)?;
-    let outcomes = sources.outcomes(|index| set.video(index), |sequence| run_video(sequence, with_color, verbose))?;
+    let run = |sequence: &Sequence| match stretch {
+        0.0 => run_video(sequence, with_color, verbose),
+        _ => run_video(&with_wrong_mesh(sequence, set.seed, stretch)?, with_color, verbose),
+    };
+    let outcomes = sources.outcomes(|index| set.video(index), run)?;
     println!(
         "| row | videos | frames | strict % | rotation median, worst ° | size median, last worst % | flips | uncertain, lost | wrong and tracking | longest until right, frames | ms |"
     );

@@ -215,6 +215,7 @@ impl ScenePair {
             parameters,
             observation: self.observation.clone(),
             mesh,
+            given: None,
             colors: None,
             truth: Some(Truth { camera_from_mesh, symmetry: declared(&generated.symmetry, &object_from_mesh) }),
         })

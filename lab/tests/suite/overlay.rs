@@ -28,6 +28,7 @@ fn case(truth: Option<Similarity>) -> BenchCase {
         parameters: serde_json::Value::Null,
         observation: observation.unwrap(),
         mesh: Mesh::from_flat(&corners, Some(&[0, 1, 2, 0, 2, 3])).unwrap(),
+        given: None,
         colors: None,
         truth: truth.map(|camera_from_mesh| Truth { camera_from_mesh, symmetry: Symmetry::None }),
     }

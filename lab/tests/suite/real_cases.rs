@@ -2,6 +2,7 @@
 
 use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
+use sim3align::precise::drawn::surplus::LeftOut;
 use sim3align_lab::case_folder::case::{Case, read_case};
 use sim3align_lab::prelude::*;
 
@@ -40,6 +41,16 @@ fn the_paper_preset_runs_on_every_case_and_its_scale_stays_inside_the_guard() {
             scored.errors.map(|e| (e.scale_error, e.rotation_error_deg, e.translation_error_relative)),
             result.diagnostics.counts
         );
+    }
+}
+
+#[test]
+#[ignore = "needs SIM3ALIGN_CASES"]
+fn no_mesh_of_a_real_case_has_surplus() {
+    for case in cases() {
+        let mesh = PreparedMesh::borrowed(&case.mesh);
+        assert_eq!(mesh.left_out(), LeftOut::default(), "{}", case.name);
+        assert!(mesh.without_plate().is_none(), "{}", case.name);
     }
 }
 

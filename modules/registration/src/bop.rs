@@ -25,7 +25,7 @@ pub fn errors(given: &JsValue, estimates: &Array, truths: &Array) -> core::resul
             numbers("continuous")?.as_chunks::<6>().0.iter().map(RevolutionAxis::from_numbers).collect::<Vec<_>>();
         let symmetries = symmetry_transformations(&discrete, &continuous)?;
         let diameter_m = required_number(given, "input", "diameterM")?;
-        let model = BopModel { mesh: mesh.mesh(), diameter_m, symmetries: &symmetries };
+        let model = BopModel { mesh: mesh.whole(), diameter_m, symmetries: &symmetries };
         bop_errors(&model, &depth, &camera, &poses(estimates, "estimates")?, &poses(truths, "truths")?)
     };
     answer(run())

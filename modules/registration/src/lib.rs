@@ -23,7 +23,7 @@ pub fn align_paper(input: &JsValue, options: &JsValue, on_progress: Option<Funct
     let run = || {
         let options = options::paper(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        align::align_paper(&observation, mesh.mesh(), &options, &mut JsHost::new(on_progress))
+        align::align_paper(&observation, mesh.whole(), &options, &mut JsHost::new(on_progress))
     };
     answer(run())
 }

@@ -101,7 +101,7 @@ function alignmentJson({ alignment, errors }: Success) {
 /** The JSON entry of several views: the pose in the world, if the camera poses are known, and in each frame. */
 function viewsJson({ views: alignment, frames, errors }: ViewsSuccess) {
   const { scale, rotation, rotationMatrix, translation, matrix, world, alternatives, views } = alignment;
-  const { confidence, uncertainty, warnings } = alignment;
+  const { confidence, uncertainty, proportions, warnings } = alignment;
   const { timingsMs, ...diagnostics } = alignment.diagnostics;
   const pose = transformJson({ scale, rotation, rotationMatrix, translation, matrix });
   const frame = (k: number) => {
@@ -116,6 +116,7 @@ function viewsJson({ views: alignment, frames, errors }: ViewsSuccess) {
     confidence,
     alternatives: alternatives.map(transformJson),
     uncertainty,
+    ...(proportions === undefined ? {} : { proportions: transformJson(proportions) }),
     frames: Object.fromEntries(frames.map((name, k) => [name, frame(k)])),
     warnings,
     timingsMs,

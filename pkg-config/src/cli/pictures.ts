@@ -4,7 +4,8 @@ import { join } from "node:path";
 import type { Command } from "commander";
 import { inputOfFrame, readFrames } from "../case-folder.js";
 import { exportGlb, placeGlb } from "../conventions/glb.js";
-import type { AlignInput, MeshArrays } from "../input/types.js";
+import type { UprightOptions } from "../conventions/upright.js";
+import type { AlignInput } from "../input/types.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
 import type { OfInput } from "../results.js";
@@ -12,6 +13,7 @@ import { isRecord, withoutUndefined } from "../values.js";
 import { type CaseFlags, caseSettings } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
 import { correctedInput } from "./corrected-input.js";
+import { type ExportedAs, exportedMesh } from "./exported-mesh.js";
 import { alternativesOf, fileName, ReportFolder } from "./report-folder.js";
 import { makeFolder } from "./writable.js";
 
@@ -20,6 +22,7 @@ export interface PictureFlags {
   report?: string;
   overlay?: string;
   glb?: string;
+  upright?: boolean;
 }
 
 /** A pose to be shown: its name, its JSON entry and, if it can be drawn, what it was found in. */
@@ -34,10 +37,10 @@ export function shownIn(name: string, entry: object): Shown[] {
   const { frames, objects = frames, ...own } = entry as Readonly<Record<string, unknown>>;
   if (!isRecord(objects)) return [{ name, entry: own }];
   // The objects of a scene are in one depth map.
-  const { depthCalibration } = own;
+  const { depthCalibration, support } = own;
   return Object.entries(objects).map(([part, pose]) => ({
     name: `${name}/${part}`,
-    entry: { ...withoutUndefined({ depthCalibration }), ...(pose as object) },
+    entry: { ...withoutUndefined({ depthCalibration, support }), ...(pose as object) },
   }));
 }
 
@@ -46,7 +49,8 @@ export const addPictureFlags = (command: Command): Command =>
   command
     .option("--report <folder>", "write a page with a table, pictures and a 3D view of each case")
     .option("--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh")
-    .option("--glb <folder>", "write the posed mesh of each case as a GLB file");
+    .option("--glb <folder>", "write the posed mesh of each case as a GLB file")
+    .option("--upright", "give the meshes in exported files upright frames: up along the support, a tight box");
 
 /** Writes what the flags ask for. */
 export class Pictures {
@@ -89,7 +93,8 @@ export class Pictures {
       }
       if (overlay !== undefined)
         await writeFile(join(overlay, `${fileName(name)}.png`), await drawOverlay(shot, matrix));
-      if (glb !== undefined) await writeFile(join(glb, `${fileName(name)}.glb`), posed(input, shot, matrix));
+      if (glb !== undefined)
+        await writeFile(join(glb, `${fileName(name)}.glb`), await posed(input, entry, this.#flags.upright));
     } finally {
       await shot.dispose();
     }
@@ -105,10 +110,19 @@ export class Pictures {
   }
 }
 
-/** The posed mesh: a GLB keeps its materials. */
-function posed({ mesh }: AlignInput, shot: Shot, matrix: readonly number[]): Uint8Array {
-  if (isRecord(mesh) && mesh.format === "glb") return placeGlb(mesh.bytes as Uint8Array, { matrix });
-  return exportGlb(shot.mesh as MeshArrays, { matrix });
+/** What is read of an entry of a posed mesh. */
+interface PosedEntry extends Partial<ExportedAs>, Pick<UprightOptions, "support"> {
+  matrix: number[];
+}
+
+/** The posed mesh, in the proportions that were found: a GLB keeps its materials. */
+async function posed({ mesh }: AlignInput, entry: Shown["entry"], isUpright = false): Promise<Uint8Array> {
+  const { matrix, proportions, support } = entry as unknown as PosedEntry;
+  const upright = isUpright ? withoutUndefined({ support }) : undefined;
+  const placed = await exportedMesh(mesh, { matrix }, { proportions, upright });
+  return placed.mesh instanceof Uint8Array
+    ? placeGlb(placed.mesh, placed.transform)
+    : exportGlb(placed.mesh, placed.transform);
 }
 
 /**

@@ -1,5 +1,5 @@
 /** Human-readable tables of results. */
-import type { AlignResult, Evaluation, LayoutErrors, Metrics, PoseErrors, Warning } from "../index.js";
+import type { AlignResult, Evaluation, LayoutErrors, Metrics, PoseErrors, Stretch, Warning } from "../index.js";
 import { depthRows } from "./depth-rows.js";
 import { isMetric, Lengths } from "./lengths.js";
 import { type Failure, failedLine, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
@@ -135,6 +135,7 @@ export function viewsDetails({ name, views: alignment, frames, errors }: ViewsSu
       ["translation t", `${numbers(translation)} ${unit}`],
       ["rotation R", `${numbers(rotation)} (quaternion x y z w)`],
       ["confidence", `${fixed(confidence, 2)}, score ${fixed(diagnostics.score, 3)}`],
+      ...proportionsRows(alignment, new Lengths(isMetric(alignment))),
     ]),
     "",
     style.bold("Views"),
@@ -171,6 +172,7 @@ export function details({ name, alignment, errors }: Success, style: Style): str
       ["", matrixRow(1)],
       ["", matrixRow(2)],
       ...("confidence" in alignment ? certainty(alignment, lengths) : [refinement(alignment, lengths)]),
+      ...proportionsRows(alignment, lengths),
       ...depthRows(alignment),
     ]),
     ...(metrics === undefined ? [] : ["", ...metricsSection(metrics, lengths, style)]),
@@ -183,6 +185,18 @@ export function details({ name, alignment, errors }: Success, style: Style): str
     ...pairs(countRows(alignment)),
     ...warningsSection(alignment.warnings, style),
   ];
+}
+
+/** The lengths of a mesh in the proportions that were found. */
+function proportionsRows(alignment: object, lengths: Lengths): Row[] {
+  const { proportions } = alignment as { proportions?: Stretch };
+  if (proportions === undefined) return [];
+  const { sizeM, uncertainty } = proportions;
+  const sides = sizeM.map((size, k) => {
+    const sd = `± ${fixed(100 * (uncertainty[k as 0] ?? 0), 1)} %`;
+    return `${"xyz"[k]} ${lengths.millimetres(1000 * size, 1)} ${sd}`;
+  });
+  return [["in proportion", sides.join(", ")]];
 }
 
 function refinement({ diagnostics: { converged, residualM } }: AlignResult<"paper">, lengths: Lengths): Row {

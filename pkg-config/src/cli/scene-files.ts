@@ -14,6 +14,7 @@ import { SIMULATOR_DEFAULTS, type SimulatorObject, type SimulatorScene, simulato
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
 import { withoutUndefined } from "../values.js";
+import { type ExportedAs, exportedArrays, exportedMesh } from "./exported-mesh.js";
 import { number } from "./parse.js";
 import { fixed } from "./table.js";
 import { UsageError } from "./usage-error.js";
@@ -28,6 +29,7 @@ export interface SceneFileFlags {
   density?: number;
   parts?: number;
   rest?: boolean;
+  upright?: boolean;
 }
 
 /** Adds the flags to a command. */
@@ -78,13 +80,13 @@ export async function writeSceneFiles(
   result: SceneResult,
   flags: SceneFileFlags,
 ): Promise<string[]> {
-  const { sceneGlb, mjcf, urdf, usd, density, parts, rest } = flags;
+  const { sceneGlb, mjcf, urdf, usd, density, parts, rest, upright } = flags;
   const camera = cameraOf(scene.input, result);
-  if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera));
+  if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera, upright));
   if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
   const { support } = result;
   const options = { support, ...withoutUndefined({ camera, density, maxParts: parts, rest }) };
-  const simulated = await simulatorScene(await simulatorObjects(scene, result), options);
+  const simulated = await simulatorScene(await simulatorObjects(scene, result, upright), options);
   if (mjcf !== undefined) writeTexts(mjcf, toMjcf(simulated));
   if (urdf !== undefined) writeTexts(urdf, toUrdf(simulated));
   if (usd !== undefined) writeFileSync(usd, toUsd(simulated));
@@ -113,7 +115,11 @@ function writeTexts(folder: string, files: TextFiles): void {
 }
 
 /** The aligned objects with their meshes and colours. Indices of contacts count aligned objects only. */
-async function simulatorObjects({ input }: SceneOnDisk, { objects }: SceneResult): Promise<SimulatorObject[]> {
+async function simulatorObjects(
+  { input }: SceneOnDisk,
+  { objects, support }: SceneResult,
+  upright: boolean | undefined,
+): Promise<SimulatorObject[]> {
   const places = new Map<number, number>();
   for (const [i, object] of objects.entries()) if (object.error === undefined) places.set(i, places.size);
   const found: SimulatorObject[] = [];
@@ -123,10 +129,18 @@ async function simulatorObjects({ input }: SceneOnDisk, { objects }: SceneResult
     const { mesh } = await readMesh(given, fileReaders, true);
     const { restsOn } = object.contact;
     const on = typeof restsOn === "number" ? (places.get(restsOn) ?? null) : restsOn;
-    found.push({ name: object.name, mesh: mesh as MeshArrays, transform: object, restsOn: on });
+    const as = exportedAs(object.proportions, support, upright, "z");
+    found.push({ name: object.name, ...exportedArrays(mesh as MeshArrays, object, as), restsOn: on });
   }
   return found;
 }
+
+const exportedAs = (
+  proportions: ExportedAs["proportions"],
+  support: SceneResult["support"],
+  isUpright: boolean | undefined,
+  up: "y" | "z",
+): ExportedAs => ({ proportions, upright: isUpright ? { support, up } : undefined });
 
 interface ImageCamera {
   fy: number;
@@ -139,14 +153,14 @@ async function glbOf(
   { input }: SceneOnDisk,
   { objects, support }: SceneResult,
   camera: ImageCamera | undefined,
+  upright: boolean | undefined,
 ): Promise<Uint8Array> {
   const placed: SceneGlbObject[] = [];
   for (const [i, object] of objects.entries()) {
     const given = input.objects[i]?.mesh;
     if (object.error !== undefined || given === undefined) continue;
-    const { bytes, format } = given as { bytes: Uint8Array; format?: string };
-    const mesh = format === "glb" ? bytes : (await readMesh(given, fileReaders, false)).mesh;
-    placed.push({ name: object.name, mesh, transform: object });
+    const as = exportedAs(object.proportions, support, upright, "y");
+    placed.push({ name: object.name, ...(await exportedMesh(given, object, as)) });
   }
   return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
 }

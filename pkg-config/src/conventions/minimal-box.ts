@@ -8,7 +8,7 @@ import { column, dot, fromColumns, type Matrix3 } from "./rotation.js";
 type Point2 = readonly [number, number];
 
 /** The vertices of triangles that are extreme in one of many directions; all vertices if there are few. */
-function outermost({ positions, indices }: Mesh): Vector3[] {
+export function outermost({ positions, indices }: Mesh): Vector3[] {
   const used = indices === null ? Array.from({ length: positions.length / 3 }, (_, i) => i) : [...new Set(indices)];
   const vertex = (i: number): Vector3 => [positions[3 * i] ?? 0, positions[3 * i + 1] ?? 0, positions[3 * i + 2] ?? 0];
   if (used.length <= 2000) return used.map(vertex);
@@ -76,10 +76,14 @@ function width(points: readonly Point2[], x: number, y: number): number {
   return high - low;
 }
 
-/** The direction of the smallest rectangle around points. One of its sides lies along an edge of their convex hull. */
-function smallestRectangle(points: readonly Point2[]): { cos: number; sin: number; area: number } {
+/**
+ * The direction of the smallest rectangle around points. One of its sides lies along an edge of their convex hull, unless its
+ * area is not below this share of that along the axes.
+ */
+export function smallestRectangle(points: readonly Point2[], tighter = 1): { cos: number; sin: number; area: number } {
   const corners = hull(points);
-  let best = { cos: 1, sin: 0, area: width(corners, 1, 0) * width(corners, 0, 1) };
+  const own = { cos: 1, sin: 0, area: width(corners, 1, 0) * width(corners, 0, 1) };
+  let best = { ...own, area: tighter * own.area };
   corners.forEach(([x, y], i) => {
     const [nextX, nextY] = corners[(i + 1) % corners.length] ?? [x, y];
     const length = Math.hypot(nextX - x, nextY - y);
@@ -88,7 +92,7 @@ function smallestRectangle(points: readonly Point2[]): { cos: number; sin: numbe
     const area = width(corners, cos, sin) * width(corners, -sin, cos);
     if (area < best.area) best = { cos, sin, area };
   });
-  return best;
+  return best.sin === 0 ? own : best;
 }
 
 function volume(points: readonly Vector3[], axes: readonly Vector3[]): number {

@@ -64,7 +64,7 @@ export function objectDimensions(mesh: MeshArrays, transform: Sim3Like, options:
 }
 
 /** The bounds of the vertices along the rows of a matrix. */
-function extent(mesh: Mesh, rows: Matrix3): { low: Vector3; high: Vector3 } {
+export function extent(mesh: Mesh, rows: Matrix3): { low: Vector3; high: Vector3 } {
   const low: Vector3 = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY];
   const high: Vector3 = [Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY];
   for (let i = 0; i < 3 * triangleCount(mesh); i++) {

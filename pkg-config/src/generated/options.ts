@@ -61,6 +61,7 @@ export const VIEWS_DEFAULTS = {
   knownExtentM: null,
   knownExtentAxis: "longest",
   symmetry: "auto",
+  proportions: "keep",
   metrics: true,
   seed: 0,
   maxObservedPoints: 20000,
@@ -209,6 +210,15 @@ const metrics = {
   summary: "Whether to compute `metrics`",
 } as const;
 
+const proportions = {
+  name: "proportions",
+  kind: "choice",
+  choices: ["keep", "axes", "full"],
+  isNullable: false,
+  default: "keep",
+  summary: "Whether to fit the proportions of the mesh, which generators get wrong by some per cent: see `proportions` of the result",
+} as const;
+
 const quality = {
   name: "quality",
   kind: "choice",
@@ -325,14 +335,7 @@ export const OPTIONS = /* @__PURE__ */ (() => ({
       summary: "Where to search: everywhere, or around `initial` only",
     },
     workBudget,
-    {
-      name: "proportions",
-      kind: "choice",
-      choices: ["keep", "axes", "full"],
-      isNullable: false,
-      default: "keep",
-      summary: "Whether to fit the proportions of the mesh, which generators get wrong by some per cent: see `proportions` of the result",
-    },
+    proportions,
     metrics,
     seed,
     maxObservedPoints,
@@ -408,6 +411,7 @@ export const OPTIONS = /* @__PURE__ */ (() => ({
       ...symmetry,
       summary: "The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`",
     },
+    { ...proportions, summary: "Whether to fit the proportions of the mesh to all views together, as in `align`" },
     { ...metrics, summary: "Whether to compute the `metrics` of each view" },
     seed,
     { ...maxObservedPoints, summary: "Upper bound on the depth readings of each view that are used for metrics" },

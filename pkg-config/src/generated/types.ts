@@ -175,6 +175,11 @@ export interface ViewsOptions extends Pick<AlignOptions, "scale" | "knownExtentA
   knownExtentM?: number | null | undefined;
   /** The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`. Default `"auto"`. */
   symmetry?: SymmetryOption | undefined;
+  /**
+   * Whether to fit the proportions of the mesh to all views together, as in `align`. Only with given camera poses.
+   * Default `"keep"`.
+   */
+  proportions?: Proportions | undefined;
   /** Whether to compute the `metrics` of each view. Without them the call takes less time. Default `true`. */
   metrics?: boolean | undefined;
   /**
@@ -314,7 +319,7 @@ export type Timings = Partial<Record<Stage, number>> & { total: number };
 export type ErrorCode = "INVALID_ARGUMENT" | "INVALID_OPTION" | "UNKNOWN_OPTION" | "WRONG_LENGTH" | "EMPTY_IMAGE" | "SIZE_MISMATCH" | "INVALID_CAMERA" | "EMPTY_MASK" | "DEGENERATE_MASK" | "NO_DEPTH_IN_MASK" | "FLAT_DEPTH" | "TOO_FEW_POINTS" | "EMPTY_MESH" | "INDEX_OUT_OF_RANGE" | "NON_FINITE" | "DEGENERATE_MESH" | "DEGENERATE_POINTS" | "NO_CONSENSUS" | "INVALID_TRANSFORM" | "UNSUPPORTED_FORMAT" | "CORRUPT_FILE" | "FILE_TOO_LARGE" | "EIGHT_BIT_DEPTH" | "COMPRESSED_MESH" | "OUT_OF_MEMORY" | "TRACKER_LOST" | "INTERNAL";
 
 /** The kinds of warning. */
-export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "DEPTH_LOOKS_INVERTED" | "DEPTH_LOOKS_NORMALISED" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "MESH_DOUBTFUL" | "VIEW_CONTRADICTS" | "VIEW_SHOWS_NOTHING" | "CAMERA_NOT_PINHOLE" | "FOCAL_LENGTH_UNKNOWN" | "COLORS_NOT_READ";
+export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "DEPTH_LOOKS_INVERTED" | "DEPTH_LOOKS_NORMALISED" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "MESH_DOUBTFUL" | "MESH_PARTS_LEFT_OUT" | "VIEW_CONTRADICTS" | "VIEW_SHOWS_NOTHING" | "CAMERA_NOT_PINHOLE" | "FOCAL_LENGTH_UNKNOWN" | "COLORS_NOT_READ";
 
 /** A condition that the caller should know about; the result stands. */
 export type Warning = {
@@ -565,6 +570,8 @@ export type Uncertainty = {
 export type Stretch = Sim3 & {
   /** S as three rows of three: symmetric, of determinant 1, in the frame of the mesh. */
   stretch: [[number, number, number], [number, number, number], [number, number, number]];
+  /** Lengths of the box around the stretched mesh along x, y and z of its frame, in metres. */
+  sizeM: [number, number, number];
   /** Standard deviations of the lengths along x, y and z of the mesh, relative: 0.01 is one per cent. */
   uncertainty: [number, number, number];
 };
@@ -751,6 +758,8 @@ export type ViewsAlignment = Sim3 & {
   alternatives: Array<Alternative>;
   /** How well the views together determine the pose; `null` where they do not. */
   uncertainty: WorldUncertainty | null;
+  /** The mesh in its true proportions, world from stretched mesh; present where they were asked for, and fitted. */
+  proportions?: Stretch;
   /** The object in each view, in the order of the input. */
   views: Array<ViewPose>;
   /** Conditions that the caller should know about; the result stands. */

@@ -10,7 +10,7 @@ import type { Progress } from "../options.js";
 import { withArrays } from "../prepared-mesh.js";
 import { ProgressListener } from "../progress.js";
 import { withNotes } from "../results.js";
-import { coreSim3 } from "../sim3.js";
+import { coreSim3, type Sim3 } from "../sim3.js";
 import { inputOf, othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
 
@@ -67,10 +67,21 @@ function resultOf(scene: ReadScene, placed: readonly PlacedOrError[], arrangemen
     const named = name === undefined ? {} : { name };
     if (of instanceof Sim3AlignError) return { ...named, error: of };
     // Contacts may have moved the pose.
-    return { ...named, ...of.alignment, ...arrangement.objects[i] } as SceneAlignment;
+    const moved = { ...named, ...of.alignment, ...arrangement.objects[i] } as SceneAlignment;
+    const { proportions } = moved;
+    const before = of.alignment?.translation;
+    if (proportions === undefined || before === undefined) return moved;
+    return { ...moved, proportions: shifted(proportions, (k) => moved.translation[k] - before[k]) };
   });
   const result = { objects, support: arrangement.support, metrics: metricsOf(objects), warnings: [] };
   return withNotes<SceneResult>(result, scene.notes);
+}
+
+/** A transform that is moved by `by` along each axis. */
+function shifted<T extends Sim3>(transform: T, by: (axis: 0 | 1 | 2) => number): T {
+  const { translation, matrix } = transform;
+  const [x, y, z] = [0, 1, 2].map((k) => translation[k as 0] + by(k as 0)) as [number, number, number];
+  return { ...transform, translation: [x, y, z], matrix: [...matrix.slice(0, 12), x, y, z, 1] };
 }
 
 /** A scene that runs. */

@@ -6,10 +6,12 @@
 
 pub mod equivalence;
 mod fill;
+pub mod ground_plate;
 pub(super) mod lanes;
 pub mod mesh_pyramid;
 pub mod pose;
 pub mod prepared_mesh;
 pub mod render;
 pub mod rests;
+pub mod surplus;
 pub mod turns;

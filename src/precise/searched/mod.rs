@@ -14,5 +14,6 @@ pub mod recipe;
 pub mod refine;
 pub mod rounds;
 pub mod search;
+pub mod shown;
 pub mod start;
 pub mod tasks;

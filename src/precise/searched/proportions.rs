@@ -70,15 +70,18 @@ impl Shapes {
         Some(row)
     }
 
+    /// All, which are equally likely: the prior is that of a sum.
+    pub const ANY: Self = Self { cost: 0.0, free: None };
+
     /// The penalty on the score.
-    fn cost(&self, Proportions(parameters): &Proportions) -> f64 {
+    pub fn cost(&self, Proportions(parameters): &Proportions) -> f64 {
         let dot = |row: [f64; PROPORTIONS]| row.iter().zip(parameters).map(|(a, b)| a * b).sum::<f64>();
         let fixed: f64 = (0..PROPORTIONS).filter_map(|i| self.fixed(i)).map(|row| dot(row) * dot(row)).sum();
         self.cost * parameters.iter().map(|x| x * x).sum::<f64>() + DROP / (FIXED * FIXED) * fixed
     }
 
     /// Adds the quadratic of the penalty.
-    fn add_to(&self, Proportions(parameters): &Proportions, equations: &mut NormalEquationsOf<ALL>) {
+    pub fn add_to(&self, Proportions(parameters): &Proportions, equations: &mut NormalEquationsOf<ALL>) {
         for (i, x) in parameters.iter().enumerate() {
             let mut jacobian = [0.0; ALL];
             jacobian[PARAMETERS + i] = 1.0;
@@ -104,6 +107,14 @@ impl Proportions {
     /// Its parameters.
     pub fn parameters(&self) -> [f64; PROPORTIONS] {
         self.0
+    }
+
+    /// The proportions after a step in all parameters, of which theirs are the last.
+    pub fn moved(mut self, step: &[f64; ALL]) -> Self {
+        for (x, by) in self.0.iter_mut().zip(&step[PARAMETERS..]) {
+            *x = (*x + by).clamp(-MOST, MOST);
+        }
+        self
     }
 
     /// e^E, in the frame of the mesh.
@@ -187,9 +198,9 @@ impl Stretched {
 }
 
 /// A refinement of a pose and of the proportions on one grid.
-pub(in crate::precise) struct InProportion<'a, 'c> {
-    pub(in crate::precise) on: OnGrid<'a, 'c>,
-    pub(in crate::precise) shapes: Shapes,
+pub(crate) struct InProportion<'a, 'c> {
+    on: OnGrid<'a, 'c>,
+    shapes: Shapes,
 }
 
 impl Ascent<ALL> for InProportion<'_, '_> {
@@ -234,16 +245,12 @@ impl Ascent<ALL> for InProportion<'_, '_> {
         let mut first: Step = [0.0; PARAMETERS];
         first.copy_from_slice(&step[..PARAMETERS]);
         let pose = self.on.refiner.moved(&at.pose, first)?;
-        let mut proportions = at.proportions;
-        for (x, by) in proportions.0.iter_mut().zip(&step[PARAMETERS..]) {
-            *x = (*x + by).clamp(-MOST, MOST);
-        }
-        Some(Stretched { pose, proportions })
+        Some(Stretched { pose, proportions: at.proportions.moved(&step) })
     }
 }
 
 impl<'a, 'c> InProportion<'a, 'c> {
-    pub(in crate::precise) fn new(refiner: &'a Refiner<'a>, canvas: &'c mut Canvas, shapes: Shapes) -> Self {
+    pub(crate) fn new(refiner: &'a Refiner<'a>, canvas: &'c mut Canvas, shapes: Shapes) -> Self {
         Self { on: OnGrid { refiner, canvas }, shapes }
     }
 }

@@ -80,6 +80,8 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
   ],
   ["stretchMesh", "mesh", "stretch"],
   ["stretchGlb", "glb", "stretch"],
+  ["uprightMesh", "mesh", "transform", () => ({ support: { normal: [0, -1, 0.2] }, up: "z" })],
+  ["uprightGlb", "glb", "mesh", "transform", () => ({ up: "y" })],
   ["placeGlb", "glb", "transform", () => ({ frame: "opencv", name: "mug" })],
   ["placeSplats", "splats", "transform", () => ({ frame: "ros" })],
   ["toGltfNode", "transform", () => ({ metrics: { iou: 0.9 }, name: "mug" })],

@@ -5,11 +5,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::de::IgnoredAny;
 use serde_json::json;
 use sim3align_lab::baselines::align::align_baseline;
-use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case, run_method};
+use sim3align_lab::bench::benchmark::{BenchCase, Record, run_method, run_prepared};
 use sim3align_lab::bench::imported::imported;
 use sim3align_lab::bench::overlay::picture;
 use sim3align_lab::bench::records::{RecordFile, RecordKey};
 use sim3align_lab::cases::case::EvaluationSet;
+use sim3align_lab::cases::surplus::Surplus;
 use sim3align_lab::cases::tier::{CaseSet, Tier};
 use sim3align_lab::files::listed;
 use sim3align_lab::parallel::parallel_map;
@@ -105,7 +106,7 @@ pub fn run(settings: &Settings) -> Result<(), Failure> {
         .map(drop);
     }
     let load = |source: &Source| {
-        let case = load(source, &set, &scenes)?;
+        let case = load(source, &set, &scenes, settings.surplus)?;
         Ok(if settings.color { case } else { case.without_color() })
     };
     if let (Some(path), Some(source)) = (&settings.picture, sources.first()) {
@@ -179,7 +180,13 @@ fn run_row(case: &BenchCase, row: &Row) -> Record {
     let shape = row.is_shape_alone.then(|| case.clone().without_color());
     let case = shape.as_ref().unwrap_or(case);
     match &row.method {
-        Method::Align => run_case(case, &row.preset_options(), &row.search),
+        Method::Align => {
+            let (options, search) = (row.preset_options(), &row.search);
+            match row.keeps_surplus {
+                true => run_prepared(case, &options, search, |mesh| PreparedMesh::as_given(mesh)),
+                false => run_prepared(case, &options, search, |mesh| PreparedMesh::borrowed(mesh)),
+            }
+        }
         Method::Baseline(baseline) => run_method(case, |observation, mesh, host| {
             align_baseline(observation, mesh, *baseline, &row.paper, row.locks_scale(), host).map(Into::into)
         }),
@@ -187,9 +194,15 @@ fn run_row(case: &BenchCase, row: &Row) -> Record {
     }
 }
 
-fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase> {
+fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes, surplus: Option<Surplus>) -> Result<BenchCase> {
     match source {
-        Source::Generated(_, index) => set.case(*index).map(BenchCase::from),
+        Source::Generated(_, index) => {
+            let case = set.case(*index)?;
+            let mesh_from_object = case.camera_from_mesh.inverse().compose(&case.camera_from_object);
+            let added = |kind: Surplus| kind.added_to(&case.mesh, &mesh_from_object, *index as u64);
+            let given = surplus.map(added).transpose()?;
+            Ok(BenchCase { given, ..BenchCase::from(case) })
+        }
         Source::Misfit(_, index) => set.case(index + 1).and_then(|other| {
             let case = BenchCase::from(set.case(*index)?);
             let name = format!("misfit-{}", case.name);

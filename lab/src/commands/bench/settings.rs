@@ -9,6 +9,7 @@ use sim3align_lab::bench::benchmark::override_setting;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::cases::case::CASES;
+use sim3align_lab::cases::surplus::Surplus;
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 use sim3align_lab::prelude::*;
 use sim3align_lab::scenes::Prior;
@@ -33,6 +34,7 @@ Cases
   --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
+  --surplus KIND     add parts to the generated meshes that are not of the object: floaters, shell, plate, fused-plate
   --no-color         leave out photos and the colours of meshes
   --tier T,…         only these: easy, medium, hard
   --class C,…        only these: plain, occluded, border-cut, tiny, thin, missing-part, extra-part, ragged-mask,
@@ -49,7 +51,8 @@ Method
   --row 'NAME: K=V K=V…'
                      one more row of the tables, with these options on top of the others; may be repeated;
                      method=M is another method: fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser,
-                     quatro; color=false leaves out photos and the colours of meshes
+                     quatro; color=false leaves out photos and the colours of meshes; surplus=keep takes all parts
+                     of a mesh for the object's
   --import NAME=DIR  one more row: another program's answers, DIR/CASE.json (docs/importing-results.md); may be
                      repeated; without --row these are the only rows
 
@@ -79,6 +82,8 @@ pub struct Row {
     pub method: Method,
     /// Whether photos and the colours of meshes are left out.
     pub is_shape_alone: bool,
+    /// Whether surplus parts of the mesh count as the object's.
+    pub keeps_surplus: bool,
     /// All assignments, as written.
     pub assignments: Vec<String>,
 }
@@ -125,6 +130,7 @@ pub struct Settings {
     pub set_seed: u64,
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
+    pub surplus: Option<Surplus>,
     pub color: bool,
     pub tiers: Option<Vec<Tier>>,
     pub classes: Option<Vec<Class>>,
@@ -151,6 +157,7 @@ impl Settings {
             set_seed: arguments.value("set-seed", 0)?,
             meshes: arguments.optional("meshes")?,
             cases: arguments.paths("cases")?,
+            surplus: arguments.optional("surplus")?,
             color: !arguments.flag("no-color"),
             tiers: arguments.list("tier")?,
             classes: arguments.list("class")?,
@@ -211,7 +218,7 @@ fn rows(arguments: &mut Arguments) -> Result<Vec<Row>, Failure> {
 
 /// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
 fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
-    let Row { preset, precise, paper, search, method, is_shape_alone, assignments, .. } = row;
+    let Row { preset, precise, paper, search, method, is_shape_alone, keeps_surplus, assignments, .. } = row;
     assignments.push(assignment.to_owned());
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
     if name == "method" {
@@ -222,6 +229,14 @@ fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
     if name == "color" {
         let color: bool = value.parse().map_err(|_| format!("color: found {value:?}, expected true or false"))?;
         *is_shape_alone = !color;
+        return Ok(());
+    }
+    if name == "surplus" {
+        *keeps_surplus = match value {
+            "keep" => true,
+            "leave-out" => false,
+            _ => return Err(format!("surplus: found {value:?}, expected keep or leave-out")),
+        };
         return Ok(());
     }
     if let Some(setting) = name.strip_prefix("search.") {

@@ -1,0 +1,148 @@
+/** Objects in upright frames of their own. */
+import type { MeshArrays } from "../input/types.js";
+import type { Sim3, Sim3Like } from "../sim3.js";
+import { oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../values.js";
+import { underNode } from "./glb.js";
+import { meshOf } from "./mesh.js";
+import { outermost, smallestBoxAxes, smallestRectangle } from "./minimal-box.js";
+import { extent } from "./object-box.js";
+import { column, cross, dot, fromColumns, type Matrix3, transposed, turned } from "./rotation.js";
+import { applyToPoints, composed, inverted, type Similarity, sim3Of, similarityOf } from "./similarity.js";
+
+/** Options of {@link uprightMesh} and {@link uprightGlb}. */
+export interface UprightOptions {
+  /** The plane that the object stands on, as `support` of the result of `alignScene`: up is its normal. */
+  support?: { normal: ArrayLike<number> } | null | undefined;
+  /** The axis that points up: "y", the default, as in glTF; "z", as in simulators. */
+  up?: "y" | "z" | undefined;
+}
+
+/** An object in its own upright frame. */
+export interface Upright<M> {
+  /** The mesh in this frame. Its box along the axes is tight, and stands on the origin. */
+  mesh: M;
+  /** OpenCV camera from the upright frame: every vertex stays where it was. */
+  transform: Sim3;
+  /** The frame: from the upright frame to that of the given mesh. */
+  meshFromUpright: Sim3;
+}
+
+/** Decrease of the area by which a rectangle is turned: round outlines keep the heading of the mesh. */
+const TIGHTER = 0.99;
+
+/**
+ * A mesh in an upright frame of its own, for objects that lie askew in their file, or with another axis up. Up is the
+ * normal of the support or, without one, the axis of the smallest box that is nearest to the up of the image. The other
+ * axes are those of the smallest rectangle around the object seen from above, named after the nearest axes of the mesh. The
+ * origin is the centre of the bottom of the box. All exports and {@link objectDimensions} take the mesh with its transform.
+ *
+ * @param mesh the aligned mesh
+ * @param transform OpenCV camera from mesh: a result of `align`
+ *
+ * @example
+ * const straight = uprightMesh(mesh, result, { support });
+ * const { sizeM: [width, height, depth] } = objectDimensions(straight.mesh, straight.transform);
+ * @throws {@link Sim3AlignError} for an invalid mesh, transform or plane, and `INVALID_OPTION`
+ */
+export function uprightMesh<M extends MeshArrays>(
+  mesh: M,
+  transform: Sim3Like,
+  options: UprightOptions = {},
+): Upright<M> {
+  const frame = uprightFrame(mesh, transform, options);
+  const back = sim3Of(inverted(frame));
+  const positions = applyToPoints(back, mesh.positions);
+  const { samples } = mesh;
+  const turn = { ...back, scale: 1, translation: [0, 0, 0] as Vector3, matrix: undefined };
+  const moved =
+    samples === undefined || samples === null
+      ? {}
+      : {
+          samples: {
+            ...samples,
+            positions: applyToPoints(back, samples.positions),
+            normals: applyToPoints(turn, samples.normals),
+          },
+        };
+  return { mesh: { ...mesh, positions, ...moved }, ...placedBy(transform, frame) };
+}
+
+/**
+ * A GLB in an upright frame of its own, by one more node above its scene; see {@link uprightMesh}. Materials, textures and
+ * animations are kept; nothing is decoded.
+ *
+ * @param glb the bytes of the aligned file
+ * @param mesh the same mesh as arrays, which `readMesh` of `sim3align/formats` reads
+ * @param transform OpenCV camera from mesh: a result of `align`
+ *
+ * @example
+ * const straight = uprightGlb(file, mesh, result, { support });
+ * const placed = placeGlb(straight.mesh, straight.transform);
+ * @throws {@link Sim3AlignError} as {@link uprightMesh} and {@link placeGlb}
+ */
+export function uprightGlb(
+  glb: Uint8Array | ArrayBuffer,
+  mesh: MeshArrays,
+  transform: Sim3Like,
+  options: UprightOptions = {},
+): Upright<Uint8Array> {
+  const frame = uprightFrame(mesh, transform, options);
+  const { rotation, translation } = sim3Of(inverted(frame));
+  return { mesh: underNode(glb, { name: "upright", rotation, translation }), ...placedBy(transform, frame) };
+}
+
+const placedBy = (transform: Sim3Like, frame: Similarity) => ({
+  transform: sim3Of(composed(similarityOf(transform), frame)),
+  meshFromUpright: sim3Of(frame),
+});
+
+/** The upright frame of a mesh: from it to that of the mesh. */
+function uprightFrame(mesh: MeshArrays, transform: Sim3Like, options: UprightOptions): Similarity {
+  const { support = null, up = "y" } = optionsOf(options);
+  const checked = meshOf("mesh", mesh);
+  const toMesh = transposed(similarityOf(transform).rotation);
+  const axis = oneOf("options.up", up, ["y", "z"]);
+  const boxAxes = support === null ? smallestBoxAxes(checked) : null;
+  const upward =
+    boxAxes === null
+      ? turned(toMesh, normalOf(support))
+      : nearest(
+          [0, 1, 2].flatMap((k) => bothWays(column(boxAxes, k as 0))),
+          turned(toMesh, [0, -1, 0]),
+        );
+  // The front is z in files with y up, and −y in those with z up.
+  const front: Vector3 = Math.abs(upward[2]) < 0.8 ? [0, 0, 1] : [0, -Math.sign(upward[2]), 0];
+  const forward = acrossTo(upward, front);
+  const side = cross(upward, forward);
+  const seen = outermost(checked).map((p) => [dot(side, p), dot(forward, p)] as const);
+  const { cos, sin } = smallestRectangle(seen, TIGHTER);
+  const mixed = (p: number, q: number) => side.map((x, i) => p * x + q * (forward[i] as number)) as Vector3;
+  const back = nearest([...bothWays(mixed(cos, sin)), ...bothWays(mixed(-sin, cos))], forward);
+  const right = cross(upward, back);
+  const away = back.map((x) => -x) as Vector3;
+  const rotation: Matrix3 = axis === "y" ? fromColumns(right, upward, back) : fromColumns(right, away, upward);
+  const { low, high } = extent(checked, transposed(rotation));
+  const bottom = low.map((x, k) => (k === (axis === "y" ? 1 : 2) ? x : (x + (high[k] ?? x)) / 2)) as Vector3;
+  return { scale: 1, rotation, translation: turned(rotation, bottom) };
+}
+
+const bothWays = (v: Vector3): [Vector3, Vector3] => [v, v.map((x) => -x) as Vector3];
+
+/** Of some directions, the one nearest to another. */
+const nearest = (directions: readonly Vector3[], to: Vector3): Vector3 =>
+  directions.reduce((best, direction) => (dot(direction, to) > dot(best, to) ? direction : best));
+
+/** The unit vector across an axis that is nearest to a direction. */
+function acrossTo(axis: Vector3, direction: Vector3): Vector3 {
+  const along = dot(axis, direction);
+  const across = direction.map((x, i) => x - along * (axis[i] as number)) as Vector3;
+  const length = Math.sqrt(dot(across, across));
+  return across.map((x) => x / length) as Vector3;
+}
+
+function normalOf(support: unknown): Vector3 {
+  const { normal } = record("options.support", support, "{ normal, d }");
+  const given = vector3("options.support.normal", normal);
+  const length = positive("the length of options.support.normal", Math.sqrt(dot(given, given)));
+  return given.map((x) => x / length) as Vector3;
+}

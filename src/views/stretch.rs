@@ -1,0 +1,107 @@
+//! The proportions of a mesh that several views show together: one stretch for all of them, where their cameras are known.
+
+use super::joint::{Joint, JointScore};
+use super::known::Views;
+use super::world_pose::WorldPose;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
+use crate::precise::drawn::pose::Step;
+use crate::precise::judged::stretch::{ALL, deviations_of_lengths, report, shapes};
+use crate::precise::options::Proportions as Freedom;
+use crate::precise::scored::conditioning::fix_roll;
+use crate::precise::scored::score::Score;
+use crate::precise::searched::ascent::{Ascent, ascend};
+use crate::precise::searched::proportions::{InProportion, Proportions, Shapes, Stretched};
+use crate::precise::searched::recipe::{FINE, FINEST};
+use crate::precise::searched::refine::Refiner;
+use crate::report::Stretch;
+
+/// Steps of the refinement, by grid.
+const STEPS: [(usize, usize); 2] = [(FINE, 12), (FINEST, 12)];
+
+/// The best proportions near a pose in the world; `None` if they are not asked for, or the size of the mesh is given.
+pub fn stretch(views: &Views<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedom) -> Option<Stretch> {
+    let search = views.parts.first()?.search;
+    if freedom == Freedom::Keep || views.lock_scale || search.prior.scale.is_some_and(|[a, b]| a == b) {
+        return None;
+    }
+    let shapes = shapes(&search.equivalence, freedom);
+    let mut at = StretchedInWorld { pose: *pose, proportions: Proportions::default() };
+    let mut uncertainty = [0.0; 3];
+    for (grid, steps) in STEPS {
+        let mut problem = JointInProportion { joint: &mut views.level(grid), shapes };
+        at = ascend(&mut problem, at, steps).pose;
+        let score = problem.score(&at);
+        let mut equations = problem.equations(&at, &score);
+        search.equivalence.free_axis(at.pose.rotation).into_iter().for_each(|axis| fix_roll(&mut equations, axis));
+        let mut of_scale = [0.0; PARAMETERS];
+        of_scale[3] = 1.0;
+        uncertainty = deviations_of_lengths(&equations, &of_scale)?;
+    }
+    Some(report(mesh, &search.mesh.frame, &at.proportions, |frame| at.pose.similarity(frame), uncertainty))
+}
+
+/// A pose in the world of a mesh with other proportions.
+#[derive(Debug, Clone, Copy)]
+struct StretchedInWorld {
+    pose: WorldPose,
+    proportions: Proportions,
+}
+
+/// A refinement of a pose and of the proportions in all views.
+struct JointInProportion<'j, 'a> {
+    joint: &'j mut Joint<'a>,
+    shapes: Shapes,
+}
+
+impl Ascent<ALL> for JointInProportion<'_, '_> {
+    type Pose = StretchedInWorld;
+    type Score = JointScore;
+
+    fn allowed(&self, at: StretchedInWorld) -> StretchedInWorld {
+        StretchedInWorld { pose: self.joint.allowed(at.pose), ..at }
+    }
+
+    fn score(&mut self, at: &StretchedInWorld) -> JointScore {
+        let stretch = at.proportions.matrix().as_mat3();
+        let mut sum = JointScore { total: -self.shapes.cost(&at.proportions) as f32, views: Vec::new() };
+        for (view, canvas) in self.joint.views.iter().zip(&mut self.joint.canvases) {
+            let score = view
+                .camera
+                .see(&at.pose)
+                .map_or_else(Score::default, |seen| view.objective.score_stretched(canvas, &seen, &stretch));
+            sum.total += score.total.max(view.floor);
+            sum.views.push(score);
+        }
+        sum
+    }
+
+    fn equations(&mut self, at: &StretchedInWorld, score: &JointScore) -> NormalEquationsOf<ALL> {
+        let mut sum = NormalEquationsOf::new();
+        for ((view, canvas), score) in self.joint.views.iter().zip(&mut self.joint.canvases).zip(&score.views) {
+            if score.total <= view.floor {
+                continue;
+            }
+            let Some(seen) = view.camera.see(&at.pose) else { continue };
+            let refiner = Refiner { objective: view.objective, lock_scale: false };
+            let stretched = Stretched { pose: seen, proportions: at.proportions };
+            let own = InProportion::new(&refiner, canvas, Shapes::ANY).equations(&stretched, score);
+            // The proportions are those of the mesh in every view.
+            let mut map = [[0.0; ALL]; ALL];
+            for (row, of_pose) in map.iter_mut().zip(view.camera.step_map(&seen)) {
+                row[..PARAMETERS].copy_from_slice(&of_pose);
+            }
+            (PARAMETERS..ALL).for_each(|k| map[k][k] = 1.0);
+            sum.add_mapped(&own, &map);
+        }
+        self.shapes.add_to(&at.proportions, &mut sum);
+        sum
+    }
+
+    fn moved(&self, at: &StretchedInWorld, step: [f64; ALL]) -> Option<StretchedInWorld> {
+        let mut first: Step = [0.0; PARAMETERS];
+        first.copy_from_slice(&step[..PARAMETERS]);
+        let pose = self.joint.moved(&at.pose, first)?;
+        Some(StretchedInWorld { pose, proportions: at.proportions.moved(&step) })
+    }
+}
