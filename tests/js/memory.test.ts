@@ -37,7 +37,8 @@ const largeFrame = render(mesh, truth, { fx: 900, fy: 900, cx: 639.5, cy: 479.5 
 const large = { ...largeFrame, mesh };
 
 test("calls that begin together take the memory of one", async () => {
-  await aligner.align(large, quick);
+  // The first one leaves between its data what the module keeps of the mesh.
+  for (let i = 0; i < 2; i++) await aligner.align(large, quick);
   const one = await bytesOf("core");
   const results = await Promise.all(Array.from({ length: 12 }, () => aligner.align(large, quick)));
   assert.equal(await bytesOf("core"), one);
