@@ -294,7 +294,7 @@ export async function beginHelp(
   const own = { ...input, mesh: ownMesh };
   if (placed === undefined) return kept(core, (c) => c.beginHelp(own, options));
   const { plan, index } = placed;
-  return kept(await joint(), (j) => j.beginHelp({ others: undefined, ...own }, options, plan, index));
+  return kept(await joint(), (j) => j.beginHelpPlace({ others: undefined, ...own }, options, plan, index));
 }
 
 /** What a tracker is called where its module keeps it. */

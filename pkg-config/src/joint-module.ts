@@ -40,7 +40,7 @@ export interface JointAligner extends Glue {
     onProgress: CoreListener | undefined,
     helpers: CoreHelpers | undefined,
   ): Task<Placed>;
-  beginHelp(
+  beginHelpPlace(
     input: CoreInput & { others: Uint8Array | undefined },
     options: object,
     plan: Uint8Array | undefined,

@@ -74,7 +74,7 @@ impl PlaceTask {
 pub struct PlaceHelper(RefCell<Helper>);
 
 /// Prepares a helper of the alignment that [`begin_place`] begins with the same input, options and plan.
-#[wasm_bindgen(js_name = beginHelp, skip_typescript)]
+#[wasm_bindgen(js_name = beginHelpPlace, skip_typescript)]
 pub fn begin_help(
     input: &JsValue,
     options: &JsValue,
