@@ -2,6 +2,7 @@
 //! its arguments, calls the crate `sim3align`, and returns a plain object.
 
 pub mod calibrate;
+pub mod helper;
 pub mod mesh;
 pub mod scene;
 pub mod track;

@@ -11,10 +11,9 @@ use serde::de::DeserializeOwned;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use sim3align::align::helper::Helper;
 use sim3align::bindings::answer::answer;
 use sim3align::bindings::error::to_js;
-use sim3align::bindings::helpers::{JsHelpers, pauses, step};
+use sim3align::bindings::helpers::{JsHelpers, pauses};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, required_number, to_numbers, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
@@ -30,6 +29,8 @@ use sim3align::scene::plane::Plane;
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::SupportChoice;
 use sim3align::scene::task::{helper, place};
+
+use crate::helper::JointHelper;
 
 /// A running alignment of one object of a scene.
 #[wasm_bindgen(skip_typescript)]
@@ -69,10 +70,6 @@ impl PlaceTask {
     }
 }
 
-/// A helper of the alignment of an object.
-#[wasm_bindgen(skip_typescript)]
-pub struct PlaceHelper(RefCell<Helper>);
-
 /// Prepares a helper of the alignment that [`begin_place`] begins with the same input, options and plan.
 #[wasm_bindgen(js_name = beginHelpPlace, skip_typescript)]
 pub fn begin_help(
@@ -80,29 +77,14 @@ pub fn begin_help(
     options: &JsValue,
     plan: &JsValue,
     object: usize,
-) -> core::result::Result<PlaceHelper, JsValue> {
+) -> core::result::Result<JointHelper, JsValue> {
     let begin = || {
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
         let plan: Plan = unpacked(plan)?.unwrap_or_default();
         helper(observation, mesh, options, plan.told(object)?)
     };
-    begin().map(|helper| PlaceHelper(RefCell::new(helper))).map_err(|error: Error| to_js(&error))
-}
-
-#[wasm_bindgen]
-impl PlaceHelper {
-    /// Reads a message of the alignment.
-    #[wasm_bindgen(skip_typescript)]
-    pub fn receive(&self, message: &[f64]) {
-        self.0.borrow_mut().receive(message);
-    }
-
-    /// See [`step`].
-    #[wasm_bindgen(skip_typescript)]
-    pub fn step(&self, slice_ms: f64) -> JsValue {
-        step(&mut self.0.borrow_mut(), slice_ms)
-    }
+    begin().map(JointHelper::from).map_err(|error: Error| to_js(&error))
 }
 
 /// What follows from the placements of a round: `({ depth, …, camera, masks, support, seed, snap }, plan, placements)` →

@@ -6,10 +6,9 @@ use js_sys::{Array, Function};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use sim3align::align::helper::Helper;
 use sim3align::bindings::answer::step_answer;
 use sim3align::bindings::error::to_js;
-use sim3align::bindings::helpers::{JsHelpers, pauses, step};
+use sim3align::bindings::helpers::{JsHelpers, pauses};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, wrong_type};
 use sim3align::bindings::transform::similarity;
@@ -20,6 +19,8 @@ use sim3align::number::number;
 use sim3align::pauses::Task;
 use sim3align::views::report::ViewsAlignment;
 use sim3align::views::{View, align_views_task, views_helper};
+
+use crate::helper::JointHelper;
 
 /// Largest deviation of the scale of a camera pose from 1.
 const RIGID: f64 = 1e-3;
@@ -44,33 +45,14 @@ pub fn begin_align_views(
     begin().map(|task| ViewsTask(RefCell::new(task))).map_err(|error| to_js(&error))
 }
 
-/// A helper of an alignment of several views.
-#[wasm_bindgen(skip_typescript)]
-pub struct ViewsHelper(RefCell<Helper>);
-
 /// Prepares a helper of the alignment that [`begin_align_views`] starts with the same input and options.
 #[wasm_bindgen(js_name = beginHelpViews, skip_typescript)]
-pub fn begin_help_views(input: &JsValue, options: &JsValue) -> core::result::Result<ViewsHelper, JsValue> {
+pub fn begin_help_views(input: &JsValue, options: &JsValue) -> core::result::Result<JointHelper, JsValue> {
     let begin = || {
         let options = options::options(options, &options::OF_LONG_CALLS, |_| None)?;
         views_helper(views_of(input)?, mesh::mesh_of(input)?, options)
     };
-    begin().map(|helper| ViewsHelper(RefCell::new(helper))).map_err(|error| to_js(&error))
-}
-
-#[wasm_bindgen]
-impl ViewsHelper {
-    /// Reads a message of the alignment.
-    #[wasm_bindgen(skip_typescript)]
-    pub fn receive(&self, message: &[f64]) {
-        self.0.borrow_mut().receive(message);
-    }
-
-    /// See [`step`].
-    #[wasm_bindgen(skip_typescript)]
-    pub fn step(&self, slice_ms: f64) -> JsValue {
-        step(&mut self.0.borrow_mut(), slice_ms)
-    }
+    begin().map(JointHelper::from).map_err(|error| to_js(&error))
 }
 
 fn views_of(input: &JsValue) -> Result<Vec<View>> {
