@@ -80,7 +80,7 @@ test("formats: loads nothing but the readers, and says when it can't", () => {
     const { compile } = WebAssembly;
     // Node's own modules are small.
     WebAssembly.compile = (bytes) => (bytes.byteLength > 50_000 && sizes.push(bytes.byteLength), compile(bytes));
-    await assert.rejects(loadFormats("file:///nowhere.wasm"), { code: "NOT_INITIALISED", argument: "formatsWasm" });
+    await assert.rejects(loadFormats("file:///nowhere.wasm"), { code: "NOT_INITIALISED", argument: "wasm.formats" });
     await Promise.all([loadFormats(), readMesh(Buffer.from("v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n"), { format: "obj" })]);
     console.log(sizes.length);
   `;
