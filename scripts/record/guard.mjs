@@ -33,7 +33,8 @@ export function losses(before, after) {
       const other = now.get(key(line));
       return other === undefined ? [] : [/** @type {const} */ ([line, other])];
     });
-    if (pairs.length < lines.length) found.push(`${set}: ${lines.length - pairs.length} of ${lines.length} cases are missing`);
+    if (pairs.length < lines.length)
+      found.push(`${set}: ${lines.length - pairs.length} of ${lines.length} cases are missing`);
     for (const row of new Set(lines.map((line) => line.row))) {
       const of = pairs.filter(([line]) => line.row === row);
       found.push(...lossesOf(`${set}, ${row}`, of));

@@ -14,13 +14,12 @@ import { at } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
 import { sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
 import { losses } from "./guard.mjs";
+import { extendHistory } from "./history.mjs";
 import { linesOf, sets, setsOf } from "./sets.mjs";
 import { summaries } from "./summary.mjs";
 
 /** The quick record that changes are compared with. */
 const quickFile = at("docs", "record", "quick.json");
-/** The summaries of all versions, a line each. */
-const historyFile = at("docs", "record", "history.jsonl");
 
 /**
  * @typedef {object} RecordOptions
@@ -62,8 +61,7 @@ export async function record({ quick = false, check, save, out, fresh = false, t
       .filter((module) => existsSync(wasmFile(module)))
       .map((module) => [module.name, sizes(wasmFile(module)).gzip]),
   );
-  const { date, ...machine } = await environment();
-  const whole = { version, date, ...machine, sizes: measured, sets: found };
+  const whole = { version, ...(await environment()), sizes: measured, sets: found };
   writeFileSync(join(folder, "record.json"), JSON.stringify(whole));
   console.log(`The record is ${join(folder, "record.json")}.`);
   if (save) keep(quick, whole, rows);
@@ -73,23 +71,16 @@ export async function record({ quick = false, check, save, out, fresh = false, t
 /**
  * Writes what the repository keeps: the quick record case by case, of the whole one a line for each row.
  * @param {boolean} quick
- * @param {import("./guard.mjs").QuickRecord & { date: string, commit: string }} whole
+ * @param {import("./guard.mjs").QuickRecord & import("./history.mjs").Run} whole
  * @param {readonly import("./summary.mjs").Summary[]} rows
  */
-function keep(quick, { version, commit, date, sizes: measured, sets: found }, rows) {
+function keep(quick, { sizes: measured, sets: found, ...run }, rows) {
   mkdirSync(at("docs", "record"), { recursive: true });
-  if (quick) {
-    // Times differ from run to run; everything else is the same bits.
-    const timeless = found.map(({ set, lines }) => ({ set, lines: lines.map(({ ms: _, ...line }) => line) }));
-    const text = JSON.stringify({ version, sizes: measured, sets: timeless }).replaceAll('},{"row"', '},\n{"row"');
-    writeFileSync(quickFile, `${text}\n`);
-    return;
-  }
-  const old = existsSync(historyFile) ? readFileSync(historyFile, "utf8").split("\n").filter(Boolean) : [];
-  const others = old.filter((line) => JSON.parse(line).version !== version);
-  const lines = rows.map((row) => JSON.stringify({ version, commit, date, ...row }));
-  const size = JSON.stringify({ version, commit, date, set: "sizes", bytes: measured });
-  writeFileSync(historyFile, [...others, ...lines, size, ""].join("\n"));
+  if (!quick) return extendHistory(run, measured, rows, found);
+  // Times differ from run to run; everything else is the same bits.
+  const timeless = found.map(({ set, lines }) => ({ set, lines: lines.map(({ ms: _, ...line }) => line) }));
+  const text = JSON.stringify({ version: run.version, sizes: measured, sets: timeless });
+  writeFileSync(quickFile, `${text.replaceAll('},{"row"', '},\n{"row"')}\n`);
 }
 
 /** @param {readonly import("./summary.mjs").Summary[]} rows */
