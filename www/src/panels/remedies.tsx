@@ -2,10 +2,10 @@
 import { alignSelected } from "../run/align.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
+import { SURE } from "../state/progress.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { fix } from "./decision.js";
 import { KnownSize } from "./known-size.js";
-import { SURE } from "./sureness.js";
 
 const ups: readonly (readonly [Options["up"], string])[] = [
   ["y", "y is up"],
