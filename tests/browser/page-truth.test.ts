@@ -1,6 +1,6 @@
 /** What the page says is so: sizes along an object's own sides, and why mask and mesh differ. */
 import assert from "node:assert/strict";
-import { obj } from "../support/files.js";
+import { obj, png } from "../support/files.js";
 import { depthNpy, drop, files, HEIGHT, maskPng, pinhole, seen, WIDTH } from "../support/page-files.js";
 import { cuboid, render, transformed, truth } from "../support/scene.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
@@ -98,4 +98,23 @@ test("relative depth that is passed as metres is named", async (opened, page) =>
   await page.locator(".advice button").click();
   await opened.sheet();
   await page.click("#intake-cancel");
+});
+
+test("a unit that was assumed is asked about, where the object would be as large as furniture", async (opened, page) => {
+  // 5000 units per metre, as some datasets have, are taken for millimetres.
+  const depth = png(
+    Uint16Array.from(seen.depth, (z) => Math.round(5000 * z)),
+    WIDTH,
+    HEIGHT,
+  );
+  const { "depth.npy": _, ...rest } = files;
+  await drop(opened, { ...rest, "depth.png": depth });
+  assert.match(await advice(opened), /^unit: Is it really .* cm across and 3\.\d m away\? .* was assumed: 0\.001 m/);
+  // A unit that was given is not asked about.
+  await opened.press("Change the unit …");
+  await opened.sheet();
+  await page.selectOption("#depth-scale", "0.0002");
+  await opened.sheet();
+  await page.click("#intake-open");
+  await page.locator(".advice").waitFor({ state: "detached", ...PATIENCE });
 });
