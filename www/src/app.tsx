@@ -18,7 +18,7 @@ import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
 import { SpaceView } from "./views/space-view.js";
 
-const { largeView, scene, space, video } = page;
+const { largeView, notKept, othersScenes, scene, space, video } = page;
 
 const Intake = lazy(
   () => draft.value !== null,
@@ -27,6 +27,11 @@ const Intake = lazy(
 const TimePanel = lazy(
   () => video.value !== null,
   () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
+);
+
+const Kept = lazy(
+  () => notKept.value !== null || othersScenes.value.length > 0,
+  () => import("./panels/kept.js").then(({ Kept }) => Kept),
 );
 
 const HelpDialog = lazy(
@@ -48,6 +53,7 @@ export function App() {
           <TimePanel />
           <HandPanel />
           <aside class="side" aria-label="Scene">
+            <Kept />
             <RunBar />
             <StartPanel />
             <ResultPanel />
