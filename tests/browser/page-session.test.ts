@@ -62,11 +62,11 @@ test("a reload restores the scene, the pose and the decision; unstored work asks
   await opened.shows("Table");
 });
 
-test("a session is saved and opened as one file", async (opened, page) => {
+test("a session is saved and opened as one file", async (opened) => {
   const centre = await worked(opened);
   const { name, bytes } = await opened.saved("Session");
   assert.equal(name, "own-files.sim3align.zip");
-  await page.selectOption("#sample", "mug");
+  await opened.choose("#sample", "mug");
   await opened.shows("Mug");
   await drop(opened, { [name]: bytes });
   await isAsLeft(opened, centre);

@@ -1,7 +1,16 @@
 /** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
 import { isHelpOpen } from "../state/help.js";
-import { shortcuts } from "../ui/shortcuts.js";
+import { type Theme, theme } from "../state/theme.js";
+import { Choices } from "../ui/controls.js";
+import { pageCommands } from "../ui/page-commands.js";
+import { Keys } from "./keys.js";
+
+const themes: readonly [Theme, string][] = [
+  ["system", "System"],
+  ["light", "Light"],
+  ["dark", "Dark"],
+];
 
 export function HelpDialog() {
   const dialog = useRef<HTMLDialogElement>(null);
@@ -21,6 +30,17 @@ export function HelpDialog() {
     >
       <header>
         <h2 id="help-title">Help</h2>
+        <label class="field-inline" for="theme">
+          <span>Theme</span>
+          <Choices
+            id="theme"
+            value={theme.value}
+            choices={themes}
+            onChoose={(chosen) => {
+              theme.value = chosen;
+            }}
+          />
+        </label>
         <form method="dialog">
           <button type="submit">Close</button>
         </form>
@@ -39,12 +59,17 @@ export function HelpDialog() {
       </p>
       <h3>Keyboard shortcuts</h3>
       <dl class="keys">
-        {shortcuts.map(({ key, title, about }) => (
-          <div key={key}>
-            <dt>{title.split(" ").map((part) => (part === "to" ? " to " : <kbd key={part}>{part}</kbd>))}</dt>
-            <dd>{about}</dd>
-          </div>
-        ))}
+        {pageCommands.map(
+          ({ key, title, about }) =>
+            title !== undefined && (
+              <div key={key}>
+                <dt>
+                  <Keys title={title} />
+                </dt>
+                <dd>{about}</dd>
+              </div>
+            ),
+        )}
       </dl>
     </dialog>
   );

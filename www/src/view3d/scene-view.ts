@@ -160,7 +160,7 @@ export class SceneView {
     this.firstDepth = first;
     this.frustum = frustumOf(scene, 0.22 * first, frustum);
     this.ground = scene.ground ? groundOf(scene, scene.ground, last) : null;
-    this.root.add(this.cloud.object, this.frustum);
+    this.root.add(this.cloud.object, this.cloud.veil, this.frustum);
     if (this.ground) this.root.add(this.ground);
     this.viewpoint.setScene(scene, first, last);
     this.lookFrom(this.look, this.fits);
@@ -342,6 +342,7 @@ export class SceneView {
     if (this.ground) this.ground.visible = showsGround;
     if (this.cloud) {
       this.cloud.object.visible = display.cloud && !showsGround;
+      this.cloud.veil.visible = showsGround;
       this.cloud.setPointSize(display.pointSize);
     }
     for (const lines of [this.frustum, this.floor, ...this.others]) if (lines) lines.visible = !viewpoint.isCamera;
@@ -356,7 +357,9 @@ export class SceneView {
 
   private showSizes(): void {
     const { dimensions, unit = null } = this.display;
-    this.sizes.update(this.models, this.selected, unit, (id) => dimensions === true && !this.animations.isRunning(id));
+    // Labels would cover the handles.
+    const isShown = dimensions === true && this.gizmoMode === null;
+    this.sizes.update(this.models, this.selected, unit, (id) => isShown && !this.animations.isRunning(id));
     this.ruler.show(this.measured, unit);
   }
 
