@@ -8,11 +8,12 @@ import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 
-const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
+const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions" | "planes", title: string][] = [
   ["cloud", "Points"],
   ["mesh", "Mesh"],
   ["wireframe", "Wireframe"],
   ["dimensions", "Sizes"],
+  ["planes", "Top, side and front"],
 ];
 
 const viewpoints = [
