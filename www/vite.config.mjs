@@ -4,11 +4,14 @@ import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { defineConfig } from "vite";
 import { definitions } from "./definitions.mjs";
+import { documentation, documents } from "./documentation.mjs";
 import { serviceWorker } from "./service-worker.mjs";
 
 const www = dirname(fileURLToPath(import.meta.url));
 const repository = dirname(www);
 const samples = join(www, "samples", "index.json");
+
+const guides = documents(repository);
 
 const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js")).href);
 
@@ -49,11 +52,14 @@ export default defineConfig({
       { find: /^sim3align\/(.+)$/, replacement: join(repository, "pkg", "$1.js") },
     ],
   },
-  define: definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
+  define: {
+    ...definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
+    DOCUMENTS: JSON.stringify(guides.map(({ title, fileName }) => [title, fileName])),
+  },
   // What workers load later has names of its own.
   worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
-  plugins: [preloadedModules, serviceWorker(www)],
+  plugins: [preloadedModules, documentation(guides), serviceWorker(www)],
   build: {
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,

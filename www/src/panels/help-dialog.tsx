@@ -6,6 +6,9 @@ import { Choices } from "../ui/controls.js";
 import { pageCommands } from "../ui/page-commands.js";
 import { Keys } from "./keys.js";
 
+/** Titles and addresses, inserted by the build. */
+declare const DOCUMENTS: readonly (readonly [title: string, address: string])[];
+
 const themes: readonly [Theme, string][] = [
   ["system", "System"],
   ["light", "Light"],
@@ -57,6 +60,16 @@ export function HelpDialog() {
         without a unit, until you enter a known one. For several objects, use matching names: <code>mask-cup.png</code>{" "}
         goes with <code>mesh-cup.glb</code>. Everything is computed in this browser; nothing is uploaded.
       </p>
+      <h3>Documentation</h3>
+      <ul class="documents">
+        {[...DOCUMENTS, ["Accuracy, time and size by version", "record.html"] as const].map(([title, address]) => (
+          <li key={address}>
+            <a href={address} target="_blank" rel="noreferrer">
+              {title}
+            </a>
+          </li>
+        ))}
+      </ul>
       <h3>Keyboard shortcuts</h3>
       <dl class="keys">
         {pageCommands.map(
