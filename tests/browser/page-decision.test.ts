@@ -60,6 +60,9 @@ test("a wrong mesh is named, and a known size is tried at once", hammer, async (
 test("objects are hidden, locked, renamed and removed", "#sample=desk", async (opened, page) => {
   const rows = page.locator(".objects li");
   const before = await opened.imagePixels();
+  // The buttons of a row are there while it is selected, or under the pointer.
+  const hover = (name: string) => rows.filter({ hasText: name }).hover();
+  await hover("Teapot");
   await page.getByRole("button", { name: "Show Teapot" }).click();
   const hidden = await opened.imagePixels();
   assert.notDeepEqual(hidden.data, before.data);
@@ -78,12 +81,14 @@ test("objects are hidden, locked, renamed and removed", "#sample=desk", async (o
   await opened.press("Move left");
   await opened.isNow("hand");
   const moved = await page.textContent("#centre");
+  await hover("Tea box");
   await page.getByRole("button", { name: "Lock Tea box" }).click();
   await page.click("#align-all");
   await opened.says(/^Aligned 2 objects/);
   assert.equal(await page.textContent("#centre"), moved);
   assert.equal(await opened.source(), "hand");
 
+  await hover("Animal");
   await page.getByRole("button", { name: "Remove Animal" }).click();
   assert.equal(await rows.count(), 2);
   assert.equal(await page.textContent("#centre"), moved);

@@ -32,9 +32,9 @@ test(
     const confidence = () => page.textContent(".badge");
     const pictures = page.locator(".alternatives button:not(.tip)");
     const before = [await confidence(), await pictures.count()];
-    await page.selectOption("#option-symmetry, #effort", "fast");
+    await opened.choose("#effort", "fast");
     await page.click(".options-panel summary");
-    await page.selectOption("#option-symmetry", "none");
+    await opened.choose("#option-symmetry", "none");
     await page.click("#align");
     await page.locator("#cancel").waitFor({ state: "detached" });
     await opened.aligned();

@@ -75,7 +75,7 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   assert.equal(Math.max(...sizes), 1);
   await page.click(".details summary");
   await page.click(".hand-panel .more summary");
-  await page.selectOption('[aria-label="Background"]', "depth");
+  await opened.choose('[aria-label="Background"]', "depth");
   await page.hover(".image canvas");
   const text = await shownText(opened);
   assert.doesNotMatch(text.replace(/(\d+) mm \(35 mm equivalent\)/g, ""), UNIT);

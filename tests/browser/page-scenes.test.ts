@@ -201,7 +201,7 @@ test(
     await opened.closeWorkerGate();
     await page.click("#align");
     await page.locator("#cancel").waitFor(PATIENCE);
-    await page.selectOption("#sample", "mug");
+    await opened.choose("#sample", "mug");
     await isShown(page, "Mug");
     await opened.openWorkerGate();
     await opened.shows("Mug");

@@ -10,9 +10,10 @@ import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { StartPanel } from "./panels/start-panel.js";
 import { draft } from "./state/draft.js";
-import { isHelpOpen } from "./state/help.js";
+import { isHelpOpen, isPaletteOpen } from "./state/help.js";
 import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
+import { pageCommands } from "./ui/page-commands.js";
 import { listenToKeys } from "./ui/shortcuts.js";
 import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
@@ -34,13 +35,18 @@ const Kept = lazy(
   () => import("./panels/kept.js").then(({ Kept }) => Kept),
 );
 
+const Palette = lazy(
+  () => isPaletteOpen.value,
+  () => import("./panels/palette.js").then(({ Palette }) => Palette),
+);
+
 const HelpDialog = lazy(
   () => isHelpOpen.value,
   () => import("./panels/help-dialog.js").then(({ HelpDialog }) => HelpDialog),
 );
 
 export function App() {
-  useEffect(() => listenToKeys(page), []);
+  useEffect(() => listenToKeys(page, globalThis, pageCommands), []);
   // Without a 3D view, the image view is the large one.
   const large = space.value.kind === "none" ? "image" : largeView.value;
   return (
@@ -48,10 +54,7 @@ export function App() {
       <div class="frame">
         <Header />
         <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
-          <SpaceView />
-          <ImageView />
-          <TimePanel />
-          <HandPanel />
+          {/* First, so that the Tab key reaches it first. */}
           <aside class="side" aria-label="Scene">
             <Kept />
             <RunBar />
@@ -62,7 +65,12 @@ export function App() {
             <InputPanel />
             <OptionsPanel />
           </aside>
+          <SpaceView />
+          <ImageView />
+          <TimePanel />
+          <HandPanel />
         </main>
+        <Palette />
         <HelpDialog />
         <Intake />
         <DropOverlay />
