@@ -15,7 +15,14 @@ export const buildSite = once(async () => {
   await step("site", async (say) => {
     // The facts about the build differ from commit to commit, and the site does not use them.
     const used = filesBelow([packageDir]).filter((file) => !/build-info\.json$|\.md$/.test(file));
-    const inputs = digest([at("www"), at("docs", "record"), at("package-lock.json"), ...used]);
+    const inputs = digest([
+      at("www"),
+      at("docs", "record"),
+      at("docs", "guides"),
+      at("README.md"),
+      at("package-lock.json"),
+      ...used,
+    ]);
     const isNew = await cached(at("target", "www.stamp"), inputs, [join(siteDir, "index.html")], async () => {
       const [node, vite] = nodeProgram("vite");
       await run(node, [vite, "build", "--config", at("www", "vite.config.mjs")]);
