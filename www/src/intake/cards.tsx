@@ -77,6 +77,7 @@ const depthUnits = [
   ["1", "metres"],
   ["0.001", "millimetres"],
   ["0.0001", "0.1 mm"],
+  ["0.0002", "0.2 mm"],
   ["0.00025", "0.25 mm"],
 ] as const;
 
