@@ -19,7 +19,7 @@ import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
 import { SpaceView } from "./views/space-view.js";
 
-const { largeView, scene, space, video } = page;
+const { largeView, notKept, othersScenes, scene, space, video } = page;
 
 const Intake = lazy(
   () => draft.value !== null,
@@ -28,6 +28,11 @@ const Intake = lazy(
 const TimePanel = lazy(
   () => video.value !== null,
   () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
+);
+
+const Kept = lazy(
+  () => notKept.value !== null || othersScenes.value.length > 0,
+  () => import("./panels/kept.js").then(({ Kept }) => Kept),
 );
 
 const Palette = lazy(
@@ -51,6 +56,7 @@ export function App() {
         <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
           {/* First, so that the Tab key reaches it first. */}
           <aside class="side" aria-label="Scene">
+            <Kept />
             <RunBar />
             <StartPanel />
             <ResultPanel />

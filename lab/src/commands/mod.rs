@@ -14,6 +14,7 @@ mod registration;
 mod scenes;
 mod sequence_rows;
 mod together;
+mod trace;
 mod track;
 mod views;
 
@@ -36,7 +37,7 @@ pub struct Command {
 }
 
 /// All subcommands.
-pub const COMMANDS: [Command; 13] = [
+pub const COMMANDS: [Command; 14] = [
     cases::COMMAND,
     scenes::COMMAND,
     bench::COMMAND,
@@ -47,6 +48,7 @@ pub const COMMANDS: [Command; 13] = [
     registration::COMMAND,
     views::COMMAND,
     track::COMMAND,
+    trace::COMMAND,
     outlines::COMMAND,
     profile::COMMAND,
     fuzz::COMMAND,
