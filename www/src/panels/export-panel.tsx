@@ -23,9 +23,7 @@ export function ExportPanel() {
           </button>
         ))}
       </fieldset>
-      {whole !== null && whole.sample === null && (
-        <p class="quiet">The link contains the options but not your files.</p>
-      )}
+      {whole !== null && whole.sample === null && <p class="quiet">Your own files cannot be linked.</p>}
     </details>
   );
 }
