@@ -2,14 +2,17 @@
  * `npm run bench:masks -- FOLDER…`: how well the mask tool of the page finds objects in real photos. Intersection over union with
  * the given masks after one click in the middle of each, and after each of two strokes where most was wrong.
  */
-import { mkdirSync, readFileSync } from "node:fs";
-import { basename, dirname, join } from "node:path";
+import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { build } from "esbuild";
 import { at } from "../lib/paths.mjs";
 import { command } from "./command.mjs";
 import { foldersWith, packageModule, within } from "./inputs.mjs";
 import { fixed, markdownTable, median } from "./table.mjs";
+
+/** Strokes after the click. */
+const CORRECTIONS = 2;
 
 /** The tool as plain JavaScript. */
 async function tool() {
@@ -117,72 +120,71 @@ function iou(mask, truth) {
 /** The middle of a mask: its centroid or, where that is outside, its deepest pixel. */
 function middleOf(mask, width) {
   const part = [];
-  mask.forEach((inside, i) => inside && part.push(i));
+  for (let i = 0; i < mask.length; i++) if (mask[i]) part.push(i);
   const mean = (of) => part.reduce((sum, p) => sum + of(p), 0) / part.length;
   const [x, y] = [mean((p) => p % width), mean((p) => Math.floor(p / width))].map(Math.round);
   return mask[y * width + x] ? [x, y] : pointOf(deepest(part, width)[0], width);
 }
 
+/**
+ * The photos of folders, with their depth and the masks of their objects.
+ * @param {readonly string[]} folders
+ */
+async function* photos(folders) {
+  const { readDepth, readMask, loadFormats } = await packageModule("formats.js");
+  await loadFormats();
+  const { readImage } = await packageModule("wasm/formats.js");
+  for (const folder of foldersWith("rgb.png", folders)) {
+    const { data, width, height } = readImage(readFileSync(join(folder, "rgb.png")));
+    const channels = data.length / (width * height);
+    const rgba = Uint8ClampedArray.from({ length: 4 * width * height }, (_, i) =>
+      i % 4 === 3 ? 255 : data[channels * Math.floor(i / 4) + (i % 4)],
+    );
+    const depth = (await readDepth(readFileSync(join(folder, "depth.npy")))).data;
+    const objects = existsSync(join(folder, "objects")) ? within(join(folder, "objects")) : [];
+    const masks = [];
+    for (const path of foldersWith(
+      "mask.png",
+      [folder, ...objects].filter((one) => existsSync(join(one, "mask.png"))),
+    )) {
+      const { data: truth } = await readMask(readFileSync(join(path, "mask.png")));
+      if (truth.length === width * height && truth.includes(1)) masks.push({ path, truth });
+    }
+    yield { view: { rgba, width, height }, depth, masks };
+  }
+}
+
 await command("bench:masks", (parsed) =>
   parsed
     .description("measures the mask tool of the page on case and scene folders with rgb.png")
-    .argument("<folders...>")
-    .option("--each", "a row for each mask")
-    .option("--set <settings...>", "")
-    .action(async (folders, { each, set = [] }) => {
-      const { regionOf, T } = await tool();
-      for (const one of set) T[one.split("=")[0]] = Number(one.split("=")[1]);
-      const { readDepth, readMask, loadFormats } = await packageModule("formats.js");
-      await loadFormats();
-      const formats = await packageModule("wasm/formats.js");
-      const rows = [];
-      const times = [];
-      for (const folder of foldersWith("rgb.png", folders)) {
-        const { data, width, height } = formats.readImage(readFileSync(join(folder, "rgb.png")));
-        const channels = data.length / width / height;
-        const rgba = Uint8ClampedArray.from({ length: 4 * width * height }, (_, i) =>
-          i % 4 === 3 ? 255 : data[channels * Math.floor(i / 4) + (i % 4)],
-        );
-        const depth = (await readDepth(readFileSync(join(folder, "depth.npy")))).data;
-        for (const file of foldersWith("mask.png", [
-          folder,
-          ...foldersWith("scene.json", [folder]).flatMap((f) => within(join(f, "objects"))),
-        ])) {
-          const { data: truth } = await readMask(readFileSync(join(file, "mask.png")));
-          if (truth.length !== width * height || !truth.includes(1)) continue;
-          for (const hasDepth of [true, false]) {
-            const view = { rgba, width, height, depth: hasDepth ? depth : null };
-            const strokes = [{ points: [middleOf(truth, width)], radius: 2, adds: true }];
-            const found = [];
-            for (let step = 0; step <= 2; step++) {
-              const begun = performance.now();
-              const mask = regionOf(view, strokes);
-              times.push(performance.now() - begun);
-              found.push(iou(mask, truth));
-              const next = correction(mask, truth, width);
+    .argument("<folders...>", "folders, or folders of them")
+    .option("--each", "a line for each mask")
+    .action(async (/** @type {string[]} */ folders, /** @type {{ each?: boolean }} */ { each }) => {
+      const { regionOf } = await tool();
+      const kinds = ["photo and depth", "photo alone"];
+      const rows = kinds.map((kind) => ({ kind, found: /** @type {number[][]} */ ([]) }));
+      for await (const { view, depth, masks } of photos(folders)) {
+        for (const { path, truth } of masks) {
+          for (const row of rows) {
+            const seen = { ...view, depth: row.kind === kinds[0] ? depth : null };
+            const strokes = [{ points: [middleOf(truth, view.width)], radius: 2, adds: true }];
+            const ious = [];
+            for (let step = 0; step <= CORRECTIONS; step++) {
+              const mask = regionOf(seen, strokes);
+              ious.push(iou(mask, truth));
+              const next = correction(mask, truth, view.width);
               if (next !== null) strokes.push(next);
             }
-            rows.push({ name: `${basename(dirname(file))}/${basename(file)}`, hasDepth, found });
+            row.found.push(ious);
+            if (each) console.log(row.kind, ious.map((value) => fixed(value, 3)).join(" "), path);
           }
         }
       }
-      if (each)
-        for (const { name, hasDepth, found } of rows)
-          console.log(hasDepth ? "depth" : "photo", found.map((x) => x.toFixed(3)).join(" "), name);
-      for (const hasDepth of [true, false]) {
-        const own = rows.filter((row) => row.hasDepth === hasDepth);
-        console.log(
-          hasDepth ? "photo and depth" : "photo alone",
-          own.length,
-          [0, 1, 2]
-            .map((k) => {
-              const v = own.map(({ found }) => found[k]).sort((a, b) => a - b);
-              const mean = v.reduce((a, b) => a + b, 0) / v.length;
-              return `${median(v).toFixed(3)} q1 ${v[v.length >> 2].toFixed(3)} mean ${mean.toFixed(3)}`;
-            })
-            .join(" | "),
-        );
-      }
-      console.log("ms", median(times).toFixed(0), "max", Math.max(...times).toFixed(0));
+      const header = ["", "masks", "one click", "one correction", "two corrections"];
+      const table = rows.map(({ kind, found }) => [
+        ...[kind, `${found.length}`],
+        ...Array.from({ length: CORRECTIONS + 1 }, (_, step) => fixed(median(found.map((ious) => ious[step])), 3)),
+      ]);
+      console.log(markdownTable(header, table));
     }),
 );

@@ -2,6 +2,7 @@
 import { cpSync } from "node:fs";
 import { join } from "node:path";
 import { cached, digest, filesBelow, once } from "./cache.mjs";
+import { writeGuidePage } from "./guide-page.mjs";
 import { buildPackage } from "./package.mjs";
 import { at, packageDir, siteDir } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
@@ -13,11 +14,12 @@ export const buildSite = once(async () => {
   await step("site", async (say) => {
     // The facts about the build differ from commit to commit, and the site does not use them.
     const used = filesBelow([packageDir]).filter((file) => !/build-info\.json$|\.md$/.test(file));
-    const inputs = digest([at("www"), at("package-lock.json"), ...used]);
+    const inputs = digest([at("www"), at("docs", "guides", "from-a-photo.md"), at("package-lock.json"), ...used]);
     const isNew = await cached(at("target", "www.stamp"), inputs, [join(siteDir, "index.html")], async () => {
       const [node, vite] = nodeProgram("vite");
       await run(node, [vite, "build", "--config", at("www", "vite.config.mjs")]);
       cpSync(at("www", "samples"), join(siteDir, "samples"), { recursive: true });
+      writeGuidePage("from-a-photo", join(siteDir, "guides", "from-a-photo.html"));
     });
     say(isNew ? "target/www" : "target/www, up to date");
   });

@@ -77,6 +77,8 @@ test("a photo alone is shown with its focal length, and the rest is named with i
   const guide = sheet.locator(".from-photo");
   const links = await guide.locator("a").evaluateAll((all) => all.map((one) => (one as HTMLAnchorElement).href));
   assert.ok(links.length >= 6 && links.every((link) => /^https:|guides\//.test(link)), `${links}`);
+  const [own = ""] = links.filter((link) => link.includes("guides/"));
+  assert.match(await page.evaluate(async (link) => (await fetch(link)).text(), own), /From one photo/);
   assert.ok(await page.isDisabled("#intake-open"));
   assert.deepEqual(await opened.violations(), []);
   // A mask of the photo, also one that was saved with losses, is shown on it.
@@ -97,11 +99,9 @@ test("an object is marked on a photo, and aligned when depth and mesh come", asy
   assert.ok(Math.abs((await share(page)) - trueShare) < 1.5, `${await share(page)} of ${trueShare} %`);
   assert.deepEqual(await opened.violations(), []);
   await page.click("#mask-done");
-  await opened.sheet();
+  await page.locator(".mask-editor").waitFor({ state: "detached", ...PATIENCE });
   await page.locator(".pair canvas").first().waitFor(PATIENCE);
   await drop(opened, { "mesh.obj": files["mesh.obj"] as Uint8Array, "depth.npy": depthNpy(seen.depth) });
-  const sheet = await opened.sheet();
-  if (await sheet.isVisible()) await page.click("#intake-open");
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.85);
 });
@@ -162,12 +162,6 @@ test("models of the host see depth and mask in the photo", async (opened, page) 
   await mark(opened, middle());
   await page.getByRole("button", { name: "Use recorded tensors" }).click();
   await page.locator(".mask-editor").waitFor({ state: "detached", ...PATIENCE });
-  await opened.sheet();
-  assert.equal(
-    await page.inputValue("#depth-kind").catch(() => "affine-invariant-disparity"),
-    "affine-invariant-disparity",
-  );
-  if (await page.locator("#intake-open").isVisible()) await page.click("#intake-open");
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.85);
   assert.ok(

@@ -22,7 +22,10 @@ const { announce, enlist, inputs, scene, show } = page;
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
 
-/** Proposes files as one or several scenes. Files without a depth map are added to a draft that is open. */
+/** Whether a draft waits for its depth map. */
+const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
+
+/** Proposes files as one or several scenes. A draft that is open takes files without a depth map, and the one that it lacks. */
 export async function propose(files: readonly NamedFile[]): Promise<void> {
   const change = ++lastChange;
   let typed: Typed[];
@@ -49,7 +52,8 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
     return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
   }
   const open = draft.peek();
-  if (open !== null && !typed.some(({ role }) => role === "depth")) return add(open, typed);
+  const depths = typed.filter(({ role }) => role === "depth").length;
+  if (open !== null && (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open))))) return add(open, typed);
   const scenes = await scenesOfTyped(typed);
   const shown = inputs.peek();
   if (shown.sample === null && shown.depth !== null && canReplace(typed)) {

@@ -1,7 +1,7 @@
 /** Asks the worker for regions: one question at a time, and the newest only. */
 import type { View } from "./grid.js";
-import type { Stroke } from "./region.js";
 import type { RegionCall } from "./region-worker.js";
+import type { Stroke } from "./strokes.js";
 
 export class Finder {
   readonly #worker = new Worker(new URL("./region-worker.ts", import.meta.url), { type: "module" });

@@ -1,6 +1,7 @@
 /** Finds regions outside of the main thread, so that the brush never waits. */
 import type { View } from "./grid.js";
-import { regionOf, type Stroke } from "./region.js";
+import { regionOf } from "./region.js";
+import type { Stroke } from "./strokes.js";
 
 /** The view comes with the first question. */
 export interface RegionCall {

@@ -1,5 +1,14 @@
 /** What was marked on a photo: clicks and strokes, one after the other. */
-import type { Stroke } from "./region.js";
+
+/** A click or a stroke of the brush. */
+export interface Stroke {
+  /** In pixels; one point is a click. */
+  points: readonly (readonly [x: number, y: number])[];
+  /** Of the brush, pixels. */
+  radius: number;
+  /** Whether it is on the object, or on what is not the object. */
+  adds: boolean;
+}
 
 /** A stroke as it was made. */
 export interface Mark extends Stroke {

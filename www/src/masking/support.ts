@@ -21,7 +21,7 @@ const MOST_PLANES = 3;
  * The pixels on planes that the clicked pixel is in front of: table, floor, walls.
  *
  * @param pixel where the object was clicked
- * @returns 1 on a plane or behind it
+ * @returns 1 on a plane
  */
 export function supports(depth: InverseDepth, pixel: number): Uint8Array {
   const { data, width } = depth;
@@ -48,7 +48,7 @@ export function supports(depth: InverseDepth, pixel: number): Uint8Array {
     }
     if (best === null) break;
     const plane = best;
-    for (const i of readings) if (at(plane, i) / (data[i] as number) > 1 - THICKNESS) found[i] = 1;
+    for (const i of readings) if (isNear(plane, i)) found[i] = 1;
     rest = rest.filter((i) => !isNear(plane, i));
   }
   return found;
