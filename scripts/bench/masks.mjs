@@ -23,107 +23,146 @@ async function tool() {
   return import(pathToFileURL(outfile).href);
 }
 
-/** The largest part of what a mask lacks or has too much, and its deepest pixel. */
+/** @typedef {[x: number, y: number]} Point */
+
+/** @type {readonly Point[]} */
+const sides = [
+  [-1, 0],
+  [1, 0],
+  [0, -1],
+  [0, 1],
+];
+
+/** @param {number} pixel @param {number} width @returns {Point} */
+const pointOf = (pixel, width) => [pixel % width, Math.floor(pixel / width)];
+
+/**
+ * The largest connected part of what a mask lacks or has too much.
+ * @param {Uint8Array} mask
+ * @param {Uint8Array} truth
+ * @param {number} width
+ */
 function largestError(mask, truth, width) {
   const height = mask.length / width;
-  let worst = null;
-  const done = new Uint8Array(mask.length);
+  /** @type {number[]} */
+  let worst = [];
+  const isDone = mask.map((value, i) => Number(value === truth[i]));
   for (let start = 0; start < mask.length; start++) {
-    if (done[start] === 1 || mask[start] === truth[start]) continue;
-    const kind = truth[start];
+    if (isDone[start] === 1) continue;
     const part = [start];
-    done[start] = 1;
-    for (let k = 0; k < part.length; k++) {
-      const [x, y] = [part[k] % width, Math.floor(part[k] / width)];
-      for (const [u, v] of [
-        [x - 1, y],
-        [x + 1, y],
-        [x, y - 1],
-        [x, y + 1],
-      ]) {
-        if (u < 0 || v < 0 || u >= width || v >= height) continue;
-        const next = v * width + u;
-        if (done[next] === 1 || mask[next] === truth[next] || truth[next] !== kind) continue;
-        done[next] = 1;
+    isDone[start] = 1;
+    for (const pixel of part) {
+      const [x, y] = pointOf(pixel, width);
+      for (const [dx, dy] of sides) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
+        const next = pixel + dy * width + dx;
+        if (isDone[next] === 1 || truth[next] !== truth[start]) continue;
+        isDone[next] = 1;
         part.push(next);
       }
     }
-    if (worst === null || part.length > worst.part.length) worst = { part, adds: kind === 1 };
+    if (part.length > worst.length) worst = part;
   }
   return worst;
 }
 
-/** For each pixel of a part the distance to its boundary, in steps. */
-function depths(part, width) {
+/**
+ * For each pixel of a part the distance to its boundary, in steps.
+ * @param {readonly number[]} part
+ * @param {number} width
+ */
+function depthsOf(part, width) {
   const inside = new Set(part);
-  let layer = part.filter((p) => [-1, 1, -width, width].some((step) => !inside.has(p + step)));
-  const depth = new Map(layer.map((p) => [p, 1]));
-  for (let d = 2; layer.length > 0; d++) {
+  const steps = sides.map(([dx, dy]) => dy * width + dx);
+  let layer = part.filter((pixel) => steps.some((step) => !inside.has(pixel + step)));
+  const depths = new Map(layer.map((pixel) => [pixel, 1]));
+  for (let depth = 2; layer.length > 0; depth++) {
     const next = [];
-    for (const p of layer) {
-      for (const step of [-1, 1, -width, width]) {
-        if (!inside.has(p + step) || depth.has(p + step)) continue;
-        depth.set(p + step, d);
-        next.push(p + step);
+    for (const pixel of layer) {
+      for (const other of steps.map((step) => pixel + step)) {
+        if (!inside.has(other) || depths.has(other)) continue;
+        depths.set(other, depth);
+        next.push(other);
       }
     }
     layer = next;
   }
-  return depth;
+  return depths;
 }
 
-const pointOf = (pixel, width) => [pixel % width, Math.floor(pixel / width)];
-
-/** The pixel of a part that is farthest from its boundary. */
-function deepest(part, width) {
-  let best = [part[0], 0];
-  for (const [pixel, depth] of depths(part, width)) if (depth > best[1]) best = [pixel, depth];
-  return best;
+/**
+ * The pixel that is farthest from the boundary, and how far.
+ * @param {ReadonlyMap<number, number>} depths
+ */
+function deepest(depths) {
+  let [best, most] = [0, 0];
+  for (const [pixel, depth] of depths) if (depth > most) [best, most] = [pixel, depth];
+  return { best, most };
 }
 
-/** A stroke as a person draws it: along the largest error, well inside of it. */
+/** The widest brush that is used, pixels. */
+const WIDEST = 6;
+
+/**
+ * A stroke as a person draws it: along the largest error, well inside of it; null if nothing is wrong.
+ * @param {Uint8Array} mask
+ * @param {Uint8Array} truth
+ * @param {number} width
+ */
 function correction(mask, truth, width) {
-  const error = largestError(mask, truth, width);
-  if (error === null) return null;
-  const depth = depths(error.part, width);
-  const [middle, most] = deepest(error.part, width);
-  const radius = Math.max(1, Math.min(6, most / 2));
-  const [x, y] = pointOf(middle, width);
+  const part = largestError(mask, truth, width);
+  const [first] = part;
+  if (first === undefined) return null;
+  const depths = depthsOf(part, width);
+  const { best, most } = deepest(depths);
+  const radius = Math.max(1, Math.min(WIDEST, most / 2));
+  const [x, y] = pointOf(best, width);
+  /** @type {Point[]} */
+  let points = [[x, y]];
+  let longest = 0;
   // As far as the brush fits, in the direction in which it gets farthest.
-  let best = [[x, y]];
   for (let turn = 0; turn < 16; turn++) {
     const [dx, dy] = [Math.cos((Math.PI * turn) / 16), Math.sin((Math.PI * turn) / 16)];
-    const reach = (sign) => {
-      let k = 0;
-      while (
-        (depth.get(Math.round(y + sign * (k + 1) * dy) * width + Math.round(x + sign * (k + 1) * dx)) ?? 0) > radius
-      )
-        k++;
-      return [x + sign * k * dx, y + sign * k * dy];
-    };
-    const ends = [reach(-1), reach(1)];
-    const length = ([a, b]) => (b === undefined ? 0 : Math.hypot(a[0] - b[0], a[1] - b[1]));
-    if (length(ends) > length(best)) best = ends;
+    const [back = 0, forth = 0] = [-1, 1].map((sign) => {
+      const fits = (/** @type {number} */ k) =>
+        (depths.get(Math.round(y + sign * k * dy) * width + Math.round(x + sign * k * dx)) ?? 0) > radius;
+      let reach = 0;
+      while (fits(reach + 1)) reach++;
+      return reach;
+    });
+    if (back + forth <= longest) continue;
+    longest = back + forth;
+    points = [
+      [x - back * dx, y - back * dy],
+      [x + forth * dx, y + forth * dy],
+    ];
   }
-  return { points: best, radius, adds: error.adds };
+  return { points, radius, adds: truth[first] === 1 };
 }
 
+/** @param {Uint8Array} mask @param {Uint8Array} truth */
 function iou(mask, truth) {
   let [both, either] = [0, 0];
-  for (let i = 0; i < mask.length; i++) {
-    both += mask[i] & truth[i];
-    either += mask[i] | truth[i];
-  }
+  mask.forEach((value, i) => {
+    both += value & (truth[i] ?? 0);
+    either += value | (truth[i] ?? 0);
+  });
   return either === 0 ? 1 : both / either;
 }
 
-/** The middle of a mask: its centroid or, where that is outside, its deepest pixel. */
+/**
+ * The middle of a mask: its centroid or, where that is outside, its deepest pixel.
+ * @param {Uint8Array} mask
+ * @param {number} width
+ */
 function middleOf(mask, width) {
+  /** @type {number[]} */
   const part = [];
   for (let i = 0; i < mask.length; i++) if (mask[i]) part.push(i);
-  const mean = (of) => part.reduce((sum, p) => sum + of(p), 0) / part.length;
-  const [x, y] = [mean((p) => p % width), mean((p) => Math.floor(p / width))].map(Math.round);
-  return mask[y * width + x] ? [x, y] : pointOf(deepest(part, width)[0], width);
+  const mean = (/** @type {0 | 1} */ axis) =>
+    Math.round(part.reduce((sum, pixel) => sum + pointOf(pixel, width)[axis], 0) / part.length);
+  const [x, y] = [mean(0), mean(1)];
+  return mask[y * width + x] ? /** @type {Point} */ ([x, y]) : pointOf(deepest(depthsOf(part, width)).best, width);
 }
 
 /**
@@ -183,7 +222,7 @@ await command("bench:masks", (parsed) =>
       const header = ["", "masks", "one click", "one correction", "two corrections"];
       const table = rows.map(({ kind, found }) => [
         ...[kind, `${found.length}`],
-        ...Array.from({ length: CORRECTIONS + 1 }, (_, step) => fixed(median(found.map((ious) => ious[step])), 3)),
+        ...Array.from({ length: CORRECTIONS + 1 }, (_, step) => fixed(median(found.map((ious) => ious[step] ?? 0)), 3)),
       ]);
       console.log(markdownTable(header, table));
     }),
