@@ -14,7 +14,7 @@ use crate::precise::drawn::render::Canvas;
 use crate::precise::scored::score::Score;
 use crate::precise::searched::cascade::Subject;
 use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{FINE, MIDDLE, SearchSettings, TRACKED};
+use crate::precise::searched::recipe::{FINE, SearchSettings, TRACKED};
 use crate::precise::searched::refine::Refiner;
 use crate::precise::searched::search::Search;
 
@@ -94,10 +94,11 @@ impl Sight {
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
     fn refined(&self, search: &Search, poses: &[CropPose], by_depth: bool) -> Option<Found> {
-        if search.grid(MIDDLE).mask_cells == 0 {
+        let stages = if by_depth { &TRACKED[..2] } else { &TRACKED[..] };
+        // Only the grids of these stages are made.
+        if stages.iter().any(|stage| search.grid(stage.grid).mask_cells == 0) {
             return None;
         }
-        let stages = if by_depth { &TRACKED[..2] } else { &TRACKED[..] };
         AtItsSize { search, by_depth }.cascade(stages, poses.to_vec()).first().copied()
     }
 }

@@ -8,7 +8,7 @@ use core::borrow::Borrow;
 use glam::DQuat;
 
 use super::detection::{Detection, Known, Lead};
-use super::evidence::Evidence;
+use super::evidence::{Evidence, is_set};
 use super::history::History;
 use super::motion::{MAX_TURN, Motion};
 use super::options::TrackOptions;
@@ -18,6 +18,7 @@ use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::Observation;
+use crate::evidence::photo::PhotoRegion;
 use crate::evidence::sample::Sampling;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
@@ -28,7 +29,7 @@ use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::drawn::render::Canvas;
 use crate::precise::judged::choice::AGREES;
-use crate::precise::judged::color::{LOOSE, agreement_at, cells, roll};
+use crate::precise::judged::color::{LOOSE, agreement_at, loose_axis, roll};
 use crate::precise::judged::confidence::sureness;
 use crate::precise::scored::objective::Objective;
 use crate::precise::scored::prior::Prior;
@@ -170,7 +171,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
 
     /// The pose in the first frame.
     fn first(&self, frame: &Frame, host: &mut dyn Host) -> Result<Seen> {
-        let has_mask = frame.mask.as_ref().is_some_and(|mask| mask.data().iter().any(|m| *m != 0));
+        let has_mask = frame.mask.as_ref().is_some_and(is_set);
         if let (Some(initial), false) = (&self.options.initial, has_mask) {
             let pose = CropPose::of_similarity(initial, &self.sight.mesh.frame).ok_or_else(no_candidate)?;
             return self.sight.around(frame, &[pose], false).ok_or_else(no_candidate);
@@ -248,8 +249,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let mut search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);
         search.equivalence = self.sight.mesh.equivalence(&Symmetry::Auto)?;
         let found = Found { score: search.score(&detection.found.pose), ..detection.found };
-        let photo = observation.photo().map(|photo| cells(photo, &search));
-        let evidence = Evidence { search, photo };
+        let evidence = Evidence { search, region: PhotoRegion::WHOLE };
         Ok(Seen { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
 
@@ -279,7 +279,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             if shows_enough {
                 self.certain = Some(found.pose.rotation);
             }
-            self.roll(&evidence, &mut found);
+            self.roll(frame, &evidence, &mut found);
             self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
         let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
@@ -295,12 +295,13 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
-        let measured = match frame.observation() {
-            Ok(Some(observation)) if self.options.metrics => {
+        let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };
+        let measured = match observed {
+            Some(observation) => {
                 let sampling = Sampling { seed: u64::from(self.options.seed), ..Sampling::default() };
                 Some(metrics::evaluate(&observation, self.mesh.borrow().mesh(), &camera_from_mesh, &sampling)?)
             }
-            _ => None,
+            None => None,
         };
         Ok(TrackedFrame {
             camera_from_mesh: (&camera_from_mesh).into(),
@@ -317,11 +318,13 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
-    fn roll(&self, evidence: &Evidence, found: &mut Found) {
-        let Evidence { search, photo: Some(photo) } = evidence else { return };
-        let Some(colors) = self.mesh.borrow().colors() else { return };
-        if let Some((pose, _)) = roll(search, photo, colors, found.pose, LOOSE)
-            && agreement_at(search, photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
+    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Found) {
+        let Evidence { search, .. } = evidence;
+        let (Some(colors), true) = (self.mesh.borrow().colors(), frame.photo.is_some()) else { return };
+        if let Some(axis) = loose_axis(search, &found.pose, LOOSE)
+            && let Some(photo) = evidence.photo(frame)
+            && let Some((pose, _)) = roll(search, &photo, colors, found.pose, axis)
+            && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
         {
             *found = Found { pose, score: search.score(&pose), ..*found };
         }

@@ -76,8 +76,8 @@ test("a photo alone is shown with its focal length, and the rest is named with i
   assert.match(await page.inputValue("#camera-fx"), /^6\d\d/);
   const guide = sheet.locator(".from-photo");
   const links = await guide.locator("a").evaluateAll((all) => all.map((one) => (one as HTMLAnchorElement).href));
-  assert.ok(links.length >= 6 && links.every((link) => /^https:|guides\//.test(link)), `${links}`);
-  const [own = ""] = links.filter((link) => link.includes("guides/"));
+  assert.ok(links.length >= 6 && links.every((link) => /^https:|docs\//.test(link)), `${links}`);
+  const [own = ""] = links.filter((link) => link.includes("docs/"));
   assert.match(await page.evaluate(async (link) => (await fetch(link)).text(), own), /From one photo/);
   assert.ok(await page.isDisabled("#intake-open"));
   assert.deepEqual(await opened.violations(), []);
@@ -104,6 +104,10 @@ test("an object is marked on a photo, and aligned when depth and mesh come", asy
   await drop(opened, { "mesh.obj": files["mesh.obj"] as Uint8Array, "depth.npy": depthNpy(seen.depth) });
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.85);
+  // A link holds no files.
+  await page.locator(".export-panel .more summary").click();
+  await opened.press("Copy link");
+  await opened.says(/own files cannot be linked/);
 });
 
 test("the mask of a scene with depth is marked by keyboard, corrected and taken back", async (opened, page) => {

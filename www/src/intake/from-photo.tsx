@@ -15,8 +15,8 @@ const meshModels: readonly Source[] = [
   ["Hunyuan3D", "https://github.com/Tencent-Hunyuan/Hunyuan3D-2"],
 ];
 
-/** The guide, which the site holds as a page. */
-const GUIDE = "guides/from-a-photo.html";
+/** The guide, which is beside the page. */
+const GUIDE = "docs/from-a-photo.txt";
 
 export function FromPhoto({ inputs: { photo, objects } }: { inputs: Inputs }) {
   if (photo === null) return null;
