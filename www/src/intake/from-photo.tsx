@@ -1,5 +1,6 @@
 /** Where depth map, mask and mesh of a photo come from. */
 import type { Inputs } from "../load/inputs.js";
+import { MarkButton } from "./marking.js";
 
 type Source = readonly [title: string, address: string];
 
@@ -18,12 +19,13 @@ const meshModels: readonly Source[] = [
 /** The guide, which is beside the page. */
 const GUIDE = "docs/from-a-photo.txt";
 
-export function FromPhoto({ inputs: { photo, objects } }: { inputs: Inputs }) {
+/** `canMark` says whether the photo is there to be marked. */
+export function FromPhoto({ inputs: { photo, objects }, canMark }: { inputs: Inputs; canMark: boolean }) {
   if (photo === null) return null;
   const has = (part: "mask" | "mesh") => objects.some((object) => object[part] !== null);
   const rows: readonly (readonly [title: string, isThere: boolean, text: string, sources: readonly Source[]])[] = [
     ["Depth map", false, "A depth model guesses it from this photo: save its values as NPZ, NPY or EXR.", depthModels],
-    ["Mask", has("mask"), "Mark the object below, or take the mask of a segmentation model.", maskModels],
+    ["Mask", has("mask"), "Mark the object on the photo, or take the mask of a segmentation model.", maskModels],
     ["Mesh", has("mesh"), "A generative model makes it from this photo, or use a scan.", meshModels],
   ];
   return (
@@ -42,6 +44,7 @@ export function FromPhoto({ inputs: { photo, objects } }: { inputs: Inputs }) {
                 {name}
               </a>
             ))}
+            {title === "Mask" && !isThere && canMark && <MarkButton i={0} id="mark-mask" title="Mark it" />}
           </li>
         ))}
       </ul>

@@ -52,7 +52,7 @@ export function Sheet() {
       <div class="intake-body">
         <Problems field="files" />
         <ForShown open={open} />
-        {inputs.depth === null && <FromPhoto inputs={inputs} />}
+        {inputs.depth === null && <FromPhoto inputs={inputs} canMark={shown !== null} />}
         <section aria-label="View" class="cards">
           <DepthCard open={open} ground={ground} />
           <PhotoCard open={open} />
