@@ -136,7 +136,7 @@ async function drawColour() {
     ],
     notes: [
       { at: [196, 1.85], text: "score of the shape", colour: BLUE },
-      { at: [112, 0.56], text: "correlation of the colours", colour: RED },
+      { at: [134, 0.56], text: "correlation of the colours", colour: RED },
     ],
   });
   const photo = await createImageBitmap(await (await fetch("/target/pictures/box/rgb.png")).blob());
