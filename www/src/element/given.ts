@@ -56,7 +56,7 @@ async function fromFiles(files: readonly NamedFile[]): Promise<Opened> {
 /** A scene in memory, read as files are. */
 async function fromMemory(given: GivenScene): Promise<Opened> {
   const read = await depthOf(given);
-  const { width, height, depthKind, unit: depthUnit } = read;
+  const { width, height, unit: depthUnit } = read;
   const { camera: stated, image } = given;
   const [photo, objects] = await Promise.all([
     image === undefined ? null : photoFrom(image, { width, height }),
@@ -75,8 +75,8 @@ async function fromMemory(given: GivenScene): Promise<Opened> {
     objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null, isSure: true })),
   };
   const scene = sceneOf(inputs, {
-    ...{ depth: { data: depthM, width, height }, raw, depthKind, depthUnit, photo, objects },
-    ...{ camera: found.camera, cameraSource: found.source, warnings: found.warnings, problems: [] },
+    ...{ depth: { data: depthM, width, height }, raw, depthUnit, photo, objects },
+    ...{ camera: found.camera, cameraSource: found.source, warnings: found.warnings },
   });
   if (scene === null) throw new Error("A scene has at least one object.");
   return { scene, inputs, session: null };

@@ -31,7 +31,13 @@ export const allExports: readonly Export[] = [
   ["PLY", async (_, object) => download(`${fileName(object.name)}-placed.ply`, (await writers()).plyBytes(object))],
   ["Project", saveProject],
   ["PNG of the view", (_, object) => saveImage(fileName(object.name))],
-  ["Copy link", () => copy(permalink(), "the link")],
+  [
+    "Copy link",
+    async ({ sample }) => {
+      if (sample !== null) await copy(permalink(), "the link");
+      else announce("Your own files cannot be linked. Save the project instead.", "failed");
+    },
+  ],
 ];
 
 /** What can be saved of several scenes besides. */

@@ -25,7 +25,12 @@ export interface Typed {
 
 /** The camera: a file, intrinsics (`null` is still to be entered), or an assumed field of view. */
 export type CameraSource =
-  | { kind: "file"; file: NamedFile }
+  | {
+      kind: "file";
+      file: NamedFile;
+      /** Whether its intrinsics are scaled to the size of the depth map. */
+      isScaled?: boolean;
+    }
   | { kind: "numbers"; fx: number | null; fy: number | null; cx: number | null; cy: number | null }
   | { kind: "assumed"; fovYDeg: number };
 

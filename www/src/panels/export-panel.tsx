@@ -38,9 +38,7 @@ export function ExportPanel() {
       <details class="more">
         <summary>More formats</summary>
         {buttons(false)}
-        {whole !== null && whole.sample === null && (
-          <p class="quiet">The link contains the options but not your files.</p>
-        )}
+        {whole !== null && whole.sample === null && <p class="quiet">Your own files cannot be linked.</p>}
       </details>
     </section>
   );

@@ -52,7 +52,7 @@ export interface Packed {
   /** In whose depth the poses are. */
   calibration: DepthCalibration | null;
   photo: Ref | null;
-  camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref } | null;
+  camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref; isScaled?: boolean } | null;
   imageId: string | null;
   resizeMasks: boolean;
   objects: PackedObject[];
@@ -97,7 +97,7 @@ export function packed(inputs: Inputs, scene: Scene | null, options: Options): {
     },
     depth: optional(inputs.depth),
     photo: optional(inputs.photo),
-    camera: camera?.kind === "file" ? { kind: "file", file: ref(camera.file) } : camera,
+    camera: camera?.kind === "file" ? { ...camera, file: ref(camera.file) } : camera,
   };
   session.roles = inputs.files.flatMap(({ file, role }) => (files.includes(file) ? [{ file: ref(file), role }] : []));
   return { session, files };
@@ -135,7 +135,7 @@ export function unpacked(session: Packed, files: readonly NamedFile[], id = ""):
     ...{ id, name, sample: null, depthScale, depthKind, imageId, resizeMasks },
     depth: optional(session.depth),
     photo: optional(session.photo),
-    camera: camera?.kind === "file" ? { kind: "file", file: at(camera.file) } : camera,
+    camera: camera?.kind === "file" ? { ...camera, file: at(camera.file) } : camera,
     objects: session.objects.map(({ name, mask, mesh, truth, initial }) => ({
       name,
       mask: mask && { ...mask, file: at(mask.file) },
