@@ -6,8 +6,8 @@ import { type Inputs, noInputs, type Role, type Typed, withId } from "../load/in
 import { error, errorOf, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
-import { openSession } from "../session/index.js";
-import { SESSION_FILE } from "../session/pack.js";
+import { isSession } from "../session/pack.js";
+import { openProject } from "../session/project.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
@@ -29,9 +29,9 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
   try {
     const extracted = await extractArchives(files);
     if (change !== lastChange) return;
-    if (extracted.some(({ path }) => path === SESSION_FILE)) {
-      if (!(await openSession(extracted))) {
-        return refuse(error("files", "The session was saved by another version of this page."));
+    if (extracted.some(isSession)) {
+      if (!(await openProject(extracted))) {
+        return refuse(error("files", "The project was saved by another version of this page."));
       }
       draft.value = null;
       return;

@@ -104,9 +104,11 @@ export const noInputs: Inputs = {
   files: [],
 };
 
+/** An id that no other scene has. */
+export const newId = (): string => `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}`;
+
 /** The inputs of the user's own scene, with an id. */
-export const withId = (inputs: Inputs): Inputs =>
-  inputs.id !== "" ? inputs : { ...inputs, id: `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}` };
+export const withId = (inputs: Inputs): Inputs => (inputs.id !== "" ? inputs : { ...inputs, id: newId() });
 
 /** The input fields. */
 export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";
