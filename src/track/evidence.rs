@@ -32,6 +32,11 @@ pub struct Evidence {
 }
 
 impl Evidence {
+    /// The same evidence for another look at it.
+    pub fn shared(&self) -> Self {
+        Self { search: self.search.look(), region: self.region }
+    }
+
     /// The photo of the frame on the fine grid, if there is one.
     pub fn photo(&self, frame: &Frame) -> Option<PhotoCells> {
         let photo = frame.photo.as_ref()?;

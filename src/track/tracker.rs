@@ -43,8 +43,9 @@ use crate::report::Effort;
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
 use crate::views::world_pose::{PlacedCamera, WorldPose};
 
-/// Steps of the refinement that shows the size, and after a change of the size.
-const STEPS: [usize; 2] = [6, 3];
+/// Steps of the refinement that shows the size, and after a change of the size. Both begin at a pose that is refined but for its
+/// size.
+const STEPS: [usize; 2] = [3, 2];
 /// Fit relative to that of earlier frames, below which the neighbourhood is searched, a frame is uncertain, and the object
 /// is lost.
 const FITS: f32 = 0.85;
@@ -174,7 +175,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let has_mask = frame.mask.as_ref().is_some_and(is_set);
         if let (Some(initial), false) = (&self.options.initial, has_mask) {
             let pose = CropPose::of_similarity(initial, &self.sight.mesh.frame).ok_or_else(no_candidate)?;
-            return self.sight.around(frame, &[pose], false).ok_or_else(no_candidate);
+            let evidence = self.sight.evidence(frame, &pose).ok_or_else(no_candidate)?;
+            return self.sight.around(frame, &evidence, &[pose], false).ok_or_else(no_candidate);
         }
         let observation = frame.observation()?.ok_or_else(|| {
             Error::new(
@@ -194,12 +196,14 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let sized = |pose: WorldPose| size.map_or(pose, |(log_scale, _)| WorldPose { log_scale, ..pose });
         let expected = [self.motion.carried(&last), last].map(sized);
         let seen: Vec<CropPose> = expected.iter().filter_map(|pose| PlacedCamera::AT_ORIGIN.see(pose)).collect();
-        let near = self.sight.around(frame, &seen, false);
+        let evidence = seen.first().and_then(|first| self.sight.evidence(frame, first));
+        let look = |wide| self.sight.around(frame, evidence.as_ref()?, &seen, wide);
+        let near = look(false);
         let fit = |seen: &Option<Seen>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
         if fit(&near, self) >= FITS && self.state != TrackState::Lost {
             return near;
         }
-        let wide = self.sight.around(frame, &seen, true);
+        let wide = look(true);
         let near = if fit(&wide, self) > fit(&near, self) { wide } else { near };
         if fit(&near, self) >= UNCERTAIN && self.state != TrackState::Lost {
             return near;
@@ -233,7 +237,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let expected = CropPose { rotation: before, ..seen.found.pose };
         // The more of it is hidden, the less its fit says.
         let is_near = |other: &Seen| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
-        match self.sight.around(frame, &[expected], true) {
+        let near = self.sight.evidence(frame, &expected);
+        match near.and_then(|near| self.sight.around(frame, &near, &[expected], true)) {
             Some(other) if is_near(&other) => Seen { lead: seen.lead, ..other },
             _ => seen,
         }
