@@ -1,4 +1,4 @@
-/** The documentation beside the page: the README and the guides, as they are written. */
+/** The documentation beside the page: the README, how it works, and the guides, as they are written. */
 import { readdirSync, readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 
@@ -8,7 +8,8 @@ import { basename, join } from "node:path";
  */
 export function documents(repository) {
   const guides = join(repository, "docs", "guides");
-  const paths = [join(repository, "README.md"), ...readdirSync(guides).map((name) => join(guides, name))];
+  const first = [join(repository, "README.md"), join(repository, "docs", "how-it-works.md")];
+  const paths = [...first, ...readdirSync(guides).map((name) => join(guides, name))];
   return paths
     .filter((path) => path.endsWith(".md"))
     .map((path) => {

@@ -19,6 +19,7 @@ export const buildSite = once(async () => {
       at("www"),
       at("docs", "record"),
       at("docs", "guides"),
+      at("docs", "how-it-works.md"),
       at("README.md"),
       at("package-lock.json"),
       ...used,
