@@ -32,6 +32,18 @@ test("a scene folder gives JSON, a table and a GLB", async () => {
   assert.equal(totalTriangleCount, standingMesh.indices.length + 2);
 });
 
+test("lengths in the proportions found are below the row of each object", () => {
+  const { stdout } = succeeds("scene table --quality fast --proportions axes --json sizes.json");
+  for (const name of ["thing-0", "thing-1", "thing-2"]) {
+    const { sizeM, uncertainty } = results("sizes.json").table.objects[name].proportions;
+    const sides = [0, 1, 2].map(
+      (k) => `${"xyz"[k]} ${(1000 * sizeM[k]).toFixed(1)} mm ± ${(100 * uncertainty[k]).toFixed(1)} %`,
+    );
+    const [, own] = stdout.split("\n").slice(stdout.split("\n").findIndex((line) => line.startsWith(name)));
+    assert.equal(own?.trim(), `in proportion  ${sides.join(", ")}`);
+  }
+});
+
 test("the support is given, or there is none", () => {
   writeFileSync(join(folder, "plane.json"), JSON.stringify(plane));
   succeeds("scene table --quality fast --support none --json n.json");

@@ -188,7 +188,7 @@ export function details({ name, alignment, errors }: Success, style: Style): str
 }
 
 /** The lengths of a mesh in the proportions that were found. */
-function proportionsRows(alignment: object, lengths: Lengths): Row[] {
+export function proportionsRows(alignment: object, lengths: Lengths): Row[] {
   const { proportions } = alignment as { proportions?: Stretch };
   if (proportions === undefined) return [];
   const { sizeM, uncertainty } = proportions;

@@ -32,6 +32,7 @@ import { addOptionFlags, givenOptions } from "./option-flags.js";
 import { type Failure, failedLine, failureOf, failureText, type Outcome, ofInputJson, outcomeJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { addPictureFlags, drawEntry, type PictureFlags } from "./pictures.js";
+import { proportionsRows } from "./report.js";
 import { type Live, runBatch } from "./run-batch.js";
 import { addSceneFileFlags, checkSceneFiles, type SceneFileFlags, writeSceneFiles } from "./scene-files.js";
 import type { Style } from "./style.js";
@@ -66,7 +67,7 @@ ${depthKindHelp}
 
 Output
   A row per object: confidence, scale, what it rests on, gap, shared volume, silhouette IoU; with gt.json also the errors
-  against it.
+  against it. With --proportions, its lengths in the proportions found are below.
   --json writes { "<scene>": { "objects": { "<object>": as a case of "align --json", with "contact" },
   "support": { "normal", "d", "confidence" } | null, "metrics", "warnings",
   "depthUnit", "cameraSource", "depthCalibration" } }; a scene that failed has { "error" }.
@@ -239,9 +240,9 @@ function lines(
     support === null
       ? "no support"
       : `support n = ${support.normal.map((x) => fixed(x, 4)).join(" ")}, d = ${fixed(support.d, 4)} ${lengths.unit}`;
-  const rows = objects.map((object, i) => {
+  const rows = objects.flatMap((object, i) => {
     const outcome = outcomes[i] as Outcome;
-    if (object.error !== undefined || "error" in outcome) return `failed ${failureText(outcome as Failure)}`;
+    if (object.error !== undefined || "error" in outcome) return [`failed ${failureText(outcome as Failure)}`];
     const { restsOn, gapM, sharedVolume } = object.contact;
     const below = typeof restsOn === "number" ? (outcomes[restsOn]?.name ?? `${restsOn}`) : (restsOn ?? "–");
     const error = errors[i];
@@ -261,7 +262,7 @@ function lines(
             fixed(100 * error.translationErrorRelative, 1),
           ]),
     ];
-    return tableLine(columns, cells);
+    return [tableLine(columns, cells), ...pairs(proportionsRows(object, lengths))];
   });
   const notes = warnings.map(({ code, message }) => `${code}: ${message}`);
   return [`${name}: ${plane}`, ...pairs(depthRows(result)), headings(columns), ...rows, ...notes];
