@@ -3,6 +3,7 @@
 use core::ops::Range;
 use std::rc::Rc;
 
+use glam::DQuat;
 use serde::{Deserialize, Serialize};
 
 use super::ranking::Found;
@@ -11,7 +12,6 @@ use super::rounds::Rounds;
 use super::search::Search;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
-use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::Pauses;
 use crate::precise::drawn::equivalence::DIFFERENT;
@@ -68,9 +68,8 @@ pub fn look(rounds: &Rounds) -> Option<Rounds> {
     let search = &rounds.search;
     let again = search.look();
     let count = again.settings.rotations();
-    let rotations = (0..count).map(|i| super_fibonacci(i, count));
-    let rotations =
-        rotations.filter(|rotation| search.equivalence.angle(best.pose.rotation, *rotation) > ELSEWHERE).collect();
+    let is_elsewhere = |rotation: &DQuat| search.equivalence.angle(best.pose.rotation, *rotation) > ELSEWHERE;
+    let rotations = again.rotations(count).filter(is_elsewhere).collect();
     let mut look = Rounds::among(again, rotations);
     look.propose([best.pose]);
     Some(look)
