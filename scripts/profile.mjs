@@ -1,13 +1,15 @@
 /**
  * `npm run profile -- [--runs N] [--quality NAME,…] [CASE…]`: the time of each stage natively (of the CPU) and in
- * WebAssembly (Node), in one run, and whether both give the same bits; and what the stages draw, beside the least that
- * arithmetic would take. Without a case, the sample; in all qualities, where none is named.
+ * WebAssembly (Node), in one run, and whether both give the same bits; what the stages draw, beside the least that arithmetic
+ * would take; of a folder with frames, the time of a tracked frame in WebAssembly. Without a case, the sample, and a generated
+ * video; in all qualities, where none is named.
  */
 import { readdirSync } from "node:fs";
 import { basename, resolve } from "node:path";
 import { parseArgs } from "node:util";
 import { packageModule, qualities } from "./bench/inputs.mjs";
 import { median } from "./bench/table.mjs";
+import { profileVideo, readVideo, turningRing } from "./bench/videos.mjs";
 import { runLab } from "./lib/lab.mjs";
 import { sampleDir } from "./lib/paths.mjs";
 import { copySample } from "./lib/sample.mjs";
@@ -125,4 +127,7 @@ await script(async () => {
   for (const folder of folders.filter((candidate) => readdirSync(candidate).includes("camera.json"))) {
     for (const quality of chosen) await profile(folder, quality, runs);
   }
+  const isVideo = (/** @type {string} */ folder) => readdirSync(folder).some((name) => name.startsWith("frame_"));
+  for (const folder of folders.filter(isVideo)) await profileVideo(await readVideo(folder), runs);
+  if (positionals.length === 0) await profileVideo(turningRing(60), runs);
 });
