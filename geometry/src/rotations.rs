@@ -22,11 +22,6 @@ pub fn super_fibonacci(i: usize, n: usize) -> DQuat {
     DQuat::from_xyzw(r * sin_a, r * cos_a, q * sin_b, q * cos_b)
 }
 
-/// The distance between neighbours of `n` even rotations, radians: n cubes with this edge have the volume of SO(3).
-pub fn spacing(n: usize) -> f64 {
-    libm::cbrt(2.0 * TAU * TAU / n as f64)
-}
-
 /// The `k`-th of `n` points of a Fibonacci spiral on the unit sphere.
 pub fn fibonacci_sphere(k: usize, n: usize) -> DVec3 {
     /// Angle between consecutive points, radians: the golden angle.

@@ -2,7 +2,6 @@
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use sim3align::geometry::rotations::{spacing, super_fibonacci};
 use sim3align::metrics::mesh_symmetry::symmetry_axes;
 use sim3align::precise::drawn::equivalence::Equivalence;
 
@@ -124,39 +123,4 @@ fn poses_that_a_symmetry_makes_equal_are_no_angle_apart() {
     // Eight of the square prism without itself, and all rolls of the can with both ends up.
     assert_eq!((box_.others(DQuat::IDENTITY, 1).len(), can.others(DQuat::IDENTITY, 24).len()), (7, 47));
     assert!(ball.others(DQuat::IDENTITY, 24).is_empty());
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn a_sector_of_the_rotations_has_one_of_each_class() {
-    const COUNT: usize = 1500;
-    let seed = 3;
-    let apart = spacing(COUNT);
-    let mut draw = Draw::new(seed);
-    let groups = [
-        ("none", Symmetry::None, COUNT..=COUNT),
-        ("bottle with two sides", turns([(DVec3::Z, Some(2))]), 730..=770),
-        ("box", turns([(DVec3::Z, Some(2)), (DVec3::X, Some(2))]), 360..=390),
-        ("cube", turns([(DVec3::Z, Some(4)), (DVec3::X, Some(4))]), 55..=75),
-        ("bottle", turns([(DVec3::Z, None)]), 80..=100),
-        ("can", turns([(DVec3::Z, None), (DVec3::X, Some(2))]), 38..=52),
-    ];
-    for (what, symmetry, count) in groups {
-        let equivalence = Equivalence::new(symmetry.group(&cuboid(Vec3::ONE)).unwrap());
-        let all = (0..COUNT).map(|i| super_fibonacci(i, COUNT));
-        let kept: Vec<DQuat> = all.filter(|rotation| equivalence.is_of_sector(*rotation, apart)).collect();
-        assert!(count.contains(&kept.len()), "{what}: {} of {COUNT}", kept.len());
-        // Every pose has an equivalent one near a rotation that is tried.
-        let farthest = (0..300)
-            .map(|_| rotation(&mut draw))
-            .map(|pose| kept.iter().map(|tried| equivalence.angle(*tried, pose)).fold(f64::INFINITY, f64::min))
-            .fold(0.0, f64::max);
-        assert!(farthest < 1.2 * apart, "seed {seed}, {what}: {farthest} from the next, {apart} apart");
-    }
-    let ball = Equivalence::new(turns([(DVec3::Z, None), (DVec3::X, None)]).group(&cuboid(Vec3::ONE)).unwrap());
-    assert!(ball.is_of_sector(rotation(&mut draw), apart));
-}
-
-fn turns<const N: usize>(axes: [(DVec3, Option<u32>); N]) -> Symmetry {
-    let axis = |(axis, fold): (DVec3, Option<u32>)| SymmetryAxis { axis: Vector3::from(axis.to_array()), fold };
-    Symmetry::Declared(axes.map(axis).to_vec())
 }

@@ -36,12 +36,6 @@ impl Equivalence {
         a * DQuat::from_array(self.0.nearest(&turn).coords.into())
     }
 
-    /// Whether a search that tries rotations this far apart, in radians, needs this one: of those that are equivalent, only
-    /// the nearest to none, and those near it.
-    pub fn is_of_sector(&self, rotation: DQuat, spacing: f64) -> bool {
-        self.is_sphere() || angle_between(self.nearest(rotation, DQuat::IDENTITY), rotation) <= 0.5 * spacing
-    }
-
     /// The rotations that are equivalent to this one, without it: all of a finite group, and `rolls` about an axis of
     /// revolution. None for a sphere.
     pub fn others(&self, rotation: DQuat, rolls: usize) -> Vec<DQuat> {

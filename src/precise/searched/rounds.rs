@@ -37,10 +37,8 @@ pub struct Rounds {
     pub found: Vec<Found>,
     /// Index of the current round.
     index: usize,
-    /// The rotations of the first round, if they are not all of the rotation grid.
+    /// The rotations of the first round, if they are not those of the rotation grid.
     rotations: Vec<DQuat>,
-    /// Whether they are of the rotation grid.
-    is_grid: bool,
     /// Sizes and positions tried for each rotation.
     anchors: Vec<Anchor>,
     /// Initial poses of the tasks of the round; the rotations of the first round need no list.
@@ -59,12 +57,10 @@ impl Rounds {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
         let anchors = if global { search.anchors() } else { vec![Anchor::AS_IT_IS] };
         let index = if global { 0 } else { FIRST_REFINEMENT };
-        let rotations = if global { of_grid(&search) } else { Vec::new() };
         Self {
             found: Vec::new(),
             index,
-            rotations,
-            is_grid: true,
+            rotations: Vec::new(),
             anchors,
             poses: if global { Vec::new() } else { around.clone() },
             others: around,
@@ -77,7 +73,7 @@ impl Rounds {
     /// Starts with these rotations instead of the rotation grid.
     pub fn among(search: Search, rotations: Vec<DQuat>) -> Self {
         let mut rounds = Self::new(search, None, true);
-        (rounds.rotations, rounds.is_grid) = (rotations, false);
+        rounds.rotations = rotations;
         rounds
     }
 
@@ -197,7 +193,7 @@ impl Rounds {
                 return work > allowance;
             }
             let all = work * count as u64 / done as u64;
-            let is_probed = done == PROBED_ROTATIONS && self.is_grid;
+            let is_probed = done == PROBED_ROTATIONS && self.rotations.is_empty();
             if is_probed && all > allowance && count > MIN_ROTATIONS {
                 too_long = Some(TooLong(all));
             }
@@ -210,12 +206,10 @@ impl Rounds {
     /// Reduces the rotation grid to as many rotations as are allowed if all of them take this much `work`. The first
     /// rotations of a grid are close to one another, so that the round cannot just end early.
     fn rotate_less(&mut self, work: u64, allowance: u64) -> Round {
+        let rotations = self.tasks() as u64 * allowance / work.max(1);
         let round = &mut self.search.settings.rounds[0];
-        let rotations = round.work as u64 * allowance / work.max(1);
         round.work = (rotations as usize).max(MIN_ROTATIONS);
-        let round = *round;
-        self.rotations = of_grid(&self.search);
-        round
+        *round
     }
 
     /// Selects the poses of the next round.
@@ -275,11 +269,6 @@ impl Rounds {
         let best = self.found.first().or(self.best.first())?;
         Some((best.pose.similarity(&self.search.mesh.frame), f64::from(best.score.total)))
     }
-}
-
-/// The rotations of the rotation grid that the symmetry of the mesh leaves, where it leaves out some.
-fn of_grid(search: &Search) -> Vec<DQuat> {
-    if search.equivalence.is_any() { search.rotations(search.settings.rotations()).collect() } else { Vec::new() }
 }
 
 fn poses_of(found: &[Found]) -> Vec<CropPose> {

@@ -3,13 +3,11 @@
 use core::cell::OnceCell;
 use std::rc::Rc;
 
-use glam::DQuat;
-
 use super::coarse::Coarse;
 use super::ranking::{Found, distinct};
 use super::recipe::{COARSE, FINE, GRIDS, SearchSettings};
 use super::refine::Refiner;
-use crate::geometry::rotations::{angle_between, spacing, super_fibonacci};
+use crate::geometry::rotations::angle_between;
 use crate::precise::drawn::equivalence::Equivalence;
 use crate::precise::drawn::mesh_pyramid::MeshPyramid;
 use crate::precise::drawn::pose::CropPose;
@@ -134,12 +132,6 @@ impl Search {
             |turned: &Found| poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > APART);
         let tried = tried.into_iter().filter(is_new).collect();
         distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
-    }
-
-    /// `count` even rotations, of equivalent ones only as many as they are apart.
-    pub(crate) fn rotations(&self, count: usize) -> impl Iterator<Item = DQuat> {
-        let (spacing, all) = (spacing(count), (0..count).map(move |i| super_fibonacci(i, count)));
-        all.filter(move |rotation| self.equivalence.is_of_sector(*rotation, spacing))
     }
 
     /// Sizes and positions tried for each rotation.

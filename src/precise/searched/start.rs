@@ -3,7 +3,6 @@
 use core::ops::Range;
 use std::rc::Rc;
 
-use glam::DQuat;
 use serde::{Deserialize, Serialize};
 
 use super::ranking::Found;
@@ -12,6 +11,7 @@ use super::rounds::Rounds;
 use super::search::Search;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
+use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::Symmetry;
 use crate::pauses::Pauses;
@@ -69,8 +69,9 @@ pub fn look(rounds: &Rounds) -> Option<Rounds> {
     let search = &rounds.search;
     let again = search.look();
     let count = again.settings.rotations();
-    let is_elsewhere = |rotation: &DQuat| search.equivalence.angle(best.pose.rotation, *rotation) > ELSEWHERE;
-    let rotations = again.rotations(count).filter(is_elsewhere).collect();
+    let rotations = (0..count).map(|i| super_fibonacci(i, count));
+    let rotations =
+        rotations.filter(|rotation| search.equivalence.angle(best.pose.rotation, *rotation) > ELSEWHERE).collect();
     let mut look = Rounds::among(again, rotations);
     look.propose([best.pose]);
     Some(look)
