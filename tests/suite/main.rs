@@ -54,7 +54,6 @@ pub mod precise_refine;
 pub mod precise_rounds;
 pub mod precise_scene;
 pub mod precise_score;
-pub mod precise_solid;
 pub mod prelude;
 pub mod ransac;
 pub mod rasteriser;

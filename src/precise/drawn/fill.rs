@@ -15,8 +15,6 @@ const SHIFT: i32 = 6;
 const WIDE: i32 = 32;
 /// Steps below which the box of a triangle is so small that the areas its cells span fit 32 bits.
 const SMALL: i32 = 1 << 12;
-/// Steps between vertices below which the area of any triangle fits 32 bits.
-pub const FAR_APART: i32 = 1 << 15;
 
 /// A vertex on the grid, u and v in steps, and its 1/z, which is 0 if it cannot be rendered; as bits, in the order u, v, 1/z.
 pub type Vertex = f32x4;
@@ -76,18 +74,8 @@ struct Setup {
     w_c: [f32; LANES],
 }
 
-/// What is left out of a render.
-#[derive(Clone, Copy)]
-pub struct Limits {
-    /// Whether back faces are left out; then coordinates must differ by less than [`FAR_APART`].
-    pub culled: bool,
-    /// Number of cells visited after which triangles are left out.
-    pub most: usize,
-}
-
-/// Renders four triangles, in order, within limits, and returns about the number of cells visited, and the number of triangles
-/// that are filled. `id` is the first one's. Takes slices of one length instead of the canvas, so that addresses and length stay
-/// in registers.
+/// Renders four triangles, in order, until more than `most` cells are visited, and returns about the number of cells visited,
+/// and the number of triangles that are filled. `id` is the first one's. Takes slices of one length instead of the canvas, so that addresses and length stay in registers.
 #[inline(always)]
 pub fn fill(
     inverse_depth: &mut [f32],
@@ -96,19 +84,12 @@ pub fn fill(
     id: u32,
     vertices: &[Vertex],
     triangles: [[u32; 3]; LANES],
-    Limits { culled, most }: Limits,
+    most: usize,
 ) -> (usize, u32) {
     let [i, j, k, l] = triangles;
     let a = Corners::gather(vertices, [i[0], j[0], k[0], l[0]]);
     let mut b = Corners::gather(vertices, [i[1], j[1], k[1], l[1]]);
     let mut c = Corners::gather(vertices, [i[2], j[2], k[2], l[2]]);
-    // Negative for a front face, because v points down.
-    let area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
-    let is_turned: i32x4 = area.simd_lt(i32x4::ZERO);
-    let wanted = if culled { is_turned.to_bitmask() } else { 0xf };
-    if wanted == 0 {
-        return (0, 0);
-    }
     let corners = [a, b, c];
     // The first and last cell whose centre is in the box of the triangle.
     let (u_low, u_high) = (a.u.min(b.u).min(c.u), a.u.max(b.u).max(c.u));
@@ -121,12 +102,14 @@ pub fn fill(
     let is_large = (u_high - u_low).max(v_high - v_low).simd_gt(i32x4::splat(SMALL - 1))
         | (u1 - u0).simd_gt(i32x4::splat(WIDE - 2));
     let large = if size[0] < LANES { 0xf } else { is_large.to_bitmask() };
+    let area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
     let is_line: i32x4 = area.simd_eq(i32x4::ZERO);
-    let mut left = !is_empty.to_bitmask() & (large | !is_line.to_bitmask()) & wanted;
+    let mut left = !is_empty.to_bitmask() & (large | !is_line.to_bitmask()) & 0xf;
     let filled = left.count_ones();
     if left == 0 {
         return (0, 0);
     }
+    let is_turned: i32x4 = area.simd_lt(i32x4::ZERO);
     (b, c) = (Corners::select(is_turned, c, b), Corners::select(is_turned, b, c));
     let area = area.abs();
     let (b_du, b_dv) = (c.v - a.v, a.u - c.u);

@@ -8,7 +8,6 @@ use glam::Vec3;
 use super::equivalence::Equivalence;
 use super::pose::MeshFrame;
 use super::render::Model;
-use super::solid::{faces_outward, is_closed};
 use super::turns::Turns;
 use crate::error::Result;
 use crate::geometry::cloud::farthest_along;
@@ -50,12 +49,7 @@ impl MeshPyramid {
         for grid in (0..FINE).rev() {
             meshes[grid] = decimate(&meshes[grid + 1], grids[grid].triangles);
         }
-        let is_outward = faces_outward(&meshes[FINEST]);
-        let models = meshes.each_ref().map(|mesh| {
-            let mut model = Model::new(mesh);
-            model.is_culled = is_outward && is_closed(mesh);
-            model
-        });
+        let models = meshes.each_ref().map(Model::new);
         let surface = SurfaceMoments::of(&fine);
         let turns = Turns::new(&surface);
         Some(Self {

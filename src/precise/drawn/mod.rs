@@ -14,6 +14,5 @@ pub mod pose;
 pub mod prepared_mesh;
 pub mod render;
 pub mod rests;
-pub mod solid;
 pub mod surplus;
 pub mod turns;

@@ -10,7 +10,7 @@ use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
 use super::counts;
-use super::fill::{Corners, FAR_APART, Limits, STEPS, Vertex, fill};
+use super::fill::{Corners, STEPS, Vertex, fill};
 use super::lanes::LANES;
 use super::pose::CropPose;
 use crate::geometry::mesh::Mesh;
@@ -33,8 +33,6 @@ pub struct Model {
     pub triangles: Vec<[u32; 3]>,
     /// Unit normals of the triangles.
     pub normals: Vec<Vec3>,
-    /// Whether its back faces are left out: the surface is closed, and its normals point outwards.
-    pub is_culled: bool,
     /// The positions, four at a time, by axis. The last one fills the places of those that are missing.
     lanes: Vec<[f32x4; 3]>,
     /// The normals, with a fourth number.
@@ -42,7 +40,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// From a mesh in its frame, of which all faces are drawn.
+    /// From a mesh in its frame.
     pub fn new(mesh: &Mesh) -> Self {
         let normal = |t: &[u32; 3]| {
             let [a, b, c] = mesh.corners(*t);
@@ -54,7 +52,6 @@ impl Model {
         };
         let normals: Vec<Vec3> = mesh.triangles().iter().map(normal).collect();
         Self {
-            is_culled: false,
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
             facets: normals.iter().map(|n| f32x4::new([n.x, n.y, n.z, 0.0])).collect(),
@@ -83,8 +80,6 @@ pub struct Canvas {
     pub work: u64,
     /// Columns and rows of the box around the projected vertices: all other cells are empty.
     pub drawn: [Range<usize>; 2],
-    /// Whether back faces can be left out: no vertex is close to the camera, and none is too far from another.
-    hides_backs: bool,
     vertices: Vec<Vertex>,
 }
 
@@ -106,7 +101,6 @@ impl Canvas {
         self.triangle.resize(grid.mask.len(), 0);
         self.project(model, stretch, grid);
         let most = MAX_LAYERS * self.inverse_depth.len();
-        let culled = model.is_culled && self.hides_backs;
         let (mut visited, mut filled) = (0, 0);
         let (inverse_depth, size) = (self.inverse_depth.as_mut_slice(), [grid.width, grid.height]);
         let drawn = &mut self.triangle[..inverse_depth.len()];
@@ -117,8 +111,7 @@ impl Canvas {
                 last.iter_mut().zip(four).for_each(|(last, triangle)| *last = *triangle);
                 last
             });
-            let limits = Limits { culled, most: most - visited };
-            let of_four = fill(inverse_depth, drawn, size, id, &self.vertices, triangles, limits);
+            let of_four = fill(inverse_depth, drawn, size, id, &self.vertices, triangles, most - visited);
             (visited, filled) = (visited + of_four.0, filled + of_four.1);
             if visited > most {
                 break;
@@ -155,7 +148,6 @@ impl Canvas {
         let mut lost = i32x4::ZERO;
         let (mut low, mut high) = ([i32x4::MAX; 2], [i32x4::MIN; 2]);
         let mut last_is_lost = 0;
-        let mut are_far = f32x4::splat(f32::from_bits(u32::MAX));
         self.vertices.clear();
         for position in &model.lanes {
             let moved = |axis: usize| {
@@ -168,7 +160,6 @@ impl Canvas {
                 u.simd_gt(lanes(-0.5)) & u.simd_lt(lanes(right)) & v.simd_gt(lanes(-0.5)) & v.simd_lt(lanes(bottom));
             // The comparison is written so that NaN fails.
             let is_far = z.simd_ge(lanes(near));
-            are_far &= is_far;
             let is_lost: i32x4 = cast(!(is_inside & !z.simd_lt(lanes(near))));
             last_is_lost = is_lost.to_array()[LANES - 1];
             lost += is_lost;
@@ -181,9 +172,6 @@ impl Canvas {
         let missing = (model.lanes.len() * LANES - model.positions.len()) as i32;
         let lost = missing * last_is_lost - lost.to_array().iter().sum::<i32>();
         let (low, high) = (low.map(i32x4::reduce_min), high.map(i32x4::reduce_max));
-        // Between bounds that are far apart, the difference wraps.
-        let spans = [0, 1].map(|axis| (0..FAR_APART).contains(&high[axis].wrapping_sub(low[axis])));
-        self.hides_backs = are_far.all() && spans[0] && spans[1];
         self.drawn = [0, 1].map(|axis| {
             let size = [grid.width, grid.height][axis];
             let end = (high[axis].max(-STEPS).div_euclid(STEPS) + 1) as usize;
