@@ -81,7 +81,7 @@ fn a_view_that_does_not_show_the_size_gives_none() {
 #[wasm_bindgen_test(unsupported = test)]
 fn photos_tell_the_turn_in_which_an_object_is_found_and_how_it_rolls() {
     // One that shape takes the wrong way round, and a bottle that it rolls at random.
-    for (seed, index, least_deg, most_deg) in [(8, 2, 90.0, 2.0), (7, 3, 15.0, 6.0)] {
+    for (seed, index, least_deg, most_deg) in [(8, 2, 80.0, 2.0), (7, 3, 15.0, 6.0)] {
         let sequence = VideoSet { seed, frames: 8, is_printed: true }.video(index).unwrap();
         let rotations = |with_photos: bool| -> Vec<f64> {
             let mesh = sequence.prepared();
