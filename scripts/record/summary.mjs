@@ -1,5 +1,6 @@
 /** The summary of a set: a line for each of its rows, small enough for a history of all versions. */
 import { mean, median, share } from "../bench/table.mjs";
+import { rounded } from "./sets.mjs";
 
 /** Number of bins of the reliability diagram. */
 export const BINS = 10;
@@ -82,6 +83,3 @@ function summary(set, row, lines) {
     ),
   };
 }
-
-/** Four digits are more than any set can tell. @param {number} value */
-const rounded = (value) => Number(value.toPrecision(4));
