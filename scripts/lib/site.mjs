@@ -18,6 +18,7 @@ export const buildSite = once(async () => {
     const inputs = digest([
       at("www"),
       at("docs", "record"),
+      at("scripts", "record"),
       at("docs", "guides"),
       at("docs", "how-it-works.md"),
       at("README.md"),

@@ -1,7 +1,7 @@
 /** The page of the record: what the history in the repository holds, as one static file. */
 import { fixed, percent } from "../bench/table.mjs";
 import { coverageChart, reliabilityChart } from "./charts.mjs";
-import { sets } from "./sets.mjs";
+import { argsOf, sets } from "./sets.mjs";
 
 /** Rows whose confidences the diagrams pool: poses of one call, found without being told anything. */
 const pooled = /** @type {const} */ (["general", "sensors", "colors", "scenes", "views", "monocular"]);
@@ -54,7 +54,7 @@ const setOf = (/** @type {string} */ name) => sets.find((set) => set.name === na
 const titleOf = (/** @type {string} */ name) => setOf(name)?.title ?? name;
 const commandOf = (/** @type {string} */ name) => {
   const set = setOf(name);
-  return set === undefined ? "" : `sim3align-lab ${[...set.args, set.cases[0], ...(set.more ?? [])].join(" ")}`;
+  return set === undefined ? "" : `sim3align-lab ${argsOf(set, false).join(" ")}`;
 };
 
 /**

@@ -15,7 +15,7 @@ import { step } from "../lib/step.mjs";
 import { sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
 import { losses } from "./guard.mjs";
 import { extendHistory } from "./history.mjs";
-import { linesOf, sets, setsOf } from "./sets.mjs";
+import { argsOf, givenSet, linesOf, sets } from "./sets.mjs";
 import { summaries } from "./summary.mjs";
 
 /** The quick record that changes are compared with. */
@@ -35,20 +35,23 @@ const quickFile = at("docs", "record", "quick.json");
 /** @param {RecordOptions} options */
 export async function record({ quick = false, check, save, out, fresh = false, tested, threads }) {
   const version = packageVersion();
-  const code = digest(["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock"].map((name) => at(name)));
-  // Results of other code stay, and are not taken for those of this one.
+  const given = quick ? undefined : process.env.SIM3ALIGN_CASES;
+  const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock", "scripts/record/sets.mjs"];
+  const code = digest(
+    sources.map((name) => at(name)),
+    given === undefined ? [] : [given],
+  );
+  // Results of other code, or of other cases, stay, and are not taken for those of this one.
   const folder = resolve(out ?? at("target", "bench", "record"), `${quick ? "quick" : "whole"}-${code.slice(0, 12)}`);
   if (fresh) rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  const { SIM3ALIGN_CASES: given } = process.env;
-  const all = quick || given === undefined ? sets : [...sets, ...setsOf(given)];
+  const all = given === undefined ? sets : [...sets, givenSet(given)];
   const found = [];
   for (const set of all) {
     const file = join(folder, `${set.name}.json`);
-    await step(`${set.title}`, async (say) => {
+    await step(set.title, async (say) => {
       if (existsSync(file)) return say("done before");
-      const number = set.cases[quick ? 1 : 0];
-      const args = [...set.args, ...(number > 0 ? [`${number}`] : []), ...(set.more ?? []), "--json", file];
+      const args = [...argsOf(set, quick), "--json", file];
       if (threads !== undefined) args.push("--threads", `${threads}`);
       await (tested ? runTestedLab : runLab)(args, { echo: "errors" });
     });

@@ -80,29 +80,19 @@ const sceneLines = (scenes) =>
     ),
   );
 
-/** What shows in an image, whatever the unit: rotation in degrees, the others as shares. */
-const monocularTolerance = { rotationDeg: 10, apparentSize: 0.05, direction: 0.05 };
-
 /** @param {{ records: any[] }} json of `monocular` @returns {Line[]} */
 const monocularLines = ({ records }) =>
   records
     .filter(({ hasTruth, way }) => hasTruth && way === "alone")
-    .map(({ row, picture, object, confidence, errors }) => {
-      const isRight = (/** @type {number} */ times) =>
-        errors !== null &&
-        errors.rotationDeg <= times * monocularTolerance.rotationDeg &&
-        Math.abs(errors.apparentSize) <= times * monocularTolerance.apparentSize &&
-        errors.direction <= times * monocularTolerance.direction;
-      return {
-        row,
-        case: `${picture}/${object}`,
-        strict: isRight(1),
-        loose: isRight(2),
-        errors: errors && [Math.abs(errors.apparentSize), errors.rotationDeg, errors.direction],
-        confidence,
-        ms: null,
-      };
-    });
+    .map(({ row, picture, object, confidence, errors, strict, loose }) => ({
+      row,
+      case: `${picture}/${object}`,
+      strict,
+      loose,
+      errors: errors && [Math.abs(errors.apparentSize), errors.rotationDeg, errors.direction],
+      confidence,
+      ms: null,
+    }));
 
 /** @param {Line[]} lines of the other commands */
 const ownLines = (lines) => lines;
@@ -177,19 +167,27 @@ export const sets = [
 ];
 
 /**
- * The sets of folders that the user has: case folders, and folders of scenes.
+ * The set of the case folders that the user has.
  * @param {string} folder
- * @returns {RecordSet[]}
+ * @returns {RecordSet}
  */
-export const setsOf = (folder) => [
-  {
-    name: "given",
-    title: `Case folders of ${folder}`,
-    args: ["bench", "--cases", folder],
-    cases: [0, 0],
-    read: benchLines,
-  },
-];
+export const givenSet = (folder) => ({
+  name: "given",
+  title: `Case folders of ${folder}`,
+  args: ["bench", "--cases", folder],
+  cases: [0, 0],
+  read: benchLines,
+});
+
+/**
+ * The arguments of `sim3align-lab` that run a set, or a part of it.
+ * @param {RecordSet} set
+ * @param {boolean} quick
+ */
+export function argsOf({ args, cases, more = [] }, quick) {
+  const number = cases[quick ? 1 : 0];
+  return [...args, ...(number > 0 ? [`${number}`] : []), ...more];
+}
 
 /** Four digits, which are more than any set can tell. @param {number} value */
 export const rounded = (value) => Number(value.toPrecision(4));

@@ -1,6 +1,5 @@
 //! `generators`: compares where generators put their meshes with where alignments put them.
 
-use sim3align::align::evaluate::Evaluation;
 use sim3align_lab::bench::case_line::CaseLine;
 use sim3align_lab::bench::generators::{PlacedScene, ROWS, Record, table};
 use sim3align_lab::bench::option_text;
@@ -94,11 +93,11 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
         println!();
     }
     println!("{} objects\n\n{}", all.len(), table(&all));
-    let line = |name: &str, row: &str, of: &Option<Evaluation>| {
-        CaseLine::new(row, name.to_owned(), of.as_ref().and_then(|of| of.errors.as_ref()), None, None)
-    };
-    let lines = |(name, record): &(String, Record)| {
-        ROWS.iter().zip(record).take(ROWS.len() - 1).map(|(row, of)| line(name, row, of)).collect::<Vec<_>>()
-    };
-    write_lines(json, all.iter().flat_map(lines).collect::<Vec<_>>().iter())
+    let lines = all.iter().flat_map(|(name, record)| {
+        ROWS.iter().zip(record).take(ROWS.len() - 1).map(move |(row, evaluation)| {
+            let errors = evaluation.as_ref().and_then(|evaluation| evaluation.errors.as_ref());
+            CaseLine::new(row, name.clone(), errors, None, None)
+        })
+    });
+    write_lines(json, lines)
 }

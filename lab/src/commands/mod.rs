@@ -18,9 +18,11 @@ mod trace;
 mod track;
 mod views;
 
+use std::borrow::Borrow;
 use std::fmt::Display;
 
 pub use arguments::Arguments;
+use serde::Serialize;
 use sim3align_lab::bench::case_line::CaseLine;
 use sim3align_lab::prelude::*;
 
@@ -81,7 +83,7 @@ fn write_file(path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
 }
 
 /// Writes the lines of all cases to a file, if one is named.
-fn write_lines<'a>(json: Option<PathBuf>, lines: impl Iterator<Item = &'a CaseLine>) -> Result<(), Failure> {
+fn write_lines(json: Option<PathBuf>, lines: impl Iterator<Item: Borrow<CaseLine> + Serialize>) -> Result<(), Failure> {
     let Some(path) = json else { return Ok(()) };
     write_file(&path, serde_json::to_string(&lines.collect::<Vec<_>>())?)
 }
