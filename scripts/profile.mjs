@@ -21,7 +21,7 @@ import { script } from "./lib/step.mjs";
 
 /**
  * Operations of a render on numbers, without loads and stores: transform, projection and rounding of a vertex; area of a
- * triangle, by which back faces are left out; box, slopes and edges of one that is filled; depth, three edges, comparison
+ * triangle, by which lines are left out; box, slopes and edges of one that is filled; depth, three edges, comparison
  * and selection of a cell; clearing a cell, and comparing it with the image.
  */
 const OPERATIONS = { vertices: 37, triangles: 8, filled: 40, visited: 13, cells: 2 };

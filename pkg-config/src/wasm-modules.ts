@@ -1,6 +1,6 @@
 /** The WebAssembly modules of the package by name, and where the caller has them. */
 import { invalidArgument } from "./error.js";
-import type { LazySource, UrlLike, WasmSource } from "./platform.js";
+import type { LazySource, WasmSource } from "./platform.js";
 import { isKind, isRecord } from "./values.js";
 
 /** The sources of the modules, each loaded when it is first needed. Those left out are next to the script. */
@@ -22,7 +22,7 @@ export interface WasmModules {
 /** The name of a module among the options. */
 export type ModuleName = keyof WasmModules;
 
-/** Where a module is, or a function that fetches it. */
+/** The source of each module, or a function that returns it on demand. */
 export type LazyModules = { readonly [K in ModuleName]?: LazySource | undefined };
 
 /** The file of a module. */
@@ -42,7 +42,7 @@ const names: readonly string[] = [
 export function checkedModules(wasm: unknown): LazyModules {
   if (wasm === undefined) return {};
   if (typeof wasm === "string" || isKind<URL>(wasm, "URL")) {
-    const folder = String((wasm as UrlLike).href ?? wasm).replace(/\/?$/, "/");
+    const folder = String(wasm).replace(/\/?$/, "/");
     return Object.fromEntries(names.map((name) => [name, `${folder}${moduleFile(name)}`]));
   }
   if (isRecord(wasm) && Object.keys(wasm).every((name) => names.includes(name))) return wasm;

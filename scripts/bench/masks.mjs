@@ -5,7 +5,6 @@
 import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { build } from "esbuild";
 import { at } from "../lib/paths.mjs";
 import { command } from "./command.mjs";
 import { foldersWith, packageModule, within } from "./inputs.mjs";
@@ -16,6 +15,8 @@ const CORRECTIONS = 2;
 
 /** The tool as plain JavaScript. */
 async function tool() {
+  // The set-up installs it first.
+  const { build } = await import("esbuild");
   const folder = at("target", "bench-masks");
   mkdirSync(folder, { recursive: true });
   const outfile = join(folder, "region.mjs");

@@ -9,7 +9,7 @@ pub struct Counts {
     pub vertices: u64,
     /// Triangles whose corners were gathered.
     pub triangles: u64,
-    /// Triangles that were filled: not those that face away, or whose box has no centre of a cell.
+    /// Triangles that were filled: not those whose box has no centre of a cell.
     pub filled: u64,
     /// Cells that were compared with a triangle, about.
     pub visited: u64,

@@ -75,7 +75,8 @@ struct Setup {
 }
 
 /// Renders four triangles, in order, until more than `most` cells are visited, and returns about the number of cells visited,
-/// and the number of triangles that are filled. `id` is the first one's. Takes slices of one length instead of the canvas, so that addresses and length stay in registers.
+/// and the number of triangles that are filled. `id` is the first one's. Takes slices of one length instead of the canvas, so that
+/// addresses and length stay in registers.
 #[inline(always)]
 pub fn fill(
     inverse_depth: &mut [f32],

@@ -100,7 +100,8 @@ fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) ->
         return None;
     }
     let [_, lowest] = all(down);
-    let most = THICKNESS * lengths.into_iter().fold(0.0, f64::max);
+    let longest = lengths.into_iter().fold(0.0, f64::max);
+    let most = THICKNESS * longest;
     // The flat area by the height of its upper side.
     let mut flat = [0.0; BINS];
     for face in faces.iter().filter(|face| face.is_flat(down)) {
@@ -144,7 +145,6 @@ fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) ->
                 return None;
             }
         }
-        let longest = lengths.into_iter().fold(0.0, f64::max);
         let height = top - interval(faces, is_plate, false, down)[0];
         let share = plate / (plate + object);
         let is_ground = flat >= least && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
