@@ -1,11 +1,11 @@
-/** The Python of the guides: a notebook's cell that runs the command line, and Rerun, which reads its record. */
+/** The Python of the guides: a notebook's cell that runs the command line, the executed notebook, and Rerun. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { chmodSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { chmodSync, mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { delimiter, dirname, join } from "node:path";
 import { test } from "node:test";
 import { files, folder, read, writeCase } from "../support/command-line.js";
-import { commandLine, repository } from "../support/environment.js";
+import { commandLine, installDir, repository } from "../support/environment.js";
 
 const python = process.env.SIM3ALIGN_NOTEBOOKS ?? "";
 const skip =
@@ -27,35 +27,94 @@ function runIn(program: string, ...args: string[]): string {
   return stdout;
 }
 
-/** Runs the blocks as the cells of a notebook, and prints what they print. */
-const notebook = `
-import json, sys
-import nbformat
-from nbclient import NotebookClient
+/** A notebook, as far as these tests read it. */
+interface Notebook {
+  cells: {
+    cell_type: string;
+    source: string | string[];
+    outputs?: { output_type: string; text?: string | string[]; data?: Record<string, string | string[]> }[];
+  }[];
+}
 
-cells = [nbformat.v4.new_code_cell(source) for source in json.load(open(sys.argv[1]))]
-book = nbformat.v4.new_notebook(cells=cells)
-NotebookClient(book, timeout=120, kernel_name="python3").execute()
-for cell in book.cells:
-    for output in cell.outputs:
-        print(output.get("text", ""), end="")
-`;
+const joined = (text: string | string[] = "") => (Array.isArray(text) ? text.join("") : text);
+
+/** Executes a notebook as `npm run notebook` does. */
+function executed(
+  source: Notebook | object,
+  run: (python: string, ...args: string[]) => unknown,
+  at: string,
+): Notebook {
+  const [given, made] = [join(at, "given.ipynb"), join(at, "executed.ipynb")];
+  writeFileSync(given, JSON.stringify(source));
+  run(python, join(repository, "scripts", "bench", "notebooks", "execute.py"), given, made);
+  return JSON.parse(readFileSync(made, "utf8"));
+}
+
+/** What the cells of a notebook printed and showed, without pictures. */
+const textsOf = ({ cells }: Notebook) =>
+  cells.flatMap(({ outputs = [] }) =>
+    outputs.flatMap(({ text, data }) =>
+      [joined(text), joined(data?.["text/markdown"])].filter((shown) => shown !== ""),
+    ),
+  );
+
+/** The pictures that the cells show, as bytes. */
+const picturesOf = ({ cells }: Notebook) =>
+  cells.flatMap(({ outputs = [] }) =>
+    outputs.flatMap(({ data }) => (data?.["image/png"] === undefined ? [] : [joined(data["image/png"])])),
+  );
 
 test("a cell of a notebook runs the command line, and says what came of each case", { skip }, () => {
   writeCase("cases/blob", files);
   const { "mesh.glb": _, ...others } = files;
   writeCase("cases/broken", { ...others, "mesh.glb": new Uint8Array(3) });
   const [cell = ""] = blocks;
-  writeFileSync(join(folder, "notebook.py"), notebook);
   // Run twice: the second time, everything is there.
-  writeFileSync(join(folder, "cells.json"), JSON.stringify([cell, cell]));
-  const lines = runIn(python, "notebook.py", "cells.json").trim().split("\n").sort();
+  const cells = ["a", "b"].map((id) => ({
+    ...{ cell_type: "code", id, source: cell, metadata: {}, outputs: [], execution_count: null },
+  }));
+  const book = { nbformat: 4, nbformat_minor: 5, metadata: {}, cells };
+  const lines = textsOf(executed(book, runIn, folder))
+    .join("")
+    .trim()
+    .split("\n")
+    .sort();
   const record = read("results.jsonl").trim().split("\n");
   assert.equal(record.length, 2);
   const [result, failed] = record.map((line) => JSON.parse(line)).sort((a, b) => (a.case < b.case ? -1 : 1));
   const aligned = `blob confidence ${result.confidence.toFixed(2)}, scale ${result.scale.toFixed(4)}`;
   const broken = `broken ${failed.error.code}`;
   assert.deepEqual(lines, [aligned, aligned, broken, broken]);
+});
+
+test("docs/notebook.ipynb ends without an error, and shows the table and the pictures that are stored in it", {
+  skip,
+}, () => {
+  const path = join(repository, "docs", "notebook.ipynb");
+  assert.ok(statSync(path).size < 300_000, "the notebook is small");
+  const stored: Notebook = JSON.parse(readFileSync(path, "utf8"));
+  // A folder of its own, into which the notebook installs the tarball that this folder was installed from.
+  const home = join(folder, "notebook");
+  mkdirSync(home);
+  const { dependencies } = JSON.parse(readFileSync(join(installDir, "package.json"), "utf8"));
+  const env = {
+    ...process.env,
+    SIM3ALIGN_PACKAGE: dependencies.sim3align.replace(/^file:/, ""),
+    SIM3ALIGN_SAMPLES: join(repository, "www", "samples"),
+  };
+  const made = executed(
+    stored,
+    (program, ...args) => {
+      const { status, stderr } = spawnSync(program, args, { cwd: home, env, encoding: "utf8" });
+      assert.equal(status, 0, stderr);
+    },
+    home,
+  );
+  const texts = textsOf(made);
+  assert.ok(texts.some((text) => text.startsWith("| case | confidence |")));
+  assert.deepEqual(texts, textsOf(stored), "run `npm run notebook` where the results are meant to differ");
+  assert.equal(picturesOf(made).length, 3);
+  assert.deepEqual(picturesOf(made), picturesOf(stored));
 });
 
 test("Rerun shows the record: camera, depth, mesh and pose", { skip }, () => {
