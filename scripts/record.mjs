@@ -9,6 +9,7 @@ await command("record", (program) =>
     .option("--check", "with --quick: fails if anything is worse than in docs/record/quick.json")
     .option("--save", "writes docs/record/: with --quick, what --check compares with, else this version's history")
     .option("--out <dir>", "where results are kept; target/bench/record by default")
+    .option("--only <a,b,…>", "some of its sets; without --save and --check", (text) => text.split(","))
     .option("--fresh", "forget what an earlier run has left there")
     .option("--threads <n>", "all by default", count)
     .action(async (options) => {

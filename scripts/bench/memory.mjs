@@ -2,7 +2,7 @@
  * `npm run bench:memory [-- --meshes DIR]`: the WebAssembly memory that one alignment of a large input takes, which has
  * a limit, and whether many alignments take more than few.
  */
-import { readdirSync, readFileSync } from "node:fs";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
@@ -12,6 +12,9 @@ import { markdownTable, megabytes, printWithin } from "./table.mjs";
 import { blocksPng, texturedGlb } from "./textured.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
+
+/** What was measured, for --json. @type {{ name: string, bytes: number, limit: number }[]} */
+const measured = [];
 
 /** Limit of the core's memory, in bytes: 128 MB. */
 const limit = 128_000_000;
@@ -89,7 +92,13 @@ async function measurePeaks(meshes) {
     await aligner.align(input, options);
     peaks.push(/** @type {const} */ ([Object.values(options).join(), before, given, memory.buffer.byteLength]));
   }
+  keep(peaks, limit);
   return printWithin("one alignment", ["empty", "input", "peak"], peaks, limit);
+}
+
+/** @param {readonly (readonly [name: string, ...bytes: number[]])[]} rows @param {number} most */
+function keep(rows, most) {
+  measured.push(...rows.map(([name, ...bytes]) => ({ name, bytes: bytes.at(-1) ?? 0, limit: most })));
 }
 
 /** One line a pair of photo and texture: the memory of both modules after one alignment in new instances. */
@@ -110,6 +119,7 @@ async function measureColor() {
     const name = `photo ${photo.join("×")}, texture ${texture.join("×")}`;
     peaks.push(/** @type {const} */ ([name, core, read, core + read]));
   }
+  keep(peaks, colorLimit);
   return printWithin("with colour", ["core", "readers", "both"], peaks, colorLimit);
 }
 
@@ -143,12 +153,14 @@ await command("bench:memory", (program) =>
       "take the GLB file of a folder that has nearest to 227 000 triangles, not a generated mesh",
     )
     .option("--alignments <n>", "how many on one instance", count, 500)
-    .action(async ({ meshes, alignments }) => {
+    .option("--json <file>", "keeps the peaks")
+    .action(async ({ meshes, alignments, json }) => {
       await buildPackage();
       const isShapeWithin = await measurePeaks(meshes);
       const isWithin = (await measureColor()) && isShapeWithin;
       console.log();
       const isFlat = await measureGrowth(alignments);
+      if (json !== undefined) writeFileSync(json, `${JSON.stringify(measured)}\n`);
       if (!isWithin || !isFlat) process.exitCode = 1;
     }),
 );

@@ -33,11 +33,18 @@ function colourOf(grid, z, i) {
 /** Cells around the box of the mask that are shown, relative to its longer side. */
 const MARGIN = 0.22;
 
+/** The first and the last column of what is inside, and its first and last row. */
+export function maskBox(width, height, isInside) {
+  const inside = [...Array(width * height).keys()].filter(isInside);
+  return [inside.map((i) => i % width), inside.map((i) => Math.floor(i / width))].map((list) => [
+    list.reduce((a, b) => Math.min(a, b)),
+    list.reduce((a, b) => Math.max(a, b)),
+  ]);
+}
+
 /** A canvas of the part of a grid around the mask, each cell in one colour, so many pixels high. */
 function canvasOf({ width, height, mask }, high, colour) {
-  const inside = [...mask.keys()].filter((i) => mask[i]);
-  const [us, vs] = [inside.map((i) => i % width), inside.map((i) => Math.floor(i / width))];
-  const box = [us, vs].map((list) => [list.reduce((a, b) => Math.min(a, b)), list.reduce((a, b) => Math.max(a, b))]);
+  const box = maskBox(width, height, (i) => mask[i]);
   const margin = Math.ceil(MARGIN * Math.max(...box.map(([low, high]) => high - low)));
   const [left, top] = box.map(([low]) => Math.max(0, low - margin));
   const [right, bottom] = [width, height].map((most, k) => Math.min(most, box[k][1] + margin + 1));

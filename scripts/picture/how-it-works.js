@@ -1,7 +1,7 @@
 // Draws the pictures of docs/how-it-works.md: from traces of searches, which `sim3align-lab trace` wrote, and with the package.
 import { createAligner } from "sim3align";
 import { readCase, readDepth, readMask } from "sim3align/formats.js";
-import { classes, explained, figure, legend, observed } from "./cells.js";
+import { classes, explained, figure, legend, maskBox, observed } from "./cells.js";
 import { bars, chart } from "./chart.js";
 import { drawScene } from "./how-it-works-scene.js";
 
@@ -151,10 +151,8 @@ function cut(photo, mask) {
   const context = canvas.getContext("2d", { willReadFrequently: true });
   context.drawImage(mask, 0, 0);
   const { data } = context.getImageData(0, 0, mask.width, mask.height);
-  const inside = [...Array(mask.width * mask.height).keys()].filter((i) => data[4 * i] > 0);
-  const [us, vs] = [inside.map((i) => i % mask.width), inside.map((i) => Math.floor(i / mask.width))];
-  const low = [us, vs].map((list) => list.reduce((a, b) => Math.min(a, b)) - 12);
-  const high = [us, vs].map((list) => list.reduce((a, b) => Math.max(a, b)) + 12);
+  const box = maskBox(mask.width, mask.height, (i) => data[4 * i] > 0);
+  const [low, high] = [box.map(([first]) => first - 12), box.map(([, last]) => last + 12)];
   const [width, height] = [0, 1].map((k) => high[k] - low[k]);
   const part = document.createElement("canvas");
   [part.width, part.height] = [width, height];

@@ -27,6 +27,8 @@ const errorNames = ["scale", "rotation", "place"];
  */
 export function losses(before, after) {
   const found = [];
+  /** Pairs of each case of all sets, of as many rows as it has. @type {Pairs[number][][]} */
+  const cases = [];
   for (const { set, lines } of before.sets) {
     const now = new Map(after.sets.find((other) => other.set === set)?.lines.map((line) => [key(line), line]));
     const pairs = lines.flatMap((line) => {
@@ -39,6 +41,14 @@ export function losses(before, after) {
       const of = pairs.filter(([line]) => line.row === row);
       found.push(...lossesOf(`${set}, ${row}`, of));
     }
+    for (const name of new Set(lines.map((line) => line.case))) {
+      cases.push(pairs.filter(([line]) => line.case === name));
+    }
+  }
+  // Too few of one set show a loss of some per cent; together they do. Rows of a case go together, so that each case counts once.
+  for (const kind of kinds) {
+    const changes = cases.map((pairs) => Math.sign(pairs.reduce((sum, pair) => sum + changeOf(pair, kind), 0)));
+    found.push(...lostCases("all sets", kind, changes));
   }
   for (const [name, bytes] of Object.entries(before.sizes)) {
     const now = after.sizes[name] ?? 0;
@@ -54,13 +64,9 @@ const key = (/** @type {import("./sets.mjs").Line} */ line) => `${line.row}\n${l
 /** @param {string} name @param {Pairs} pairs @returns {string[]} */
 function lossesOf(name, pairs) {
   const found = [];
-  for (const kind of /** @type {const} */ (["strict", "loose"])) {
-    const lost = pairs.filter(([before, after]) => before[kind] && !after[kind]).length;
-    const won = pairs.filter(([before, after]) => !before[kind] && after[kind]).length;
-    const chance = signTest(lost, won);
-    if (lost - won >= NOTABLE * pairs.length && chance < SIGNIFICANT) {
-      found.push(`${name}: ${lost} of ${pairs.length} are no longer within ${kind}, ${won} newly are${odds(chance)}`);
-    }
+  for (const kind of kinds) {
+    const changes = pairs.map((pair) => changeOf(pair, kind));
+    found.push(...lostCases(name, kind, changes));
   }
   for (const [i, error] of errorNames.entries()) {
     const ratios = pairs.flatMap(([before, after]) =>
@@ -77,6 +83,23 @@ function lossesOf(name, pairs) {
     found.push(`${name}: ${before?.toFixed(0)} -> ${after?.toFixed(0)} renders a case`);
   }
   return found;
+}
+
+const kinds = /** @type {const} */ (["strict", "loose"]);
+
+/** 1 for a loss, -1 for a gain. @param {Pairs[number]} pair @param {typeof kinds[number]} kind */
+const changeOf = ([before, after], kind) => Number(before[kind]) - Number(after[kind]);
+
+/**
+ * @param {string} name
+ * @param {typeof kinds[number]} kind
+ * @param {readonly number[]} changes of the cases
+ */
+function lostCases(name, kind, changes) {
+  const [lost, won] = [1, -1].map((change) => changes.filter((other) => other === change).length);
+  const chance = signTest(lost ?? 0, won ?? 0);
+  if ((lost ?? 0) - (won ?? 0) < NOTABLE * changes.length || chance >= SIGNIFICANT) return [];
+  return [`${name}: ${lost} of ${changes.length} are no longer within ${kind}, ${won} newly are${odds(chance)}`];
 }
 
 const odds = (/** @type {number} */ chance) => `, by chance in ${(100 * chance).toFixed(2)} % of comparisons`;

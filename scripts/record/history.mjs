@@ -16,6 +16,8 @@ const DOUBTS = 40;
  * @property {string} system
  * @property {string} node
  * @property {string} rustc
+ * @property {Readonly<Record<string, string>>} [peers] versions of other libraries
+ * @property {readonly { name: string, bytes: number, limit: number }[]} [memory] in WebAssembly
  */
 
 /**

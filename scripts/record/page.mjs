@@ -1,7 +1,8 @@
 /** The page of the record: what the history in the repository holds, as one static file. */
-import { fixed, percent } from "../bench/table.mjs";
+import { fixed, megabytes } from "../bench/table.mjs";
 import { coverageChart, reliabilityChart } from "./charts.mjs";
-import { argsOf, sets } from "./sets.mjs";
+import { cellsOf, head } from "./columns.mjs";
+import { commandOf, sets } from "./sets.mjs";
 
 /** Rows whose confidences the diagrams pool: poses of one call, found without being told anything. */
 const pooled = /** @type {const} */ (["general", "sensors", "colors", "scenes", "views", "monocular"]);
@@ -23,7 +24,7 @@ folders.</p>`,
     "<h2>Accuracy</h2>",
     `<p>Strict: scale within 5 %, rotation within 10° up to symmetry, place within 5 % of the diameter; loose: twice that. Of
 monocular depth, the apparent size and the place in the image count instead. Errors are medians of the answered cases. IoU is
-that of the mask, beside that of the true pose: with faulty depth, masks and meshes, no pose reaches 1.</p>`,
+that of the mask, beside that of the true pose: with faulty depth, masks and meshes, no pose reaches 1.${peersText(run)}</p>`,
     ...sets.map((set) => setTable(set, rows)).filter(Boolean),
     "<h2>How far a confidence can be trusted</h2>",
     `<p>The share of strictly right poses by the confidence that came with them, with the number of poses in each tenth: on
@@ -33,12 +34,13 @@ are left out.</p>`,
       .map((set) => ({ set, bins: binsOf(rows, set) }))
       .filter(({ bins }) => bins.length > 0)
       .map(
-        ({ set, bins }) => `<figure>${reliabilityChart(bins)}${coverageChart(bins)}<figcaption>${text(titleOf(set))}
-<code>${text(commandOf(set))}</code></figcaption></figure>`,
+        ({ set, bins }) => `<figure>${reliabilityChart(bins)}${coverageChart(bins)}<figcaption>${text(setOf(set).title)}
+<code>${text(commandOf(setOf(set)))}</code></figcaption></figure>`,
       )
       .join("")}</div>`,
     "<h2>Time and size, by version</h2>",
     versionTable(versions),
+    memoryTable(run),
     "<h2>Cases that this version doubts most</h2>",
     table(
       ["set", "case", "confidence", "right", "why"],
@@ -50,45 +52,18 @@ are left out.</p>`,
   return page(parts.join("\n"));
 }
 
-const setOf = (/** @type {string} */ name) => sets.find((set) => set.name === name);
-const titleOf = (/** @type {string} */ name) => setOf(name)?.title ?? name;
-const commandOf = (/** @type {string} */ name) => {
-  const set = setOf(name);
-  return set === undefined ? "" : `sim3align-lab ${argsOf(set, false).join(" ")}`;
-};
+/** Titles and commands of the pooled sets. @param {string} name */
+const setOf = (name) => /** @type {import("./sets.mjs").RecordSet} */ (sets.find((set) => set.name === name));
 
 /**
  * @param {import("./sets.mjs").RecordSet} set
  * @param {readonly import("./summary.mjs").Summary[]} rows
  */
-function setTable({ name, title }, rows) {
-  const own = rows.filter(({ set }) => set === name);
+function setTable(set, rows) {
+  const own = rows.filter((row) => row.set === set.name);
   if (own.length === 0) return "";
-  const share = (/** @type {number | null | undefined} */ value) => (value == null ? "–" : fixed(100 * value, 2));
-  const cells = own.map(({ row, n, strict, loose, medians: [scale, rotation, place], bins, ms, iou, truthIou }) => {
-    const [sure, right] = bins.at(-1) ?? [0, 0];
-    return [
-      ...[row, n, percent(strict), percent(loose), share(scale), fixed(rotation, 2), share(place)],
-      ...[
-        bins.length > 0 ? `${right} of ${sure}` : "–",
-        iou === null ? "–" : `${fixed(iou, 3)}, ${fixed(truthIou, 3)}`,
-      ],
-      fixed(ms),
-    ];
-  });
-  const head = [
-    "row",
-    "n",
-    "strict %",
-    "loose %",
-    "scale %",
-    "rotation °",
-    "place %",
-    "≥ .9: right of",
-    "IoU, truth's",
-    "ms",
-  ];
-  return `<h3>${text(title)}</h3>${table(head, cells)}<p class="command"><code>${text(commandOf(name))}</code></p>`;
+  const note = set.note === undefined ? "" : `<p>${text(set.note)}</p>`;
+  return `<h3>${text(set.title)}</h3>${note}${table(head, own.map(cellsOf))}<p class="command"><code>${text(commandOf(set))}</code></p>`;
 }
 
 /**
@@ -114,15 +89,28 @@ function versionTable(versions) {
       ...modules.map((name) => fixed((run.sizes[name] ?? Number.NaN) / 1000, 1)),
     ];
   });
-  const head = ["version", "date", "ms a case", "renders a case", ...modules.map((name) => `${name}, kB gz`)];
-  return `${table(head, rows)}<p>Times are CPU time of the native build; compare them on one machine only.</p>`;
+  const titles = ["version", "date", "ms a case", "renders a case", ...modules.map((name) => `${name}, kB gz`)];
+  return `${table(titles, rows)}<p class="command"><code>npm test -- --only size</code></p><p>Times are CPU time of the native build; compare them on one machine only.</p>`;
 }
 
-/** @param {readonly string[]} head @param {readonly (readonly (string | number)[])[]} rows */
-function table(head, rows) {
+/** @param {import("./history.mjs").Run} run */
+function peersText({ peers = {} }) {
+  const names = Object.entries(peers).map(([name, version]) => `${name} ${version}`);
+  return names.length === 0 ? "" : ` Other libraries: ${text(names.join(", "))}.`;
+}
+
+/** @param {import("./history.mjs").Run} run */
+function memoryTable({ memory = [] }) {
+  if (memory.length === 0) return "";
+  const rows = memory.map(({ name, bytes, limit }) => [name, megabytes(bytes), megabytes(limit)]);
+  return `<h3>Memory in WebAssembly: one alignment of 227 000 triangles and a depth map of 1920 × 1080</h3>${table(["options", "MB", "limit"], rows)}<p class="command"><code>npm run bench:memory</code></p>`;
+}
+
+/** @param {readonly string[]} titles @param {readonly (readonly (string | number)[])[]} rows */
+function table(titles, rows) {
   const line = (/** @type {readonly (string | number)[]} */ cells, /** @type {string} */ tag) =>
     `<tr>${cells.map((cell) => `<${tag}>${text(`${cell}`)}</${tag}>`).join("")}</tr>`;
-  return `<div class="scroll" tabindex="0"><table><thead>${line(head, "th")}</thead><tbody>${rows.map((row) => line(row, "td")).join("")}</tbody></table></div>`;
+  return `<div class="scroll" tabindex="0"><table><thead>${line(titles, "th")}</thead><tbody>${rows.map((row) => line(row, "td")).join("")}</tbody></table></div>`;
 }
 
 const text = (/** @type {string} */ value) => value.replace(/[&<>"]/g, (character) => `&#${character.charCodeAt(0)};`);

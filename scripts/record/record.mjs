@@ -6,15 +6,17 @@
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { environment } from "../bench/results.mjs";
-import { fixed, markdownTable, percent } from "../bench/table.mjs";
+import { markdownTable } from "../bench/table.mjs";
 import { digest } from "../lib/cache.mjs";
 import { runLab, runTestedLab } from "../lib/lab.mjs";
 import { packageVersion } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
 import { sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
+import { cellsOf, head } from "./columns.mjs";
 import { losses } from "./guard.mjs";
 import { extendHistory } from "./history.mjs";
+import { measureMemory, peerVersions } from "./inputs.mjs";
 import { argsOf, givenSet, linesOf, sets } from "./sets.mjs";
 import { summaries } from "./summary.mjs";
 
@@ -28,15 +30,20 @@ const quickFile = at("docs", "record", "quick.json");
  * @property {boolean} [save]
  * @property {string} [out]
  * @property {boolean} [fresh]
+ * @property {readonly string[]} [only] sets, for a look at them
  * @property {boolean} [tested]
  * @property {number} [threads]
  */
 
 /** @param {RecordOptions} options */
-export async function record({ quick = false, check, save, out, fresh = false, tested, threads }) {
+export async function record({ quick = false, check, save, out, fresh = false, only, tested, threads }) {
+  if (only !== undefined && (save || check)) {
+    throw new Error("Found --only with --save or --check. Remedy: leave it out; a record is whole.");
+  }
   const version = packageVersion();
   const given = quick ? undefined : process.env.SIM3ALIGN_CASES;
   const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock", "scripts/record/sets.mjs"];
+  sources.push("scripts/bench/peers");
   const code = digest(
     sources.map((name) => at(name)),
     given === undefined ? [] : [given],
@@ -47,15 +54,17 @@ export async function record({ quick = false, check, save, out, fresh = false, t
   mkdirSync(folder, { recursive: true });
   const all = given === undefined ? sets : [...sets, givenSet(given)];
   const found = [];
-  for (const set of all) {
+  for (const set of all.filter(({ name, cases }) => (!quick || cases[1] > 0) && (only?.includes(name) ?? true))) {
     const file = join(folder, `${set.name}.json`);
     await step(set.title, async (say) => {
       if (existsSync(file)) return say("done before");
-      const args = [...argsOf(set, quick), "--json", file];
+      const prepared = await set.prepare?.(join(folder, set.name));
+      if (typeof prepared === "string") return say(`left out: ${prepared}`);
+      const args = [...argsOf(set, quick), ...(prepared ?? []), "--json", file];
       if (threads !== undefined) args.push("--threads", `${threads}`);
       await (tested ? runTestedLab : runLab)(args, { echo: "errors" });
     });
-    found.push({ set: set.name, lines: linesOf(set, file) });
+    if (existsSync(file)) found.push({ set: set.name, lines: linesOf(set, file) });
   }
   const rows = found.flatMap(({ set, lines }) => summaries(set, lines));
   console.log(`\n${tableOf(rows)}\n`);
@@ -64,11 +73,36 @@ export async function record({ quick = false, check, save, out, fresh = false, t
       .filter((module) => existsSync(wasmFile(module)))
       .map((module) => [module.name, sizes(wasmFile(module)).gzip]),
   );
-  const whole = { version, ...(await environment()), sizes: measured, sets: found };
+  const peers = peerVersions(join(folder, "peers"));
+  const whole = {
+    version,
+    ...(await environment()),
+    peers,
+    memory: await memoryIn(folder, quick || only !== undefined),
+    sizes: measured,
+    sets: found,
+  };
   writeFileSync(join(folder, "record.json"), JSON.stringify(whole));
   console.log(`The record is ${join(folder, "record.json")}.`);
   if (save) keep(quick, whole, rows);
   return check ? losses(JSON.parse(readFileSync(quickFile, "utf8")), whole) : [];
+}
+
+/**
+ * The peaks of memory, measured once; none for a part of a record.
+ * @param {string} folder
+ * @param {boolean} isPart
+ * @returns {Promise<NonNullable<import("./history.mjs").Run["memory"]>>}
+ */
+async function memoryIn(folder, isPart) {
+  if (isPart) return [];
+  const file = join(folder, "memory.json");
+  await step("memory in WebAssembly", async (say) => {
+    if (existsSync(file)) return say("done before");
+    const reason = await measureMemory(file);
+    say(reason || "within its limits");
+  });
+  return existsSync(file) ? JSON.parse(readFileSync(file, "utf8")) : [];
 }
 
 /**
@@ -87,25 +121,8 @@ function keep(quick, { sizes: measured, sets: found, ...run }, rows) {
 }
 
 /** @param {readonly import("./summary.mjs").Summary[]} rows */
-function tableOf(rows) {
-  const head = ["set", "row", "n", "strict %", "loose %", "scale %", "rotation °", "place %", "≥ .9: right of", "ms"];
-  const cells = rows.map(({ set, row, n, strict, loose, medians: [scale, rotation, place], bins, ms }) => {
-    const [sure, right] = bins.at(-1) ?? [0, 0];
-    const share = (/** @type {number | null | undefined} */ value) =>
-      fixed(value === null || value === undefined ? value : 100 * value, 2);
-    const counts = bins.length > 0 ? `${right} of ${sure}` : "–";
-    return [
-      set,
-      row,
-      n,
-      percent(strict),
-      percent(loose),
-      share(scale),
-      fixed(rotation, 2),
-      share(place),
-      counts,
-      fixed(ms),
-    ];
-  });
-  return markdownTable(head, cells);
-}
+const tableOf = (rows) =>
+  markdownTable(
+    ["set", ...head],
+    rows.map((row) => [row.set, ...cellsOf(row)]),
+  );

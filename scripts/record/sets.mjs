@@ -1,6 +1,7 @@
 /** The sets of a record: the command of the lab that runs each, and how its cases are read. */
 import { readFileSync } from "node:fs";
 import { isWithin, loose, strict } from "../bench/records.mjs";
+import { peerInputs, roomInputs } from "./inputs.mjs";
 
 /**
  * What came of a case: `CaseLine` in `lab/src/bench/case_line.rs`, and what only some commands say.
@@ -9,7 +10,7 @@ import { isWithin, loose, strict } from "../bench/records.mjs";
  * @property {string} case unique in its row
  * @property {boolean} strict
  * @property {boolean} loose
- * @property {readonly [scale: number, rotationDeg: number, translation: number] | null} errors
+ * @property {readonly [scale: number, rotationDeg: number, translation: number | null] | null} errors
  * @property {number | null} confidence
  * @property {number | null} ms
  * @property {number | null} [work] renders of the search
@@ -23,9 +24,13 @@ import { isWithin, loose, strict } from "../bench/records.mjs";
  * @property {string} name
  * @property {string} title
  * @property {readonly string[]} args of `sim3align-lab`, before the number of cases
- * @property {readonly [full: number, quick: number]} cases
+ * @property {readonly [full: number, quick: number]} cases; none: the set is not a part of that record
  * @property {readonly string[]} [more] arguments behind the number
  * @property {(json: any) => Line[]} read
+ * @property {string} [note] what its rows mean, where that is not what it says above all tables
+ * @property {(folder: string) => Promise<readonly string[] | string>} [prepare] makes inputs in a folder; returns the arguments that
+ * read them, or why there are none
+ * @property {string} [commands] those that make the inputs and read them, for people
  */
 
 /** @param {import("../bench/records.mjs").PoseErrors | null | undefined} errors @returns {Line["errors"]} */
@@ -59,7 +64,7 @@ const benchLines = ({ rows }) =>
         ...judged(errors),
         confidence: alignment?.confidence ?? null,
         ms: 1000 * seconds,
-        work: /** @type {any} */ (alignment)?.diagnostics.counts.renders ?? null,
+        work: /** @type {any} */ (alignment)?.diagnostics.counts?.renders ?? null,
         iou: alignment?.metrics.iou ?? null,
         truthIou: truthMetrics?.iou ?? null,
         ...(alignment?.confidence === undefined || alignment.confidence >= 0.5 ? {} : { doubt: doubtOf(alignment) }),
@@ -94,11 +99,29 @@ const monocularLines = ({ records }) =>
       ms: null,
     }));
 
+/** Pairs of clouds, by how much they overlap. @param {any[]} records of `registration` @returns {Line[]} */
+const registrationLines = (records) =>
+  records.map(({ id, overlap, success, scale, rotationDeg, seconds }) => ({
+    row: `overlap ${overlap >= 0.6 ? "≥ 60" : overlap >= 0.3 ? "30–60" : "10–30"} %`,
+    case: id,
+    strict: success,
+    loose: success,
+    errors: rotationDeg === null ? null : [scale, rotationDeg, null],
+    confidence: null,
+    ms: seconds === null ? null : 1000 * seconds,
+  }));
+
 /** @param {Line[]} lines of the other commands */
 const ownLines = (lines) => lines;
 
 /** Seeds other than those with which anything was set. */
 const seed = ["--set-seed", "7"];
+
+/** Cases for other libraries, of which one takes seconds. */
+const PEER_CASES = 60;
+const peerCases = ["bench", "--generated", `${PEER_CASES}`, ...seed];
+const ROOMS = 6;
+const roomOptions = ["--seed", "7", "--scenes", `${ROOMS}`];
 
 /** @type {readonly RecordSet[]} */
 export const sets = [
@@ -106,7 +129,7 @@ export const sets = [
     name: "general",
     title: "One object, generated",
     args: ["bench", "--generated"],
-    cases: [480, 240],
+    cases: [480, 120],
     more: seed,
     read: benchLines,
   },
@@ -122,7 +145,7 @@ export const sets = [
     name: "colors",
     title: "Coloured objects with photos, generated",
     args: ["bench", "--set", "colors", "--generated"],
-    cases: [160, 20],
+    cases: [160, 10],
     more: seed,
     read: benchLines,
   },
@@ -138,7 +161,7 @@ export const sets = [
     name: "views",
     title: "Several views, generated",
     args: ["views", "--seed", "7", "--generated"],
-    cases: [24, 4],
+    cases: [24, 3],
     read: ownLines,
   },
   {
@@ -152,7 +175,7 @@ export const sets = [
     name: "generators",
     title: "Placements of generators, simulated",
     args: ["generators", "--scenes"],
-    cases: [24, 3],
+    cases: [24, 2],
     more: seed,
     read: ownLines,
   },
@@ -160,9 +183,28 @@ export const sets = [
     name: "monocular",
     title: "Depth as models guess it, generated",
     args: ["monocular", "--ways", "alone", "--generated"],
-    cases: [48, 6],
+    cases: [48, 2],
     more: seed,
     read: monocularLines,
+  },
+  {
+    name: "peers",
+    title: "Other libraries, with the preprocessing of the paper, on cases of the first set",
+    args: ["bench", "--row", "align: preset=precise"],
+    cases: [PEER_CASES, 0],
+    prepare: (folder) => peerInputs(folder, peerCases),
+    commands: `sim3align-lab ${peerCases.join(" ")} --write cases; npm run bench:peers -- --cases cases --out answers; sim3align-lab bench --cases cases --row "align: preset=precise" --import METHOD=answers/METHOD`,
+    read: benchLines,
+  },
+  {
+    name: "registration",
+    title: "Pairs of clouds of rooms, generated: register",
+    note: "Success is that of 3DMatch: the root mean square of the distances that the pose leaves is within .2 m.",
+    args: ["registration", "run"],
+    cases: [ROOMS, 0],
+    prepare: (folder) => roomInputs(folder, roomOptions),
+    commands: `sim3align-lab registration write rooms rooms ${roomOptions.join(" ")}; sim3align-lab registration run --data rooms`,
+    read: registrationLines,
   },
 ];
 
@@ -184,10 +226,13 @@ export const givenSet = (folder) => ({
  * @param {RecordSet} set
  * @param {boolean} quick
  */
-export function argsOf({ args, cases, more = [] }, quick) {
-  const number = cases[quick ? 1 : 0];
+export function argsOf({ args, cases, more = [], prepare }, quick) {
+  const number = prepare === undefined ? cases[quick ? 1 : 0] : 0;
   return [...args, ...(number > 0 ? [`${number}`] : []), ...more];
 }
+
+/** What a reader runs to get the rows of a set. @param {RecordSet} set */
+export const commandOf = (set) => set.commands ?? `sim3align-lab ${argsOf(set, false).join(" ")}`;
 
 /** Four digits, which are more than any set can tell. @param {number} value */
 export const rounded = (value) => Number(value.toPrecision(4));
