@@ -47,6 +47,23 @@ for (const path of paths) {
   });
 }
 
+test("the commands that documents name exist", () => {
+  const { scripts } = JSON.parse(text("package.json"));
+  const labFiles = readdirSync(join(repository, "lab", "src", "commands"), { recursive: true, encoding: "utf8" });
+  const labNames = labFiles
+    .filter((name) => name.endsWith("mod.rs") || !name.includes("/"))
+    .filter((name) => name.endsWith(".rs"))
+    .flatMap((name) => [...text(join("lab", "src", "commands", name)).matchAll(/^ {4}name: "([\w-]+)"/gm)])
+    .map(([, name = ""]) => name);
+  const names = (pattern: RegExp) =>
+    paths.flatMap((path) => [...text(path).matchAll(pattern)].map(([, name = ""]) => ({ path, name })));
+  const run = names(/npm run ([a-z][\w:-]*)/g).filter(({ path }) => !path.startsWith("examples"));
+  const lab = names(/(?:`sim3align-lab|cargo run [^`\n]*sim3align-lab [^`\n]*?--) ([a-z]+)/g);
+  assert.ok(run.length > 40 && lab.length > 10, `${run.length} and ${lab.length} are named`);
+  for (const { path, name } of run) assert.ok(name in scripts, `${path}: npm run ${name}`);
+  for (const { path, name } of lab) assert.ok(labNames.includes(name), `${path}: sim3align-lab ${name}`);
+});
+
 const guide = join("docs", "guides", "troubleshooting.md");
 
 /** The headings of one level that are codes. */
