@@ -7,6 +7,9 @@ import { Random } from "../support/random.js";
 const { signTest, signedRankTest } = await scriptModule("record/paired.mjs");
 const { losses } = await scriptModule("record/guard.mjs");
 const { summaries } = await scriptModule("record/summary.mjs");
+const { recordPage } = await scriptModule("record/page.mjs");
+const { commandOf, sets } = await scriptModule("record/sets.mjs");
+const { head } = await scriptModule("record/columns.mjs");
 
 interface Line {
   row: string;
@@ -146,4 +149,28 @@ test("a summary counts the right poses by confidence", () => {
   assert.equal(summary.strict, 0.5);
   assert.deepEqual(summary.bins.at(-1), [2, 1]);
   assert.deepEqual(summary.bins[0], [1, 0]);
+});
+
+test("the page has every set with its command, counts of confidences, peers, memory, sizes and doubts", () => {
+  const random = new Random(29);
+  const rows = sets.flatMap(({ name }: { name: string }) => summaries(name, lines(random, 40)));
+  const run = {
+    ...{ version: "1.2.3", commit: "0123456789ab", date: "2030-01-31T00:00:00Z", machine: "a <machine>", system: "s" },
+    ...{ node: "n", rustc: "r", sizes: { core: 187_500 }, peers: { open3d: "0.20.0" } },
+    memory: [{ name: "fast", bytes: 101_400_000, limit: 128_000_000 }],
+  };
+  const doubts = [{ set: "general", case: "0001-hard", confidence: 0.12, strict: false, doubt: "a low score" }];
+  const page: string = recordPage([{ run, rows, doubts }]);
+  const shown = (text: string) => text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`);
+  for (const set of sets) {
+    assert.ok(page.includes(shown(set.title)), set.name);
+    assert.ok(page.includes(shown(commandOf(set))), set.name);
+  }
+  for (const title of head) assert.ok(page.includes(`<th>${shown(title)}</th>`), title);
+  for (const text of ["open3d 0.20.0", "101.4", "128.0", "187.5", "0001-hard", "a low score", "a &#60;machine&#62;"])
+    assert.ok(page.includes(text), text);
+  // A reliability diagram states the number of poses of each tenth.
+  const [{ bins }] = rows.filter(({ set }: { set: string }) => set === "general");
+  const [n, right] = bins.at(-1);
+  assert.ok(page.includes(`<title>${right} of ${n} right</title>`));
 });
