@@ -13,6 +13,7 @@ import { bundlers, runtimes } from "./suites/hosts.mjs";
 import { browser, examples, javaScript } from "./suites/installed.mjs";
 import { lint, types } from "./suites/lint.mjs";
 import { checkPackage, checkSizes } from "./suites/package.mjs";
+import { guard } from "./suites/record.mjs";
 import { native, samples, wasm } from "./suites/rust.mjs";
 
 /**
@@ -30,6 +31,7 @@ const suites = {
   wasm: { title: "Rust tests, WebAssembly in Node", run: wasm },
   browser: { title: "Browser tests", run: browser, after: "build" },
   lint: { title: "Formatters and linters", run: lint },
+  record: { title: "Accuracy against the last record", run: guard, after: "build" },
   samples: { title: "Reproduction of the samples", run: samples },
   bundlers: { title: "The package in bundlers' apps", run: bundlers, after: "build" },
   examples: { title: "Examples", run: examples, after: "build" },

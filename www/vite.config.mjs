@@ -4,16 +4,20 @@ import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { defineConfig } from "vite";
 import { definitions } from "./definitions.mjs";
+import { documentation, documents } from "./documentation.mjs";
+import { serviceWorker } from "./service-worker.mjs";
 
 const www = dirname(fileURLToPath(import.meta.url));
 const repository = dirname(www);
 const samples = join(www, "samples", "index.json");
 
+const guides = documents(repository);
+
 const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js")).href);
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(intake|session|export|view3d)\/|\/src\/(run\/(video|known-size)|load\/(allowance|archives|case-url|label-masks|slices)|draw\/(albedo|pose-thumbnail|thumbnails)|views\/space|panels\/(time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
+  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(run\/(advice|video|known-size)|load\/(allowance|archives|case-url|label-masks|mesh-header|slices)|draw\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|panels\/(advised|kept|palette|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);
@@ -48,11 +52,14 @@ export default defineConfig({
       { find: /^sim3align\/(.+)$/, replacement: join(repository, "pkg", "$1.js") },
     ],
   },
-  define: definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
+  define: {
+    ...definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
+    DOCUMENTS: JSON.stringify(guides.map(({ title, fileName }) => [title, fileName])),
+  },
   // What workers load later has names of its own.
   worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
-  plugins: [preloadedModules],
+  plugins: [preloadedModules, documentation(guides), serviceWorker(www)],
   build: {
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,

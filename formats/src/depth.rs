@@ -84,7 +84,7 @@ fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
     if !info.is_grey {
         return Err(unsupported(
             "depth",
-            format!("a {bits}-bit PNG with colour or alpha"),
+            format!("{article} {bits}-bit PNG with colour or alpha"),
             "one grey channel",
             "Pass the raw depth map, not a rendering of it.",
         ));

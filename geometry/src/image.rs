@@ -127,6 +127,10 @@ impl DepthMap {
 pub fn bounds_of<T>(pixels: &[T], width: usize, is_set: impl Fn(&T) -> bool) -> [[usize; 2]; 2] {
     let mut bounds = [[usize::MAX, 0]; 2];
     for (v, row) in pixels.chunks_exact(width).enumerate() {
+        // Without a branch per pixel: most rows are empty.
+        if !row.iter().fold(false, |any, pixel| any | is_set(pixel)) {
+            continue;
+        }
         let Some(first) = row.iter().position(&is_set) else { continue };
         let last = row.iter().rposition(&is_set).unwrap_or(first);
         bounds[0] = [bounds[0][0].min(first), bounds[0][1].max(last)];

@@ -1,36 +1,18 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
 import { failure, invalidArgument } from "./error.js";
 import { onAbort } from "./on-abort.js";
-import type { CreateWorker, LazySource, SignalLike, WasmSource } from "./platform.js";
+import type { CreateWorker, SignalLike, UrlLike } from "./platform.js";
 import { ownOptions, snapshot } from "./snapshot.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
+import type { LazyModules, WasmModules } from "./wasm-modules.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {
-  /** The core module. Default: `wasm/core_bg.wasm` next to this script. */
-  wasm?: WasmSource | undefined;
-  /** The formats module, loaded when the first file is passed. Default: `wasm/formats_bg.wasm` next to this script. */
-  formatsWasm?: WasmSource | undefined;
   /**
-   * The depth-files module, loaded when a depth map as NPZ, EXR, TIFF or PFM is first passed. Default:
-   * `wasm/depth-files_bg.wasm` next to this script.
+   * Where the WebAssembly modules are: the URL of their folder, or the source of each. Default: `wasm/` next to this
+   * script. The core is loaded at once, the others when they are first needed.
    */
-  depthFilesWasm?: WasmSource | undefined;
-  /**
-   * The splats module, loaded when 3D Gaussians are first passed as a mesh. Default: `wasm/splats_bg.wasm` next to this
-   * script.
-   */
-  splatsWasm?: WasmSource | undefined;
-  /**
-   * The registration module, loaded when `register`, `estimateSim3` or `preset: "paper"` is first used. Default:
-   * `wasm/registration_bg.wasm` next to this script.
-   */
-  registrationWasm?: WasmSource | undefined;
-  /**
-   * The joint module, loaded when `alignScene`, `alignViews` or `track` is first used. Default: `wasm/joint_bg.wasm` next
-   * to this script.
-   */
-  jointWasm?: WasmSource | undefined;
+  wasm?: string | UrlLike | WasmModules | undefined;
   /**
    * The number of workers: 0 (the default) runs calls on the calling thread; `"auto"` is one less than the number of
    * cores, 1 to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need
@@ -51,12 +33,7 @@ export interface AlignerOptions {
  * @internal
  */
 export interface BundledAssets {
-  wasm?: LazySource;
-  formatsWasm?: LazySource;
-  depthFilesWasm?: LazySource;
-  splatsWasm?: LazySource;
-  registrationWasm?: LazySource;
-  jointWasm?: LazySource;
+  wasm?: LazyModules;
   workerScript?: string;
 }
 
@@ -72,11 +49,6 @@ export function checkedOptions<T extends object>(options: T | undefined) {
 
 const alignerOptions: readonly string[] = [
   "wasm",
-  "formatsWasm",
-  "depthFilesWasm",
-  "splatsWasm",
-  "registrationWasm",
-  "jointWasm",
   "workers",
   "createWorker",
   "workerStartMs",

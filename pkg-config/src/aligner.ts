@@ -53,6 +53,7 @@ import { ownArgument, snapshot } from "./snapshot.js";
 import { splatsModule } from "./splats-module.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
 import { isRecord, withoutUndefined } from "./values.js";
+import { checkedModules } from "./wasm-modules.js";
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;
@@ -91,19 +92,17 @@ export class Aligner {
 
   /** @internal */
   static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
-    const { wasm, formatsWasm, depthFilesWasm, splatsWasm, registrationWasm, jointWasm, ...given } = {
-      ...assets,
-      ...withoutUndefined(checkedAlignerOptions(options)),
-    };
+    const given = checkedAlignerOptions(options);
+    const wasm = { ...assets.wasm, ...withoutUndefined(checkedModules(given.wasm)) };
     const workers = checkedWorkers(given.workers);
     const startMs = checkedStartMs(given.workerStartMs);
     const modules: Modules = {
-      core: await coreModule.load(wasm),
-      formats: () => formatsModule.load(formatsWasm),
-      depthFiles: () => depthFilesModule.load(depthFilesWasm),
-      splats: () => splatsModule.load(splatsWasm),
-      registrar: () => registrationModule.load(registrationWasm),
-      joint: () => jointModule.load(jointWasm),
+      core: await coreModule.load(wasm.core),
+      formats: () => formatsModule.load(wasm.formats),
+      depthFiles: () => depthFilesModule.load(wasm.depthFiles),
+      splats: () => splatsModule.load(wasm.splats),
+      registrar: () => registrationModule.load(wasm.registration),
+      joint: () => jointModule.load(wasm.joint),
     };
     if (workers === 0) {
       const engine = new MainThreadEngine(modules);
@@ -116,11 +115,11 @@ export class Aligner {
       create: factory.create,
       startMs,
       core: await coreModule.compile(),
-      formats: () => formatsModule.compile(formatsWasm),
-      "depth-files": () => depthFilesModule.compile(depthFilesWasm),
-      splats: () => splatsModule.compile(splatsWasm),
-      registration: () => registrationModule.compile(registrationWasm),
-      joint: () => jointModule.compile(jointWasm),
+      formats: () => formatsModule.compile(wasm.formats),
+      depthFiles: () => depthFilesModule.compile(wasm.depthFiles),
+      splats: () => splatsModule.compile(wasm.splats),
+      registration: () => registrationModule.compile(wasm.registration),
+      joint: () => jointModule.compile(wasm.joint),
     };
     // A pool disposes its engine of the main thread: each has one of its own.
     const pool = (size: number) => new WorkerPool(size, setup, new MainThreadEngine(modules));

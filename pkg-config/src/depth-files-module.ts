@@ -12,7 +12,7 @@ export type LoadDepthFiles = () => Promise<LoadedModule<DepthFiles>>;
 
 /** The module, shared by all aligners of this realm. */
 export const depthFilesModule = new WasmModule<DepthFiles>(
-  "depth-files",
+  "depthFiles",
   () => new URL("./wasm/depth-files_bg.wasm", import.meta.url),
   async () => (await import("./wasm/depth-files.js")) as unknown as DepthFiles,
 );

@@ -135,3 +135,4 @@ export type {
 } from "./scene/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
 export { Tracker } from "./tracker.js";
+export type { WasmModules } from "./wasm-modules.js";

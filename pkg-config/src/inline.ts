@@ -16,12 +16,14 @@ export * from "./index.js";
 /** Like `createAligner` of `sim3align`, but without fetching files. */
 export async function createAligner(options: AlignerOptions = {}): Promise<Aligner> {
   return Aligner.create(options, {
-    wasm: () => bytesOf(core),
-    formatsWasm: async () => bytesOf((await import("inlined:formats")).default),
-    depthFilesWasm: async () => bytesOf((await import("inlined:depth-files")).default),
-    splatsWasm: async () => bytesOf((await import("inlined:splats")).default),
-    jointWasm: async () => bytesOf((await import("inlined:joint")).default),
-    registrationWasm: async () => bytesOf((await import("inlined:registration")).default),
+    wasm: {
+      core: () => bytesOf(core),
+      formats: async () => bytesOf((await import("inlined:formats")).default),
+      depthFiles: async () => bytesOf((await import("inlined:depth-files")).default),
+      splats: async () => bytesOf((await import("inlined:splats")).default),
+      joint: async () => bytesOf((await import("inlined:joint")).default),
+      registration: async () => bytesOf((await import("inlined:registration")).default),
+    },
     workerScript,
   });
 }

@@ -3,6 +3,7 @@ import { failure, internalError, isCoded, isExhausted, outOfMemory, Sim3AlignErr
 import type { CompiledModule, LazySource, WasmSource } from "./platform.js";
 import { Queue } from "./queue.js";
 import { isKind } from "./values.js";
+import { moduleFile } from "./wasm-modules.js";
 
 /** The exports of wasm-bindgen's glue, other than the functions of the module. */
 export interface Glue {
@@ -96,7 +97,7 @@ export class WasmModule<G extends Glue> {
 
 function notLoaded(name: string, cause: unknown): Sim3AlignError {
   if (isExhausted(cause)) return outOfMemory(cause);
-  const file = `${name}_bg.wasm`;
+  const file = moduleFile(name);
   // If a server bundler has moved this script, the file is not next to it, or the script has no URL.
   const isMoved = cause instanceof Error && "code" in cause && ["ENOENT", "ERR_INVALID_URL"].includes(`${cause.code}`);
   const remedy = isMoved
@@ -104,12 +105,8 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
     : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module; for bundlers that leave it out, such as esbuild, import from "sim3align/inline".`;
   const found = cause instanceof Error ? cause.message : String(cause);
   const expected = `the WebAssembly module ${file} of the same version`;
-  return failure("NOT_INITIALISED", optionOf(name), found, expected, remedy, cause);
+  return failure("NOT_INITIALISED", `wasm.${name}`, found, expected, remedy, cause);
 }
-
-/** The option of `createAligner` with the module's location: `wasm`, `formatsWasm`, `depthFilesWasm`. */
-const optionOf = (name: string): string =>
-  name === "core" ? "wasm" : `${name.replace(/-(.)/g, (_, letter: string) => letter.toUpperCase())}Wasm`;
 
 /** A loaded module: its current instance, whose heap is let go when it has grown too large. */
 export class LoadedModule<G extends Glue> {

@@ -29,7 +29,7 @@ class WorkerHost {
   readonly #post: Post;
   #core: WasmModule<Core> | undefined;
   readonly #formats = this.#lazy<Formats>("formats", formatsGlue);
-  readonly #depthFiles = this.#lazy<DepthFiles>("depth-files", depthFilesGlue as unknown as DepthFiles);
+  readonly #depthFiles = this.#lazy<DepthFiles>("depthFiles", depthFilesGlue as unknown as DepthFiles);
   readonly #splats = this.#lazy<Splats>("splats", splatsGlue as unknown as Splats);
   readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
   readonly #joint = this.#lazy<JointAligner>("joint", jointGlue as unknown as JointAligner);

@@ -94,7 +94,7 @@ async function exportAll(list, folder, quality, jobs) {
       mkdirSync(to, { recursive: true });
       const files = ["--mjcf", join(to, "mjcf"), "--urdf", join(to, "urdf"), "--usd", join(to, "scene.usda")];
       const json = join(to, "results.json");
-      const args = [join(packageDir, "cli.js"), "scene", scene, "--quality", quality, "--json", json, ...files];
+      const args = [join(packageDir, "cli", "main.js"), "scene", scene, "--quality", quality, "--json", json, ...files];
       const { output, reason } = await attempt(process.execPath, args);
       if (reason && !existsSync(join(to, "scene.usda"))) console.log(`${scene}: ${reason}\n${output}`);
       else writeFileSync(join(to, "truth.json"), JSON.stringify(truthOf(scene, json)));

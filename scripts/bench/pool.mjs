@@ -10,7 +10,7 @@ import { packageDir } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
 import { bumpyRing, foldersWith, packageModule, pictureOf, readTypedCase } from "./inputs.mjs";
-import { fixed, markdownTable, median } from "./table.mjs";
+import { fixed, markdownTable, median, quantile } from "./table.mjs";
 
 /** The longest that an abort may take, milliseconds. */
 const maxAbortMs = 100;
@@ -135,13 +135,11 @@ async function measureAborts(createAligner, aborts) {
     next.push(await timed(() => aligner.estimateSim3(cloud, cloud, pairs)));
   }
   aligner.dispose();
-  const sorted = [...latencies].sort((a, b) => a - b);
-  const quantile = (/** @type {number} */ share) =>
-    fixed(sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))], 1);
-  const rows = [[latencies.length, quantile(0.5), quantile(0.9), quantile(0.99), fixed(sorted.at(-1), 1)]];
+  const quantiles = [0.5, 0.9, 0.99, 1].map((share) => quantile(latencies, share));
+  const rows = [[latencies.length, ...quantiles.map((ms) => fixed(ms, 1))]];
   console.log(`\n${markdownTable(["aborts", "median, ms", "90 %", "99 %", "longest"], rows)}`);
   console.log(`\nThe next call waits ${fixed(median(next), 1)} ms (median) for its new worker.\n`);
-  return (sorted.at(-1) ?? Number.POSITIVE_INFINITY) <= maxAbortMs;
+  return quantile(latencies, 1) <= maxAbortMs;
 }
 
 /**

@@ -68,6 +68,16 @@ export function median(values) {
 }
 
 /**
+ * The value below which this share of the values lies; NaN of nothing.
+ * @param {readonly number[]} values
+ * @param {number} share
+ */
+export function quantile(values, share) {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] ?? Number.NaN;
+}
+
+/**
  * The mean; NaN of nothing.
  * @param {readonly number[]} values
  */

@@ -127,11 +127,15 @@ export function apiReport(folder = packageDir) {
     "The API of the package, generated from its declarations by `npm run api-report`. Not to be edited.",
     "",
   ];
+  /** @type {Map<string, string>} entries by the names that they export */
+  const entries = new Map();
   for (const [entry, target] of Object.entries(manifest.exports)) {
     if (typeof target === "string" || target.types === undefined) continue;
     const path = target.types.replace(/^\.\//, "");
     const names = exportsOf(path);
-    lines.push(`entry ${entry}`, ...names.map((name) => `  ${name}`), "");
+    const twin = entries.get(names.join());
+    lines.push(`entry ${entry}`, ...(twin === undefined ? names : [`as ${twin}`]).map((name) => `  ${name}`), "");
+    entries.set(names.join(), entry);
     for (const name of names) follow(path, name);
   }
   const sorted = [...declared].sort(([a], [b]) => (a < b ? -1 : 1));

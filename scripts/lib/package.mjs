@@ -1,9 +1,10 @@
 /** The publishable package, written whole to pkg/. */
 
 import { createHash } from "node:crypto";
-import { chmodSync, copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { once } from "./cache.mjs";
+import { bundleCommandLine } from "./command-line.mjs";
 import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
 import { NOTICE } from "./notices.mjs";
@@ -23,6 +24,7 @@ export const buildPackage = once(async () => {
     const [node, tsc] = nodeProgram("typescript", "tsc");
     await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
     copyFiles();
+    await bundleCommandLine();
     await bundleInline();
     await bundleReportPage();
     await bundleElement();
@@ -56,8 +58,6 @@ function copyFiles() {
   // The declarations of a module's raw exports are internal: they would be resolved for imports of the .wasm file.
   const isPublic = (/** @type {string} */ path) => !path.endsWith(".wasm.d.ts");
   cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isPublic });
-  const { bin } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
-  for (const program of Object.values(bin)) chmodSync(join(packageDir, String(program)), 0o755);
 }
 
 /**

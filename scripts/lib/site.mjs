@@ -1,6 +1,8 @@
 /** The static site: `www/` with the built package and the samples. */
-import { cpSync } from "node:fs";
+import { cpSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { history } from "../record/history.mjs";
+import { recordPage } from "../record/page.mjs";
 import { cached, digest, filesBelow, once } from "./cache.mjs";
 import { buildPackage } from "./package.mjs";
 import { at, packageDir, siteDir } from "./paths.mjs";
@@ -13,11 +15,21 @@ export const buildSite = once(async () => {
   await step("site", async (say) => {
     // The facts about the build differ from commit to commit, and the site does not use them.
     const used = filesBelow([packageDir]).filter((file) => !/build-info\.json$|\.md$/.test(file));
-    const inputs = digest([at("www"), at("package-lock.json"), ...used]);
+    const inputs = digest([
+      at("www"),
+      at("docs", "record"),
+      at("scripts", "record"),
+      at("docs", "guides"),
+      at("docs", "how-it-works.md"),
+      at("README.md"),
+      at("package-lock.json"),
+      ...used,
+    ]);
     const isNew = await cached(at("target", "www.stamp"), inputs, [join(siteDir, "index.html")], async () => {
       const [node, vite] = nodeProgram("vite");
       await run(node, [vite, "build", "--config", at("www", "vite.config.mjs")]);
       cpSync(at("www", "samples"), join(siteDir, "samples"), { recursive: true });
+      writeFileSync(join(siteDir, "record.html"), recordPage(history()));
     });
     say(isNew ? "target/www" : "target/www, up to date");
   });

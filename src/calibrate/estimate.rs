@@ -14,7 +14,6 @@ use crate::error::Result;
 use crate::geometry::depth_kind::DepthKind;
 use crate::pauses::Pauses;
 use crate::precise::no_candidate;
-use crate::precise::scored::conditioning::DROP;
 use crate::progress::Stopwatch;
 
 /// Relief of an object beside its width: that of a plate seen from the front, the ratio between neighbours on the grid, and
@@ -36,8 +35,9 @@ const POSES: [usize; 2] = [3, 1];
 const TOLERANCE: f64 = 1.0 / 3.0;
 /// Number of objects on which the estimate rests, those with the most pixels: more would hardly change it.
 const SUBJECTS: usize = 6;
-/// Standard deviation of what no object determines: a depth map without relief.
-const UNDETERMINED: f64 = 1.0;
+/// Standard deviation of the slope of the score of an object at the true relief or focal length. On real and generated objects
+/// alike, it is the same for flat curves and for sharp ones: errors of mesh, outline and depth tilt the curve.
+const SLOPE: f64 = 0.25;
 
 /// A calibration, and how well it is determined.
 #[derive(Debug, Clone)]
@@ -87,7 +87,9 @@ struct Estimator<'a, 's> {
 #[derive(Clone)]
 struct Sample {
     at: Unknowns,
+    /// What the image says, and with the prior.
     score: f64,
+    total: f64,
     poses: Vec<Option<Pictured>>,
 }
 
@@ -163,7 +165,7 @@ impl Estimator<'_, '_> {
             Some(start) => start,
             None => self.start(&grid).await?,
         };
-        let mut deviations = [UNDETERMINED; 2];
+        let mut deviations = [0.0; 2];
         let mut sample = self.sample(at, at, &poses).await?;
         let is_affine = self.view.kind.is_affine();
         let mut axes: Vec<Axis> = axis.into_iter().collect();
@@ -233,7 +235,7 @@ impl Estimator<'_, '_> {
         let calibration = self.reference.calibration(self.view.kind, at);
         let deeper = if self.view.kind.is_affine() { at.relief - anchor.relief } else { at.focal - anchor.focal };
         let tolerance = libm::exp(TOLERANCE * deeper);
-        let mut sample = Sample { at, score: -self.prior.cost(at), poses: Vec::new() };
+        let mut sample = Sample { at, score: 0.0, total: -self.prior.cost(at), poses: Vec::new() };
         for (k, poses) in self.used.iter().zip(poses) {
             let Some(subject) = self.subjects.get(*k) else { continue };
             let refined = subject.refined(self.view, &calibration, poses, tolerance, self.stages).ok().flatten();
@@ -241,6 +243,7 @@ impl Estimator<'_, '_> {
             sample.poses.push(refined.map(|(_, pose)| pose));
             self.pauses.here().await;
         }
+        sample.total += sample.score;
         Ok(sample)
     }
 
@@ -254,7 +257,7 @@ impl Estimator<'_, '_> {
             curve.push((k, sample));
         }
         let top = |curve: &[(i32, Sample)]| {
-            (0..curve.len()).fold(0, |best, k| if curve[k].1.score > curve[best].1.score { k } else { best })
+            (0..curve.len()).fold(0, |best, k| if curve[k].1.total > curve[best].1.total { k } else { best })
         };
         for _ in 0..EXTENSIONS {
             let best = top(&curve);
@@ -271,14 +274,26 @@ impl Estimator<'_, '_> {
         }
         let best = top(&curve);
         let window = &curve[best.saturating_sub(2)..(best + 3).min(curve.len())];
-        let points: Vec<(f64, f64)> =
-            window.iter().map(|(k, sample)| (f64::from(*k - curve[best].0), sample.score)).collect();
-        let Some((offset, curvature)) = parabola(&points) else {
-            return Ok((curve.swap_remove(best).1, UNDETERMINED));
+        let points = |of: fn(&Sample) -> f64| -> Vec<(f64, f64)> {
+            window.iter().map(|(k, sample)| (f64::from(*k - curve[best].0) * STEP, of(sample))).collect()
         };
-        let place = at(curve[best].0).moved(axis == Axis::Relief, offset.clamp(-1.0, 1.0) * STEP);
-        let peak = self.sample(place, center, poses).await?;
-        Ok((peak, (DROP / curvature).sqrt() * STEP))
+        let offset = parabola(&points(|sample| sample.total)).map(|(offset, _)| offset);
+        // At its end, a curve says nothing of a peak.
+        let is_inside = best > 0 && best + 1 < curve.len();
+        let evidence = parabola(&points(|sample| sample.score)).filter(|_| is_inside);
+        // A slope that is off by SLOPE moves the peak by SLOPE / 2a.
+        let slopes = SLOPE * SLOPE * self.used.len() as f64;
+        let precision = evidence.map_or(0.0, |(_, curvature)| 4.0 * curvature * curvature / slopes);
+        let place = at(curve[best].0);
+        let deviation = 1.0 / (precision + self.prior.precision(place, axis == Axis::Relief)).sqrt();
+        let peak = match offset {
+            Some(offset) => {
+                let place = place.moved(axis == Axis::Relief, offset.clamp(-STEP, STEP));
+                self.sample(place, center, poses).await?
+            }
+            None => curve.swap_remove(best).1,
+        };
+        Ok((peak, deviation))
     }
 }
 

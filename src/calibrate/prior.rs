@@ -22,6 +22,10 @@ const LEAST_RANGE: f64 = 1e-3;
 /// Weight of the prior on the depth: the errors of sensors, depth models and meshes are the same over whole parts of an
 /// object, so that its score falls more steeply than it should. From 3 to 8, the errors on real objects are about the same.
 const WEIGHT: f64 = 3.0;
+/// Step of the second differences of the prior, and the least precision: a shift may put what is far near infinity, where
+/// the prior bends down.
+const STEP: f64 = 0.1;
+const LEAST_PRECISION: f64 = 1.0;
 
 /// The prior of a view.
 pub struct Prior<'a> {
@@ -58,5 +62,12 @@ impl<'a> Prior<'a> {
             cost += square(at.focal / deviation);
         }
         DROP * cost
+    }
+
+    /// The inverse of the variance of the relief or of the focal length.
+    pub fn precision(&self, at: Unknowns, relief: bool) -> f64 {
+        let [below, here, above] = [-STEP, 0.0, STEP].map(|by| self.cost(at.moved(relief, by)));
+        let weight = if relief { WEIGHT } else { 1.0 };
+        ((below - 2.0 * here + above) / (2.0 * STEP * STEP * DROP * weight)).max(LEAST_PRECISION)
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::observation::{Observation, check_mask_size, check_pixels};
 use super::photo::{Photo, check_photo};
 use crate::error::Result;
-use crate::geometry::image::{DepthMap, Mask};
+use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
 
 /// One image of several views or of a video.
@@ -52,19 +52,23 @@ impl Frame {
     /// The part of the frame in a box of pixels, [first, end) along columns and rows, at every `step`-th pixel, without the
     /// photo. The camera frame stays the same.
     pub fn window(&self, bounds: [[usize; 2]; 2], step: usize) -> Self {
-        let width = self.depth.width();
         let step = step.max(1);
-        let [columns, rows] = bounds.map(|[first, end]| (first..end).step_by(step));
-        let size = [columns.len(), rows.len()];
-        let pixels = || rows.clone().flat_map(|v| columns.clone().map(move |u| v * width + u));
-        let mut depth = DepthMap::filled(size[0], size[1], 0.0);
-        depth.data_mut().iter_mut().zip(pixels()).for_each(|(z, i)| *z = self.depth.data()[i]);
-        let mask = self.mask.as_ref().map(|mask| {
-            let mut part = Mask::filled(size[0], size[1], 0);
-            part.data_mut().iter_mut().zip(pixels()).for_each(|(m, i)| *m = mask.data()[i]);
-            part
-        });
-        let camera = self.camera.thinned(bounds.map(|[first, _]| first), step);
-        Self { depth, camera, mask, photo: None }
+        Self {
+            depth: thinned(&self.depth, bounds, step, 0.0),
+            camera: self.camera.thinned(bounds.map(|[first, _]| first), step),
+            mask: self.mask.as_ref().map(|mask| thinned(mask, bounds, step, 0)),
+            photo: None,
+        }
     }
+}
+
+/// Every `step`-th pixel of an image in a box.
+fn thinned<T: Copy>(image: &Image<T>, [columns, rows]: [[usize; 2]; 2], step: usize, empty: T) -> Image<T> {
+    let [width, height] = [columns, rows].map(|[first, end]| (end - first).div_ceil(step));
+    let mut part = Image::filled(width, height, empty);
+    let from = image.data().chunks_exact(image.width().max(1)).take(rows[1]).skip(rows[0]).step_by(step);
+    for (to, from) in part.data_mut().chunks_exact_mut(width.max(1)).zip(from) {
+        to.iter_mut().zip(from[columns[0]..columns[1]].iter().step_by(step)).for_each(|(to, from)| *to = *from);
+    }
+    part
 }

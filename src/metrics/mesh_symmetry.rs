@@ -4,6 +4,7 @@
 //! symmetry preserves the moments of the surface. Axes are therefore looked for along the principal axes and, in a plane
 //! or in space where the moments are about equal, in all directions.
 
+use core::cell::Cell;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec3, Vec3};
@@ -128,7 +129,7 @@ impl Finder {
 
     /// The direction about which a rotation by `angle` maps the surface onto itself, adjusted.
     fn find(&self, directions: &[DVec3], angle: f64) -> Option<DVec3> {
-        let rough = |axis: &DVec3| (self.distance(*axis, angle, SAMPLES[0]), *axis);
+        let rough = |axis: &DVec3| (self.distance(*axis, angle, SAMPLES[0], f64::INFINITY), *axis);
         let mut scored: Vec<(f64, DVec3)> = directions.iter().map(rough).collect();
         scored.sort_by(|a, b| a.0.total_cmp(&b.0));
         let likely = scored.into_iter().take(LIKELY);
@@ -137,7 +138,7 @@ impl Finder {
 
     /// The axis nearby with the smallest distance; `None` if that cannot be small enough.
     fn adjusted(&self, mut axis: DVec3, angle: f64) -> Option<DVec3> {
-        let mut least = self.distance(axis, angle, SAMPLES[1]);
+        let mut least = self.distance(axis, angle, SAMPLES[1], NEAR * MEAN);
         if least > NEAR * MEAN {
             return None;
         }
@@ -147,7 +148,7 @@ impl Finder {
                 let near = [u, v, -u, -v].map(|side| (axis + side * step).normalize());
                 let before = least;
                 for tilted in near {
-                    let distance = self.distance(tilted, angle, SAMPLES[1]);
+                    let distance = self.distance(tilted, angle, SAMPLES[1], least);
                     if distance < least {
                         (least, axis) = (distance, tilted);
                     }
@@ -162,24 +163,34 @@ impl Finder {
 
     /// Whether a rotation maps the surface onto itself.
     fn maps(&self, axis: DVec3, angle: f64) -> bool {
-        let distances = self.distances(axis, angle, SAMPLES[2]);
+        // Twice, so that rounding does not matter.
+        let distances = self.distances(axis, angle, SAMPLES[2], 2.0 * MEAN);
         let tail = quantile(distances.iter().copied(), 0.95).map_or(f64::INFINITY, f64::from);
         mean(&distances) <= MEAN * self.diagonal && tail <= TAIL * self.diagonal
     }
 
-    /// The mean distance of a number of points from the surface after a rotation, relative to the diagonal.
-    fn distance(&self, axis: DVec3, angle: f64, count: usize) -> f64 {
-        mean(&self.distances(axis, angle, count)) / self.diagonal
+    /// The mean distance of a number of points from the surface after a rotation, relative to the diagonal; infinite, where
+    /// it is more than `most`.
+    fn distance(&self, axis: DVec3, angle: f64, count: usize, most: f64) -> f64 {
+        mean(&self.distances(axis, angle, count, most)) / self.diagonal
     }
 
-    fn distances(&self, axis: DVec3, angle: f64, count: usize) -> Vec<f32> {
+    /// The distances. Those after their mean is beyond `most` are infinite, and cost nothing.
+    fn distances(&self, axis: DVec3, angle: f64, count: usize, most: f64) -> Vec<f32> {
         let turn = exp(axis * angle);
         // The samples are in the order of the triangles: evenly chosen ones are spread over the surface.
         let step = self.samples.len() / count;
-        let turned = |i: usize| (turn * (self.samples[i * step].as_dvec3() - self.center) + self.center).as_vec3();
+        let sum = Cell::new(0.0);
+        let turned = |i: usize| match sum.get() / count as f64 / self.diagonal > most {
+            // Not a number is near nothing.
+            true => Vec3::NAN,
+            false => (turn * (self.samples[i * step].as_dvec3() - self.center) + self.center).as_vec3(),
+        };
         let mut distances = Vec::with_capacity(count);
         self.tree.nearest_of_each(count, turned, |_, nearest| {
-            distances.push(nearest.map_or(f32::INFINITY, |s| s.distance_squared.sqrt()));
+            let distance = nearest.map_or(f32::INFINITY, |s| s.distance_squared.sqrt());
+            sum.set(sum.get() + f64::from(distance));
+            distances.push(distance);
         });
         distances
     }

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::PhotoRegion;
-use crate::geometry::image::bounds_of;
+use crate::geometry::image::{Mask, bounds_of};
 use crate::metrics::symmetry::Symmetry;
 use crate::precise::drawn::mesh_pyramid::MeshPyramid;
 use crate::precise::drawn::pose::{CropPose, MeshFrame};
@@ -27,8 +27,21 @@ const MAX_BOX_PX: f64 = 16_000.0;
 pub struct Evidence {
     /// The search.
     pub search: Search,
-    /// The photo on its fine grid, if there is one.
-    pub photo: Option<PhotoCells>,
+    /// The part of the photo that it is in.
+    pub region: PhotoRegion,
+}
+
+impl Evidence {
+    /// The same evidence for another look at it.
+    pub fn shared(&self) -> Self {
+        Self { search: self.search.look(), region: self.region }
+    }
+
+    /// The photo of the frame on the fine grid, if there is one.
+    pub fn photo(&self, frame: &Frame) -> Option<PhotoCells> {
+        let photo = frame.photo.as_ref()?;
+        Some(PhotoCells::new(photo, &self.region, self.search.observation.image, self.search.grid(FINE)))
+    }
 }
 
 /// The evidence around the mask of a frame; `None` if the mask shows nothing.
@@ -36,10 +49,15 @@ pub struct Evidence {
 /// # Errors
 /// As [`Observation::new`].
 pub fn of_mask(frame: &Frame, mesh: &Rc<MeshPyramid>, settings: &SearchSettings) -> Result<Option<Evidence>> {
-    let Some(mask) = frame.mask.as_ref().filter(|mask| mask.data().iter().any(|m| *m != 0)) else { return Ok(None) };
+    let Some(mask) = frame.mask.as_ref().filter(|mask| is_set(mask)) else { return Ok(None) };
     let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0).map(|[low, high]| [low as f64, high as f64]);
     let Some(window) = Window::around(frame, bounds) else { return Ok(None) };
-    evidence(frame, &window.frame, &window.region, mesh, settings)
+    evidence(window.frame, window.region, mesh, settings)
+}
+
+/// Whether a mask has a pixel that is set.
+pub fn is_set(mask: &Mask) -> bool {
+    mask.data().iter().fold(0, |any, pixel| any | pixel) != 0
 }
 
 /// The evidence around the object where a pose predicts it, for a frame without a mask; `None` if the frame does not show it
@@ -61,24 +79,21 @@ pub fn of_pose(
     let half = [camera.fx * radius, camera.fy * radius];
     let bounds = [0, 1].map(|axis| [at[axis] - half[axis], at[axis] + half[axis]]);
     let Some(window) = Window::around(frame, bounds) else { return Ok(None) };
-    let masked = with_predicted_mask(&window.frame, &mesh.fine, &pose.similarity(&MeshFrame::NORMALIZED));
-    evidence(frame, &masked, &window.region, mesh, settings)
+    let masked = with_predicted_mask(window.frame, &mesh.fine, &pose.similarity(&MeshFrame::NORMALIZED));
+    evidence(masked, window.region, mesh, settings)
 }
 
 fn evidence(
-    whole: &Frame,
-    window: &Frame,
-    region: &PhotoRegion,
+    window: Frame,
+    region: PhotoRegion,
     mesh: &Rc<MeshPyramid>,
     settings: &SearchSettings,
 ) -> Result<Option<Evidence>> {
-    let Some(mask) = &window.mask else { return Ok(None) };
-    let observation = Observation::new(window.depth.clone(), mask.clone(), window.camera)?;
+    let Some(mask) = window.mask else { return Ok(None) };
+    let observation = Observation::new(window.depth, mask, window.camera)?;
     let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
     search.equivalence = mesh.equivalence(&Symmetry::Auto)?;
-    let photo = whole.photo.as_ref();
-    let photo = photo.map(|photo| PhotoCells::new(photo, region, search.observation.image, search.grid(FINE)));
-    Ok((search.grid(FINE).mask_cells > 0).then_some(Evidence { search, photo }))
+    Ok(Some(Evidence { search, region }))
 }
 
 /// A part of a frame, and where it lies in the photo.

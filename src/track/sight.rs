@@ -14,12 +14,14 @@ use crate::precise::drawn::render::Canvas;
 use crate::precise::scored::score::Score;
 use crate::precise::searched::cascade::Subject;
 use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{FINE, MIDDLE, SearchSettings, TRACKED};
+use crate::precise::searched::recipe::{FINE, SearchSettings, TRACKED};
 use crate::precise::searched::refine::Refiner;
 use crate::precise::searched::search::Search;
 
-/// Times that the mask of a frame without one is predicted.
+/// Most times that the mask of a frame without one is predicted, and how far a pose may be from that of its mask for the next
+/// mask to be the last one: relative to the diagonal of the object, about half of what a predicted mask grows.
 const PREDICTIONS: usize = 3;
+const NEAR: f64 = 0.04;
 
 /// The pose found in a frame.
 pub struct Seen {
@@ -64,28 +66,37 @@ pub struct Sight {
 }
 
 impl Sight {
-    /// The best pose near the expected ones; `wide`: also in their neighbourhood.
-    pub fn around(&self, frame: &Frame, expected: &[CropPose], wide: bool) -> Option<Seen> {
-        let first = *expected.first()?;
-        let masked = of_mask(frame, &self.mesh, &self.settings).ok()?;
-        let has_mask = masked.is_some();
-        if !has_mask && frame.mask.is_some() {
-            // The mask says that nothing is seen.
-            return None;
+    /// The evidence of a frame where its mask is or, without one, where a pose predicts it; `None` if nothing is seen there.
+    pub fn evidence(&self, frame: &Frame, expected: &CropPose) -> Option<Evidence> {
+        match frame.mask {
+            Some(_) => of_mask(frame, &self.mesh, &self.settings),
+            None => of_pose(frame, expected, &self.mesh, &self.settings),
         }
-        let mut evidence = match masked {
-            Some(evidence) => evidence,
-            None => of_pose(frame, &first, &self.mesh, &self.settings).ok().flatten()?,
-        };
+        .ok()
+        .flatten()
+    }
+
+    /// The best pose near the expected ones, of which the first tells where the evidence is; `wide`: also in their
+    /// neighbourhood.
+    pub fn around(&self, frame: &Frame, evidence: &Evidence, expected: &[CropPose], wide: bool) -> Option<Seen> {
+        let first = *expected.first()?;
+        let has_mask = frame.mask.is_some();
+        let mut evidence = evidence.shared();
         let mut poses = expected.to_vec();
         if wide {
             poses.extend(expected.iter().flat_map(|pose| evidence.search.around(*pose)).collect::<Vec<_>>());
         }
         let mut found = self.refined(&evidence.search, &poses, !has_mask)?;
         if !has_mask {
+            let mut from = first;
             for round in 1..PREDICTIONS {
-                evidence = of_pose(frame, &found.pose, &self.mesh, &self.settings).ok().flatten()?;
-                found = self.refined(&evidence.search, &[found.pose], round + 1 < PREDICTIONS)?;
+                let is_last = round + 1 == PREDICTIONS || apart(&from, &found.pose) < NEAR;
+                from = found.pose;
+                evidence = of_pose(frame, &from, &self.mesh, &self.settings).ok().flatten()?;
+                found = self.refined(&evidence.search, &[from], !is_last)?;
+                if is_last {
+                    break;
+                }
             }
         }
         let visible = if has_mask { 1.0 } else { visible(&evidence.search, &found.pose) };
@@ -94,12 +105,20 @@ impl Sight {
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
     fn refined(&self, search: &Search, poses: &[CropPose], by_depth: bool) -> Option<Found> {
-        if search.grid(MIDDLE).mask_cells == 0 {
+        let stages = if by_depth { &TRACKED[..2] } else { &TRACKED[..] };
+        // Only the grids of these stages are made.
+        if stages.iter().any(|stage| search.grid(stage.grid).mask_cells == 0) {
             return None;
         }
-        let stages = if by_depth { &TRACKED[..2] } else { &TRACKED[..] };
         AtItsSize { search, by_depth }.cascade(stages, poses.to_vec()).first().copied()
     }
+}
+
+/// How far apart two poses are: about the distance of points of the surface, relative to the diagonal of the object.
+fn apart(a: &CropPose, b: &CropPose) -> f64 {
+    let [x, y, z, size, across, down, distance] = a.step_to(b);
+    let length = |sides: [f64; 3]| sides.iter().map(|side| side * side).sum::<f64>().sqrt();
+    0.5 * length([x, y, z]) + 0.5 * size.abs() + length([across, down, distance])
 }
 
 /// Poses in a frame, refined at the size that they have.

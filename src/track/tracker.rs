@@ -8,7 +8,7 @@ use core::borrow::Borrow;
 use glam::DQuat;
 
 use super::detection::{Detection, Known, Lead};
-use super::evidence::Evidence;
+use super::evidence::{Evidence, is_set};
 use super::history::History;
 use super::motion::{MAX_TURN, Motion};
 use super::options::TrackOptions;
@@ -18,6 +18,7 @@ use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::Observation;
+use crate::evidence::photo::PhotoRegion;
 use crate::evidence::sample::Sampling;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
@@ -28,7 +29,7 @@ use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::drawn::render::Canvas;
 use crate::precise::judged::choice::AGREES;
-use crate::precise::judged::color::{LOOSE, agreement_at, cells, roll};
+use crate::precise::judged::color::{LOOSE, agreement_at, loose_axis, roll};
 use crate::precise::judged::confidence::sureness;
 use crate::precise::scored::objective::Objective;
 use crate::precise::scored::prior::Prior;
@@ -42,8 +43,9 @@ use crate::report::Effort;
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
 use crate::views::world_pose::{PlacedCamera, WorldPose};
 
-/// Steps of the refinement that shows the size, and after a change of the size.
-const STEPS: [usize; 2] = [6, 3];
+/// Steps of the refinement that shows the size, and after a change of the size. Both begin at a pose that is refined but for its
+/// size.
+const STEPS: [usize; 2] = [3, 2];
 /// Fit relative to that of earlier frames, below which the neighbourhood is searched, a frame is uncertain, and the object
 /// is lost.
 const FITS: f32 = 0.85;
@@ -170,10 +172,11 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
 
     /// The pose in the first frame.
     fn first(&self, frame: &Frame, host: &mut dyn Host) -> Result<Seen> {
-        let has_mask = frame.mask.as_ref().is_some_and(|mask| mask.data().iter().any(|m| *m != 0));
+        let has_mask = frame.mask.as_ref().is_some_and(is_set);
         if let (Some(initial), false) = (&self.options.initial, has_mask) {
             let pose = CropPose::of_similarity(initial, &self.sight.mesh.frame).ok_or_else(no_candidate)?;
-            return self.sight.around(frame, &[pose], false).ok_or_else(no_candidate);
+            let evidence = self.sight.evidence(frame, &pose).ok_or_else(no_candidate)?;
+            return self.sight.around(frame, &evidence, &[pose], false).ok_or_else(no_candidate);
         }
         let observation = frame.observation()?.ok_or_else(|| {
             Error::new(
@@ -193,12 +196,14 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let sized = |pose: WorldPose| size.map_or(pose, |(log_scale, _)| WorldPose { log_scale, ..pose });
         let expected = [self.motion.carried(&last), last].map(sized);
         let seen: Vec<CropPose> = expected.iter().filter_map(|pose| PlacedCamera::AT_ORIGIN.see(pose)).collect();
-        let near = self.sight.around(frame, &seen, false);
+        let evidence = seen.first().and_then(|first| self.sight.evidence(frame, first));
+        let look = |wide| self.sight.around(frame, evidence.as_ref()?, &seen, wide);
+        let near = look(false);
         let fit = |seen: &Option<Seen>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
         if fit(&near, self) >= FITS && self.state != TrackState::Lost {
             return near;
         }
-        let wide = self.sight.around(frame, &seen, true);
+        let wide = look(true);
         let near = if fit(&wide, self) > fit(&near, self) { wide } else { near };
         if fit(&near, self) >= UNCERTAIN && self.state != TrackState::Lost {
             return near;
@@ -232,7 +237,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let expected = CropPose { rotation: before, ..seen.found.pose };
         // The more of it is hidden, the less its fit says.
         let is_near = |other: &Seen| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
-        match self.sight.around(frame, &[expected], true) {
+        let near = self.sight.evidence(frame, &expected);
+        match near.and_then(|near| self.sight.around(frame, &near, &[expected], true)) {
             Some(other) if is_near(&other) => Seen { lead: seen.lead, ..other },
             _ => seen,
         }
@@ -248,8 +254,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let mut search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);
         search.equivalence = self.sight.mesh.equivalence(&Symmetry::Auto)?;
         let found = Found { score: search.score(&detection.found.pose), ..detection.found };
-        let photo = observation.photo().map(|photo| cells(photo, &search));
-        let evidence = Evidence { search, photo };
+        let evidence = Evidence { search, region: PhotoRegion::WHOLE };
         Ok(Seen { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
 
@@ -279,7 +284,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             if shows_enough {
                 self.certain = Some(found.pose.rotation);
             }
-            self.roll(&evidence, &mut found);
+            self.roll(frame, &evidence, &mut found);
             self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
         let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
@@ -295,12 +300,13 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
-        let measured = match frame.observation() {
-            Ok(Some(observation)) if self.options.metrics => {
+        let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };
+        let measured = match observed {
+            Some(observation) => {
                 let sampling = Sampling { seed: u64::from(self.options.seed), ..Sampling::default() };
                 Some(metrics::evaluate(&observation, self.mesh.borrow().mesh(), &camera_from_mesh, &sampling)?)
             }
-            _ => None,
+            None => None,
         };
         Ok(TrackedFrame {
             camera_from_mesh: (&camera_from_mesh).into(),
@@ -317,11 +323,13 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
-    fn roll(&self, evidence: &Evidence, found: &mut Found) {
-        let Evidence { search, photo: Some(photo) } = evidence else { return };
-        let Some(colors) = self.mesh.borrow().colors() else { return };
-        if let Some((pose, _)) = roll(search, photo, colors, found.pose, LOOSE)
-            && agreement_at(search, photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
+    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Found) {
+        let Evidence { search, .. } = evidence;
+        let (Some(colors), true) = (self.mesh.borrow().colors(), frame.photo.is_some()) else { return };
+        if let Some(axis) = loose_axis(search, &found.pose, LOOSE)
+            && let Some(photo) = evidence.photo(frame)
+            && let Some((pose, _)) = roll(search, &photo, colors, found.pose, axis)
+            && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
         {
             *found = Found { pose, score: search.score(&pose), ..*found };
         }

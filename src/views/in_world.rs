@@ -239,7 +239,7 @@ fn predicted(pose: &WorldPose, views: &[View], cameras: &[PlacedCamera], like: &
         }
         let Some(seen) = camera.see(pose) else { continue };
         let camera_from_frame = seen.similarity(&MeshFrame::NORMALIZED);
-        let frame = with_predicted_mask(&view.frame, &mesh.fine, &camera_from_frame);
+        let frame = with_predicted_mask(view.frame.clone(), &mesh.fine, &camera_from_frame);
         let Ok(Some(observation)) = frame.observation() else { continue };
         let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), like.settings);
         search.assume(like.prior);

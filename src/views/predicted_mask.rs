@@ -21,7 +21,7 @@ const NEXT: [f32; 2] = [1.0, 1.414];
 ///
 /// Readings of a surface that goes on beyond the grown silhouette, such as a table, may or may not be of the object where
 /// they are near it: they are removed.
-pub fn with_predicted_mask(frame: &Frame, mesh: &Mesh, camera_from_mesh: &Similarity) -> Frame {
+pub fn with_predicted_mask(mut frame: Frame, mesh: &Mesh, camera_from_mesh: &Similarity) -> Frame {
     let (width, height) = (frame.depth.width(), frame.depth.height());
     let mut rasteriser = Rasteriser::new();
     rasteriser.render_depth(mesh, camera_from_mesh, &frame.camera, width, height);
@@ -59,19 +59,14 @@ pub fn with_predicted_mask(frame: &Frame, mesh: &Mesh, camera_from_mesh: &Simila
     while let Some(i) = open.pop() {
         visit(i, &mut open, &mut continues);
     }
-    let mut seen = Frame { mask: Some(Mask::filled(width, height, 0)), ..frame.clone() };
-    if let Some(mask) = &mut seen.mask {
-        for (i, pixel) in mask.data_mut().iter_mut().enumerate() {
-            let inside = grown.distance[i] == 0.0;
-            *pixel = u8::from((inside || (is_ring(i) && !continues[i])) && agrees(i));
-        }
+    let mut mask = Mask::filled(width, height, 0);
+    for (i, pixel) in mask.data_mut().iter_mut().enumerate() {
+        let inside = grown.distance[i] == 0.0;
+        *pixel = u8::from((inside || (is_ring(i) && !continues[i])) && agrees(i));
     }
-    for (i, z) in seen.depth.data_mut().iter_mut().enumerate() {
-        if is_ring(i) && continues[i] && agrees(i) {
-            *z = 0.0;
-        }
-    }
-    seen
+    let unclear: Vec<usize> = (0..depth.len()).filter(|i| is_ring(*i) && continues[*i] && agrees(*i)).collect();
+    unclear.into_iter().for_each(|i| frame.depth.data_mut()[i] = 0.0);
+    Frame { mask: Some(mask), ..frame }
 }
 
 /// Distances to a silhouette, pixels, and the depth of its nearest pixel.

@@ -56,24 +56,143 @@ test("all controls are reachable by keyboard and show their focus", async ({ pag
     assert.notEqual(found.outline, "none", `${found.label} does not show its focus`);
     reached.add(found.label);
   }
-  for (const name of [
-    "sample",
-    "theme",
-    "effort",
-    "align",
-    "refine",
-    "JSON",
-    "files",
-    "edit-files",
-    "wipe",
-    "accept",
-  ]) {
+  for (const name of ["commands", "align", "refine", "JSON", "files", "wipe", "accept"]) {
     assert.ok(reached.has(name), `${name} is not among ${[...reached].join(", ")}`);
+  }
+  const order = [...reached];
+  assert.ok(order.indexOf("align") < 5, `Align is stop ${order.indexOf("align") + 1}: ${order.join(", ")}`);
+});
+
+/** Runs in the page: the controls that can be seen and reached by Tab, each with its smaller side in pixels. */
+const controlsInSight = `[...document.querySelectorAll("a[href], button, input, select, textarea, summary, [tabindex]")]
+  .filter((one) => one.tabIndex >= 0 && !one.matches(":disabled") && one.checkVisibility())
+  .map((one) => {
+    const { width, height } = (one.closest("label") ?? one).getBoundingClientRect();
+    return [one.id || one.getAttribute("aria-label") || one.textContent, Math.min(width, height)];
+  })`;
+
+const laptop = { viewport: { width: 1440, height: 900 } };
+
+test(
+  "few controls are in sight while one's own object is judged and corrected",
+  {
+    address: "",
+    ...laptop,
+  },
+  async (opened, page) => {
+    await drop(opened, files);
+    await page.locator(".start[data-own=true]").waitFor(PATIENCE);
+    await opened.aligned();
+    const found = (await page.evaluate(controlsInSight)) as [string, number][];
+    assert.ok(found.length > 20 && found.length <= 34, `${found.length}: ${found.map(([name]) => name).join(", ")}`);
+  },
+);
+
+for (const [name, context, least] of [
+  ["a laptop", laptop, 24],
+  ["a phone", phone, 44],
+] as const) {
+  test(`all targets are large enough on ${name}`, { address: "", ...context }, async (opened, page) => {
+    for (const summary of await page.locator("details:not([open]) > summary").all()) {
+      if (await summary.isVisible()) await summary.click();
+    }
+    const measure = async () => {
+      const found = (await page.evaluate(controlsInSight)) as [string, number][];
+      assert.deepEqual(
+        found.filter(([, side]) => side < least - 0.5),
+        [],
+      );
+    };
+    await measure();
+    for (const menu of await page.locator("button.menu").all()) {
+      await menu.click();
+      await page.locator(".menu-box:popover-open").waitFor(PATIENCE);
+      await measure();
+      assert.deepEqual(await opened.violations(), []);
+      await page.keyboard.press("Escape");
+    }
+  });
+}
+
+test("the palette finds every command by typing, and runs it", async (opened, page) => {
+  await page.keyboard.press("Control+k");
+  const field = page.getByRole("combobox", { name: "Find a command" });
+  await field.waitFor(PATIENCE);
+  assert.deepEqual(await opened.violations(), []);
+  const options = page.locator(".palette [role=option]");
+  assert.ok((await options.count()) > 40);
+  const texts = (await options.allTextContents()).join("\n");
+  for (const part of ["Undo", "UndoCtrlZ", "Export: GLB", "Sample: Desk", "Quality: Best", "Theme: dark"])
+    assert.ok(texts.includes(part), `${part} is not in ${texts}`);
+  await field.fill("view CAMERA");
+  assert.deepEqual(await options.allTextContents(), ["Camera viewC"]);
+  await field.fill("show or hide");
+  assert.ok((await options.count()) > 3);
+  const chosen = () => page.locator(".palette [aria-selected=true]").textContent();
+  const first = await chosen();
+  await page.keyboard.press("ArrowDown");
+  assert.notEqual(await chosen(), first);
+  assert.equal(
+    await field.getAttribute("aria-activedescendant"),
+    await page.locator(".palette [aria-selected=true]").getAttribute("id"),
+  );
+  await field.fill("no such command");
+  assert.equal(await options.count(), 0);
+  await page.keyboard.press("Enter");
+  await field.fill("depth difference");
+  await page.keyboard.press("Enter");
+  await page.locator(".palette").waitFor({ state: "hidden", ...PATIENCE });
+  await page.locator(".legend-bar").first().waitFor(PATIENCE);
+  // In a text field, too; and by the mouse.
+  await page.locator("#known-size").press("Control+k");
+  await field.fill("theme dark");
+  await options.click();
+  await page.waitForFunction(() => document.documentElement.style.colorScheme === "dark");
+  await page.click("#commands");
+  await field.waitFor(PATIENCE);
+  await page.keyboard.press("Control+k");
+  await page.locator(".palette").waitFor({ state: "hidden", ...PATIENCE });
+});
+
+test("nothing is cut on any screen, nor are lengths above a metre", { address: "" }, async (_, page) => {
+  for (const [width, height] of [
+    [390, 844],
+    [1024, 768],
+    [1440, 900],
+    [1920, 1080],
+  ] as const) {
+    await page.setViewportSize({ width, height });
+    const cut = await page.evaluate(() => {
+      const shown = document.querySelector("#dimensions")?.firstElementChild;
+      // Lengths as those of a sofa.
+      for (const [i, text] of ["123.4", "100.2", "215.5"].entries()) {
+        const last = shown?.parentElement?.children[i]?.lastChild;
+        if (last) last.nodeValue = text;
+      }
+      return [...document.querySelectorAll("#dimensions, .drop, .run, .view-head, .hand-panel > *, .decision, .head")]
+        .filter((one) => one.checkVisibility())
+        .filter((one) => {
+          const own = one.getBoundingClientRect();
+          const { left, right } = (one.closest(".panel, .run, .view") ?? document.body).getBoundingClientRect();
+          return own.left < left - 0.5 || own.right > right + 0.5 || one.scrollWidth > one.clientWidth + 1;
+        })
+        .filter((one) => getComputedStyle(one).display !== "inline" || one.getBoundingClientRect().width > 0)
+        .map((one) => `${one.id || one.className} ${one.scrollWidth} of ${one.clientWidth}`);
+    });
+    assert.deepEqual(
+      cut.filter((text) => !text.endsWith("of 0")),
+      [],
+      `${width} × ${height}`,
+    );
+    const rows = await page.evaluate(() =>
+      [...document.querySelectorAll(".view-head")].map((one) => one.getBoundingClientRect().height),
+    );
+    for (const row of rows) assert.ok(row < 60, `a toolbar of ${row} pixels at ${width} × ${height}`);
   }
 });
 
 test("explanations of metrics open by keyboard", async ({ page }) => {
-  const tip = page.getByRole("button", { name: "About Overlap (IoU)" });
+  const tip = page.getByRole("button", { name: "About these metrics" });
   await tip.focus();
   await page.keyboard.press("Enter");
   const box = page.locator(".tip-box:popover-open");
@@ -88,6 +207,18 @@ test("keys open the help, which lists them, and Escape closes it", async ({ page
   await page.keyboard.press("?");
   await page.locator("dialog.help").waitFor(PATIENCE);
   assert.ok((await page.locator("dialog.help kbd").count()) > 15);
+  // The documentation is beside the page.
+  const documents = await page.locator("dialog.help a").evaluateAll((all) =>
+    Promise.all(
+      all.map(async (one) => {
+        const response = await fetch((one as HTMLAnchorElement).href);
+        return [one.textContent, response.ok, (await response.text()).split("\n")[0]] as const;
+      }),
+    ),
+  );
+  const guides = documents.filter(([title]) => title !== "Accuracy, time and size by version");
+  assert.ok(guides.length > 10 && guides.length === documents.length - 1);
+  for (const [title, isThere, first] of guides) assert.ok(isThere && first === `# ${title}`, `${title}: ${first}`);
   await page.keyboard.press("Escape");
   await page.locator("dialog.help").waitFor({ state: "hidden", ...PATIENCE });
 });
@@ -95,7 +226,9 @@ test("keys open the help, which lists them, and Escape closes it", async ({ page
 test("the theme follows the switch, and is remembered", { colorScheme: "light" }, async (opened, page) => {
   const paper = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
   const light = await paper();
+  await page.keyboard.press("?");
   await page.selectOption("#theme", "dark");
+  await page.keyboard.press("Escape");
   const dark = await paper();
   assert.notEqual(dark, light);
   await page.reload();

@@ -53,7 +53,7 @@ const permissions = ["clipboard-read", "clipboard-write"];
 test("both matrices are the same pose, and the link restores the sample", { permissions }, async (opened, page) => {
   const iou = await opened.metric("iou");
   const copied = async (name: string, says: RegExp) => {
-    await page.getByRole("button", { name, exact: true }).click();
+    await opened.press(name);
     await opened.says(says);
     return JSON.parse(await page.evaluate(() => navigator.clipboard.readText())) as number[];
   };

@@ -1,6 +1,6 @@
 /** By hand: nudges, a known size, refine, undo and redo. */
 import assert from "node:assert/strict";
-import { pageTests, type SitePage } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
 
@@ -32,9 +32,9 @@ test(
     const confidence = () => page.textContent(".badge");
     const pictures = page.locator(".alternatives button:not(.tip)");
     const before = [await confidence(), await pictures.count()];
-    await page.selectOption("#option-symmetry, #effort", "fast");
+    await opened.choose("#effort", "fast");
     await page.click(".options-panel summary");
-    await page.selectOption("#option-symmetry", "none");
+    await opened.choose("#option-symmetry", "none");
     await page.click("#align");
     await page.locator("#cancel").waitFor({ state: "detached" });
     await opened.aligned();
@@ -46,6 +46,22 @@ test(
     assert.deepEqual([await confidence(), await pictures.count()], after);
   },
 );
+
+test("a decision is undone and redone with the pose it is about", async (opened, page) => {
+  const text = async () => (await page.textContent("#accept")) ?? "";
+  await page.click("#accept");
+  assert.match(await text(), /Accepted/);
+  await showNudges(opened);
+  await opened.press("Move left");
+  assert.equal(await text(), "Accept");
+  await page.click("#undo");
+  assert.match(await text(), /Accepted/);
+  await page.click("#undo");
+  assert.equal(await text(), "Accept");
+  assert.equal(await opened.source(), "aligned");
+  await page.click("#redo");
+  assert.match(await text(), /Accepted/);
+});
 
 test("refining restores a mesh that was moved", async (opened, page) => {
   const iou = await opened.metric("iou");
@@ -59,25 +75,33 @@ test("refining restores a mesh that was moved", async (opened, page) => {
   assert.ok(refined > iou - 0.02, `${refined}, was ${iou}`);
 });
 
-test("a known size scales the mesh, and every alignment keeps it", async (opened, page) => {
-  const [, height = 0] = await opened.dimensions();
-  const known = (0.97 * height).toFixed(1);
+test("a known size is one step, and every alignment keeps it", async (opened, page) => {
+  const longest = async () => Math.max(...(await opened.dimensions()));
+  const before = await longest();
+  const known = (0.97 * before).toFixed(1);
   await page.fill("#known-size", known);
   await page.press("#known-size", "Enter");
-  await opened.isNow("hand");
-  assert.equal((await opened.dimensions())[1], Number(known));
+  await page.locator(".trial").waitFor(PATIENCE);
+  assert.equal(await longest(), before);
+  assert.deepEqual(await opened.violations(), []);
+  await opened.press("Use");
+  assert.equal(await longest(), Number(known));
+  await page.click("#undo");
+  assert.equal(await longest(), before);
+  assert.ok(!(await page.isChecked("#lock-scale")));
+  await page.click("#redo");
   assert.ok(await page.isChecked("#lock-scale"));
   await page.click("#refine");
   await opened.isNow("refined");
-  assert.equal((await opened.dimensions())[1], Number(known));
+  assert.equal(await longest(), Number(known));
   await page.click("#align");
   await opened.isNow("aligned");
-  assert.equal((await opened.dimensions())[1], Number(known));
+  assert.equal(await longest(), Number(known));
   await page.uncheck("#lock-scale");
   await page.click("#align");
   await page.locator("#cancel").waitFor({ state: "detached" });
   await opened.aligned();
-  assert.equal((await opened.dimensions())[1], height);
+  assert.equal(await longest(), before);
 });
 
 test("buttons keep the focus while they work, and when there is nothing left to redo", async (opened, page) => {

@@ -189,6 +189,31 @@ test("missing files are asked for, and can be added one by one", async (opened, 
   await opened.shows("Own files");
 });
 
+test("mask and mesh dropped on an own scene replace what they name, if that is wanted", async (opened, page) => {
+  await drop(opened, files);
+  await opened.shows("Own files");
+  const again: Files = { "mask.png": maskPng(other.mask), "mesh.obj": meshFile };
+  await drop(opened, again);
+  await opened.sheet();
+  assert.match((await page.textContent("#for-shown")) ?? "", /mask\.png, mesh\.obj: for Own files, or a new scene\?/);
+  await page.click("#new-scene");
+  const sheet = await opened.sheet();
+  assert.match((await sheet.textContent()) ?? "", /Depth map missing/);
+  assert.equal(await page.locator("#for-shown").count(), 0);
+  await page.click("#intake-cancel");
+  await drop(opened, { "mask.png": maskPng(seen.mask.map((inside, i) => (i % WIDTH < 79 ? inside : 0))) });
+  await opened.sheet();
+  await page.click("#put-into-shown");
+  await opened.sheet();
+  assert.equal(await page.locator(".pair").count(), 1);
+  assert.match((await page.locator('[data-field="depth"]').first().textContent()) ?? "", /depth\.npy/);
+  const kept = await page.locator(".file-roles summary").textContent();
+  assert.match(kept ?? "", /4 files/);
+  await page.click("#intake-open");
+  await opened.shows("Own files");
+  assert.ok((await opened.metric("iou")) > 0.3);
+});
+
 test("intrinsics can be entered, or assumed with a warning", async (opened, page) => {
   const { "camera.json": _, ...rest } = files;
   await drop(opened, rest);

@@ -75,7 +75,7 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   assert.equal(Math.max(...sizes), 1);
   await page.click(".details summary");
   await page.click(".hand-panel .more summary");
-  await page.selectOption('[aria-label="Background"]', "depth");
+  await opened.choose('[aria-label="Background"]', "depth");
   await page.hover(".image canvas");
   const text = await shownText(opened);
   assert.doesNotMatch(text.replace(/(\d+) mm \(35 mm equivalent\)/g, ""), UNIT);
@@ -87,7 +87,6 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
 
   // The longest side of the blob, which nobody has told yet.
   const longest = 100 * Math.max(...trueSides());
-  await page.selectOption('.hand-panel [aria-label="Side"]', "3");
   await page.fill("#known-size", longest.toFixed(2));
   await page.press("#known-size", "Enter");
   await page.locator("#dimensions", { hasText: "cm" }).waitFor();
@@ -154,7 +153,6 @@ test("several objects calibrate a scene together, and one known size makes all o
   assert.ok(Math.abs(longest(sizes[1] ?? "") / ratio - 1) < 0.1, `${sizes}, true ratio is ${ratio}`);
   // The size of the second one tells that of the first one.
   await page.locator(".objects .select").nth(1).click();
-  await page.selectOption('.hand-panel [aria-label="Side"]', "3");
   await page.fill("#known-size", (100 * ratio * Math.max(...trueSides())).toFixed(2));
   await page.press("#known-size", "Enter");
   await page.locator(".objects .select").nth(0).click();

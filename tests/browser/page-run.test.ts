@@ -34,7 +34,7 @@ test("the page responds during an alignment, and shows its progress", best, asyn
   await page.click("#align");
   await page.locator("#cancel").waitFor(PATIENCE);
   await page.keyboard.press("d");
-  await page.locator("#layer-difference:checked").waitFor(PATIENCE);
+  await page.locator("#layer-difference:checked").waitFor({ state: "attached", ...PATIENCE });
   assert.ok(await page.isVisible("#cancel"));
   await opened.openWorkerGate();
   await opened.aligned();

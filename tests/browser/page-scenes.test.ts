@@ -42,7 +42,7 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   await opened.shows("IMG_003");
   assert.deepEqual(
     (await states(page)).map((text) => text.replace(/^IMG_00\d /, "")),
-    ["✓ accepted", "✓ accepted", "0 of 1 accepted", "not opened"],
+    ["✓ accepted", "✓ accepted", "aligned", "to do"],
   );
   assert.deepEqual(await opened.violations(), []);
   type Result = Record<string, { accepted: boolean; sizeM: number[]; source: string }>;
@@ -72,7 +72,7 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   assert.equal(await page.locator(".scenes li").count(), 3);
 });
 
-test("two tabs keep their scenes apart, and the second one says so", async (opened, page) => {
+test("two tabs keep their scenes apart, and the second one asks", async (opened, page) => {
   await drop(opened, files);
   await opened.shows("Own files");
   await kept(page);
@@ -108,6 +108,83 @@ test("two tabs keep their scenes apart, and the second one says so", async (open
   await tab.close();
 });
 
+/** A second tab of the same browser, once its first scene is aligned. */
+async function secondTab(page: Page): Promise<SitePage> {
+  const [tab] = await Promise.all([page.waitForEvent("popup"), page.evaluate(() => void open(location.href))]);
+  const opened = new SitePage(tab, []);
+  await opened.aligned();
+  return opened;
+}
+
+test("a second tab takes over what the first one has open, with the changes of the last moment", async (opened, page) => {
+  await drop(opened, files);
+  await opened.shows("Own files");
+  await page.click(".hand-panel .more summary");
+  await kept(page);
+  const other = await secondTab(page);
+  await opened.press("Move left");
+  await page.click("#accept");
+  const centre = await page.textContent("#centre");
+  await other.press("Take over");
+  await isShown(other.page, "Own files");
+  assert.equal(await other.page.textContent("#centre"), centre);
+  assert.match((await other.page.textContent("#accept")) ?? "", /Accepted/);
+  assert.equal(await other.page.locator("#other-tabs").count(), 0);
+  // It is closed here, and can be taken back.
+  await page.locator("#other-tabs", { hasText: "Another tab has Own files open" }).waitFor(PATIENCE);
+  assert.notEqual(await page.getAttribute("main", "data-scene"), "Own files");
+  await kept(other.page);
+  await other.page.close();
+  await opened.press("Take over");
+  await isShown(page, "Own files");
+  await opened.isNow("hand");
+  await kept(page);
+  await page.reload();
+  await isShown(page, "Own files");
+  assert.equal(await page.textContent("#centre"), centre);
+});
+
+test("a tab that does not answer is taken over, and stores nothing from then on", async (opened, page) => {
+  // As one that the browser has frozen.
+  await page.addInitScript(() => {
+    BroadcastChannel.prototype.addEventListener = () => {};
+  });
+  await page.reload();
+  await opened.aligned();
+  await drop(opened, files);
+  await opened.shows("Own files");
+  await kept(page);
+  const other = await secondTab(page);
+  await other.press("Take over");
+  await isShown(other.page, "Own files");
+  await other.page.click("#accept");
+  await kept(other.page);
+  await opened.says(/Another tab has taken over Own files/);
+  await other.page.reload();
+  await isShown(other.page, "Own files");
+  assert.match((await other.page.textContent("#accept")) ?? "", /Accepted/);
+  await other.page.close();
+});
+
+test("a second tab opens a copy, and both go on by themselves", async (opened, page) => {
+  await drop(opened, files);
+  await opened.shows("Own files");
+  await kept(page);
+  const other = await secondTab(page);
+  await other.press("Open a copy");
+  await isShown(other.page, "Own files (copy)");
+  assert.equal(await other.source(), "aligned");
+  await other.page.click("#accept");
+  await kept(other.page);
+  await page.reload();
+  await isShown(page, "Own files");
+  assert.equal(await page.textContent("#accept"), "Accept");
+  await other.page.reload();
+  await isShown(other.page, "Own files (copy)");
+  assert.match((await other.page.textContent("#accept")) ?? "", /Accepted/);
+  await other.page.close();
+});
+
 test(
   "a scene that is chosen while another one is aligned is aligned by itself",
   "#sample=desk",
@@ -124,7 +201,7 @@ test(
     await opened.closeWorkerGate();
     await page.click("#align");
     await page.locator("#cancel").waitFor(PATIENCE);
-    await page.selectOption("#sample", "mug");
+    await opened.choose("#sample", "mug");
     await isShown(page, "Mug");
     await opened.openWorkerGate();
     await opened.shows("Mug");

@@ -1,7 +1,8 @@
 /** Nothing is lost: the scene, hand work and decisions survive a reload, and are saved and opened as one file. */
 import assert from "node:assert/strict";
-import { drop, files } from "../support/page-files.js";
-import { PATIENCE, pageTests, type SitePage, until } from "../support/site.js";
+import { strFromU8, unzipSync } from "fflate";
+import { drop, dropFolder, files, inFolder } from "../support/page-files.js";
+import { PATIENCE, pageTests, SitePage, until } from "../support/site.js";
 
 const test = pageTests();
 
@@ -56,18 +57,73 @@ test("a reload restores the scene, the pose and the decision; unstored work asks
   await page.click("#edit-files");
   await opened.sheet();
   await page.click("#intake-cancel");
+  await page.click("#accept");
+  // What was decided is not forgotten unasked.
+  page.once("dialog", (dialog) => dialog.dismiss());
+  await page.click("#forget");
+  assert.equal(await page.getAttribute("main", "data-scene"), "Own files");
+  page.once("dialog", (dialog) => dialog.accept());
   await page.click("#forget");
   await page.locator('main[data-scene="Table"]').waitFor(PATIENCE);
   await page.reload();
   await opened.shows("Table");
 });
 
-test("a session is saved and opened as one file", async (opened, page) => {
+test("a project is saved and opened as one file, with every scene, decision and name", async (opened, page) => {
   const centre = await worked(opened);
-  const { name, bytes } = await opened.saved("Session");
-  assert.equal(name, "own-files.sim3align.zip");
-  await page.selectOption("#sample", "mug");
-  await opened.shows("Mug");
-  await drop(opened, { [name]: bytes });
+  const one = await opened.saved("Project");
+  assert.equal(one.name, "own-files.sim3align.zip");
+  await dropFolder(opened, inFolder("IMG_002--b", files));
+  await opened.shows("IMG_002--b");
+  const { name, bytes } = await opened.saved("Project");
+  assert.equal(name, "project.sim3align.zip");
+  const results = JSON.parse(strFromU8(unzipSync(bytes)["results.json"] as Uint8Array)) as Results;
+  assert.deepEqual(Object.keys(results), ["Own files", "IMG_002--b"]);
+  const [first, second] = Object.values(results).map(({ _about, ...objects }) => [_about, ...Object.values(objects)]);
+  assert.deepEqual([first?.[1]?.accepted, first?.[1]?.decidedBy, first?.[1]?.source], [true, "accepted", "hand"]);
+  assert.deepEqual([second?.[1]?.accepted, second?.[1]?.decidedBy], [false, "search"]);
+  assert.deepEqual(second?.[1]?.files, { mask: "IMG_002--b/mask.png", mesh: "IMG_002--b/mesh.obj" });
+  assert.match(second?.[0]?.depthUnit ?? "", /metres \(float values, assumed\)/);
+
+  // In a browser that knows nothing of it.
+  const other = await page.context().browser()?.newContext();
+  const fresh = await other?.newPage();
+  assert.ok(other !== undefined && fresh !== undefined);
+  await fresh.goto(page.url());
+  const there = new SitePage(fresh, []);
+  await there.aligned();
+  await drop(there, { [name]: bytes });
+  await fresh.locator('main[data-scene="IMG_002--b"]').waitFor(PATIENCE);
+  await fresh.locator(".scenes button", { hasText: "Own files" }).click();
+  await isAsLeft(there, centre);
+  await other.close();
+});
+
+/** The entries of results that are looked at. */
+interface Entry {
+  accepted?: boolean;
+  decidedBy?: string;
+  source?: string;
+  files?: object;
+  depthUnit?: string;
+}
+type Results = Record<string, Record<string, Entry>>;
+
+test("a full disk is told, what was done can be saved, and room is used as soon as there is some", async (opened, page) => {
+  const session = await page.context().newCDPSession(page);
+  const { origin } = new URL(page.url());
+  await session.send("Storage.overrideQuotaForOrigin", { origin, quotaSize: 1 });
+  const centre = await worked(opened);
+  await page.locator("#not-kept", { hasText: "storage is full: Own files is not kept" }).waitFor(PATIENCE);
+  assert.ok(await asks(opened));
+  assert.deepEqual(await opened.violations(), []);
+  const [download] = await Promise.all([page.waitForEvent("download"), opened.press("Save the project")]);
+  assert.equal(download.suggestedFilename(), "own-files.sim3align.zip");
+  await session.send("Storage.overrideQuotaForOrigin", { origin });
+  await opened.press("Move right");
+  await page.click("#undo");
+  await page.locator("#not-kept").waitFor({ state: "detached", ...PATIENCE });
+  await kept(opened);
+  await page.reload();
   await isAsLeft(opened, centre);
 });

@@ -103,7 +103,7 @@ test("a correction in the middle is carried to the other frames, and all poses a
   const { toy } = JSON.parse(`${bytes}`) as { toy: { frames: Record<string, { scale: number }> } };
   assert.equal(Object.keys(toy.frames).length, COUNT);
   // Another scene ends the video.
-  await page.selectOption("#sample", "mug");
+  await opened.choose("#sample", "mug");
   await opened.shows("Mug");
   assert.equal(await page.locator(".time").count(), 0);
 });

@@ -78,7 +78,7 @@ test("the 3D view is orbited by keys, and shows the poses before", still, async 
 
 test("two clicks measure a distance", async (opened, page) => {
   await opened.has3d("webgl");
-  await page.click("#measure");
+  await opened.press("Measure");
   assert.match((await page.textContent("#measured")) ?? "", /Click a point/);
   const canvas = page.locator(".image canvas");
   const { width, height } = (await canvas.boundingBox()) ?? { width: 0, height: 0 };
@@ -86,7 +86,7 @@ test("two clicks measure a distance", async (opened, page) => {
   await canvas.click({ position: { x: 0.5 * width, y: 0.55 * height } });
   const length = Number.parseFloat((await page.textContent("#measured")) ?? "");
   assert.ok(length > 0.5 && length < 12, `${length} cm on a mug`);
-  await page.click("#measure");
+  await opened.press("Measure");
   assert.equal(await page.locator("#measured").count(), 0);
 });
 
@@ -111,11 +111,11 @@ test("the pose is entered in numbers, as steps that can be undone", async (opene
 test(
   "the wheel zooms the image at the pointer, and a drag moves it without selecting",
   "#sample=desk",
-  async ({ page }) => {
+  async (opened, page) => {
     const picture = page.locator(".picture");
     const zoom = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--zoom")));
     const x = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--x")));
-    await page.uncheck("#layer-zoom");
+    await opened.showInImage("zoom", false);
     assert.equal(await zoom(), 1);
     const host = (await page.locator(".image .view-host").boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
     const [u, v] = [host.x + host.width / 2, host.y + host.height / 2];
@@ -131,6 +131,80 @@ test(
     await page.mouse.up();
     assert.ok((await x()) > before, `${await x()}, was ${before}`);
     assert.equal(await page.textContent(".objects [aria-pressed=true] .name"), chosen);
-    await page.check("#layer-zoom");
+    await opened.showInImage("zoom", true);
   },
 );
+
+/** The number of pixels of the 3D view that differ from before once something is done. */
+async function changedBy({ page }: SitePage, act: () => Promise<unknown>): Promise<number> {
+  const still = async () => {
+    // Until two pictures in a row are the same.
+    let last = await spacePixels(page);
+    for (;;) {
+      const next = await spacePixels(page);
+      if (last.data.equals(next.data)) return next;
+      last = next;
+    }
+  };
+  const before = await still();
+  await act();
+  const after = await still();
+  let count = 0;
+  for (let i = 0; i < after.data.length; i += 4) {
+    if ([0, 1, 2].some((k) => Math.abs((after.data[i + k] ?? 0) - (before.data[i + k] ?? 0)) > 8)) count++;
+  }
+  return count;
+}
+
+test("what is nearer hides a mesh in the view from the camera", still, async (opened, page) => {
+  await opened.has3d("webgl");
+  await opened.press("Camera");
+  await opened.show3d("Sizes", false);
+  const meshPixels = async () => {
+    const count = await changedBy(opened, () => page.keyboard.press("m"));
+    await page.keyboard.press("m");
+    return count;
+  };
+  await page.click(".hand-panel .more summary");
+  const read = async (id: string) => Number(await page.inputValue(id));
+  const move = async (id: string, toCm: number) => {
+    await page.fill(id, `${toCm}`);
+    await page.press(id, "Enter");
+    await page.locator("h1").click();
+  };
+  // Beside its mask, where the table and the wall are the scene.
+  const [x, y, z] = [await read("#centre-x"), await read("#centre-y"), await read("#centre-z")];
+  await move("#centre-x", x + 7);
+  const beside = await meshPixels();
+  assert.ok(beside > 500, `${beside} pixels of the mesh`);
+  // At the same place in the image, three metres farther away.
+  await move("#centre-x", ((x + 7) * (z + 300)) / z);
+  await move("#centre-y", (y * (z + 300)) / z);
+  await move("#centre-z", z + 300);
+  const behind = await meshPixels();
+  assert.ok(behind < beside / 50, `${behind} pixels of a mesh behind the wall, ${beside} in front of it`);
+});
+
+test("labels leave the handles free", still, async (opened, page) => {
+  await opened.has3d("webgl");
+  await opened.press("Camera");
+  // Without the pointer, which would mark what it hovers over.
+  const box = page.locator(".space").getByLabel("Sizes", { exact: true });
+  const toggle = () => box.evaluate((one) => (one as HTMLElement).click());
+  assert.ok((await changedBy(opened, toggle)) > 100);
+  await toggle();
+  await page.keyboard.press("g");
+  assert.equal(await changedBy(opened, toggle), 0);
+});
+
+test("the wipe shows at each end what is written there", async (opened, page) => {
+  const picture = async () => (await opened.imagePixels()).data;
+  const after = await picture();
+  assert.equal(await page.inputValue("#wipe"), "1");
+  await page.fill("#wipe", "0");
+  const before = await picture();
+  assert.ok(!before.equals(after));
+  await page.keyboard.press("b");
+  assert.equal(await page.inputValue("#wipe"), "1");
+  assert.ok((await picture()).equals(after));
+});

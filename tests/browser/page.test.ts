@@ -26,12 +26,12 @@ test("the page aligns its sample, as the library does", async (opened, page) => 
   assert.match((await page.textContent("#errors")) ?? "", /scale [\d.]+ %/);
 });
 
-test("the displayed silhouette has the measured IoU", async (opened, page) => {
+test("the displayed silhouette has the measured IoU", async (opened) => {
   const mask = await readMask(sampleFile("mug/mask.png"));
   // Without outlines, the two images differ by the silhouette only.
-  await page.uncheck("#layer-outline");
+  await opened.showInImage("outline", false);
   const shown = await opened.imagePixels();
-  await page.uncheck("#layer-silhouette");
+  await opened.showInImage("silhouette", false);
   const bare = await opened.imagePixels();
   assert.deepEqual([shown.width, shown.height], [mask.width, mask.height]);
   let [both, either] = [0, 0];
@@ -63,7 +63,7 @@ test("every sample can be chosen, and is aligned", async (opened, page) => {
   );
   assert.ok(ids.length >= 4, ids.join());
   for (const id of ids.slice(1)) {
-    await page.selectOption("#sample", id);
+    await opened.choose("#sample", id);
     await page.waitForFunction((id) => location.hash.includes(`sample=${id}`), id);
     await opened.aligned();
     assert.ok((await opened.metric("iou")) > 0.3, id);
@@ -77,7 +77,7 @@ test("a link holds the sample and the options", link, async (opened, page) => {
   };
   await isShown({ sample: "desk", effort: "fast", "option-seed": "7", "option-symmetry": "none" });
   assert.equal(await page.locator(".objects .name").count(), 3);
-  await page.selectOption("#effort", "best");
+  await opened.choose("#effort", "best");
   // The address is that of a link now.
   await page.reload();
   await opened.aligned();

@@ -52,7 +52,7 @@ async function builtByVite(name: string, entry: string): Promise<string> {
   return run(join(root, "dist", script ?? ""));
 }
 
-const remedy = /^NOT_INITIALISED wasm: .*import from "sim3align\/inline"/;
+const remedy = /^NOT_INITIALISED wasm\.core: .*import from "sim3align\/inline"/;
 
 for (const format of ["esm", "cjs"] as const) {
   test(`esbuild --platform=node --format=${format}: the error names the remedy`, async () => {

@@ -1,7 +1,7 @@
 /** The progress of a batch, on terminals and elsewhere. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { internalModule } from "../support/internals.js";
+import { sourceModule } from "../support/internals.js";
 
 interface Progress {
   draw(): void;
@@ -12,7 +12,7 @@ interface Progress {
 type Stream = { isTTY: boolean; columns: number; write(text: string): void };
 
 const { BatchProgress }: { BatchProgress: new (stream: Stream, total: number, now: () => number) => Progress } =
-  await internalModule("cli/batch-progress.js");
+  await sourceModule("cli/batch-progress.ts");
 
 /** What a batch shows whose cases take two seconds each, of which some fail. */
 function shown(total: number, failures: readonly number[], isTTY: boolean, columns = 100): string[] {

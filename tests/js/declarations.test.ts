@@ -26,7 +26,7 @@ const allEntries = `
   import { toSim3 } from "sim3align/conventions";
   import { applyPinhole } from "sim3align/three";
   export async function run(input: AlignInput) {
-    const aligner = await createAligner({ wasm: new Uint8Array(8), workers: 1 });
+    const aligner = await createAligner({ wasm: { core: new Uint8Array(8) }, workers: 1 });
     void [createInline, readCase, toSim3, applyPinhole];
     return aligner.align(input, { signal: AbortSignal.timeout(1000) });
   }

@@ -149,9 +149,9 @@ test("the module of these files is loaded when one is passed, from where it is s
     // Node's own modules are small.
     WebAssembly.compile = (bytes) => (bytes.byteLength > 50_000 && sizes.push(bytes.byteLength), compile(bytes));
     const npz = readFileSync(${JSON.stringify(join(fixtures, "depth-da3.npz"))});
-    const aligner = await createAligner({ depthFilesWasm: "file:///nowhere.wasm" });
+    const aligner = await createAligner({ wasm: { depthFiles: "file:///nowhere.wasm" } });
     const camera = { fx: 1, fy: 1, cx: 0, cy: 0 };
-    const failed = { code: "NOT_INITIALISED", argument: "depthFilesWasm" };
+    const failed = { code: "NOT_INITIALISED", argument: "wasm.depthFiles" };
     await assert.rejects(aligner.align({ depth: npz, camera, mask: new Uint8Array(1), mesh: {} }), failed);
     const before = sizes.length;
     await readDepth(npz);

@@ -29,7 +29,11 @@ function anchors(path: string): string[] {
 /** What `npm run bench -- --snapshot` writes, on whoever's machine has the time. */
 const snapshots = [join("docs", "benchmark", "README.md")];
 
-const paths = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", ...documents("docs"), ...documents("examples")];
+const paths = [
+  ...["README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"],
+  ...documents("docs"),
+  ...documents("examples"),
+];
 for (const path of paths) {
   test(`${path}: every link leads somewhere`, () => {
     const links = [...text(path).matchAll(/\]\(([^)\s]+)\)/g)].map(([, link = ""]) => link);
@@ -80,4 +84,12 @@ test("every warning's code has a section", () => {
 test("the README's picture is there, and is small", () => {
   assert.match(text("README.md"), /!\[[^\]]+\]\(docs\/picture\.png\)/);
   assert.ok(readFileSync(join(repository, "docs", "picture.png")).length <= 100_000);
+});
+
+test("the pictures of how it works are small together, and all are shown", () => {
+  const folder = join("docs", "how-it-works");
+  const names = readdirSync(join(repository, folder));
+  const sizes = names.map((name) => readFileSync(join(repository, folder, name)).length);
+  assert.ok(sizes.reduce((sum, size) => sum + size, 0) <= 400_000);
+  for (const name of names) assert.ok(text(`${folder}.md`).includes(`(how-it-works/${name})`), name);
 });

@@ -4,7 +4,7 @@
  */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { cpSync, mkdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
@@ -16,6 +16,9 @@ const found = examples();
 const folder = join(installDir, "docs-examples");
 const errors = compile();
 provideScene();
+// Examples read the sample that the guides copy into the working directory.
+cpSync(join(repository, "www", "samples", "mug"), join(folder, "mug"), { recursive: true });
+process.chdir(folder);
 // The runner reads its messages from standard output, and loses the file when an example's own output cuts one in two.
 for (const method of ["log", "info", "warn", "error", "table"] as const) console[method] = () => {};
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { createAligner } from "sim3align";
@@ -93,37 +93,59 @@ for (const [name, source] of Object.entries(sources)) {
   test(`the core can come from ${name}`, () => {
     // Node pools small reads in one ArrayBuffer, but not files of this size.
     assert.equal(
-      inFreshProcess(`await check(await createAligner({ wasm: ${source} })); console.log("done");`),
+      inFreshProcess(`await check(await createAligner({ wasm: { core: ${source} } })); console.log("done");`),
       "done\n",
     );
   });
 }
 
+const folder = JSON.stringify(pathToFileURL(dirname(coreWasm)).href);
+for (const [name, wasm] of Object.entries({ "a URL": `new URL(${folder})`, text: `${folder} + "/"` })) {
+  test(`all modules can come from a folder, as ${name}`, () => {
+    const script = `const aligner = await createAligner({ wasm: ${wasm} }); await check(aligner); await estimate(aligner);`;
+    assert.equal(inFreshProcess(`${script} console.log("done");`), "done\n");
+  });
+}
+
+test("the source of one module is not taken for that of all", async () => {
+  const empty = Uint8Array.of(0, 0x61, 0x73, 0x6d, 1, 0, 0, 0);
+  for (const wasm of [
+    new Uint8Array(8),
+    new WebAssembly.Module(empty),
+    new Response(empty),
+    { formatsWasm: "x" },
+    7,
+    null,
+  ]) {
+    await assert.rejects(createAligner({ wasm: wasm as never }), { code: "INVALID_ARGUMENT", argument: "wasm" });
+  }
+});
+
 test("a failed load says what to do, and the next one tries again", () => {
   const output = inFreshProcess(`
     const missing = new URL("file:///nowhere/core_bg.wasm");
-    const failures = await Promise.allSettled([createAligner({ wasm: missing }), createAligner({ wasm: missing })]);
+    const failures = await Promise.allSettled([createAligner({ wasm: { core: missing } }), createAligner({ wasm: "file:///nowhere" })]);
     for (const { reason } of failures) {
       assert.ok(reason instanceof Sim3AlignError);
       assert.equal(reason.code, "NOT_INITIALISED");
-      assert.equal(reason.argument, "wasm");
+      assert.equal(reason.argument, "wasm.core");
       assert.match(reason.message, /ENOENT.*core_bg\\.wasm/);
     }
-    for (const wasm of [new Uint8Array(8), "http://127.0.0.1:9/core_bg.wasm"]) {
-      await assert.rejects(createAligner({ wasm }), { code: "NOT_INITIALISED" });
+    for (const core of [new Uint8Array(8), "http://127.0.0.1:9/core_bg.wasm"]) {
+      await assert.rejects(createAligner({ wasm: { core } }), { code: "NOT_INITIALISED" });
     }
     const aligner = await createAligner();
     await check(aligner);
-    const bad = await createAligner({ formatsWasm: missing });
+    const bad = await createAligner({ wasm: { formats: missing } });
     const files = { depth: new Uint8Array(3), mask: new Uint8Array(3), camera: { fovYDeg: 50 }, mesh: new Uint8Array(3) };
-    await assert.rejects(bad.align(files), { code: "NOT_INITIALISED", argument: "formatsWasm" });
+    await assert.rejects(bad.align(files), { code: "NOT_INITIALISED", argument: "wasm.formats" });
     await assert.rejects(aligner.align(files), { code: "UNSUPPORTED_FORMAT" });
-    const other = await createAligner({ registrationWasm: missing });
-    await assert.rejects(estimate(other), { code: "NOT_INITIALISED", argument: "registrationWasm" });
+    const other = await createAligner({ wasm: { registration: missing } });
+    await assert.rejects(estimate(other), { code: "NOT_INITIALISED", argument: "wasm.registration" });
     await estimate(aligner);
     const mesh = { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1), indices: Uint32Array.of(0, 1, 2, 0, 1, 3) };
-    const third = await createAligner({ jointWasm: missing });
-    await assert.rejects(third.track(mesh), { code: "NOT_INITIALISED", argument: "jointWasm" });
+    const third = await createAligner({ wasm: { joint: missing } });
+    await assert.rejects(third.track(mesh), { code: "NOT_INITIALISED", argument: "wasm.joint" });
     (await aligner.track(mesh)).close();
     console.log("done");
   `);

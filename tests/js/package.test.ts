@@ -57,7 +57,7 @@ test("the conventions load no WebAssembly, and three.js' no three.js", () => {
 });
 
 test("what is not exported stays private", () => {
-  assert.throws(() => require.resolve("sim3align/cli.js"), { code: "ERR_PACKAGE_PATH_NOT_EXPORTED" });
+  assert.throws(() => require.resolve("sim3align/cli/main.js"), { code: "ERR_PACKAGE_PATH_NOT_EXPORTED" });
 });
 
 test("the command line says the package's version", () => {

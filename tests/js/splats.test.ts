@@ -95,10 +95,10 @@ test("the module of splats is loaded when one is passed, from where it is said t
     // Node's own modules are small.
     WebAssembly.compile = (bytes) => (bytes.byteLength > 50_000 && sizes.push(bytes.byteLength), compile(bytes));
     const mesh = readFileSync(${JSON.stringify(join(fixtures, "splat.ply"))});
-    const aligner = await createAligner({ splatsWasm: "file:///nowhere.wasm" });
+    const aligner = await createAligner({ wasm: { splats: "file:///nowhere.wasm" } });
     const input = { depth: new Float32Array(1), width: 1, height: 1, mask: new Uint8Array(1) };
     const camera = { fx: 1, fy: 1, cx: 0, cy: 0 };
-    const failed = { code: "NOT_INITIALISED", argument: "splatsWasm" };
+    const failed = { code: "NOT_INITIALISED", argument: "wasm.splats" };
     await assert.rejects(aligner.align({ ...input, camera, mesh }), failed);
     const before = sizes.length;
     await readMesh(mesh);

@@ -79,7 +79,8 @@ export async function accepted(aligner: Aligner): Promise<void> {
   await aligner.evaluate({} as AlignInput, { matrix });
   await aligner.register(floats, new Float64Array(9), { scale: [1, 2] });
   await aligner.estimateSim3(floats, floats, new Uint32Array(6), { scale: "free" });
-  await createAligner({ wasm: new URL("https://example.org/core_bg.wasm") });
+  await createAligner({ wasm: new URL("https://example.org/wasm/") });
+  await createAligner({ wasm: { core: new Uint8Array(8) } });
   using scoped = await createAligner();
   void scoped;
 }

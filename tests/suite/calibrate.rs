@@ -72,6 +72,40 @@ fn the_shift_of_relative_depth_is_found() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn readings_of_what_is_behind_do_not_change_the_shift() {
+    let (mesh, seen) = (body(), observe(&body(), &truth()));
+    let kind = DepthKind::AffineInvariant;
+    let mut view = raw(&seen, kind, Focal::Known, 1.0);
+    let object: Vec<usize> = (0..seen.mask().data().len()).filter(|i| seen.mask().data()[*i] != 0).collect();
+    // A fifth of the mask, at its upper end, shows what is four times as far.
+    let far = predicted(kind, 4.0 * truth().translation.z) as f32;
+    let mut values = view.values.data().to_vec();
+    for i in &object[..object.len() / 5] {
+        values[*i] = far;
+    }
+    view.values = Image::new("depth", view.values.width(), view.values.height(), values).unwrap();
+    let found = calibrated(&view, seen.mask(), &mesh, &quick()).unwrap().calibration;
+    let value = predicted(kind, truth().translation.z);
+    let error = libm::log((value + found.shift) / (value + shift(kind))).abs();
+    assert!(error < 3.0 * found.uncertainty.shift, "{error} at {}", found.uncertainty.shift);
+    assert!(error < 0.3 && found.uncertainty.shift < 0.3, "{error} at {}", found.uncertainty.shift);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_flat_object_says_little_of_the_shift() {
+    // A plate from the front: any shift explains it, and the uncertainty is about that of the prior.
+    let plate = mapped(&ellipsoid(Vec3::new(0.5, 0.38, 0.3), 24), |p| Vec3::new(p.x, p.y, 0.1 * p.z));
+    let pose = Similarity { rotation: Rotation3::identity(), ..truth() };
+    let seen = observe(&plate, &pose);
+    let deviation = |mesh: &Mesh, seen: &Observation| {
+        let view = raw(seen, DepthKind::AffineInvariant, Focal::Known, 1.0);
+        calibrated(&view, seen.mask(), mesh, &quick()).unwrap().calibration.uncertainty.shift
+    };
+    let (flat, deep) = (deviation(&plate, &seen), deviation(&body(), &observe(&body(), &truth())));
+    assert!(flat > 2.0 * deep, "{flat} of the plate, {deep} of the body");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn depth_of_a_calibration_is_that_of_its_formula() {
     let seen = observe(&body(), &truth());
     for kind in DepthKind::ALL {

@@ -18,4 +18,4 @@ export const sampleDir = required("SIM3ALIGN_SAMPLE");
 export const installDir = process.cwd();
 
 /** The script of the installed package's command line, to be run by `process.execPath`. */
-export const commandLine = join(installDir, "node_modules", "sim3align", "cli.js");
+export const commandLine = join(installDir, "node_modules", "sim3align", "cli", "main.js");

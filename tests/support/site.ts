@@ -90,7 +90,11 @@ export function pageTests(flags: readonly string[] = WITHOUT_3D) {
     const given = typeof visit === "string" ? { address: visit } : visit;
     const { address = "#sample=mug", isLoading = false, skip = false, ...context }: Visit = given;
     test(title, { skip }, async (t) => {
-      const { page, errors } = await browser.open(`www/index.html${address}`, context, installWorkerGate);
+      const { page, errors } = await browser.open(
+        `www/index.html${address}`,
+        { serviceWorkers: "block", ...context },
+        installWorkerGate,
+      );
       const opened = new SitePage(page, errors);
       if (!isLoading) await opened.aligned();
       await work(opened, page, t);
@@ -168,14 +172,41 @@ export class SitePage {
     return this.page.locator(`.view-host[data-backend="${backend}"] canvas`).waitFor(PATIENCE);
   }
 
-  /** Shows or hides a layer of the 3D view. */
-  show3d(layer: string, isShown: boolean): Promise<void> {
-    return this.page.locator(".space").getByLabel(layer, { exact: true }).setChecked(isShown);
+  /** Shows a control that is behind a disclosure or in a menu, uses it, and closes the menu. */
+  private async reveal(control: Locator, use: () => Promise<void>): Promise<void> {
+    const menu = await control.evaluateHandle((one) => {
+      for (let at = one.closest("details"); at != null; at = at.parentElement?.closest("details") ?? null)
+        at.open = true;
+      const menu = one.closest<HTMLElement>("[popover]");
+      menu?.showPopover();
+      return menu;
+    });
+    await use();
+    await menu.evaluate((menu) => menu?.hidePopover());
   }
 
-  /** Clicks the button with exactly this name. */
-  press(button: string): Promise<void> {
-    return this.page.getByRole("button", { name: button, exact: true }).click();
+  /** Shows or hides a layer of the 3D view. */
+  async show3d(layer: string, isShown: boolean): Promise<void> {
+    const box = this.page.locator(".space").getByLabel(layer, { exact: true });
+    await this.reveal(box, () => box.setChecked(isShown));
+  }
+
+  /** Shows or hides a layer of the image. */
+  async showInImage(layer: "outline" | "silhouette" | "zoom", isShown: boolean): Promise<void> {
+    const box = this.page.locator(`#layer-${layer}`);
+    await this.reveal(box, () => box.setChecked(isShown));
+  }
+
+  /** Chooses from a list, wherever it is. */
+  async choose(list: string, value: string): Promise<void> {
+    const found = this.page.locator(list);
+    await this.reveal(found, async () => void (await found.selectOption(value)));
+  }
+
+  /** Clicks the button with exactly this name, wherever it is. */
+  async press(button: string): Promise<void> {
+    const found = this.page.getByRole("button", { name: button, exact: true, includeHidden: true });
+    await this.reveal(found, () => found.click());
   }
 
   /** Holds back all messages of workers, so that a running alignment does not end. */

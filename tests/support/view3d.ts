@@ -33,6 +33,7 @@ export interface Harness {
     setObjects(objects: object[]): Promise<void>;
     setPose(id: string, pose: number[], animate?: object): Promise<void>;
     select(id: string | null): void;
+    setDisplay(display: object): void;
     setGizmo(mode: string | null): void;
     dispose(): void;
   };

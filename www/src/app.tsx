@@ -10,15 +10,16 @@ import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { StartPanel } from "./panels/start-panel.js";
 import { draft } from "./state/draft.js";
-import { isHelpOpen } from "./state/help.js";
+import { isHelpOpen, isPaletteOpen } from "./state/help.js";
 import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
+import { pageCommands } from "./ui/page-commands.js";
 import { listenToKeys } from "./ui/shortcuts.js";
 import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
 import { SpaceView } from "./views/space-view.js";
 
-const { largeView, scene, space, video } = page;
+const { largeView, notKept, othersScenes, scene, space, video } = page;
 
 const Intake = lazy(
   () => draft.value !== null,
@@ -29,13 +30,23 @@ const TimePanel = lazy(
   () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
 );
 
+const Kept = lazy(
+  () => notKept.value !== null || othersScenes.value.length > 0,
+  () => import("./panels/kept.js").then(({ Kept }) => Kept),
+);
+
+const Palette = lazy(
+  () => isPaletteOpen.value,
+  () => import("./panels/palette.js").then(({ Palette }) => Palette),
+);
+
 const HelpDialog = lazy(
   () => isHelpOpen.value,
   () => import("./panels/help-dialog.js").then(({ HelpDialog }) => HelpDialog),
 );
 
 export function App() {
-  useEffect(() => listenToKeys(page), []);
+  useEffect(() => listenToKeys(page, globalThis, pageCommands), []);
   // Without a 3D view, the image view is the large one.
   const large = space.value.kind === "none" ? "image" : largeView.value;
   return (
@@ -43,11 +54,9 @@ export function App() {
       <div class="frame">
         <Header />
         <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
-          <SpaceView />
-          <ImageView />
-          <TimePanel />
-          <HandPanel />
+          {/* First, so that the Tab key reaches it first. */}
           <aside class="side" aria-label="Scene">
+            <Kept />
             <RunBar />
             <StartPanel />
             <ResultPanel />
@@ -56,7 +65,12 @@ export function App() {
             <InputPanel />
             <OptionsPanel />
           </aside>
+          <SpaceView />
+          <ImageView />
+          <TimePanel />
+          <HandPanel />
         </main>
+        <Palette />
         <HelpDialog />
         <Intake />
         <DropOverlay />

@@ -4,6 +4,7 @@ import { loadFormats } from "sim3align/formats";
 import { App } from "./app.js";
 import { openFiles, openSample } from "./load/open.js";
 import { sampleOf, samples } from "./load/samples.js";
+import { storePage } from "./offline/offline.js";
 import { alignAll, alignEach } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
 import { observePoses } from "./run/evaluate.js";
@@ -67,6 +68,7 @@ async function start(): Promise<void> {
   (await import("./session/index.js")).keepSession();
   // From here on, files can be dropped without a connection. Without one now, the first drop tries again.
   import("./intake/index.js").catch(() => {});
+  storePage();
 }
 start();
 

@@ -1,6 +1,7 @@
 //! The benchmark: runs methods over cases, keeps records of the results, and imports results of other programs.
 
 pub mod benchmark;
+pub mod case_line;
 pub mod generators;
 pub mod imported;
 pub mod option_text;

@@ -1,5 +1,6 @@
 //! `generators`: compares where generators put their meshes with where alignments put them.
 
+use sim3align_lab::bench::case_line::CaseLine;
 use sim3align_lab::bench::generators::{PlacedScene, ROWS, Record, table};
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::scene_bench::BenchScene;
@@ -8,7 +9,7 @@ use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::prelude::*;
 use sim3align_lab::scenes::{Prior, SceneSet};
 
-use super::{Arguments, Command, Failure, print_progress, usage};
+use super::{Arguments, Command, Failure, print_progress, usage, write_lines};
 
 pub const COMMAND: Command = Command {
     name: "generators",
@@ -28,6 +29,7 @@ agrees with the image. Objects without gt.json are left out.
   --set-seed S       seed of the set, default 0
   --objects          prints every object
   --quality Q        of `align`
+  --json FILE        keeps the errors of every object
   --threads N        default: all
   --help             this text",
     run,
@@ -56,7 +58,7 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
     sources.extend((0..scenes).map(|index| Source::Generated(&set, index)));
     let prints_objects = arguments.flag("objects");
     let options = option_text::with_quality(arguments.optional("quality")?).map_err(usage)?;
-    let threads = arguments.threads("threads")?;
+    let (json, threads): (Option<PathBuf>, usize) = (arguments.optional("json")?, arguments.threads("threads")?);
     arguments.end()?;
     if sources.is_empty() {
         return Err(usage("--cases with scene folders, or --scenes, is expected"));
@@ -91,5 +93,11 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
         println!();
     }
     println!("{} objects\n\n{}", all.len(), table(&all));
-    Ok(())
+    let lines = all.iter().flat_map(|(name, record)| {
+        ROWS.iter().zip(record).take(ROWS.len() - 1).map(move |(row, evaluation)| {
+            let errors = evaluation.as_ref().and_then(|evaluation| evaluation.errors.as_ref());
+            CaseLine::new(row, name.clone(), errors, None, None)
+        })
+    });
+    write_lines(json, lines)
 }

@@ -14,12 +14,16 @@ mod registration;
 mod scenes;
 mod sequence_rows;
 mod together;
+mod trace;
 mod track;
 mod views;
 
+use std::borrow::Borrow;
 use std::fmt::Display;
 
 pub use arguments::Arguments;
+use serde::Serialize;
+use sim3align_lab::bench::case_line::CaseLine;
 use sim3align_lab::prelude::*;
 
 /// A subcommand.
@@ -35,7 +39,7 @@ pub struct Command {
 }
 
 /// All subcommands.
-pub const COMMANDS: [Command; 13] = [
+pub const COMMANDS: [Command; 14] = [
     cases::COMMAND,
     scenes::COMMAND,
     bench::COMMAND,
@@ -46,6 +50,7 @@ pub const COMMANDS: [Command; 13] = [
     registration::COMMAND,
     views::COMMAND,
     track::COMMAND,
+    trace::COMMAND,
     outlines::COMMAND,
     profile::COMMAND,
     fuzz::COMMAND,
@@ -75,6 +80,12 @@ fn usage(error: impl Display) -> Failure {
 /// Writes a file of results.
 fn write_file(path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
     std::fs::write(path, content).map_err(|error| Failure::Failed(format!("{}: {error}", path.display())))
+}
+
+/// Writes the lines of all cases to a file, if one is named.
+fn write_lines(json: Option<PathBuf>, lines: impl Iterator<Item: Borrow<CaseLine> + Serialize>) -> Result<(), Failure> {
+    let Some(path) = json else { return Ok(()) };
+    write_file(&path, serde_json::to_string(&lines.collect::<Vec<_>>())?)
 }
 
 /// Prints how many of `all` items are done, now and then, on standard error.

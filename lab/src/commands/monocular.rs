@@ -3,7 +3,7 @@
 use serde_json::json;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::monocular::reading::Treatment;
-use sim3align_lab::monocular::record::Record;
+use sim3align_lab::monocular::record::{JudgedRecord, Record};
 use sim3align_lab::monocular::row::Row;
 use sim3align_lab::monocular::runs::{Settings, Way, run as run_rows};
 use sim3align_lab::monocular::table::report;
@@ -63,7 +63,8 @@ pub fn run(arguments: &mut Arguments) -> Result<(), Failure> {
     let records: Vec<Record> = records.into_iter().flatten().collect();
     println!("{}", report(&records, &settings.rows, &settings.ways));
     let treatment = settings.treatment.as_str();
-    let all = json!({ "treatment": treatment, "seed": settings.seed, "setSeed": pictures.seed, "records": records });
+    let judged: Vec<JudgedRecord> = records.iter().map(JudgedRecord::from).collect();
+    let all = json!({ "treatment": treatment, "seed": settings.seed, "setSeed": pictures.seed, "records": judged });
     match &json {
         Some(path) => write_file(path, format!("{}\n", all)),
         None => Ok(()),

@@ -1,25 +1,67 @@
 //! `profile`: aligns case folders with the native build, which `npm run profile` compares with WebAssembly.
 
-use serde_json::{Map, Value as Json};
+use serde_json::{Map, Value as Json, json};
 use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
-use sim3align_lab::bench::benchmark::Clock;
+use sim3align::precise::drawn::counts::{self, Counts};
+use sim3align::progress::{Host, Stage};
 use sim3align_lab::bench::option_text;
 use sim3align_lab::case_folder::case::read_case;
+use sim3align_lab::cpu_time::CpuTimer;
 use sim3align_lab::prelude::*;
 
 use super::{Arguments, Command, Failure, usage};
 
 pub const COMMAND: Command = Command {
     name: "profile",
-    about: "aligns case folders natively, and prints times as JSON",
+    about: "aligns case folders natively, and prints CPU times and what was drawn as JSON",
     usage: "\
 Usage: sim3align-lab profile [--quality QUALITY] RUNS CASE...
 
 Aligns each case folder RUNS times and prints JSON: { \"<folder>\": [result, …] }. QUALITY is one of `align`;
-it and all other options have its defaults.",
+it and all other options have its defaults. Times are those of the CPU. `drawn` of a result has, by stage, the
+numbers of poses, vertices, triangles, filled triangles, visited cells and cells of the renders.",
     run,
 };
+
+/// A host whose clock is the CPU time, and that counts what each stage draws.
+struct Profiler {
+    timer: CpuTimer,
+    running: Option<Stage>,
+    before: Counts,
+    drawn: Vec<(Stage, Counts)>,
+}
+
+impl Profiler {
+    fn start() -> Self {
+        Self { timer: CpuTimer::start(), running: None, before: counts::so_far(), drawn: Vec::new() }
+    }
+
+    /// The counts by stage, as JSON.
+    fn drawn(&self) -> Json {
+        let of = |counts: &Counts| {
+            let Counts { renders, vertices, triangles, filled, visited, cells } = counts;
+            json!({ "poses": renders, "vertices": vertices, "triangles": triangles, "filled": filled, "visited": visited, "cells": cells })
+        };
+        self.drawn.iter().map(|(stage, counts)| (stage.as_str().to_owned(), of(counts))).collect::<Map<_, _>>().into()
+    }
+}
+
+impl Host for Profiler {
+    fn now_ms(&mut self) -> f64 {
+        1000.0 * self.timer.seconds()
+    }
+
+    fn progress(&mut self, stage: Stage, _fraction: f64) {
+        let now = counts::so_far();
+        let since = now.since(&core::mem::replace(&mut self.before, now));
+        let ended = self.running.replace(stage).unwrap_or(stage);
+        match self.drawn.iter_mut().find(|(known, _)| *known == ended) {
+            Some((_, sum)) => *sum = sum.and(&since),
+            None => self.drawn.push((ended, since)),
+        }
+    }
+}
 
 fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json>, Error> {
     let case = read_case(folder.as_ref())?;
@@ -27,8 +69,11 @@ fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json
         .map(|_| {
             let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
             let request = Request::new(options.clone())?;
-            let alignment = align_prepared(&case.observation, &mesh, request, &mut Clock::default())?;
-            Ok(serde_json::to_value(alignment).unwrap_or_default())
+            let mut profiler = Profiler::start();
+            let alignment = align_prepared(&case.observation, &mesh, request, &mut profiler)?;
+            let mut result = serde_json::to_value(alignment).unwrap_or_default();
+            result["drawn"] = profiler.drawn();
+            Ok(result)
         })
         .collect()
 }

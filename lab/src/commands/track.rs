@@ -5,6 +5,7 @@ use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackState;
 use sim3align::track::tracker::Tracker;
 use sim3align_lab::bench::benchmark::STRICT;
+use sim3align_lab::bench::case_line::CaseLine;
 use sim3align_lab::bench::proportions::with_wrong_mesh;
 use sim3align_lab::bench::statistics::{cell, median};
 use sim3align_lab::cpu_time::CpuTimer;
@@ -13,19 +14,20 @@ use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::video::VideoSet;
 
 use super::sequence_rows::{Sources, each_row};
-use super::{Arguments, Command, Failure};
+use super::{Arguments, Command, Failure, write_lines};
 
 pub const COMMAND: Command = Command {
     name: "track",
     about: "tracks one object through videos, and prints tables",
     usage: "\
 Usage: sim3align-lab track [--generated N] [--from I] [--frames F] [--seed S] [--threads T] [--printed]
-       [--no-color] [--stretch E] [--verbose] [FOLDER...]
+       [--no-color] [--stretch E] [--verbose] [--json FILE] [FOLDER...]
 
 Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips,
 losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.
 --from: index of the first generated video. --printed: objects whose print alone tells how they are turned;
---no-color: without their photos. --stretch: meshes of wrong proportions, with E the largest logarithm of a stretch.",
+--no-color: without their photos. --stretch: meshes of wrong proportions, with E the largest logarithm of a stretch.
+--json: keeps the errors of every frame that shows the object.",
     run,
 };
 
@@ -51,6 +53,7 @@ struct Outcome {
     /// Longest time to find the object again, frames.
     found_after: usize,
     times: Vec<f64>,
+    lines: Vec<CaseLine>,
 }
 
 const ROWS: [&str; 2] = ["all masks", "first mask"];
@@ -107,6 +110,9 @@ fn run_video(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec
             outcome.unsure[0] += usize::from(found.state == TrackState::Uncertain);
             outcome.unsure[1] += usize::from(found.state == TrackState::Lost);
             outcome.strict += usize::from(strict);
+            let case = format!("{}/{}", sequence.name, frame.name);
+            let ms = outcome.times.last().copied();
+            outcome.lines.push(CaseLine::new(name, case, Some(&errors), Some(found.confidence), ms));
             missed = if strict { 0 } else { missed + 1 };
             outcome.found_after = outcome.found_after.max(missed);
             outcome.flips += usize::from(found.state != TrackState::Lost && errors.rotation_error_deg > FLIP_DEG);
@@ -126,12 +132,14 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
     };
     let (with_color, verbose) = (!arguments.flag("no-color"), arguments.flag("verbose"));
     let stretch: f64 = arguments.value("stretch", 0.0)?;
+    let json: Option<PathBuf> = arguments.optional("json")?;
     let sources = Sources::parse(arguments)?;
     let run = |sequence: &Sequence| match stretch {
         0.0 => run_video(sequence, with_color, verbose),
         _ => run_video(&with_wrong_mesh(sequence, set.seed, stretch)?, with_color, verbose),
     };
     let outcomes = sources.outcomes(|index| set.video(index), run)?;
+    write_lines(json, outcomes.iter().flat_map(|outcome| &outcome.lines))?;
     println!(
         "| row | videos | frames | strict % | rotation median, worst ° | size median, last worst % | flips | uncertain, lost | wrong and tracking | longest until right, frames | ms |"
     );

@@ -8,6 +8,7 @@ use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment};
 use sim3align::views::{View, align_views};
 use sim3align_lab::bench::benchmark::STRICT;
+use sim3align_lab::bench::case_line::CaseLine;
 use sim3align_lab::bench::statistics::{cell, median};
 use sim3align_lab::prelude::*;
 use sim3align_lab::sequences::Sequence;
@@ -15,20 +16,21 @@ use sim3align_lab::sequences::faulty_mask::{grown, holed};
 use sim3align_lab::sequences::rig::RigSet;
 
 use super::sequence_rows::{Sources, each_row};
-use super::{Arguments, Command, Failure};
+use super::{Arguments, Command, Failure, write_lines};
 
 pub const COMMAND: Command = Command {
     name: "views",
     about: "aligns one object in several views, and prints tables",
     usage: "\
 Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed] [--small]
-       [--no-color] [--mask-px N] [--holes] [--verbose] [FOLDER...]
+       [--no-color] [--mask-px N] [--holes] [--verbose] [--json FILE] [FOLDER...]
 
 Aligns each case with one view, with all views and known camera poses, and with all views and unknown ones, and prints the
 fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.
 --from: index of the first generated case. --printed: objects whose print alone tells how they are turned;
 --no-color: without their photos. --small: objects of 5 cm, 60 cm from the cameras.
---mask-px: makes all masks wider by N pixels, narrower if negative. --holes: with holes in the mask of the second view.",
+--mask-px: makes all masks wider by N pixels, narrower if negative. --holes: with holes in the mask of the second view.
+--json: keeps the errors of every view.",
     run,
 };
 
@@ -67,6 +69,7 @@ struct Outcome {
     /// Wrong views found, wrong views, and right views left out.
     left_out: [usize; 3],
     ms: f64,
+    lines: Vec<CaseLine>,
 }
 
 const ROWS: [&str; 3] = ["one view", "known cameras", "unknown cameras"];
@@ -112,6 +115,7 @@ fn run_case(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outc
         let mut scale: f64 = 0.0;
         let mut bias = None;
         let mut left_out = [0; 3];
+        let mut lines = Vec::new();
         for (k, (view, frame)) in found.views.iter().zip(&sequence.frames).enumerate() {
             let is_out = view.role == ViewRole::Contradicting;
             left_out[0] += usize::from(is_out && frame.is_wrong);
@@ -121,6 +125,8 @@ fn run_case(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outc
             // scored.
             let skipped = frame.is_wrong && row == 1;
             let Some(errors) = errors_of(sequence, k, &view.camera_from_mesh)?.filter(|_| !skipped) else { continue };
+            let case = format!("{}/{}", sequence.name, frame.name);
+            lines.push(CaseLine::new(name, case, Some(&errors), Some(view.confidence), Some(ms)));
             strict &= STRICT.holds(&errors);
             scale = scale.max(errors.scale_error);
             let ratio = view.camera_from_mesh.scale / frame.camera_from_mesh.map_or(1.0, |t| t.scale);
@@ -158,6 +164,7 @@ fn run_case(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outc
             confidence: found.confidence,
             left_out,
             ms,
+            lines,
         });
     }
     Ok(outcomes)
@@ -176,8 +183,10 @@ fn run(arguments: &mut Arguments) -> Result<(), Failure> {
         holes: arguments.flag("holes"),
     };
     let verbose = arguments.flag("verbose");
+    let json: Option<PathBuf> = arguments.optional("json")?;
     let sources = Sources::parse(arguments)?;
     let outcomes = sources.outcomes(|index| set.case(index), |sequence| run_case(sequence, fault, verbose))?;
+    write_lines(json, outcomes.iter().flat_map(|outcome| &outcome.lines))?;
     println!(
         "| row | cases | n | strict % | size error median % | bias % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
     );

@@ -86,6 +86,21 @@ impl Tolerance {
     }
 }
 
+/// A record in a file: also whether it is right, by [`STRICT`] and by [`LOOSE`].
+#[derive(Debug, Serialize)]
+pub struct JudgedRecord<'a> {
+    #[serde(flatten)]
+    record: &'a Record,
+    strict: Option<bool>,
+    loose: Option<bool>,
+}
+
+impl<'a> From<&'a Record> for JudgedRecord<'a> {
+    fn from(record: &'a Record) -> Self {
+        Self { record, strict: record.success(&STRICT), loose: record.success(&LOOSE) }
+    }
+}
+
 impl Record {
     /// Whether the pose is within a tolerance; `None` if the true pose is unknown. An error is a failure.
     pub fn success(&self, tolerance: &Tolerance) -> Option<bool> {

@@ -1,6 +1,4 @@
-//! The TypeScript package's declarations of options, results and codes, its defaults and its table of options are
-//! generated from the Rust declarations.
-//!
+//! TypeScript's options, results, codes, defaults and table of options are generated from the Rust declarations.
 //! `UPDATE=1 cargo test --package sim3align-lab typescript` writes the files after a change.
 
 use std::collections::BTreeMap;
@@ -371,9 +369,10 @@ fn options() -> String {
         "{HEADER}import type {{ OptionRow }} from \"../options.js\";\n\
          import type {{\n  {},\n}} from \"./types.js\";\n\n{}\n{constants}\
          /** Every option with its kind, range, default and a one-line description. */\n\
-         export const OPTIONS = /* @__PURE__ */ (() => ({{\n{}}}) as const satisfies Readonly<Record<string, readonly OptionRow[]>>)();\n",
+         export const OPTIONS: Readonly<Record<{}, readonly OptionRow[]>> = /* @__PURE__ */ (() => ({{\n{}}}))();\n",
         calls.each_ref().map(|call| call.interface).join(",\n  "),
         calls.each_ref().map(defaults).join("\n"),
+        calls.each_ref().map(|call| format!("\"{}\"", call.key)).join(" | "),
         calls.each_ref().map(table).concat(),
     )
 }

@@ -94,15 +94,26 @@ async function trackVideo(
     files = { mesh };
     tracker = await aligner.track(await readMeshFile(mesh), given as TrackOptions);
     print(style.bold(name), headings(columns));
-    for (const frame of names) {
+    const read = (frame: string) => readFrame(join(folder, frame), caseSettings(flags));
+    let next: ReturnType<typeof read> | undefined;
+    for (const [k, frame] of names.entries()) {
       const began = performance.now();
       const row = [frame];
       let frameFiles: Readonly<Record<string, string>> = {};
       try {
-        const read = await readFrame(join(folder, frame), caseSettings(flags));
-        frameFiles = read.files;
-        const { cameraToWorld, ...input } = read.input;
-        const tracked = await tracker.next(input);
+        const reading = next ?? read(frame);
+        next = undefined;
+        const { files: own, input: view } = await reading;
+        frameFiles = own;
+        const { cameraToWorld, ...input } = view;
+        const tracking = tracker.next(input);
+        const following = names[k + 1];
+        if (following !== undefined) {
+          // The files of the next frame are read while the object is tracked in this one. What fails, fails in its turn.
+          next = read(following);
+          next.catch(() => {});
+        }
+        const tracked = await tracking;
         frames.push({ name: frame, tracked });
         const { state, confidence, scale, scaleSd } = tracked;
         row.push(state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2));

@@ -304,7 +304,7 @@ const workBudget = {
 } as const;
 
 /** Every option with its kind, range, default and a one-line description. */
-export const OPTIONS = /* @__PURE__ */ (() => ({
+export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track" | "evaluate" | "register" | "estimateSim3", readonly OptionRow[]>> = /* @__PURE__ */ (() => ({
   align: [
     quality,
     scale,
@@ -510,4 +510,4 @@ export const OPTIONS = /* @__PURE__ */ (() => ({
     edgeSimilarity,
     { ...workBudget, summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop" },
   ],
-}) as const satisfies Readonly<Record<string, readonly OptionRow[]>>)();
+}))();

@@ -8,6 +8,7 @@ import type { Stage } from "../generated/types.js";
 import type { Job, MeshCache } from "../jobs.js";
 import { isRecord } from "../kinds.js";
 import type { CoreMesh } from "../prepared-mesh.js";
+import type { ModuleName } from "../wasm-modules.js";
 
 /** Messages to the worker. */
 export type Request =
@@ -29,7 +30,7 @@ export type Request =
   | { type: "module"; name: LazyName; module: WebAssembly.Module | ErrorParts };
 
 /** The modules that a worker asks for when a job first needs them. */
-export type LazyName = "formats" | "depth-files" | "splats" | "joint" | "registration";
+export type LazyName = Exclude<ModuleName, "core">;
 
 /** Messages from the worker. */
 export type Reply =

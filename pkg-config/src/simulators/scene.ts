@@ -57,7 +57,7 @@ export interface SimulatorOptions {
   /** Whether bodies are put at rest; without it, each keeps the pose of its transform. */
   rest?: boolean | undefined;
   /** The physics module, if it is not at `wasm/physics_bg.wasm` beside this script. Only the first one is used. */
-  physicsWasm?: WasmSource | undefined;
+  wasm?: WasmSource | undefined;
 }
 
 /** Defaults of {@link SimulatorOptions}. */
@@ -126,7 +126,7 @@ export async function simulatorScene(
   objects: readonly SimulatorObject[],
   options: SimulatorOptions = {},
 ): Promise<SimulatorScene> {
-  const { support = null, camera, physicsWasm, ...given } = optionsOf(options);
+  const { support = null, camera, wasm, ...given } = optionsOf(options);
   const list = flattened(objects);
   if (list === null) {
     throw invalidArgument("objects", objects, "an array of { mesh, transform }", "Pass one of these per object.");
@@ -141,7 +141,7 @@ export async function simulatorScene(
   );
   const worldFromCamera = zUp(frame);
   const meshes = own.map(({ mesh }) => meshWithIndices(mesh));
-  const module = await physicsModule.load(physicsWasm);
+  const module = await physicsModule.load(wasm);
   const sent = poses.map((pose, i) => ({
     mesh: meshes[i],
     transform: sim3Of(composed(worldFromCamera, pose)).matrix,

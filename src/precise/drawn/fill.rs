@@ -74,8 +74,9 @@ struct Setup {
     w_c: [f32; LANES],
 }
 
-/// Renders four triangles, in order, until more than `most` cells are visited, and returns about the number of cells visited.
-/// `id` is the first one's. Takes slices of one length instead of the canvas, so that addresses and length stay in registers.
+/// Renders four triangles, in order, until more than `most` cells are visited, and returns about the number of cells visited,
+/// and the number of triangles that are filled. `id` is the first one's. Takes slices of one length instead of the canvas, so that
+/// addresses and length stay in registers.
 #[inline(always)]
 pub fn fill(
     inverse_depth: &mut [f32],
@@ -85,7 +86,7 @@ pub fn fill(
     vertices: &[Vertex],
     triangles: [[u32; 3]; LANES],
     most: usize,
-) -> usize {
+) -> (usize, u32) {
     let [i, j, k, l] = triangles;
     let a = Corners::gather(vertices, [i[0], j[0], k[0], l[0]]);
     let mut b = Corners::gather(vertices, [i[1], j[1], k[1], l[1]]);
@@ -105,8 +106,9 @@ pub fn fill(
     let area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
     let is_line: i32x4 = area.simd_eq(i32x4::ZERO);
     let mut left = !is_empty.to_bitmask() & (large | !is_line.to_bitmask()) & 0xf;
+    let filled = left.count_ones();
     if left == 0 {
-        return 0;
+        return (0, 0);
     }
     let is_turned: i32x4 = area.simd_lt(i32x4::ZERO);
     (b, c) = (Corners::select(is_turned, c, b), Corners::select(is_turned, b, c));
@@ -143,7 +145,7 @@ pub fn fill(
             visited += boxes[lane] as usize;
         }
     }
-    visited
+    (visited, filled)
 }
 
 /// A triangle whose box is small: in 32 bits, four cells of a row at once, and without a branch per cell.

@@ -3,7 +3,7 @@
 //! Table tops, lamp feet and screens have the same form. This only finds what may be such a plate: whether it is one, the
 //! image decides (see [`shown`](crate::precise::searched::shown)).
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Vec3};
 
 use super::surplus::{LeftOut, Trimmed};
 use crate::geometry::angle::sin_cos;
@@ -29,6 +29,8 @@ const OBJECT: f64 = 0.1;
 const DIRECTIONS: usize = 4;
 /// Heights by which the thickness of a plate is measured.
 const BINS: usize = 64;
+/// The interval of no point.
+const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 /// A mesh without its ground plate; `None` if it has nothing that looks like one.
 pub fn without_plate(mesh: &Mesh) -> Option<Trimmed> {
@@ -84,9 +86,22 @@ fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) ->
         let (sin, cos) = sin_cos(core::f64::consts::PI * k as f64 / DIRECTIONS as f64);
         side * cos + down.cross(side) * sin
     });
-    let all = vec![true; faces.len()];
-    let [_, lowest] = interval(faces, &all, true, down);
-    let most = THICKNESS * directions.iter().fold(0.0, |most, d| length(interval(faces, &all, true, *d)).max(most));
+    let all = |direction: DVec3| {
+        let along = |[low, high]: [f64; 2], p: &Vec3| {
+            let at = p.as_dvec3().dot(direction);
+            [low.min(at), high.max(at)]
+        };
+        mesh.positions().iter().fold(NOWHERE, along)
+    };
+    let lengths = directions.map(|direction| length(all(direction)));
+    // A plate is as long as all of the mesh.
+    let least = FULL * lengths[0] * lengths[DIRECTIONS / 2];
+    if faces.iter().filter(|face| face.is_flat(down)).map(|face| face.area).sum::<f64>() < least {
+        return None;
+    }
+    let [_, lowest] = all(down);
+    let longest = lengths.into_iter().fold(0.0, f64::max);
+    let most = THICKNESS * longest;
     // The flat area by the height of its upper side.
     let mut flat = [0.0; BINS];
     for face in faces.iter().filter(|face| face.is_flat(down)) {
@@ -124,20 +139,15 @@ fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) ->
                 object += face.area;
             }
         }
-        let [mut longest, mut rectangle]: [f64; 2] = [0.0, 1.0];
-        for (k, direction) in directions.into_iter().enumerate() {
+        for direction in directions {
             let [own, other] = [true, false].map(|side| interval(faces, is_plate, side, direction));
             if !(own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)) {
                 return None;
             }
-            longest = longest.max(length(own));
-            if k % (DIRECTIONS / 2) == 0 {
-                rectangle *= length(own);
-            }
         }
         let height = top - interval(faces, is_plate, false, down)[0];
         let share = plate / (plate + object);
-        let is_ground = flat >= FULL * rectangle && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
+        let is_ground = flat >= least && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
         let left_out = LeftOut { ground: share, ..LeftOut::default() };
         is_ground.then(|| Trimmed::split(mesh, left_out, &|triangle| is_plate[triangle])).flatten()
     })
@@ -146,7 +156,7 @@ fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) ->
 /// The interval along a direction of the triangles of which `of` says `side`.
 #[inline(never)]
 fn interval(faces: &[Face], of: &[bool], side: bool, direction: DVec3) -> [f64; 2] {
-    let mut all = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut all = NOWHERE;
     for (face, _) in faces.iter().zip(of).filter(|(_, of)| **of == side) {
         let [low, high] = face.along(direction);
         all = [all[0].min(low), all[1].max(high)];

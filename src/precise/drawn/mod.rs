@@ -4,6 +4,7 @@
 //! depth and triangle by cell, in a [`Canvas`](render::Canvas). A cell is filled if the ray through its centre meets a
 //! triangle; images have the same bits natively and in WebAssembly, with and without SIMD.
 
+pub mod counts;
 pub mod equivalence;
 mod fill;
 pub mod ground_plate;

@@ -9,6 +9,7 @@ use glam::{Mat3, Vec3};
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
+use super::counts;
 use super::fill::{Corners, STEPS, Vertex, fill};
 use super::lanes::LANES;
 use super::pose::CropPose;
@@ -100,7 +101,7 @@ impl Canvas {
         self.triangle.resize(grid.mask.len(), 0);
         self.project(model, stretch, grid);
         let most = MAX_LAYERS * self.inverse_depth.len();
-        let mut visited = 0;
+        let (mut visited, mut filled) = (0, 0);
         let (inverse_depth, size) = (self.inverse_depth.as_mut_slice(), [grid.width, grid.height]);
         let drawn = &mut self.triangle[..inverse_depth.len()];
         for (id, four) in (0..).step_by(LANES).zip(model.triangles.chunks(LANES)) {
@@ -110,11 +111,20 @@ impl Canvas {
                 last.iter_mut().zip(four).for_each(|(last, triangle)| *last = *triangle);
                 last
             });
-            visited += fill(inverse_depth, drawn, size, id, &self.vertices, triangles, most - visited);
+            let of_four = fill(inverse_depth, drawn, size, id, &self.vertices, triangles, most - visited);
+            (visited, filled) = (visited + of_four.0, filled + of_four.1);
             if visited > most {
                 break;
             }
         }
+        counts::add(|| counts::Counts {
+            renders: 1,
+            vertices: model.positions.len() as u64,
+            triangles: model.triangles.len() as u64,
+            filled: filled.into(),
+            visited: visited as u64,
+            cells: grid.mask.len() as u64,
+        });
         self.work += (grid.mask.len() + visited + model.positions.len() + model.triangles.len()) as u64;
     }
 

@@ -6,7 +6,7 @@
 
 use std::rc::Rc;
 
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 
 use super::choice::{Choice, HIDDEN, Look, SHAPE, best_roll};
 use super::lookalikes::{Likeness, Lookalike, lookalikes};
@@ -98,7 +98,8 @@ fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared:
     if is_changed {
         found.pose = polished(rounds, found.pose);
     }
-    let rolled = if choice.is_used { roll(&rounds.search, photo, colors, found.pose, LOOSE) } else { None };
+    let axis = if choice.is_used { loose_axis(&rounds.search, &found.pose, LOOSE) } else { None };
+    let rolled = axis.and_then(|axis| roll(&rounds.search, photo, colors, found.pose, axis));
     let gain = rolled.map_or(0.0, |(_, gain)| gain);
     if let Some((pose, _)) = rolled {
         found.pose = pose;
@@ -158,17 +159,21 @@ pub fn are_rivals(a: DQuat, b: DQuat) -> bool {
     angle_between(a, b) > RIVAL
 }
 
+/// The axis about which shape leaves the rotation open, by at least `loose` radians.
+pub fn loose_axis(search: &Search, pose: &CropPose, loose: f64) -> Option<DVec3> {
+    let loosest = || search.conditioning(pose).0.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= loose);
+    search.equivalence.free_axis(pose.rotation).or_else(|| loosest().map(|(_, axis)| axis))
+}
+
 /// Rolls a pose about the axis that shape leaves open to where its colours agree best, and the gain of agreement; `None`
-/// if shape leaves none by `loose` radians, or no roll is better.
+/// if no roll is better.
 pub fn roll(
     search: &Search,
     photo: &PhotoCells,
     colors: &SurfaceColors,
     pose: CropPose,
-    loose: f64,
+    axis: DVec3,
 ) -> Option<(CropPose, f64)> {
-    let loosest = || search.conditioning(&pose).0.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= loose);
-    let axis = search.equivalence.free_axis(pose.rotation).or_else(|| loosest().map(|(_, axis)| axis))?;
     let rolled = |angle: f64| search.mesh.turns.turned(&pose, exp(axis * angle) * pose.rotation);
     let mut canvas = Canvas::default();
     let objective = search.objective(FINE);

@@ -26,6 +26,9 @@ impl Thinning {
         let of_step = |step: usize| Self { step, first: (step - 1) / 2 };
         let least = (1..).find(|step| around / (step * step) <= MAX_PIXELS).unwrap_or(1);
         let thinned = of_step((pixels / ENOUGH_PIXELS).isqrt().max(least));
+        if thinned.step == least {
+            return thinned;
+        }
         let remaining = thinned
             .indices(mask.height())
             .flat_map(|v| thinned.indices(mask.width()).filter(move |&u| mask.get(u, v).is_some_and(|m| m != 0)));

@@ -46,10 +46,12 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
     let pose = problem.allowed(pose);
     let score = problem.score(&pose);
     let mut best = Found::of(pose, score);
-    let mut equations = problem.equations(&best.pose, &best.score);
+    let mut equations = None;
     let mut damping = DAMPING[0];
     for _ in 0..iterations {
-        let Some(step) = equations.solve(damping) else { break };
+        // Not before a step asks for them: those at the last pose are not needed.
+        let of_best = equations.get_or_insert_with(|| problem.equations(&best.pose, &best.score));
+        let Some(step) = of_best.solve(damping) else { break };
         let Some(next) = problem.moved(&best.pose, step) else { break };
         let next = problem.allowed(next);
         let score = problem.score(&next);
@@ -61,7 +63,7 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
             if gain < MIN_GAIN {
                 break;
             }
-            equations = problem.equations(&best.pose, &best.score);
+            equations = None;
             damping *= DAMPING[1];
         } else {
             damping = (damping * DAMPING[2]).max(DAMPING[0]);

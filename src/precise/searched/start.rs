@@ -13,6 +13,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
+use crate::metrics::symmetry::Symmetry;
 use crate::pauses::Pauses;
 use crate::precise::drawn::equivalence::DIFFERENT;
 use crate::precise::drawn::mesh_pyramid::MeshPyramid;
@@ -169,14 +170,18 @@ pub fn prepared(
     Ok(search)
 }
 
-/// Validates a mesh, and decimates it for the first search of the default quality.
+/// Validates a mesh, and prepares it for the first search of the default quality: its forms, its decimations, and its
+/// symmetry.
 ///
 /// # Errors
 /// [`DegenerateMesh`](ErrorCode::DegenerateMesh).
 pub fn prepare(mesh: &PreparedMesh<'_>) -> Result<()> {
     mesh.check()?;
-    let first = Quality::default().efforts().first();
-    first.into_iter().for_each(|&effort| drop(mesh.pyramid(&SearchSettings::from(effort).grids)));
+    for mesh in core::iter::once(mesh).chain(mesh.without_plate()) {
+        let first = Quality::default().efforts().first();
+        let pyramid = first.and_then(|&effort| mesh.pyramid(&SearchSettings::from(effort).grids));
+        pyramid.map(|pyramid| pyramid.equivalence(&Symmetry::Auto)).transpose()?;
+    }
     Ok(())
 }
 

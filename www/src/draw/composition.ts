@@ -56,8 +56,10 @@ export function compose(
   return image;
 
   function paint(objects: readonly DrawnObject[], left: number, right: number): void {
-    for (const { mask, colour, depth, box, isSelected, limitM } of objects) {
+    for (const object of objects) {
+      const { mask, colour, depth, box, isSelected, limitM } = object;
       if (box === null) continue;
+      const others = objects.filter((one) => one !== object);
       const own = rgbOf(colour);
       const isEdge = outlineOf({ data: depth, width, height }, thickness);
       const isBorder = outlineOf({ data: mask, width, height }, thickness);
@@ -67,10 +69,15 @@ export function compose(
         for (let u = Math.max(left, box.left); u < Math.min(right, box.right); u++) {
           const pixel = v * width + u;
           const [mesh, measured] = [depth[pixel] as number, depthM[pixel] as number];
+          // Something nearer, in the scene or among the objects, hides the mesh: its outline shows through, faintly.
+          const isHidden =
+            mesh > 0 &&
+            ((mask[pixel] === 0 && measured > 0 && measured < mesh - limitM) ||
+              others.some((one) => (one.depth[pixel] as number) > 0 && (one.depth[pixel] as number) < mesh));
           if (mesh > 0 && difference && mask[pixel] !== 0 && measured > 0) {
             mix(image.data, pixel, differenceColour(mesh - measured, limitM), 0.92);
-          } else if (mesh > 0 && silhouette) mix(image.data, pixel, own, fill);
-          if ((silhouette || difference) && isEdge(pixel)) mix(image.data, pixel, own, 1);
+          } else if (mesh > 0 && silhouette && !isHidden) mix(image.data, pixel, own, fill);
+          if ((silhouette || difference) && isEdge(pixel)) mix(image.data, pixel, own, isHidden ? 0.4 : 1);
           if (outline && isBorder(pixel)) mix(image.data, pixel, [255, 255, 255], 0.95);
         }
       }

@@ -12,7 +12,7 @@ import { atSize } from "../load/masks.js";
 import { photoFrom } from "../load/photo.js";
 import { type ReadObject, readInputs, sceneOf } from "../load/read-scene.js";
 import { readDepth, readMask, readMesh } from "../load/reader.js";
-import { type Packed, sessionParts, unpacked } from "../session/pack.js";
+import { isSession, type Packed, sessionParts, unpacked } from "../session/pack.js";
 import type { Scene } from "../state/scene.js";
 import type { GivenInput, GivenObject, GivenScene } from "./sim3-align.js";
 
@@ -33,10 +33,11 @@ export async function readGiven(given: GivenInput): Promise<Opened> {
 
 const asFile = (blob: Blob) => (blob instanceof File ? blob : new File([blob], "case.zip"));
 
-/** The first scene of files, which may be a session. */
+/** The first scene of files, which may be a project. */
 async function fromFiles(files: readonly NamedFile[]): Promise<Opened> {
   const extracted = await extractArchives(files);
-  const parts = await sessionParts(extracted);
+  const session = extracted.find(isSession);
+  const parts = session === undefined ? null : await sessionParts(extracted, session);
   const inputs =
     parts === null
       ? (await scenesOfTyped(await rolesOf(extracted)))[0]
@@ -55,7 +56,7 @@ async function fromFiles(files: readonly NamedFile[]): Promise<Opened> {
 /** A scene in memory, read as files are. */
 async function fromMemory(given: GivenScene): Promise<Opened> {
   const read = await depthOf(given);
-  const { width, height, depthKind, unit: depthUnit } = read;
+  const { width, height, unit: depthUnit } = read;
   const { camera: stated, image } = given;
   const [photo, objects] = await Promise.all([
     image === undefined ? null : photoFrom(image, { width, height }),
@@ -74,8 +75,8 @@ async function fromMemory(given: GivenScene): Promise<Opened> {
     objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null, isSure: true })),
   };
   const scene = sceneOf(inputs, {
-    ...{ depth: { data: depthM, width, height }, raw, depthKind, depthUnit, photo, objects },
-    ...{ camera: found.camera, cameraSource: found.source, warnings: found.warnings, problems: [] },
+    ...{ depth: { data: depthM, width, height }, raw, depthUnit, photo, objects },
+    ...{ camera: found.camera, cameraSource: found.source, warnings: found.warnings },
   });
   if (scene === null) throw new Error("A scene has at least one object.");
   return { scene, inputs, session: null };

@@ -7,7 +7,7 @@ import { permalink } from "../state/permalink.js";
 import type { Scene } from "../state/scene.js";
 import { imageSnapshot } from "../views/image-view.js";
 
-const { announce, space } = page;
+const { announce, list, scene, space } = page;
 
 /** A way to save or copy the object or the whole scene: the title of its button, and what it does. */
 export type Export = readonly [title: string, act: (scene: Scene, object: ObjectModel) => Promise<void>];
@@ -29,9 +29,15 @@ export const allExports: readonly Export[] = [
   ["Copy matrix (column-major)", (_, object) => copyMatrix(object, "column")],
   ["Copy matrix (row-major)", (_, object) => copyMatrix(object, "row")],
   ["PLY", async (_, object) => download(`${fileName(object.name)}-placed.ply`, (await writers()).plyBytes(object))],
-  ["Session", saveSession],
+  ["Project", saveProject],
   ["PNG of the view", (_, object) => saveImage(fileName(object.name))],
-  ["Copy link", () => copy(permalink(), "the link")],
+  [
+    "Copy link",
+    async ({ sample }) => {
+      if (sample !== null) await copy(permalink(), "the link");
+      else announce("Your own files cannot be linked. Save the project instead.", "failed");
+    },
+  ],
 ];
 
 /** What can be saved of several scenes besides. */
@@ -50,9 +56,10 @@ async function copyMatrix(object: ObjectModel, order: "column" | "row"): Promise
   await copy((await writers()).matrixText(object, order), `the matrix (${order}-major)`);
 }
 
-async function saveSession({ name }: Scene): Promise<void> {
-  const file = await (await import("../session/index.js")).sessionFile();
-  if (file !== null) download(`${fileName(name)}.sim3align.zip`, file);
+/** Saves all scenes of this tab as one file. */
+export async function saveProject(): Promise<void> {
+  const name = list.peek().length > 1 ? "project" : (scene.peek()?.name ?? "");
+  download(`${fileName(name)}.sim3align.zip`, await (await import("../session/project.js")).projectFile());
 }
 
 /** Saves the 3D view or, without one, the image view. */

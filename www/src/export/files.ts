@@ -27,11 +27,11 @@ export function videoText(name: string): string {
 }
 
 /** The results of a scene. */
-export const jsonText = (scene: Scene): string => JSON.stringify(sceneResult(scene), null, 2);
+export const jsonText = (scene: Scene): string => JSON.stringify(sceneResult(scene, page.inputs.peek()), null, 2);
 
 /** The results of all scenes of the list. */
 export const allJsonText = async (): Promise<string> =>
-  JSON.stringify((await import("../session/index.js")).allResults(), null, 2);
+  JSON.stringify((await import("../session/project.js")).allResults(), null, 2);
 
 /** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */
 export function bopText({ objects }: Scene): string {

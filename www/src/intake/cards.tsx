@@ -64,9 +64,9 @@ export const FieldFiles = ({ field, title, isWrong, ...input }: FieldFilesProps)
   </FileButton>
 );
 
-/** Pixels as an image of the size of the depth map, as soon as both are there. */
-const useImage = (rgba: Uint8ClampedArray | null, depth: { width: number; height: number } | null) =>
-  useMemo(() => rgba && depth && new ImageData(Uint8ClampedArray.from(rgba), depth.width, depth.height), [rgba, depth]);
+/** Pixels as an image of this size, as soon as both are there. */
+const useImage = (rgba: Uint8ClampedArray | null, size: { width: number; height: number } | null) =>
+  useMemo(() => rgba && size && new ImageData(Uint8ClampedArray.from(rgba), size.width, size.height), [rgba, size]);
 
 /** The extensions of depth maps. */
 const depthFiles = ".png,.npy,.npz,.exr,.tif,.tiff,.pfm";
@@ -77,6 +77,7 @@ const depthUnits = [
   ["1", "metres"],
   ["0.001", "millimetres"],
   ["0.0001", "0.1 mm"],
+  ["0.0002", "0.2 mm"],
   ["0.00025", "0.25 mm"],
 ] as const;
 
@@ -124,8 +125,8 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
 
 export function PhotoCard({ open }: { open: Draft }) {
   const { photo: file } = draftInputs(open);
-  const { photo, depth } = open.reading ?? { photo: null, depth: null };
-  const image = useImage(photo?.rgba ?? null, depth);
+  const photo = open.reading?.photo ?? null;
+  const image = useImage(photo?.rgba ?? null, photo?.shown ?? null);
   return (
     <Card
       field="photo"
@@ -149,7 +150,7 @@ const intrinsics = ["fx", "fy", "cx", "cy"] as const;
 function chosenCamera(camera: CameraSource | null, source: string | null): string {
   if (camera === null) return source === null ? "" : cameraTitle(source);
   return camera.kind === "file"
-    ? baseName(camera.file.path)
+    ? `${baseName(camera.file.path)}${camera.isScaled ? ", scaled" : ""}`
     : camera.kind === "assumed"
       ? `${camera.fovYDeg}° assumed`
       : "entered";
@@ -157,10 +158,9 @@ function chosenCamera(camera: CameraSource | null, source: string | null): strin
 
 export function CameraCard({ open }: { open: Draft }) {
   const { camera } = draftInputs(open);
-  const { camera: read = null, cameraSource = null, depth = null, raw = null } = open.reading ?? {};
-  const isGuess = raw !== null && raw.focalUncertainty > 0;
+  const { camera: read = null, cameraSource = null, size = null, focalUncertainty = 0 } = open.reading ?? {};
   const shown = camera?.kind === "numbers" ? camera : read;
-  const fovDeg = read !== null && depth !== null ? fovYDegOf(read, depth) : null;
+  const fovDeg = read !== null && size !== null ? fovYDegOf(read, size) : null;
   const enter = (name: (typeof intrinsics)[number], value: number) =>
     change((now) => {
       const { fx, fy, cx, cy } = shown ?? { fx: null, fy: null, cx: null, cy: null };
@@ -199,7 +199,7 @@ export function CameraCard({ open }: { open: Draft }) {
           <span class="unit">°</span>
         </label>
       </div>
-      {isGuess && <p class="quiet">Focal length ± {percent(raw.focalUncertainty)}, refined with the poses.</p>}
+      {focalUncertainty > 0 && <p class="quiet">Focal length ± {percent(focalUncertainty)}, refined with the poses.</p>}
       {camera !== null && (
         <button type="button" onClick={() => change((now) => ({ ...now, camera: null }))}>
           Leave out

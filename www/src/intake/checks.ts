@@ -5,6 +5,7 @@ import type { Inputs } from "../load/inputs.js";
 import { doubt, error, type Problem, type Remedy, withoutObject } from "../load/problems.js";
 import type { Reading, ReadObject } from "../load/read-scene.js";
 import { visibleExtent } from "../load/visible-extent.js";
+import { isForeign } from "./roles.js";
 
 /** A typical vertical field of view of phones and laptops. */
 export const ASSUMED_FOV_DEG = 50;
@@ -26,7 +27,10 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
   // What a wrong depth map does to the objects is not their fault.
   const seen = depth.length === 0 ? reading : { ...reading, depth: null };
   return [
-    ...reading.problems,
+    ...reading.problems.map((one) =>
+      one.field === "camera" && one.code === "SIZE_MISMATCH" ? scaling(one, reading) : one,
+    ),
+    ...notUsed(inputs),
     ...missing(inputs),
     ...guessed(inputs, reading),
     ...depth,
@@ -48,6 +52,39 @@ function missing({ depth, objects }: Inputs): Problem[] {
       ? []
       : [error("mesh", "Mesh missing. Choose a GLB, glTF, OBJ, PLY or STL file.")]),
   ];
+}
+
+/** Files that were meant as an input, but cannot be one. */
+function notUsed({ files }: Inputs): Problem[] {
+  const foreign = files.filter(isForeign);
+  if (foreign.length === 0) return [];
+  const names = foreign.slice(0, 3).map(({ file }) => baseName(file.path));
+  const more = foreign.length > names.length ? `, and ${foreign.length - names.length} more` : "";
+  const leaveOut: Remedy = {
+    title: "Leave out",
+    apply: (inputs) => ({ ...inputs, files: inputs.files.filter((one) => !isForeign(one)) }),
+  };
+  const what = `${names.join(", ")}${more}: not used. Save photos as JPEG or PNG, masks as PNG, and meshes as GLB, OBJ, PLY or STL.`;
+  return [doubt("files", what, [leaveOut])];
+}
+
+/** A camera of an image of another size: where that was resized as a whole, its intrinsics can be scaled. */
+function scaling(problem: Problem, { cameraSize: from, size: to }: Reading): Problem {
+  if (from === null || to === null) return problem;
+  const [x, y] = [to.width / from.width, to.height / from.height];
+  const sizes = `The camera is that of an image of ${from.width} × ${from.height}, and this one is ${to.width} × ${to.height}`;
+  // Resizing rounds to whole pixels.
+  if (Math.abs(from.height * x - to.height) >= 1 && Math.abs(from.width * y - to.width) >= 1) {
+    const factors = `${Number(x.toPrecision(3))} in x, ${Number(y.toPrecision(3))} in y`;
+    const message = `${sizes}: cropped or stretched (${factors}), so its intrinsics cannot be scaled. Choose the camera of this image.`;
+    return { ...problem, message };
+  }
+  const scale: Remedy = {
+    title: "Scale it",
+    apply: (inputs) =>
+      inputs.camera?.kind === "file" ? { ...inputs, camera: { ...inputs.camera, isScaled: true } } : inputs,
+  };
+  return { ...problem, message: `${sizes}.`, remedies: [scale] };
 }
 
 /** What was taken for granted, and decides about the sizes. */

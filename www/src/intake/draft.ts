@@ -6,22 +6,26 @@ import { type Inputs, noInputs, type Role, type Typed, withId } from "../load/in
 import { error, errorOf, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
-import { openSession } from "../session/index.js";
-import { SESSION_FILE } from "../session/pack.js";
+import { isSession } from "../session/pack.js";
+import { openProject } from "../session/project.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
+import { canReplace, replaced } from "./replace.js";
 import { rolesOf } from "./roles.js";
 import { fromSam3d } from "./sam3d.js";
 import { scenesOfTyped } from "./scenes.js";
 import { isVideo, videoOf } from "./video.js";
 
-const { announce, enlist, scene, show } = page;
+const { announce, enlist, inputs, scene, show } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
 
-/** Proposes files as one or several scenes. Files without a depth map are added to a draft that is open. */
+/** Whether a draft waits for its depth map. */
+const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
+
+/** Proposes files as one or several scenes. A draft that is open takes files without a depth map, and the one that it lacks. */
 export async function propose(files: readonly NamedFile[]): Promise<void> {
   const change = ++lastChange;
   let typed: Typed[];
@@ -29,9 +33,9 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
   try {
     const extracted = await extractArchives(files);
     if (change !== lastChange) return;
-    if (extracted.some(({ path }) => path === SESSION_FILE)) {
-      if (!(await openSession(extracted))) {
-        return refuse(error("files", "The session was saved by another version of this page."));
+    if (extracted.some(isSession)) {
+      if (!(await openProject(extracted))) {
+        return refuse(error("files", "The project was saved by another version of this page."));
       }
       draft.value = null;
       return;
@@ -48,8 +52,13 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
     return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
   }
   const open = draft.peek();
-  if (open !== null && !typed.some(({ role }) => role === "depth")) return add(open, typed);
+  const depths = typed.filter(({ role }) => role === "depth").length;
+  if (open !== null && (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open))))) return add(open, typed);
   const scenes = await scenesOfTyped(typed);
+  const shown = inputs.peek();
+  if (shown.sample === null && shown.depth !== null && canReplace(typed)) {
+    return set({ scenes, index: 0, isVideo: false, isEdit: false, forShown: typed });
+  }
   // Point maps of large images are smaller than the images.
   const more = made === null ? {} : { depthKind: made.depthKind, resizeMasks: true };
   await proposeScenes(scenes.map((one) => ({ ...one, ...more })));
@@ -58,6 +67,13 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
 /** Proposes scenes, the first of which is looked at. */
 export function proposeScenes(scenes: readonly Inputs[]): Promise<void> {
   return set({ scenes, index: 0, isVideo: isVideo(scenes), isEdit: false });
+}
+
+/** Puts the files of the draft into the scene that is shown, in place of those that they name. */
+export async function putIntoShown(): Promise<void> {
+  const typed = draft.peek()?.forShown;
+  const shown = inputs.peek();
+  if (typed !== undefined) await edit(await replaced({ ...shown, files: filesOf(shown) }, typed));
 }
 
 /** Takes the scenes as the frames of one video, or as scenes of their own. */
@@ -82,7 +98,9 @@ export async function change(apply: (inputs: Inputs) => Inputs, opens = false): 
   const open = draft.peek();
   if (open === null) return;
   const changed = apply(draftInputs(open));
-  await set({ ...open, scenes: open.scenes.map((one, i) => (i === open.index ? changed : one)) }, opens);
+  // What was changed by hand is a scene of its own.
+  const { forShown: _, ...rest } = open;
+  await set({ ...rest, scenes: open.scenes.map((one, i) => (i === open.index ? changed : one)) }, opens);
 }
 
 /** Files for a field of the draft, whatever their names. */

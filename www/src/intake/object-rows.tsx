@@ -10,6 +10,7 @@ import { Check, Choices } from "../ui/controls.js";
 import { Picture } from "../ui/picture.js";
 import { FieldFiles } from "./cards.js";
 import { change } from "./draft.js";
+import { MarkButton } from "./marking.js";
 import { Problems, problemsFor } from "./problem-list.js";
 import { meshExtensions, resourceExtensions } from "./roles.js";
 
@@ -53,10 +54,13 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
             key={`${i} ${object.mask?.file.path} ${object.mask?.label}`}
             {...{ inputs, object, i, ground }}
             read={open.reading?.objects[i] ?? emptyObject}
-            width={open.reading?.depth?.width ?? 1}
+            width={open.reading?.shown?.width ?? 1}
           />
         ))}
       </ul>
+      {inputs.depth !== null && ground !== null && !inputs.objects.some(({ mask }) => mask !== null) && (
+        <MarkButton i={0} id="mark-mask" title={`Mark it on the ${open.reading?.photo ? "photo" : "depth map"}`} />
+      )}
     </section>
   );
 }
@@ -122,6 +126,7 @@ function Row({ inputs, object, read, i, ground, width }: RowProps) {
         <span class="path" title={object.mask?.file.path}>
           {maskTitle(object)}
         </span>
+        {ground !== null && <MarkButton i={i} title={mask === null ? "Mark" : "Mark again"} />}
       </div>
       <span class="arrow" aria-hidden="true">
         ↔

@@ -2,12 +2,23 @@
 import { INITIAL_FILE } from "sim3align/case-files";
 import { baseName, extension, type NamedFile } from "../load/files.js";
 import type { Role, Typed } from "../load/inputs.js";
+import { isBlackAndWhite } from "../load/label-masks.js";
 
 export const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
-const photoExtensions = ["jpg", "jpeg", "webp"];
+const photoExtensions = ["jpg", "jpeg", "webp", "avif", "heic", "heif"];
 export const resourceExtensions = ["bin", "mtl"];
 /** Files of depth models. */
 const depthExtensions = ["npz", "exr", "tif", "tiff", "pfm"];
+
+/** Depth files that other programs also use for photos, which no browser shows. */
+const renderExtensions = ["exr", "tif", "tiff"];
+
+/** Files that are meant as an input, but are read as none in most cases. */
+const foreignExtensions = [...depthExtensions, "bmp", "gif", "fbx", "dae", "usd", "usdz", "blend", "3ds", "spz"];
+
+/** Whether a file that is not used was probably meant to be. */
+export const isForeign = ({ file, role }: Typed): boolean =>
+  role === "unused" && foreignExtensions.includes(extension(file.path));
 
 /** Whether a name contains one of the words, between characters that are no letters. */
 const says = (name: string, words: string) => new RegExp(`(^|[^a-z])(${words})(s?)([^a-z]|$)`).test(name);
@@ -37,11 +48,19 @@ async function roleOf(file: NamedFile): Promise<Role> {
   if (ending === "json" || ending === "yaml" || ending === "yml") return roleOfJson(file, await headOf(file, 1 << 22));
   const name = baseName(file.path).toLowerCase();
   const byName = pixelRole(name) ?? pixelRole(folderOf(file.path));
-  if (photoExtensions.includes(ending)) return byName === "unused" ? byName : "photo";
-  if (depthExtensions.includes(ending)) return byName === "unused" || byName === "mask" ? "unused" : "depth";
+  if (photoExtensions.includes(ending)) return byName === "unused" ? byName : photoOrMask(file, byName);
+  if (depthExtensions.includes(ending)) {
+    const isOther = byName === "photo" && renderExtensions.includes(ending);
+    return isOther || byName === "unused" || byName === "mask" || byName === "labels" ? "unused" : "depth";
+  }
   if (ending !== "png" && ending !== "npy") return "unused";
-  return byName ?? pixelRoleOf(ending, await headOf(file, 1 << 10));
+  const role = byName ?? pixelRoleOf(ending, await headOf(file, 1 << 10));
+  return role === "photo" && ending === "png" ? photoOrMask(file, byName) : role;
 }
+
+/** A picture of black and white is a mask, unless its name says that it is a photo. */
+const photoOrMask = async (file: NamedFile, byName: Role | null): Promise<Role> =>
+  byName !== "photo" && (await isBlackAndWhite(file)) ? "mask" : "photo";
 
 const folderOf = (path: string) => (path.split("/").at(-2) ?? "").toLowerCase();
 

@@ -4,9 +4,12 @@ import { depthImage } from "../draw/colours.js";
 import { baseName } from "../load/files.js";
 import type { Inputs, Role } from "../load/inputs.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
+import { page } from "../state/page.js";
 import { Check, Choices, FileButton } from "../ui/controls.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
-import { accept, assign, asVideo, change, dismiss, look, propose } from "./draft.js";
+import { accept, assign, asVideo, change, dismiss, look, propose, putIntoShown } from "./draft.js";
+import { FromPhoto } from "./from-photo.js";
+import { Marking } from "./marking.js";
 import { ObjectRows } from "./object-rows.js";
 import { Problems } from "./problem-list.js";
 import { canBeVideo } from "./video.js";
@@ -21,6 +24,7 @@ export function Sheet() {
   const ground = useMemo(() => (depth === null ? null : depthImage(depth.data)), [depth]);
   if (open === null) return null;
   const inputs = draftInputs(open);
+  const shown = open.reading?.photo?.rgba ?? ground;
   return (
     <dialog
       ref={dialog}
@@ -47,12 +51,14 @@ export function Sheet() {
       </header>
       <div class="intake-body">
         <Problems field="files" />
+        <ForShown open={open} />
+        {inputs.depth === null && <FromPhoto inputs={inputs} canMark={shown !== null} />}
         <section aria-label="View" class="cards">
           <DepthCard open={open} ground={ground} />
           <PhotoCard open={open} />
           <CameraCard open={open} />
         </section>
-        <ObjectRows open={open} ground={open.reading?.photo?.rgba ?? ground} />
+        <ObjectRows open={open} ground={shown} />
         <FileRoles inputs={inputs} />
       </div>
       <footer>
@@ -66,7 +72,26 @@ export function Sheet() {
           {open.isEdit ? "Apply and align" : "Align"}
         </button>
       </footer>
+      <Marking open={open} ground={shown} />
     </dialog>
+  );
+}
+
+/** Files that may belong to the scene that is shown. */
+function ForShown({ open: { forShown } }: { open: Draft }) {
+  if (forShown === undefined) return null;
+  const names = forShown.slice(0, 3).map(({ file }) => baseName(file.path));
+  return (
+    <p class="doubt" id="for-shown">
+      {names.join(", ")}
+      {forShown.length > names.length && " …"}: for {page.inputs.value.name}, or a new scene?{" "}
+      <button type="button" id="put-into-shown" onClick={putIntoShown}>
+        Replace in {page.inputs.value.name}
+      </button>
+      <button type="button" id="new-scene" onClick={() => change((now) => now)}>
+        New scene
+      </button>
+    </p>
   );
 }
 
@@ -121,7 +146,8 @@ function FileRoles({ inputs: { files } }: { inputs: Inputs }) {
   return (
     <details class="file-roles">
       <summary>
-        {files.length} files{unused > 0 && `, ${unused} not used`}
+        {files.length} {files.length === 1 ? "file" : "files"}
+        {unused > 0 && `, ${unused} not used`}
       </summary>
       <ul>
         {files.slice(0, 200).map(({ file, role }) => (

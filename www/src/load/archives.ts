@@ -37,7 +37,7 @@ export async function extractArchives(files: readonly NamedFile[]): Promise<Name
     else {
       for (const entry of part.entries) {
         const content = await contentOf(part, entry);
-        extracted.push({ path: entry.path, bytes: async () => content });
+        extracted.push({ path: entry.path, bytes: async () => content, size: content.length });
       }
     }
   }

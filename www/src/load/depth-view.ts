@@ -1,5 +1,6 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
+import type { ImageSize } from "sim3align/conventions";
 import { type DepthImage, type DepthReading, readCamera, readExif } from "sim3align/formats";
 import { foundCamera } from "sim3align/input/lens";
 import { corrected, provisional, type RawView } from "../state/calibration.js";
@@ -39,7 +40,7 @@ export interface ReadCamera {
 
 /** The camera of a depth map for which none was given. */
 export async function cameraOf(
-  { width, height, camera }: Pick<DepthImage, "width" | "height" | "camera">,
+  { width, height, camera }: ImageSize & { camera?: DepthImage["camera"] | undefined },
   photo: { bytes: Uint8Array; width: number; height: number } | null,
 ): Promise<ReadCamera> {
   const exif = photo === null ? undefined : await readExif(photo.bytes).catch(() => undefined);

@@ -25,7 +25,12 @@ export interface Typed {
 
 /** The camera: a file, intrinsics (`null` is still to be entered), or an assumed field of view. */
 export type CameraSource =
-  | { kind: "file"; file: NamedFile }
+  | {
+      kind: "file";
+      file: NamedFile;
+      /** Whether its intrinsics are scaled to the size of the depth map. */
+      isScaled?: boolean;
+    }
   | { kind: "numbers"; fx: number | null; fy: number | null; cx: number | null; cy: number | null }
   | { kind: "assumed"; fovYDeg: number };
 
@@ -104,9 +109,11 @@ export const noInputs: Inputs = {
   files: [],
 };
 
+/** An id that no other scene has. */
+export const newId = (): string => `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}`;
+
 /** The inputs of the user's own scene, with an id. */
-export const withId = (inputs: Inputs): Inputs =>
-  inputs.id !== "" ? inputs : { ...inputs, id: `${Date.now().toString(36)}-${Math.random().toString(36).slice(2)}` };
+export const withId = (inputs: Inputs): Inputs => (inputs.id !== "" ? inputs : { ...inputs, id: newId() });
 
 /** The input fields. */
 export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";

@@ -46,18 +46,53 @@ const labelsOf = once(async (file: NamedFile): Promise<Labels> => {
   return { data, width, height, counts };
 });
 
-/** The colours of an image as numbers: an 8-bit grey value g is g · 0x10101, so it is divided back. */
-async function coloursOf(bytes: Uint8Array): Promise<Omit<Labels, "counts">> {
+/** The pixels of an image: red, green, blue, alpha. At most `side` columns and rows of them, without interpolation. */
+async function pixelsOf(bytes: Uint8Array, side = Number.POSITIVE_INFINITY) {
   const bitmap = await createImageBitmap(new Blob([bytes as Uint8Array<ArrayBuffer>]), {
     colorSpaceConversion: "none",
     premultiplyAlpha: "none",
   });
-  const { width, height } = bitmap;
+  const [width, height] = [Math.min(bitmap.width, side), Math.min(bitmap.height, side)];
   const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
-  if (context === null) throw new Error("The browser could not create a canvas for the label map.");
-  context.drawImage(bitmap, 0, 0);
+  if (context === null) throw new Error("The browser could not create a canvas for the image.");
+  context.imageSmoothingEnabled = false;
+  context.drawImage(bitmap, 0, 0, width, height);
   bitmap.close();
-  const rgba = context.getImageData(0, 0, width, height).data;
+  return { rgba: context.getImageData(0, 0, width, height).data, width, height };
+}
+
+/** Above this level, a pixel of a mask that was saved with losses is the object. */
+const HALF = 127;
+/** How far the levels of such a mask are from black and white, and from grey. */
+const LOSS = 40;
+/** Columns and rows that are looked at, and the share of them that has to be black or white: edges are blurred. */
+const [LOOKED_AT, PLAIN_SHARE] = [96, 0.97];
+
+/** The mask in an image that was saved with losses: its bright pixels. */
+export async function maskOfPicture(file: NamedFile): Promise<ReadMask> {
+  const { rgba, width, height } = await pixelsOf(await file.bytes());
+  const data = Uint8Array.from({ length: width * height }, (_, i) => ((rgba[4 * i + 1] ?? 0) > HALF ? 1 : 0));
+  return { data, width, height };
+}
+
+/** Whether an image shows black and white only, both of them, as a mask does. */
+export async function isBlackAndWhite(file: NamedFile): Promise<boolean> {
+  const found = await pixelsOf(await file.bytes(), LOOKED_AT).catch(() => null);
+  if (found === null) return false;
+  const { rgba } = found;
+  let [black, white] = [0, 0];
+  for (let i = 0; i < rgba.length; i += 4) {
+    const [r = 0, g = 0, b = 0] = rgba.subarray(i, i + 3);
+    if (Math.max(r, g, b) - Math.min(r, g, b) > LOSS) continue;
+    if (g <= LOSS) black++;
+    else if (g >= 255 - LOSS) white++;
+  }
+  return black > 0 && white > 0 && 4 * (black + white) >= PLAIN_SHARE * rgba.length;
+}
+
+/** The colours of an image as numbers: an 8-bit grey value g is g · 0x10101, so it is divided back. */
+async function coloursOf(bytes: Uint8Array): Promise<Omit<Labels, "counts">> {
+  const { rgba, width, height } = await pixelsOf(bytes);
   const data = new Uint32Array(width * height);
   for (let i = 0; i < data.length; i++) {
     const [r = 0, g = 0, b = 0] = [rgba[4 * i], rgba[4 * i + 1], rgba[4 * i + 2]];

@@ -1,7 +1,7 @@
 /** Reads masks. */
 import { Sim3AlignError } from "sim3align";
 import { resizeMask } from "sim3align/conventions";
-import type { NamedFile } from "./files.js";
+import { extension, type NamedFile } from "./files.js";
 import type { MaskSource } from "./inputs.js";
 import { once } from "./once.js";
 import { readMask } from "./reader.js";
@@ -13,7 +13,13 @@ export interface ReadMask {
   height: number;
 }
 
-const plainMask = once((file: NamedFile): Promise<ReadMask> => file.bytes().then(readMask));
+/** Images that only the browser decodes. */
+const isPicture = ({ path }: NamedFile) => /^(jpe?g|webp|avif|heic|heif)$/.test(extension(path));
+
+const plainMask = once(async (file: NamedFile): Promise<ReadMask> => {
+  if (isPicture(file)) return (await import("./label-masks.js")).maskOfPicture(file);
+  return readMask(await file.bytes());
+});
 
 /** The mask of a source. Label maps and annotations are read by a script of their own. */
 export async function maskOf(source: MaskSource): Promise<ReadMask> {

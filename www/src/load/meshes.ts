@@ -14,7 +14,11 @@ export interface LoadedMesh {
 /** The mesh of a source. */
 export const meshOf = once(load);
 
+/** Smaller files hold no mesh that is too large. */
+const LARGE_BYTES = 1 << 20;
+
 async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
+  if ((file.size ?? 0) > LARGE_BYTES) await (await import("./mesh-header.js")).checkMeshSize(file);
   const bytes = await file.bytes();
   const ending = extension(file.path);
   if (ending !== "gltf" && ending !== "obj") {

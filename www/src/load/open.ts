@@ -1,11 +1,13 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
+import { alignAll } from "../run/align.js";
 import { draft } from "../state/draft.js";
 import type { Listed } from "../state/opened.js";
 import { page } from "../state/page.js";
+import { type Progress, progressIn } from "../state/progress.js";
 import type { NamedFile } from "./files.js";
 import type { Inputs } from "./inputs.js";
 import { readInputs, sceneOf } from "./read-scene.js";
-import { type Sample, sampleInputs } from "./samples.js";
+import { type Sample, sampleInputs, samples } from "./samples.js";
 
 const { announce, inputs, isReading, list, objects, scene, show } = page;
 
@@ -73,17 +75,12 @@ export async function openListed({ id }: Inputs): Promise<void> {
 }
 
 /** How far the work on a scene of the list is. */
-export function progressOf({ inputs: { id }, progress }: Listed): Listed["progress"] {
-  if (id !== inputs.value.id || scene.value === null) return progress;
-  const all = objects.value;
-  return { objects: all.length, accepted: all.filter(({ isAccepted }) => isAccepted.value).length };
+export function progressOf({ inputs: { id }, progress }: Listed): Progress | null {
+  return id !== inputs.value.id || scene.value === null ? progress : progressIn(objects.value);
 }
 
 /** Whether an object of a scene is still to be accepted. */
-export function isOpen(one: Listed): boolean {
-  const progress = progressOf(one);
-  return progress === null || progress.accepted < progress.objects;
-}
+export const isOpen = (one: Listed): boolean => progressOf(one)?.state !== "accepted";
 
 /** The next scene of the list that is open, after the one that is shown. */
 export function nextListed(): Inputs | null {
@@ -98,6 +95,13 @@ export async function openNext(): Promise<void> {
   const at = all.findIndex((one) => one.inputs.id === inputs.peek().id);
   const next = nextListed() ?? all[(at + 1) % all.length]?.inputs;
   if (next !== undefined) await openListed(next);
+}
+
+/** Shows the next scene of the list or, without any, the first sample. */
+export async function openAnother(): Promise<void> {
+  const [first] = samples;
+  if (list.peek().length > 0) await openNext();
+  else if (first !== undefined && (await openSample(first))) await alignAll(page);
 }
 
 page.fileActions.value = { edit: editInputs, next: openNext };

@@ -31,9 +31,9 @@ export const doubt = (field: Field, message: string, remedies: readonly Remedy[]
   kind: "doubt",
 });
 
-/** The problem that an error of a reader is. */
-export const errorOf = (field: Field, cause: unknown, object?: number): Problem => ({
-  ...error(field, messageOf(cause), [], object),
+/** The problem that an error of a reader is; `source` is what it has read. */
+export const errorOf = (field: Field, cause: unknown, object?: number, source?: string): Problem => ({
+  ...error(field, source === undefined ? messageOf(cause) : `${source}: ${messageOf(cause)}`, [], object),
   ...(cause instanceof Sim3AlignError ? { code: cause.code } : {}),
 });
 

@@ -1,10 +1,12 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
 import type { DepthKind, MeshArrays } from "sim3align";
-import { type MeshFromFile, type PixelArray, readCamera, readPose } from "sim3align/formats";
+import { type ImageSize, resizeCamera } from "sim3align/conventions";
+import { type CameraFile, type MeshFromFile, type PixelArray, readCamera, readPose } from "sim3align/formats";
 import type { RawView } from "../state/calibration.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { cameraOf, knownCamera, type ReadCamera, readDepthMap, viewOf } from "./depth-view.js";
+import { baseName, type NamedFile } from "./files.js";
 import type { CameraSource, Field, Inputs, TruthSource } from "./inputs.js";
 import { atSize, maskOf } from "./masks.js";
 import { meshOf } from "./meshes.js";
@@ -37,12 +39,26 @@ export interface Reading {
   camera: Scene["camera"] | null;
   /** Where the camera comes from, if none was given. */
   cameraSource: string | null;
+  /** Of the focal length, relative; 0 where it is known. */
+  focalUncertainty: number;
+  /** The size of the image to which the camera file belongs, if it says so. */
+  cameraSize: ImageSize | null;
+  /** The size of the image to which the camera belongs: that of the depth map or, without one, of the photo. */
+  size: ImageSize | null;
   photo: Photo | null;
+  /** The size of the pixels of photo and masks, which is smaller than `size` for a large photo without a depth map. */
+  shown: ImageSize | null;
   objects: readonly ReadObject[];
   /** Found by the readers. */
   problems: readonly Problem[];
   warnings: readonly string[];
 }
+
+/** What a scene is made of. */
+export type SceneReading = Omit<
+  Reading,
+  "focalUncertainty" | "cameraSize" | "size" | "shown" | "problems" | "depthKind"
+>;
 
 /** How many of the parts of a scene are read. */
 export interface ReadingProgress {
@@ -57,12 +73,17 @@ export async function readInputs(
 ): Promise<Reading> {
   const problems: Problem[] = [];
   const progress = { done: 0, total: 0 };
-  const attempt = async <T>(field: Field, read: () => Promise<T>, object?: number): Promise<T | null> => {
+  const attempt = async <T>(
+    field: Field,
+    file: NamedFile | null,
+    read: () => Promise<T>,
+    object?: number,
+  ): Promise<T | null> => {
     progress.total++;
     try {
       return await read();
     } catch (cause) {
-      problems.push(errorOf(field, cause, object));
+      problems.push(errorOf(field, cause, object, file === null ? undefined : baseName(file.path)));
       return null;
     } finally {
       progress.done++;
@@ -71,23 +92,40 @@ export async function readInputs(
   };
   const { depth: depthFile, camera: source, imageId } = inputs;
   // The camera file may state the unit of an integer depth map.
-  const cameraBytes = source?.kind === "file" ? await attempt("camera", () => source.file.bytes()) : null;
-  const integerDepthScale = cameraBytes === null ? undefined : await depthScaleOf(cameraBytes, imageId);
+  const cameraFile = source?.kind === "file" ? source.file : null;
+  const cameraBytes = cameraFile && (await attempt("camera", cameraFile, () => cameraFile.bytes()));
+  const stated = cameraBytes && (await statedOf(cameraBytes, imageId));
+  const integerDepthScale = stated?.depthScale;
   const depthScale = inputs.depthScale ?? undefined;
   const scales = { depthScale, integerDepthScale };
   const read =
-    depthFile === null ? null : await attempt("depth", () => readDepthMap(depthFile, inputs.depthKind, scales));
-  const size = read ?? { width: 0, height: 0 };
+    depthFile === null
+      ? null
+      : await attempt("depth", depthFile, () => readDepthMap(depthFile, inputs.depthKind, scales));
   const { photo: photoFile } = inputs;
+  // Beside a depth map that cannot be read, the size of the photo says nothing.
+  const canShow = read !== null || depthFile === null;
+  const readingPhoto =
+    photoFile === null || !canShow ? null : attempt("photo", photoFile, () => readPhoto(photoFile, read));
+  const shown = read ?? (await readingPhoto)?.shown ?? null;
   const [photo, objects] = await Promise.all([
-    photoFile === null || read === null ? null : attempt("photo", () => readPhoto(photoFile, size)),
+    readingPhoto,
     Promise.all(
       inputs.objects.map(async ({ mask, mesh, truth, initial }, i): Promise<ReadObject> => {
         const [readMask, readMesh, readTruth, first] = await Promise.all([
-          mask === null || read === null
+          mask === null || shown === null
             ? null
-            : attempt("mask", async () => atSize(await maskOf(mask), size.width, size.height, inputs.resizeMasks), i),
-          mesh === null ? null : attempt("mesh", () => meshOf(mesh), i),
+            : attempt(
+                "mask",
+                mask.file,
+                async () => {
+                  const own = await maskOf(mask);
+                  const isOfPhoto = isSameSize(own, await readingPhoto);
+                  return atSize(own, shown.width, shown.height, inputs.resizeMasks || isOfPhoto || read === null);
+                },
+                i,
+              ),
+          mesh === null ? null : attempt("mesh", mesh.file, () => meshOf(mesh), i),
           truthOf(truth),
           truthOf(initial === undefined ? null : { file: initial }),
         ]);
@@ -96,28 +134,34 @@ export async function readInputs(
       }),
     ),
   ]);
+  const size: ImageSize | null = read ?? photo;
   const camera =
-    read === null
+    size === null
       ? null
-      : await attempt("camera", async () =>
+      : await attempt("camera", cameraFile, async () =>
           source === null
-            ? cameraOf(read, photo && photoFile && { ...photo, bytes: await photoFile.bytes() })
-            : intrinsicsOf(source, cameraBytes, size, imageId),
+            ? cameraOf(
+                { width: size.width, height: size.height, camera: read?.camera },
+                photo && photoFile && { ...photo, bytes: await photoFile.bytes() },
+              )
+            : intrinsicsOf(source, cameraBytes, size, { imageId, from: stated }),
         );
   const view = read && viewOf(read, camera);
   return {
-    ...{ photo, objects, problems, warnings: camera?.warnings ?? [] },
-    depth: view && { data: view.depthM, width: size.width, height: size.height },
+    ...{ photo, objects, problems, size, shown, warnings: camera?.warnings ?? [] },
+    depth: view && read && { data: view.depthM, width: read.width, height: read.height },
     raw: view?.raw ?? null,
     depthKind: read?.depthKind ?? "metric",
     depthUnit: read?.unit ?? "",
     camera: camera?.camera ?? null,
     cameraSource: camera?.source ?? null,
+    focalUncertainty: camera?.focalUncertainty ?? 0,
+    cameraSize: sizeOf(stated),
   };
 }
 
 /** The scene, or null while a part is missing. A frame of a video may lack its mask. */
-export function sceneOf(inputs: Inputs, reading: Reading, isFrame = false): Scene | null {
+export function sceneOf(inputs: Inputs, reading: SceneReading, isFrame = false): Scene | null {
   const { depth, camera, photo, objects, raw, depthUnit, cameraSource, warnings } = reading;
   if (depth === null || camera === null) return null;
   const models: ObjectModel[] = [];
@@ -137,13 +181,16 @@ export function sceneOf(inputs: Inputs, reading: Reading, isFrame = false): Scen
   };
 }
 
-/** The depth scale of a camera file. Errors are left to the reading of the intrinsics, which needs the image size. */
-async function depthScaleOf(camera: Uint8Array, imageId: string | null): Promise<number | undefined> {
-  return readCamera(camera, imageId === null ? {} : { imageId }).then(
-    ({ depthScale }) => depthScale,
-    () => undefined,
-  );
+/** What a camera file says by itself. Errors are left to the reading of the intrinsics, which needs the image size. */
+async function statedOf(camera: Uint8Array, imageId: string | null): Promise<CameraFile | null> {
+  return readCamera(camera, imageId === null ? {} : { imageId }).catch(() => null);
 }
+
+/** The size of the image to which a camera file belongs, if it says so. */
+const sizeOf = (stated: CameraFile | null): ImageSize | null =>
+  stated?.width === undefined || stated.height === undefined ? null : { width: stated.width, height: stated.height };
+
+const isSameSize = (a: ImageSize, b: ImageSize | null) => a.width === b?.width && a.height === b.height;
 
 /** A vertical field of view that a pinhole camera can have, degrees. */
 const FOV_RANGE = [1, 170] as const;
@@ -151,8 +198,8 @@ const FOV_RANGE = [1, 170] as const;
 async function intrinsicsOf(
   source: CameraSource,
   bytes: Uint8Array | null,
-  { width, height }: { width: number; height: number },
-  imageId: string | null,
+  { width, height }: ImageSize,
+  { imageId, from }: { imageId: string | null; from: CameraFile | null },
 ): Promise<ReadCamera> {
   if (source.kind === "assumed") {
     const { fovYDeg } = source;
@@ -164,7 +211,11 @@ async function intrinsicsOf(
   }
   if (source.kind === "numbers") return { camera: entered(source), source: null, focalUncertainty: 0, warnings: [] };
   if (bytes === null) throw new Error("The camera file could not be read.");
-  return knownCamera(bytes, imageId === null ? { width, height } : { width, height, imageId });
+  const own = source.isScaled === true ? sizeOf(from) : null;
+  if (from === null || own === null)
+    return knownCamera(bytes, imageId === null ? { width, height } : { width, height, imageId });
+  const { fx, fy, cx, cy } = resizeCamera(from, { fromWidth: own.width, fromHeight: own.height, width, height });
+  return { camera: { fx, fy, cx, cy }, source: null, focalUncertainty: 0, warnings: from.warnings };
 }
 
 /** Intrinsics that were typed. */

@@ -5,10 +5,10 @@ import { useWorkspace } from "../ui/workspace.js";
 
 /** Accepts the pose of the selected object, and selects the next one that is open. */
 export function accept(workspace: Workspace): void {
-  const { announce, select, selected } = workspace;
+  const { acceptPose, announce, select, selected } = workspace;
   const object = selected.peek();
   if (object === null || !object.isPlaced) return;
-  object.accept();
+  if (!object.isAccepted.peek()) acceptPose(object);
   const next = nextOpen(workspace, object);
   announce(`Accepted ${object.name}.${next === null ? " All objects are accepted." : ""}`);
   if (next !== null) select(next.id);

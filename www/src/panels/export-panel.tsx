@@ -4,28 +4,42 @@ import { page } from "../state/page.js";
 
 const { list, scene, selected, video } = page;
 
+/** The formats that are not behind "More formats": files for other programs, and everything at once. */
+const first = new Set<unknown>([
+  videoExport,
+  listExport,
+  ...allExports.filter(([title]) => /^(GLB|JSON)$/.test(title)),
+]);
+
 export function ExportPanel() {
   const [whole, object] = [scene.value, selected.value];
-  return (
-    <details class="panel export-panel" open>
-      <summary>
-        <h2>Export</h2>
-      </summary>
-      <fieldset class="exports" disabled={whole === null || !object?.isPlaced}>
-        <legend class="visually-hidden">Poses, files and images</legend>
-        {[
-          ...(video.value === null ? [] : [videoExport]),
-          ...allExports,
-          ...(list.value.length > 1 ? [listExport] : []),
-        ].map(([title, act]) => (
+  const isReady = whole !== null && object?.isPlaced === true;
+  const all = [
+    ...(video.value === null ? [] : [videoExport]),
+    ...allExports,
+    ...(list.value.length > 1 ? [listExport] : []),
+  ];
+  const buttons = (isFirst: boolean) => (
+    <fieldset class="exports" disabled={!isReady}>
+      <legend class="visually-hidden">Poses, files and images</legend>
+      {all
+        .filter((one) => first.has(one) === isFirst)
+        .map(([title, act]) => (
           <button key={title} type="button" onClick={() => whole !== null && object !== null && act(whole, object)}>
             {title}
           </button>
         ))}
-      </fieldset>
-      {whole !== null && whole.sample === null && (
-        <p class="quiet">The link contains the options but not your files.</p>
-      )}
-    </details>
+    </fieldset>
+  );
+  return (
+    <section class="panel export-panel" aria-labelledby="export-title">
+      <h2 id="export-title">Export</h2>
+      {buttons(true)}
+      <details class="more">
+        <summary>More formats</summary>
+        {buttons(false)}
+        {whole !== null && whole.sample === null && <p class="quiet">Your own files cannot be linked.</p>}
+      </details>
+    </section>
   );
 }

@@ -118,21 +118,21 @@ export function HandPanel() {
           </button>
         ))}
       </fieldset>
-      <div class="row">
-        {settings.map(([id, name, title]) => (
-          <Check
-            key={id}
-            id={id}
-            title={title}
-            checked={gizmoSettings.value[name]}
-            onCheck={(checked) => {
-              gizmoSettings.value = { ...gizmoSettings.peek(), [name]: checked };
-            }}
-          />
-        ))}
-      </div>
       <details class="more">
-        <summary>Nudge</summary>
+        <summary>More</summary>
+        <div class="row">
+          {settings.map(([id, name, title]) => (
+            <Check
+              key={id}
+              id={id}
+              title={title}
+              checked={gizmoSettings.value[name]}
+              onCheck={(checked) => {
+                gizmoSettings.value = { ...gizmoSettings.peek(), [name]: checked };
+              }}
+            />
+          ))}
+        </div>
         <Numbers object={object} isReady={isReady} />
         {steps.map(({ legend, verb, buttons }) => (
           <fieldset key={legend} class="steps" disabled={!isReady || (verb === "" && lockScale)}>

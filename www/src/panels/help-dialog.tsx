@@ -1,7 +1,19 @@
 /** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
 import { isHelpOpen } from "../state/help.js";
-import { shortcuts } from "../ui/shortcuts.js";
+import { type Theme, theme } from "../state/theme.js";
+import { Choices } from "../ui/controls.js";
+import { pageCommands } from "../ui/page-commands.js";
+import { Keys } from "./keys.js";
+
+/** Titles and addresses, inserted by the build. */
+declare const DOCUMENTS: readonly (readonly [title: string, address: string])[];
+
+const themes: readonly [Theme, string][] = [
+  ["system", "System"],
+  ["light", "Light"],
+  ["dark", "Dark"],
+];
 
 export function HelpDialog() {
   const dialog = useRef<HTMLDialogElement>(null);
@@ -21,6 +33,17 @@ export function HelpDialog() {
     >
       <header>
         <h2 id="help-title">Help</h2>
+        <label class="field-inline" for="theme">
+          <span>Theme</span>
+          <Choices
+            id="theme"
+            value={theme.value}
+            choices={themes}
+            onChoose={(chosen) => {
+              theme.value = chosen;
+            }}
+          />
+        </label>
         <form method="dialog">
           <button type="submit">Close</button>
         </form>
@@ -37,14 +60,29 @@ export function HelpDialog() {
         without a unit, until you enter a known one. For several objects, use matching names: <code>mask-cup.png</code>{" "}
         goes with <code>mesh-cup.glb</code>. Everything is computed in this browser; nothing is uploaded.
       </p>
+      <h3>Documentation</h3>
+      <ul class="documents">
+        {[...DOCUMENTS, ["Accuracy, time and size by version", "record.html"] as const].map(([title, address]) => (
+          <li key={address}>
+            <a href={address} target="_blank" rel="noreferrer">
+              {title}
+            </a>
+          </li>
+        ))}
+      </ul>
       <h3>Keyboard shortcuts</h3>
       <dl class="keys">
-        {shortcuts.map(({ key, title, about }) => (
-          <div key={key}>
-            <dt>{title.split(" ").map((part) => (part === "to" ? " to " : <kbd key={part}>{part}</kbd>))}</dt>
-            <dd>{about}</dd>
-          </div>
-        ))}
+        {pageCommands.map(
+          ({ key, title, about }) =>
+            title !== undefined && (
+              <div key={key}>
+                <dt>
+                  <Keys title={title} />
+                </dt>
+                <dd>{about}</dd>
+              </div>
+            ),
+        )}
       </dl>
     </dialog>
   );

@@ -1,26 +1,24 @@
 /** The input files of the scene that is shown. */
 import { baseName } from "../load/files.js";
-import { editInputs, isOpen, nextListed, openListed, openNext, openSample, progressOf } from "../load/open.js";
-import { samples } from "../load/samples.js";
-import { alignAll } from "../run/align.js";
-import type { Listed } from "../state/opened.js";
+import { editInputs } from "../load/open.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
+import { Scenes } from "./scenes.js";
 
-const { inputs, list, othersScenes, scene, unit } = page;
+const { inputs, objects, scene, unit } = page;
 
-/** Forgets the scene, and shows the next one or, without any, the first sample. */
+/** Forgets the scene. What a person has decided or set is not forgotten unasked. */
 async function forget(): Promise<void> {
-  const [first] = samples;
+  const { name } = inputs.peek();
+  const isWork = objects.peek().some(({ isAccepted, pose }) => isAccepted.peek() || pose.peek().source === "hand");
+  if (isWork && !confirm(`Forget ${name}, with what you have set and accepted?`)) return;
   await (await import("../session/index.js")).forgetScene();
-  if (list.peek().length > 0) await openNext();
-  else if (first !== undefined && (await openSample(first))) await alignAll(page);
 }
 
 const unknownCamera = { file: "–", numbers: "entered", assumed: "assumed" };
 
 export function InputPanel() {
-  const { depth, camera, photo, objects } = inputs.value;
+  const { depth, camera, photo, objects: pairs } = inputs.value;
   const whole = scene.value;
   const source = whole?.cameraSource === "estimate" ? "estimated" : (whole?.cameraSource ?? "–");
   const rows = [
@@ -31,7 +29,7 @@ export function InputPanel() {
       camera === null ? source : camera.kind === "file" ? baseName(camera.file.path) : unknownCamera[camera.kind],
     ],
     ["Photo", photo === null ? "–" : baseName(photo.path)],
-    ["Objects", objects.map(({ name }) => name).join(", ")],
+    ["Objects", pairs.map(({ name }) => name).join(", ")],
   ] as const;
   return (
     <details class="panel input-panel" id="inputs" open>
@@ -74,46 +72,4 @@ export function InputPanel() {
 function unitText({ depthUnit, raw }: Scene): string {
   if (raw === null || raw.depthKind === "metric") return depthUnit;
   return unit.value === null ? "from a known size" : "none: sizes are relative";
-}
-
-function stateOf(one: Listed): string {
-  const progress = progressOf(one);
-  if (progress === null) return "not opened";
-  const { accepted, objects } = progress;
-  return accepted === objects ? "✓ accepted" : `${accepted} of ${objects} accepted`;
-}
-
-/** The user's own scenes, if there are several, and those of other tabs. */
-function Scenes() {
-  const [all, others] = [list.value, othersScenes.value];
-  const left = all.filter(isOpen).length;
-  return (
-    <>
-      {all.length > 1 && (
-        <>
-          <ul class="scenes" aria-label="Your scenes">
-            {all.map((one) => (
-              <li key={one.inputs.id}>
-                <button
-                  type="button"
-                  aria-pressed={one.inputs.id === inputs.value.id}
-                  onClick={() => openListed(one.inputs)}
-                >
-                  <span class="listed">{one.inputs.name}</span> <span class="quiet">{stateOf(one)}</span>
-                </button>
-              </li>
-            ))}
-          </ul>
-          <button type="button" id="next-scene" disabled={nextListed() === null} onClick={openNext}>
-            Next scene ({left} left)
-          </button>
-        </>
-      )}
-      {others.length > 0 && (
-        <p class="quiet" id="other-tabs">
-          Another tab has {others.join(", ")} open. Each tab keeps its own scenes.
-        </p>
-      )}
-    </>
-  );
 }

@@ -1,4 +1,5 @@
 /** The panels of `later.tsx`, as one script. */
+export { Advised, Warnings } from "./advised.js";
 export { Alternatives } from "./alternatives.js";
 export { Details } from "./details.js";
 export { HandPanel } from "./hand-panel.js";

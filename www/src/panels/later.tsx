@@ -13,8 +13,10 @@ const later = <P extends object>(load: () => Promise<ComponentType<P>>) =>
 
 const panels = () => import("./late.js");
 
+export const Advised = later<OfObject>(async () => (await panels()).Advised);
 export const Alternatives = later<OfObject>(async () => (await panels()).Alternatives);
 export const HandPanel = later(async () => (await panels()).HandPanel);
 export const OptionsPanel = later(async () => (await panels()).OptionsPanel);
 export const Remedies = later<OfObject>(async () => (await panels()).Remedies);
 export const Details = later<OfObject>(async () => (await panels()).Details);
+export const Warnings = later<OfObject>(async () => (await panels()).Warnings);

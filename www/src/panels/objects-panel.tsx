@@ -53,7 +53,7 @@ function Row({ object }: { object: ObjectModel }) {
   const { name, isShown, isLocked } = object;
   const [isRenamed, setRenamed] = useState(false);
   return (
-    <li data-shown={isShown.value}>
+    <li data-shown={isShown.value} data-plain={isShown.value && !isLocked.value}>
       {isRenamed && !isReadonly.value ? (
         <input
           class="rename"

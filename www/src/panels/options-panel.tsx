@@ -1,7 +1,21 @@
 /** Options of the alignment: prior knowledge about the object, and the seed. */
 import { choices, defaultOptions, MAX_SEED, type Options } from "../state/options.js";
+import type { Workspace } from "../state/workspace.js";
 import { Choices, Tip } from "../ui/controls.js";
+import { qualityTitles } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
+
+/** Presets and qualities as one list. */
+const efforts: readonly (readonly [value: string, title: string])[] = [
+  ...choices.quality.map((quality) => [quality, qualityTitles[quality]] as const),
+  ["paper", "Paper (baseline)"],
+];
+
+function chooseEffort({ setOption }: Workspace, value: string): void {
+  const quality = choices.quality.find((quality) => quality === value);
+  setOption("preset", quality === undefined ? "paper" : "precise");
+  setOption("quality", quality ?? defaultOptions.quality);
+}
 
 type ChoiceName = "up" | "symmetry";
 
@@ -81,14 +95,25 @@ function NumberField({ name, title, about, unit = "" }: NumberProps) {
 }
 
 export function OptionsPanel() {
-  const { options, unit } = useWorkspace();
+  const workspace = useWorkspace();
+  const { options, unit } = workspace;
   const metres = unit.value === null ? "m" : "";
   const isPaper = options.value.preset === "paper";
   return (
     <details class="panel options-panel" part="options" id="options">
       <summary>
-        <h2>Constraints</h2>
+        <h2>Quality and constraints</h2>
       </summary>
+      <div class="option">
+        <label for="effort">Quality</label>
+        <Tip label="quality">How much is searched. “Automatic” searches longer where the case is hard.</Tip>
+        <Choices
+          id="effort"
+          value={isPaper ? "paper" : options.value.quality}
+          choices={efforts}
+          onChoose={(value) => chooseEffort(workspace, value)}
+        />
+      </div>
       {isPaper ? (
         <p class="quiet">The baseline uses only the seed.</p>
       ) : (

@@ -2,10 +2,10 @@
 import { alignSelected } from "../run/align.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
+import { SURE } from "../state/progress.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { fix } from "./decision.js";
 import { KnownSize } from "./known-size.js";
-import { SURE } from "./sureness.js";
 
 const ups: readonly (readonly [Options["up"], string])[] = [
   ["y", "y is up"],
@@ -25,7 +25,7 @@ export function Remedies({ object }: { object: ObjectModel | null }) {
   return (
     <div class="remedies">
       <p>Not sure. {alternatives > 0 ? "Choose a pose below, or say what you know:" : "Say what you know:"}</p>
-      <KnownSize object={object} id="remedy-size" onSet={() => alignSelected(workspace)} />
+      <KnownSize object={object} id="remedy-size" />
       <fieldset class="row" disabled={isRunning.value}>
         <legend>It stands upright, and the camera was level</legend>
         {ups.map(([up, title]) => (

@@ -3,17 +3,15 @@
  * layout does not shift.
  */
 import type { PoseErrors } from "sim3align";
-import { occlusionOf } from "../draw/hidden.js";
 import { fieldOf } from "../load/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
-import type { Scene } from "../state/scene.js";
+import { SURE } from "../state/progress.js";
 import { Tip } from "../ui/controls.js";
-import { orDash, percent, significant, size, small, type Unit } from "../ui/format.js";
+import { orDash, percent, significant, size } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { Decision } from "./decision.js";
-import { Alternatives, Details, Remedies } from "./later.js";
+import { Advised, Alternatives, Details, Remedies, Warnings } from "./later.js";
 import { MainMetrics } from "./metrics.js";
-import { SURE, warningsOf } from "./sureness.js";
 
 export function ResultPanel() {
   const { isReadonly, selected } = useWorkspace();
@@ -37,6 +35,7 @@ export function ResultPanel() {
         )}
       </h2>
       <Size object={object} />
+      <Advised object={object} />
       {run?.state === "failed" && <Failure error={run.error} />}
       {!isReadonly.value && (
         <>
@@ -152,58 +151,3 @@ const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErro
     `${significant(rotationErrorDeg, 2)}°`,
     `${significant(1000 * translationErrorM, 2)} mm`,
   ].join(", ");
-
-/** An overlap below this is explained, if a part of the mesh is hidden. */
-const LOW_IOU = 0.85;
-/** Without such an explanation, an overlap below this means that something is wrong. */
-const WRONG_IOU = 0.7;
-
-/** Why the overlap is low. */
-function overlapText(whole: Scene, object: ObjectModel, iou: number): string | null {
-  const { hidden, visibleIou, isBehindSomething } = occlusionOf(whole, object);
-  if (isBehindSomething && visibleIou >= LOW_IOU)
-    return `The overlap is low because ${percent(hidden)} of the object is behind something else.`;
-  if (iou >= WRONG_IOU || (isBehindSomething && visibleIou >= WRONG_IOU)) return null;
-  return `Mesh and mask overlap by ${percent(iou)} only, and nothing in front explains it: the pose, the mask or the mesh is wrong.`;
-}
-
-function Warnings({ object }: { object: ObjectModel | null }) {
-  const { scene, unit } = useWorkspace();
-  const iou = object?.metrics.value?.iou ?? 1;
-  const overlap =
-    object !== null && scene.value !== null && iou < LOW_IOU ? overlapText(scene.value, object, iou) : null;
-  const contact = object === null ? null : contactText(scene.value, object, unit.value);
-  const warnings = [
-    ...(overlap === null ? [] : [overlap]),
-    ...(scene.value?.warnings ?? []),
-    ...(object === null ? [] : warningsOf(object).map(({ message }) => message)),
-  ];
-  return (
-    <>
-      {contact !== null && <p class="quiet contact">{contact}</p>}
-      {warnings.length > 0 && (
-        <ul class="warnings">
-          {warnings.map((warning) => (
-            <li key={warning}>{warning}</li>
-          ))}
-        </ul>
-      )}
-    </>
-  );
-}
-
-/** What the object rests on, if the alignment of the scene says so. */
-function contactText(whole: Scene | null, object: ObjectModel, unit: Unit): string | null {
-  const contact = object.alignment.value?.contact;
-  if (contact === undefined || object.pose.value.source !== "aligned") return null;
-  const { restsOn, gapM } = contact;
-  if (restsOn === null) return "Touches nothing: it hangs, leans or floats.";
-  const what =
-    restsOn === "support"
-      ? "the ground"
-      : restsOn === "level"
-        ? "a level above the ground"
-        : (whole?.objects[restsOn]?.name ?? "another object");
-  const gap = gapM === null ? "" : `, ${small(Math.abs(gapM), unit)} ${gapM < 0 ? "sunk in" : "above it"}`;
-  return `Stands on ${what}${gap}.`;
-}

@@ -1,34 +1,11 @@
 /** Align, cancel and progress. */
 import { alignAll, alignSelected } from "../run/align.js";
-import { choices, defaultOptions, type Options } from "../state/options.js";
-import type { Workspace } from "../state/workspace.js";
-import { Choices } from "../ui/controls.js";
 import { stageTitles } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
-const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
-  auto: "Automatic",
-  fast: "Fast",
-  balanced: "Balanced",
-  best: "Best",
-};
-
-/** Presets and qualities as one list. */
-const efforts: readonly (readonly [value: string, title: string])[] = [
-  ...choices.quality.map((quality) => [quality, qualityTitles[quality]] as const),
-  ["paper", "Paper (baseline)"],
-];
-
-function chooseEffort({ setOption }: Workspace, value: string): void {
-  const quality = choices.quality.find((quality) => quality === value);
-  setOption("preset", quality === undefined ? "paper" : "precise");
-  setOption("quality", quality ?? defaultOptions.quality);
-}
-
 export function RunBar() {
   const workspace = useWorkspace();
-  const { cancel, fraction, inputs, isReading, isRunning, options, scene, selected, status } = workspace;
-  const { preset, quality } = options.value;
+  const { cancel, fraction, inputs, isReading, isRunning, scene, selected, status } = workspace;
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, the buttons are those of its objects already, so that the layout does not shift.
   const count = Math.max(objects.length, isReading.value ? inputs.value.objects.length : 0);
@@ -40,15 +17,6 @@ export function RunBar() {
   return (
     <section class="run" part="run" aria-label="Run">
       <div class="run-row">
-        <label class="field-inline grow" for="effort">
-          <span>Quality</span>
-          <Choices
-            id="effort"
-            value={preset === "paper" ? "paper" : quality}
-            choices={efforts}
-            onChoose={(value) => chooseEffort(workspace, value)}
-          />
-        </label>
         {running ? (
           <button type="button" id="cancel" class="primary" onClick={cancel}>
             Cancel

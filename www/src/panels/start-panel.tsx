@@ -1,11 +1,14 @@
 /** Where to begin: the user's own files, or a sample. */
 import { openFiles, openSample } from "../load/open.js";
 import { sampleOf, samples, sampleUrl } from "../load/samples.js";
+import { offlineState } from "../offline/offline.js";
 import { alignAll } from "../run/align.js";
 import { page } from "../state/page.js";
-import { FileButton } from "../ui/controls.js";
+import { FileButton, Menu } from "../ui/controls.js";
 
 const { scene } = page;
+
+const offlineTexts = { unknown: "", stored: " Works offline.", newer: " Reload for a new version." };
 
 async function choose(id: string): Promise<void> {
   const sample = sampleOf(id);
@@ -19,16 +22,39 @@ export function StartPanel() {
   const shown = scene.value?.sample ?? "";
   return (
     <section class="panel start" aria-label="Open" data-own={scene.value !== null && shown === ""}>
-      <FileButton id="files" look="primary drop" multiple onFiles={openFiles}>
-        <span>Drop your files</span>
-        <small>Depth map, masks, meshes and camera</small>
-      </FileButton>
-      <div class="row spread">
-        <FileButton id="folder" webkitdirectory onFiles={openFiles}>
-          <span>Open a folder</span>
+      <div class="row">
+        <FileButton id="files" look="primary drop" multiple onFiles={openFiles}>
+          <span>Drop or choose files</span>
+          <small>Depth map, masks, meshes and camera</small>
         </FileButton>
-        <span class="quiet">Nothing leaves this device.</span>
+        <Menu title="More" label="More: folders and samples">
+          <FileButton id="folder" webkitdirectory onFiles={openFiles}>
+            <span>Open a folder</span>
+          </FileButton>
+          <label class="field-inline">
+            <span>Samples</span>
+            <select
+              id="sample"
+              value={shown}
+              onChange={async ({ currentTarget }) => {
+                await choose(currentTarget.value);
+                // If it could not be loaded, the scene that is shown is still the one before.
+                currentTarget.value = scene.peek()?.sample ?? "";
+              }}
+            >
+              {shown === "" && <option value="">Own files</option>}
+              {samples.map(({ id, title }) => (
+                <option key={id} value={id}>
+                  {title}
+                </option>
+              ))}
+            </select>
+          </label>
+        </Menu>
       </div>
+      <p class="quiet" id="privacy">
+        Nothing leaves this device.{offlineTexts[offlineState.value]}
+      </p>
       <ul class="samples">
         {pictured.map(({ id, title, about, picture = "" }) => (
           <li key={id}>
@@ -39,25 +65,6 @@ export function StartPanel() {
           </li>
         ))}
       </ul>
-      <label class="field-inline">
-        <span>Samples</span>
-        <select
-          id="sample"
-          value={shown}
-          onChange={async ({ currentTarget }) => {
-            await choose(currentTarget.value);
-            // If it could not be loaded, the scene that is shown is still the one before.
-            currentTarget.value = scene.peek()?.sample ?? "";
-          }}
-        >
-          {shown === "" && <option value="">Own files</option>}
-          {samples.map(({ id, title }) => (
-            <option key={id} value={id}>
-              {title}
-            </option>
-          ))}
-        </select>
-      </label>
     </section>
   );
 }

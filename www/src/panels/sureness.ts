@@ -1,8 +1,6 @@
 /** What is said of a result, by how sure it is. */
 import type { ObjectModel } from "../state/object-model.js";
-
-/** From this confidence on, no remedy is needed. */
-export const SURE = 0.9;
+import { SURE } from "../state/progress.js";
 
 /** A refinement that could go on concerns nobody whose result is sure. */
 const isQuiet = (code: string, object: ObjectModel) =>

@@ -50,7 +50,7 @@ export async function alignEach(workspace: Workspace): Promise<void> {
 type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;
 
 /** Runs an alignment of objects, unless another one is running. */
-async function run(
+export async function run(
   { scene, controller, announce, status }: Workspace,
   objects: readonly ObjectModel[],
   work: Work,
@@ -169,13 +169,15 @@ async function together(
   });
 }
 
-const progressOf =
+/** Reports the progress of an alignment of the object. */
+export const progressOf =
   ({ run }: ObjectModel) =>
   ({ stage, fraction }: Progress) => {
     run.value = { state: "running", stage, fraction };
   };
 
-const poseOf = (alignment: AnyAlignment, source: PoseSource): Pose => ({
+/** The pose that an alignment has found. */
+export const poseOf = (alignment: AnyAlignment, source: PoseSource): Pose => ({
   ...{ transform: toSim3(alignment), source, alignment },
 });
 

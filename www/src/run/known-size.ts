@@ -1,10 +1,53 @@
 /** Makes a length of an object known. */
-import { compose, toSim3 } from "sim3align/conventions";
+import { compose, toSim3, type Vector3 } from "sim3align/conventions";
 import type { AnyAlignment, PreciseAlignment } from "../state/alignment.js";
 import { inCalibration, isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
 import type { Workspace } from "../state/workspace.js";
+import { poseOf, progressOf, run } from "./align.js";
+import { aligner, inputOf } from "./aligner.js";
+
+/** What an object would be with a known size. It counts only if a person takes it. */
+export interface Trial {
+  /** The pose that it is compared with. */
+  readonly from: Pose;
+  readonly pose: Pose;
+  readonly sizeM: Vector3;
+  /** The overlap (IoU) of mask and mesh. */
+  readonly iou: number | null;
+  readonly confidence: number | null;
+}
+
+/** Whether a known length of the object can be compared with a result: the unit is known, and there is one. */
+export const canTry = ({ scene }: Workspace, object: ObjectModel): boolean =>
+  object.isPlaced && scene.value !== null && isMetric(scene.value);
+
+/** Aligns an object at its size times a factor. Null if no pose was found, or another alignment is running. */
+export async function trySize(workspace: Workspace, object: ObjectModel, factor: number): Promise<Trial | null> {
+  const { alignOptions, byHand } = workspace;
+  const from = object.pose.peek();
+  const { transform: initial } = byHand(object, { scale: factor });
+  let trial: Trial | null = null;
+  await run(workspace, [object], async (whole, signal) => {
+    const options = { ...alignOptions(object, "global"), scale: initial.scale, initial, signal };
+    const found = await (await aligner()).align(inputOf(whole, object), { ...options, onProgress: progressOf(object) });
+    object.run.value = { state: "done" };
+    const sizeM = object.box.peek().sizeM.map((side) => side * factor) as Vector3;
+    const { confidence, metrics } = found;
+    trial = { from, pose: poseOf(found, "aligned"), sizeM, iou: metrics.iou, confidence };
+  });
+  if (trial !== null) workspace.announce("Compare the change, then use it or keep the old.");
+  return trial;
+}
+
+/** Makes a trial the pose of the object. Every alignment keeps its scale. */
+export function takeTrial({ record }: Workspace, object: ObjectModel, { pose }: Trial): void {
+  record(object, () => {
+    object.pose.value = pose;
+    object.lockScale(true);
+  });
+}
 
 /**
  * Scales an object by a factor, after which it has its known size. If the unit of the depth map is unknown, the whole scene is

@@ -53,8 +53,8 @@ export async function showFrame(index: number): Promise<void> {
   if (call === lastCall && opened !== null) put(index, frame, opened);
 }
 
-async function readFrame(frame: Inputs): Promise<Scene | null> {
-  const reading = await readInputs(frame);
+async function readFrame(frame: Inputs, begun = readInputs(frame)): Promise<Scene | null> {
+  const reading = await begun;
   const opened = sceneOf(frame, reading, true);
   if (opened === null) {
     announce(`${frame.name}: ${reading.problems[0]?.message ?? "a part is missing"}`, "failed");
@@ -115,14 +115,19 @@ export const trackAll = () =>
     const { source, transform } = first.pose.peek();
     const initial = frameIndex.peek() === 0 && source === "hand" ? transform : null;
     tracker = await (await aligner()).track(first.mesh, { ...sceneOptions(), initial, ...scaleOf(first) });
+    // The next frame is decoded on this thread while the worker tracks in the one before it.
+    let next: ReturnType<typeof readInputs> | undefined;
     for (const [index, frame] of opened.frames.entries()) {
       if (signal.aborted || video.peek() !== opened) return announce("Stopped.");
       announce(`Tracking frame ${index + 1} of ${opened.frames.length} …`, "working");
-      const read = await readFrame(frame);
+      const read = await readFrame(frame, next);
       const object = read?.objects[0];
       if (read === null || object === undefined) return;
       const { image: _, ...view } = givenViewOf(read);
-      const found = await tracker.next({ ...view, ...maskOf(frame, object) });
+      const tracked = tracker.next({ ...view, ...maskOf(frame, object) });
+      const following = opened.frames[index + 1];
+      next = following && readInputs(following);
+      const found = await tracked;
       if (video.peek() !== opened) return;
       const { confidence, depthCalibration: calibration = null, state } = found;
       const pose: FramePose = { transform: toSim3(found), confidence, state, isCorrected: false, calibration };

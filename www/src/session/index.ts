@@ -1,21 +1,22 @@
 /**
- * The session: the user's own scenes, kept in the browser while they work and each saved and opened as one file. A scene is
- * kept by its id, and belongs to one tab.
+ * The session: the user's own scenes, kept in the browser while they work. A scene is kept by its id, and belongs to one tab.
  */
 import { batch, effect, untracked } from "@preact/signals";
-import { type SceneResult, sceneResult } from "../export/results.js";
+import { sceneResult } from "../export/results.js";
 import type { NamedFile } from "../load/files.js";
 import type { Inputs } from "../load/inputs.js";
+import { openAnother } from "../load/open.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
 import { page } from "../state/page.js";
+import { type Progress, progressIn, progressOf } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
 import { hasSession } from "../state/session-flag.js";
-import { own } from "./owner.js";
-import { applyState, type Packed, packed, SESSION_FILE, sessionParts, unpacked } from "./pack.js";
-import { forgetWork, storedFiles, storedWorks, storeWork, type Work } from "./store.js";
+import { disown, onTakenOver, own } from "./owner.js";
+import { applyState, judged, type Packed, packed, unpacked } from "./pack.js";
+import { claimWork, forgetWork, storedFiles, storedWorks, storeWork, type Work } from "./store.js";
 
-const { announce, enlist, inputs, list, options, othersScenes, scene, show } = page;
+const { announce, enlist, inputs, list, notKept, options, othersScenes, scene, show } = page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
@@ -26,9 +27,14 @@ const works = new Map<string, Work>();
 const stored = new Map<string, readonly NamedFile[]>();
 /** The scenes with changes that are not stored yet. */
 const unstored = new Set<string>();
+/** The last transaction of each scene. */
+const running = new Map<string, Promise<void>>();
 let lastOrder = 0;
 /** What is to be kept of the scene that is shown, once it has been unchanged for a while. */
 let pending: { id: string; write(): void } | null = null;
+
+/** What was done with a scene of this tab. */
+export const workOf = (id: string): Work | undefined => works.get(id);
 
 /** Stores the scene that is shown, every change of it, and those that are still to be opened. Samples and videos are not stored. */
 export function keepSession(): void {
@@ -57,6 +63,7 @@ export function keepSession(): void {
   addEventListener("beforeunload", (event) => {
     if (unstored.size > 0) event.preventDefault();
   });
+  onTakenOver(giveUp);
 }
 
 /** Keeps what was done with a scene; null if it was not opened yet. */
@@ -64,33 +71,51 @@ function keep(from: Inputs, whole: Scene | null): void {
   const { id } = from;
   const { session, files } = packed(from, whole, options.peek());
   const before = works.get(id);
-  lastOrder = Math.max(Date.now(), lastOrder + 1);
   const work: Work = {
-    ...{ id, session, order: before?.order ?? lastOrder },
-    result: whole === null ? null : sceneResult(whole),
+    ...{ id, session, order: before?.order ?? nextOrder() },
+    result: whole === null ? null : sceneResult(whole, from),
     shownAt: whole === null ? 0 : Date.now(),
   };
   works.set(id, work);
-  if (whole !== null) {
-    const accepted = whole.objects.filter(({ isAccepted }) => isAccepted.peek()).length;
-    const progress = { objects: whole.objects.length, accepted };
-    list.value = list.peek().map((one) => (one.inputs.id === id ? { ...one, progress } : one));
-  }
+  if (whole !== null) setProgress(id, progressIn(whole.objects));
   store(work, files);
 }
 
-async function store(work: Work, files: readonly NamedFile[]): Promise<void> {
-  const known = stored.get(work.id);
-  const isSame = known !== undefined && files.length === known.length && files.every((file, i) => file === known[i]);
+function nextOrder(): number {
+  lastOrder = Math.max(Date.now(), lastOrder + 1);
+  return lastOrder;
+}
+
+function setProgress(id: string, progress: Progress): void {
+  list.value = list.peek().map((one) => (one.inputs.id === id ? { ...one, progress } : one));
+}
+
+function store(work: Work, files: readonly NamedFile[]): void {
   unstored.add(work.id);
+  running.set(work.id, attempt(work, files));
+}
+
+async function attempt(work: Work, files: readonly NamedFile[]): Promise<void> {
+  const { id, session } = work;
+  const known = stored.get(id);
+  const isSame = known !== undefined && files.length === known.length && files.every((file, i) => file === known[i]);
   try {
-    await own(work.id);
-    await storeWork(work, isSame ? null : files);
-    stored.set(work.id, files);
+    await own(id);
+    if (!(await storeWork(work, isSame ? null : files))) {
+      // It waits for the end of this.
+      giveUp(id);
+      return;
+    }
+    stored.set(id, files);
     hasSession(true);
-    if (works.get(work.id) === work) unstored.delete(work.id);
-  } catch {
-    // The database may be blocked or full: leaving the page then asks.
+    if (works.get(id) === work) unstored.delete(id);
+    if (unstored.size === 0) notKept.value = null;
+  } catch (cause) {
+    const { name, message } = cause as Error;
+    notKept.value =
+      name === "QuotaExceededError"
+        ? `The browser's storage is full: ${session.name} is not kept. Save the project as a file, or forget a scene.`
+        : `The browser does not keep ${session.name} (${message || name}). Save the project as a file before you close this page.`;
   }
 }
 
@@ -100,26 +125,54 @@ export async function restoreSession(): Promise<boolean> {
     const found: Work[] = [];
     for (const work of await storedWorks()) {
       if (await own(work.id)) found.push(work);
-      else othersScenes.value = [...othersScenes.peek(), work.session.name];
+      else othersScenes.value = [...othersScenes.peek(), { id: work.id, name: work.session.name }];
     }
-    for (const work of found) {
-      const files = await storedFiles(work.id);
-      const from = unpacked(work.session, files, work.id);
-      if (from === null) continue;
-      works.set(work.id, work);
-      stored.set(work.id, packed(from, null, options.peek()).files);
-      enlist([from]);
-      const states = work.session.objects.map(({ state }) => state);
-      const accepted = states.filter((state) => state?.isAccepted).length;
-      const progress = states.some((state) => state !== null) ? { objects: states.length, accepted } : null;
-      list.value = list.peek().map((one) => (one.inputs === from ? { ...one, progress } : one));
-    }
-    const last = [...works.values()].sort((a, b) => b.shownAt - a.shownAt)[0];
-    const from = list.peek().find((one) => one.inputs.id === last?.id)?.inputs;
-    return last !== undefined && from !== undefined && (await open(last.session, from));
-  } catch {
+    for (const work of found) await adopt(work);
+    return await openLast(found);
+  } catch (cause) {
+    notKept.value = `What the browser has kept could not be opened (${(cause as Error).message}).`;
     return false;
   }
+}
+
+/** Lists a stored scene that has become one of this tab. */
+export async function adopt(work: Work): Promise<void> {
+  await claimWork(work.id);
+  const files = await storedFiles(work.id);
+  if (!enter(work, files))
+    notKept.value = `Another version of this page has kept ${work.session.name}, which this one cannot open.`;
+  else stored.set(work.id, packed(listed(work.id) as Inputs, null, options.peek()).files);
+}
+
+/** Adds a scene that is not stored yet, as it was saved, or as another tab has it. */
+export function add(
+  session: Packed,
+  files: readonly NamedFile[],
+  { id, result, shownAt }: Omit<Work, "session" | "order">,
+): Work {
+  const work = { id, session, result, order: nextOrder(), shownAt };
+  if (enter(work, files)) store(work, packed(listed(id) as Inputs, null, options.peek()).files);
+  return work;
+}
+
+/** Lists a scene with what was done. Returns false if it is one of another version. */
+function enter(work: Work, files: readonly NamedFile[]): boolean {
+  const from = unpacked(work.session, files, work.id);
+  if (from === null) return false;
+  works.set(work.id, work);
+  enlist([from]);
+  const states = work.session.objects.map(({ state }) => state);
+  if (states.some((state) => state !== null)) setProgress(work.id, progressOf(states.map(judged)));
+  return true;
+}
+
+const listed = (id: string): Inputs | undefined => list.peek().find((one) => one.inputs.id === id)?.inputs;
+
+/** Shows the scene of these that was shown last. Returns whether there is one. */
+export async function openLast(among: readonly Work[]): Promise<boolean> {
+  const [last] = [...among].sort((a, b) => b.shownAt - a.shownAt);
+  const from = last && listed(last.id);
+  return last !== undefined && from !== undefined && (await open(last.session, from));
 }
 
 /** Shows a scene of the list as it was left. Returns false if it was not opened yet. */
@@ -131,17 +184,40 @@ export async function reopen(from: Inputs): Promise<boolean> {
   return true;
 }
 
-/** Forgets the scene that is shown. */
+/** Forgets the scene that is shown. Another one takes its place. */
 export async function forgetScene(): Promise<void> {
   const { id } = inputs.peek();
+  await forgetWork(id);
+  disown(id);
+  await leave(id);
+  hasSession((await storedWorks()).length > 0);
+  // There may be room for the others now.
+  for (const { inputs: from } of list.peek()) {
+    const work = works.get(from.id);
+    if (unstored.has(from.id) && work !== undefined) store(work, packed(from, null, options.peek()).files);
+  }
+}
+
+/** Leaves a scene to the tab that has taken it over, with all that was done. */
+async function giveUp(id: string): Promise<void> {
+  if (pending?.id === id) pending.write();
+  await running.get(id);
+  const work = works.get(id);
+  if (work === undefined) return;
+  const { name } = work.session;
+  othersScenes.value = [...othersScenes.peek(), { id, name }];
+  await leave(id);
+  announce(`Another tab has taken over ${name}.`);
+}
+
+/** Takes a scene off the list and, if it is shown, shows another one. */
+async function leave(id: string): Promise<void> {
+  for (const kept of [works, stored, running, unstored]) kept.delete(id);
+  list.value = list.peek().filter((one) => one.inputs.id !== id);
+  if (inputs.peek().id !== id) return;
   pending = null;
   inputs.value = { ...inputs.peek(), id: "" };
-  works.delete(id);
-  stored.delete(id);
-  unstored.delete(id);
-  list.value = list.peek().filter((one) => one.inputs.id !== id);
-  await forgetWork(id);
-  hasSession((await storedWorks()).length > 0);
+  await openAnother();
 }
 
 async function open(session: Packed, named: Inputs): Promise<boolean> {
@@ -157,37 +233,4 @@ async function open(session: Packed, named: Inputs): Promise<boolean> {
   });
   announce(`Restored ${from.name}.`);
   return true;
-}
-
-/** The results of all scenes of the list by their names; null for those that were not opened yet. */
-export function allResults(): Record<string, SceneResult | null> {
-  const results: Record<string, SceneResult | null> = {};
-  for (const { inputs: from } of list.peek()) {
-    const isShown = from.id === inputs.peek().id;
-    const whole = scene.peek();
-    const result = isShown && whole !== null ? sceneResult(whole) : (works.get(from.id)?.result as SceneResult | null);
-    let [key, number] = [from.name, 1];
-    while (key in results) key = `${from.name} ${++number}`;
-    results[key] = result ?? null;
-  }
-  return results;
-}
-
-/** The session as one file: a zip archive of the scene's files, and what was done with its objects. */
-export async function sessionFile(): Promise<Uint8Array | null> {
-  const whole = scene.peek();
-  if (whole === null) return null;
-  const { zipSync } = await import("fflate");
-  const { session, files } = packed(inputs.peek(), whole, options.peek());
-  const entries: Record<string, Uint8Array> = { [SESSION_FILE]: new TextEncoder().encode(JSON.stringify(session)) };
-  // The indices keep files with equal paths apart.
-  for (const [i, { path, bytes }] of files.entries()) entries[`${i}/${path}`] = await bytes();
-  return zipSync(entries, { level: 1 });
-}
-
-/** Opens a session file, given as the files in it. Returns whether it is one that can be opened. */
-export async function openSession(files: readonly NamedFile[]): Promise<boolean> {
-  const parts = await sessionParts(files);
-  const from = parts && unpacked(parts.session, parts.files);
-  return parts !== null && from !== null && open(parts.session, from);
 }

@@ -7,7 +7,7 @@ import type { AnyAlignment } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
-import type { PoseSource } from "../state/pose.js";
+import { isResult, type PoseSource } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 
@@ -52,7 +52,7 @@ export interface Packed {
   /** In whose depth the poses are. */
   calibration: DepthCalibration | null;
   photo: Ref | null;
-  camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref } | null;
+  camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref; isScaled?: boolean } | null;
   imageId: string | null;
   resizeMasks: boolean;
   objects: PackedObject[];
@@ -97,7 +97,7 @@ export function packed(inputs: Inputs, scene: Scene | null, options: Options): {
     },
     depth: optional(inputs.depth),
     photo: optional(inputs.photo),
-    camera: camera?.kind === "file" ? { kind: "file", file: ref(camera.file) } : camera,
+    camera: camera?.kind === "file" ? { ...camera, file: ref(camera.file) } : camera,
   };
   session.roles = inputs.files.flatMap(({ file, role }) => (files.includes(file) ? [{ file: ref(file), role }] : []));
   return { session, files };
@@ -116,6 +116,13 @@ export function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, align
   };
 }
 
+/** What counts of an object for the progress of its scene. */
+export function judged(state: PackedState | null) {
+  const { source = "start", isAccepted = false, alignment = null } = state ?? {};
+  const confidence = isResult(source) && alignment !== null && "confidence" in alignment ? alignment.confidence : null;
+  return { isPlaced: source !== "start", isAccepted, confidence };
+}
+
 /** The inputs of a session; null for one of another version. */
 export function unpacked(session: Packed, files: readonly NamedFile[], id = ""): Inputs | null {
   if (session.version !== VERSION) return null;
@@ -128,7 +135,7 @@ export function unpacked(session: Packed, files: readonly NamedFile[], id = ""):
     ...{ id, name, sample: null, depthScale, depthKind, imageId, resizeMasks },
     depth: optional(session.depth),
     photo: optional(session.photo),
-    camera: camera?.kind === "file" ? { kind: "file", file: at(camera.file) } : camera,
+    camera: camera?.kind === "file" ? { ...camera, file: at(camera.file) } : camera,
     objects: session.objects.map(({ name, mask, mesh, truth, initial }) => ({
       name,
       mask: mask && { ...mask, file: at(mask.file) },
@@ -161,25 +168,29 @@ export function applyState({ objects, options: chosen, calibration }: SessionSta
     if (state == null) return;
     const { matrix, source, alternative, alignment } = state;
     object.run.value = { state: alignment === null ? "idle" : "done" };
-    const pose = { transform: toSim3(matrix), source, alignment };
-    object.pose.value = alternative === undefined ? pose : { ...pose, alternative };
-    if (state.isAccepted) object.accept();
+    const pose = { transform: toSim3(matrix), source, alignment, ...(alternative !== undefined && { alternative }) };
+    object.pose.value = pose;
+    object.accepted.value = state.isAccepted ? pose : null;
     object.isShown.value = state.isShown;
     object.isLocked.value = state.isLocked;
     object.knownScale.value = state.knownScale;
   });
 }
 
-/** The session in the files of an archive, and the files that it refers to; null if there is none. */
-export async function sessionParts(
+/** Whether a file of an archive is a session. */
+export const isSession = ({ path }: Pick<NamedFile, "path">): boolean =>
+  path === SESSION_FILE || path.endsWith(`/${SESSION_FILE}`);
+
+/** A session in the files of an archive, and those in its folder that it refers to. */
+export async function sessionParts<S extends Packed>(
   files: readonly NamedFile[],
-): Promise<{ session: Packed; files: NamedFile[] } | null> {
-  const own = files.find(({ path }) => path === SESSION_FILE);
-  if (own === undefined) return null;
-  const session = JSON.parse(new TextDecoder().decode(await own.bytes())) as Packed;
+  own: NamedFile,
+): Promise<{ session: S; files: NamedFile[] }> {
+  const folder = own.path.slice(0, -SESSION_FILE.length);
+  const session = JSON.parse(new TextDecoder().decode(await own.bytes())) as S;
   const rest: NamedFile[] = [];
   for (const { path, bytes } of files) {
-    const [, index, name] = /^(\d+)\/(.*)$/.exec(path) ?? [];
+    const [, index, name] = (path.startsWith(folder) && /^(\d+)\/(.*)$/.exec(path.slice(folder.length))) || [];
     if (index !== undefined && name !== undefined) rest[Number(index)] = { path: name, bytes };
   }
   return { session, files: rest };

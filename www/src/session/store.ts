@@ -1,10 +1,16 @@
 /** Keeps the user's own scenes in the browser's own database, each by its id. */
 import type { NamedFile } from "../load/files.js";
+import { TAB } from "./owner.js";
 import type { Packed } from "./pack.js";
 
 const NAME = "sim3align";
+/** The first version whose content is read. */
+const VERSION = 3;
 /** What was done with each scene, and its files: the former changes with every step, the latter hardly ever. */
 const [WORK, FILES] = ["work", "files"] as const;
+/** The tab that may change each scene. */
+const OWNERS = "owners";
+const stores = [WORK, FILES, OWNERS];
 
 /** What was done with a scene. */
 export interface Work {
@@ -27,12 +33,11 @@ interface StoredFile {
 
 function database(): Promise<IDBDatabase> {
   return new Promise((resolve, reject) => {
-    const request = indexedDB.open(NAME, 3);
-    request.onupgradeneeded = () => {
+    const request = indexedDB.open(NAME, VERSION + 1);
+    request.onupgradeneeded = ({ oldVersion }) => {
       const { result } = request;
-      // What another version has stored is not read.
-      for (const name of [...result.objectStoreNames]) result.deleteObjectStore(name);
-      for (const name of [WORK, FILES]) result.createObjectStore(name);
+      if (oldVersion < VERSION) for (const name of [...result.objectStoreNames]) result.deleteObjectStore(name);
+      for (const name of stores) if (!result.objectStoreNames.contains(name)) result.createObjectStore(name);
     };
     request.onsuccess = () => resolve(request.result);
     request.onerror = () => reject(request.error);
@@ -42,13 +47,14 @@ function database(): Promise<IDBDatabase> {
 /** Makes requests in one transaction: all of them take effect, or none. */
 async function transact(
   mode: IDBTransactionMode,
-  work: (work: IDBObjectStore, files: IDBObjectStore) => IDBRequest[],
+  work: (...stores: [work: IDBObjectStore, files: IDBObjectStore, owners: IDBObjectStore]) => IDBRequest[],
 ): Promise<unknown[]> {
   const opened = await database();
   try {
     return await new Promise((resolve, reject) => {
-      const transaction = opened.transaction([WORK, FILES], mode);
-      const requests = work(transaction.objectStore(WORK), transaction.objectStore(FILES));
+      const transaction = opened.transaction(stores, mode);
+      const store = (name: string) => transaction.objectStore(name);
+      const requests = work(store(WORK), store(FILES), store(OWNERS));
       transaction.oncomplete = () => resolve(requests.map(({ result }) => result));
       transaction.onabort = () => reject(transaction.error);
     });
@@ -57,8 +63,18 @@ async function transact(
   }
 }
 
-/** Stores what was done with a scene and, if they have changed, its files. */
-export async function storeWork(work: Work, files: readonly NamedFile[] | null): Promise<void> {
+/** Makes a scene that of this tab: no other one can store it from then on. */
+export async function claimWork(id: string): Promise<void> {
+  await transact("readwrite", (_works, _contents, owners) => [owners.put(TAB, id)]);
+}
+
+/**
+ * Stores what was done with a scene of this tab and, if they have changed, its files. Returns false, and stores nothing, if
+ * another tab has taken it over.
+ */
+export async function storeWork(work: Work, files: readonly NamedFile[] | null): Promise<boolean> {
+  const { id } = work;
+
   const read =
     files &&
     (await Promise.all(
@@ -67,10 +83,25 @@ export async function storeWork(work: Work, files: readonly NamedFile[] | null):
         return { path, content: new Blob([content]) };
       }),
     ));
-  await transact("readwrite", (works, contents) => [
-    works.put(JSON.stringify(work), work.id),
-    ...(read === null ? [] : [contents.put(read, work.id)]),
-  ]);
+  const [owner] = await transact("readwrite", (works, contents, owners) => {
+    const found = owners.get(id);
+    found.addEventListener("success", () => {
+      if (isOthers(found.result)) return;
+      owners.put(TAB, id);
+      works.put(JSON.stringify(work), id);
+      if (read !== null) contents.put(read, id);
+    });
+    return [found];
+  });
+  return !isOthers(owner);
+}
+
+const isOthers = (owner: unknown) => owner !== undefined && owner !== TAB;
+
+/** A scene that is stored. */
+export async function storedWork(id: string): Promise<Work | null> {
+  const [text] = await transact("readonly", (works) => [works.get(id)]);
+  return text === undefined ? null : (JSON.parse(text as string) as Work);
 }
 
 /** All scenes that are stored, with those of other tabs, in their order. */
@@ -90,5 +121,5 @@ export async function storedFiles(id: string): Promise<NamedFile[]> {
 
 /** Forgets a scene. */
 export async function forgetWork(id: string): Promise<void> {
-  await transact("readwrite", (works, files) => [works.delete(id), files.delete(id)]);
+  await transact("readwrite", (...all) => all.map((store) => store.delete(id)));
 }

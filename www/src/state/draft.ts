@@ -1,6 +1,6 @@
 /** The draft: the inputs of a scene that is not shown yet. Nothing else of the page refers to them. */
 import { signal } from "@preact/signals";
-import type { Inputs } from "../load/inputs.js";
+import type { Inputs, Typed } from "../load/inputs.js";
 import type { Problem } from "../load/problems.js";
 import type { Reading, ReadingProgress } from "../load/read-scene.js";
 
@@ -17,6 +17,8 @@ export interface Draft {
   isVideo: boolean;
   /** Whether these are the inputs of the scene that is shown already. */
   isEdit: boolean;
+  /** Files that may belong to the scene that is shown: whether they do is asked. */
+  forShown?: readonly Typed[];
 }
 
 export const draft = signal<Draft | null>(null);

@@ -1,4 +1,5 @@
-/** Whether the help of the page is open. */
+/** Whether the dialogs of the page are open. */
 import { signal } from "@preact/signals";
 
 export const isHelpOpen = signal(false);
+export const isPaletteOpen = signal(false);

@@ -1,5 +1,9 @@
-/** Undo and redo: of poses with their alignments, of known sizes, and of the calibration that they are in. */
+/**
+ * Undo and redo: of poses with their alignments, of known sizes and decisions, and of the calibration and the support that
+ * they are in.
+ */
 import { batch, computed, type Signal, signal } from "@preact/signals";
+import type { Support } from "sim3align";
 import type { ObjectModel } from "./object-model.js";
 import { type Nudge, nudged, type Pose } from "./pose.js";
 import type { Scene, SceneState } from "./scene.js";
@@ -7,8 +11,19 @@ import type { Scene, SceneState } from "./scene.js";
 /** What steps restore. */
 interface Snapshot {
   scene: Scene | null;
-  objects: Map<ObjectModel, { pose: Pose; knownScale: number | null }>;
+  support: Support | null;
+  objects: Map<ObjectModel, Settled>;
 }
+
+interface Settled {
+  pose: Pose;
+  accepted: Pose | null;
+  knownScale: number | null;
+}
+
+const settled = ({ pose, accepted, knownScale }: ObjectModel): Settled => ({
+  ...{ pose: pose.peek(), accepted: accepted.peek(), knownScale: knownScale.peek() },
+});
 
 interface Step {
   object: ObjectModel;
@@ -20,7 +35,7 @@ interface Step {
 const MAX_STEPS = 200;
 
 /** The undo steps of a scene. */
-export function historyState({ objects, recalibrate, scene, select }: SceneState) {
+export function historyState({ objects, recalibrate, scene, select, support }: SceneState) {
   const undoSteps = signal<readonly Step[]>([]);
   const redoSteps = signal<readonly Step[]>([]);
 
@@ -29,9 +44,8 @@ export function historyState({ objects, recalibrate, scene, select }: SceneState
 
   const snapshot = (): Snapshot => ({
     scene: scene.peek(),
-    objects: new Map(
-      objects.peek().map((one) => [one, { pose: one.pose.peek(), knownScale: one.knownScale.peek() }] as const),
-    ),
+    support: support.peek(),
+    objects: new Map(objects.peek().map((one) => [one, settled(one)] as const)),
   });
 
   /** Makes a change, as one step that can be undone. It is shown at this object. */
@@ -44,7 +58,7 @@ export function historyState({ objects, recalibrate, scene, select }: SceneState
   /** Sets the pose of an object, as a step that can be undone. */
   function place(object: ObjectModel, after: Pose, from = object.pose.peek()): void {
     const before = snapshot();
-    before.objects.set(object, { pose: from, knownScale: object.knownScale.peek() });
+    before.objects.set(object, { ...settled(object), pose: from });
     record(
       object,
       () => {
@@ -60,6 +74,12 @@ export function historyState({ objects, recalibrate, scene, select }: SceneState
     return { transform, source: "hand", alignment: object.alignment.peek() };
   }
 
+  /** Accepts the present pose of an object. */
+  const acceptPose = (object: ObjectModel) =>
+    record(object, () => {
+      object.accepted.value = object.pose.peek();
+    });
+
   /** Changes the pose of an object by hand. */
   const nudge = (object: ObjectModel, change: Nudge) => place(object, byHand(object, change));
 
@@ -69,12 +89,14 @@ export function historyState({ objects, recalibrate, scene, select }: SceneState
     if (step === undefined) return;
     from.value = from.peek().slice(0, -1);
     to.value = [...to.peek(), step];
-    const { scene: whole, objects: states } = step[side];
+    const { scene: whole, support: plane, objects: states } = step[side];
     batch(() => {
       select(step.object.id);
       if (whole !== null && whole !== scene.peek()) recalibrate(whole);
-      for (const [object, { pose, knownScale }] of states) {
+      support.value = plane;
+      for (const [object, { pose, accepted, knownScale }] of states) {
         object.pose.value = pose;
+        object.accepted.value = accepted;
         object.knownScale.value = knownScale;
       }
     });
@@ -89,5 +111,5 @@ export function historyState({ objects, recalibrate, scene, select }: SceneState
     redoSteps.value = [];
   });
 
-  return { canUndo, canRedo, record, place, byHand, nudge, undo, redo };
+  return { canUndo, canRedo, record, place, acceptPose, byHand, nudge, undo, redo };
 }

@@ -55,7 +55,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
   /** Whether alignments of the whole scene, and handles, leave the pose unchanged. */
   readonly isLocked = signal(false);
   /** The pose that a person has accepted. */
-  private readonly accepted = signal<Pose | null>(null);
+  readonly accepted = signal<Pose | null>(null);
   /** Whether that is the present one: another pose has to be accepted anew. */
   readonly isAccepted = computed(() => this.accepted.value === this.pose.value);
   /** The known scale in metres per mesh unit, which every alignment keeps; null if it is free. */
@@ -85,11 +85,6 @@ export class ObjectModel implements Readonly<ObjectParts> {
     const bounds = boundsOf(parts.mesh);
     this.start = computed<Pose>(() => ({ transform: startPose(bounds, this.visible.value), source: "start" }));
     this.pose = signal<Pose>(this.start.peek());
-  }
-
-  /** Accepts the present pose. */
-  accept(): void {
-    this.accepted.value = this.pose.peek();
   }
 
   get name(): string {

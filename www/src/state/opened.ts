@@ -3,6 +3,7 @@ import { batch, signal } from "@preact/signals";
 import { type Inputs, noInputs, withId } from "../load/inputs.js";
 import type { DisplayState } from "./display.js";
 import type { ObjectModel } from "./object-model.js";
+import type { Progress } from "./progress.js";
 import type { Scene, SceneState } from "./scene.js";
 import type { StatusState } from "./status.js";
 
@@ -17,8 +18,14 @@ export interface FileActions {
 /** One of the user's own scenes. */
 export interface Listed {
   inputs: Inputs;
-  /** Objects, and those of them that are accepted, when it was last shown; null if it was not opened yet. */
-  progress: { objects: number; accepted: number } | null;
+  /** How far the work was when it was last shown; null if it was not opened yet. */
+  progress: Progress | null;
+}
+
+/** A scene that another tab of this browser shows and keeps. */
+export interface Foreign {
+  id: string;
+  name: string;
 }
 
 /** The state of what is opened. */
@@ -28,8 +35,10 @@ export function openedState({ scene }: SceneState, { layers, setLayer }: Display
   const isReading = signal(false);
   /** The user's own scenes in the order in which they came, with those that are still to be opened. */
   const list = signal<readonly Listed[]>([]);
-  /** The names of scenes that other tabs of this browser show and keep. */
-  const othersScenes = signal<readonly string[]>([]);
+  /** The scenes of other tabs. */
+  const othersScenes = signal<readonly Foreign[]>([]);
+  /** Why the browser does not keep a scene; null while it keeps all. */
+  const notKept = signal<string | null>(null);
   const fileActions = signal<FileActions | null>(null);
 
   /** Adds scenes to the list, or replaces those with the same ids. */
@@ -69,5 +78,5 @@ export function openedState({ scene }: SceneState, { layers, setLayer }: Display
     announce(`Removed ${object.name}.`);
   }
 
-  return { inputs, isReading, list, othersScenes, fileActions, enlist, show, removeObject };
+  return { inputs, isReading, list, othersScenes, notKept, fileActions, enlist, show, removeObject };
 }

@@ -80,8 +80,17 @@ export const FileButton = ({ look = "", children, onFiles, ...input }: FileButto
 /** Distance of an explanation from the edge of the window, in pixels. */
 const MARGIN = 8;
 
-/** A button that opens an explanation. */
-export function Tip({ label, children }: { label: string; children: ComponentChildren }) {
+interface PopoverProps {
+  /** The accessible name of the button, if its title is none. */
+  label?: string;
+  title: string;
+  /** Class of the button; the box has the same with "-box". */
+  look: "tip" | "menu";
+  children: ComponentChildren;
+}
+
+/** A button that opens a box beside it. */
+function Popover({ label, title, look, children }: PopoverProps) {
   const id = useId();
   const button = useRef<HTMLButtonElement>(null);
   const popover = useRef<HTMLDivElement>(null);
@@ -91,19 +100,34 @@ export function Tip({ label, children }: { label: string; children: ComponentChi
     if (anchor === null || box === null) return;
     const place = anchor.getBoundingClientRect();
     const size = box.getBoundingClientRect();
-    const left = Math.min(Math.max(MARGIN, place.left - size.width / 2), innerWidth - size.width - MARGIN);
+    const wanted = look === "tip" ? place.left - size.width / 2 : place.left;
+    const left = Math.min(Math.max(MARGIN, wanted), innerWidth - size.width - MARGIN);
     const fitsBelow = place.bottom + 6 + size.height < innerHeight;
     box.style.left = `${left}px`;
     box.style.top = `${fitsBelow ? place.bottom + 6 : Math.max(MARGIN, place.top - size.height - 6)}px`;
   };
   return (
     <>
-      <button type="button" class="tip" ref={button} popoverTarget={id} aria-label={`About ${label}`}>
-        ?
+      <button type="button" class={look} ref={button} popoverTarget={id} aria-label={label}>
+        {title}
       </button>
-      <div id={id} popover="auto" class="tip-box" ref={popover} onToggle={position}>
+      <div id={id} popover="auto" class={`${look}-box`} ref={popover} onToggle={position}>
         {children}
       </div>
     </>
   );
 }
+
+/** A button that opens an explanation. */
+export const Tip = ({ label, children }: { label: string; children: ComponentChildren }) => (
+  <Popover look="tip" title="?" label={`About ${label}`}>
+    {children}
+  </Popover>
+);
+
+/** A button that opens further controls. */
+export const Menu = ({ title, label, children }: { title: string; label?: string; children: ComponentChildren }) => (
+  <Popover look="menu" title={title} {...(label === undefined ? {} : { label })}>
+    {children}
+  </Popover>
+);

@@ -4,9 +4,12 @@ import { useEffect, useRef } from "preact/hooks";
 interface PictureProps {
   /** Null draws nothing. */
   image: ImageData | null;
+  /** Empty where a text beside the picture says it all. */
   label: string;
   class?: string;
 }
+
+const HIDDEN = { "aria-hidden": true } as const;
 
 export function Picture({ image, label, class: className = "thumb" }: PictureProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
@@ -19,6 +22,6 @@ export function Picture({ image, label, class: className = "thumb" }: PicturePro
   return image === null ? (
     <span class={className} />
   ) : (
-    <canvas ref={canvas} class={className} role="img" aria-label={label} />
+    <canvas ref={canvas} class={className} {...(label === "" ? HIDDEN : { role: "img", "aria-label": label })} />
   );
 }

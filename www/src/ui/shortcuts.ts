@@ -1,17 +1,20 @@
-/** Keyboard shortcuts. The help lists this table. */
+/** Commands and their keys. The palette and the help list this table. */
 
 import { accept, next } from "../panels/decision.js";
 import { alignAll, alignSelected, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
-import { isHelpOpen } from "../state/help.js";
+import { choices } from "../state/options.js";
 import type { Workspace } from "../state/workspace.js";
+import { qualityTitles } from "./texts.js";
 
-interface Shortcut {
+export interface Command {
   /** `KeyboardEvent.key`, after "Mod+" if it is pressed with Control or Command. */
-  key: string;
+  key?: string;
   /** The key as the help shows it. */
-  title: string;
+  title?: string;
   about: string;
+  /** Whether the key works in text fields, too. */
+  isGlobal?: boolean;
   act(workspace: Workspace): unknown;
 }
 
@@ -38,17 +41,23 @@ const selectNeighbour =
   };
 
 const toggle3d =
-  (name: "cloud" | "mesh" | "wireframe") =>
+  (name: "cloud" | "mesh" | "wireframe" | "dimensions" | "planes") =>
   ({ display3d }: Workspace) => {
     display3d.value = { ...display3d.peek(), [name]: !display3d.peek()[name] };
   };
 
 const toggleLayer =
-  (name: "difference" | "zoom") =>
+  (name: "outline" | "silhouette" | "difference" | "zoom") =>
   ({ layers, setLayer }: Workspace) =>
     setLayer(name, !layers.peek()[name]);
 
-export const shortcuts: readonly Shortcut[] = [
+const toggleSetting =
+  (name: "snaps" | "isLocal") =>
+  ({ gizmoSettings }: Workspace) => {
+    gizmoSettings.value = { ...gizmoSettings.peek(), [name]: !gizmoSettings.peek()[name] };
+  };
+
+export const commands: readonly Command[] = [
   { key: "a", title: "A", about: "Align the selected object", act: alignSelected },
   { key: "A", title: "Shift A", about: "Align all objects", act: alignAll },
   { key: "Escape", title: "Esc", about: "Cancel; hide the handles", act: cancelOrHideHandles },
@@ -56,6 +65,8 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "g", title: "G", about: "Handles to move", act: toggleHandles("translate") },
   { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
   { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
+  { about: "Handles move in steps", act: toggleSetting("snaps") },
+  { about: "Handles along the axes of the mesh", act: toggleSetting("isLocal") },
   { key: "l", title: "L", about: "Lock the scale", act: toggleScaleLock },
   { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: ({ undo }) => undo() },
   { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: ({ redo }) => redo() },
@@ -67,10 +78,17 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "c", title: "C", about: "Camera view", act: lookFrom("camera") },
   { key: "o", title: "O", about: "Three-quarter view", act: lookFrom("orbit") },
   { key: "t", title: "T", about: "Top view", act: lookFrom("top") },
+  { key: "e", title: "E", about: "Side view", act: lookFrom("side") },
+  { key: "q", title: "Q", about: "Top, side and front views, to drag in", act: toggle3d("planes") },
   { key: "w", title: "W", about: "Wireframe", act: toggle3d("wireframe") },
   { key: "p", title: "P", about: "Show or hide the points", act: toggle3d("cloud") },
   { key: "m", title: "M", about: "Show or hide the mesh", act: toggle3d("mesh") },
+  { about: "Show or hide the sizes", act: toggle3d("dimensions") },
+  { about: "Measure a distance", act: toggleMeasuring },
   { key: "d", title: "D", about: "Depth difference", act: toggleLayer("difference") },
+  { about: "Show or hide the mask", act: toggleLayer("outline") },
+  { about: "Show or hide the silhouette", act: toggleLayer("silhouette") },
+  { about: "Photo or depth map", act: toggleBase },
   {
     key: "b",
     title: "B",
@@ -80,8 +98,23 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "z", title: "Z", about: "Zoom to the objects", act: toggleLayer("zoom") },
   { key: "v", title: "V", about: "Swap the views", act: swapViews },
   { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
-  { key: "?", title: "?", about: "This help", act: toggleHelp },
+  ...choices.quality.map((quality) => ({
+    about: `Quality: ${qualityTitles[quality]}`,
+    act: ({ setOption }: Workspace) => {
+      setOption("preset", "precise");
+      setOption("quality", quality);
+    },
+  })),
 ];
+
+function toggleMeasuring({ measured }: Workspace): void {
+  measured.value = measured.peek() === null ? [] : null;
+}
+
+function toggleBase({ layers, setLayer, scene }: Workspace): void {
+  const hasPhoto = scene.peek()?.rgba != null;
+  setLayer("base", layers.peek().base === "depth" && hasPhoto ? "photo" : "depth");
+}
 
 function toggleScaleLock({ selected, unit }: Workspace): void {
   const object = selected.peek();
@@ -94,10 +127,6 @@ function cancelOrHideHandles({ cancel, gizmo, isRunning }: Workspace): void {
   else gizmo.value = null;
 }
 
-export function toggleHelp(): void {
-  isHelpOpen.value = !isHelpOpen.peek();
-}
-
 function swapViews({ largeView }: Workspace): void {
   largeView.value = largeView.peek() === "space" ? "image" : "space";
 }
@@ -107,33 +136,32 @@ const isTyping = (target: EventTarget | null) =>
   target instanceof HTMLElement &&
   target.matches('input:not([type="checkbox"], [type="radio"], [type="range"]), select, textarea');
 
-function onKey(workspace: Workspace, event: KeyboardEvent): void {
+function onKey(workspace: Workspace, known: readonly Command[], event: KeyboardEvent): void {
   const { key, ctrlKey, metaKey, altKey, target } = event;
-  if (
-    altKey ||
-    event.defaultPrevented ||
-    isTyping(target) ||
-    document.querySelector("dialog[open], :popover-open") !== null
-  )
-    return;
+  if (altKey || event.defaultPrevented || document.querySelector("dialog[open], :popover-open") !== null) return;
+  const isMod = ctrlKey || metaKey;
+  const command = known.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${key}`);
+  if (isTyping(target) && command?.isGlobal !== true) return;
   // Enter presses the button that has the focus.
   if (key === "Enter" && target !== document.body) return;
-  const isMod = ctrlKey || metaKey;
   if (!isMod && /^\d$/.test(key)) {
     const object = workspace.selected.peek();
     if (object !== null) applyAlternative(workspace, object, Number(key) - 1);
     return;
   }
-  const shortcut = shortcuts.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${key}`);
-  if (shortcut === undefined) return;
+  if (command === undefined) return;
   // Escape also closes dialogs and popovers.
   if (key !== "Escape") event.preventDefault();
-  shortcut.act(workspace);
+  command.act(workspace);
 }
 
 /** Starts listening for keys, by default anywhere on the page. Call the returned function to stop. */
-export function listenToKeys(workspace: Workspace, root: EventTarget = globalThis): () => void {
-  const listener = (event: Event) => onKey(workspace, event as KeyboardEvent);
+export function listenToKeys(
+  workspace: Workspace,
+  root: EventTarget = globalThis,
+  known: readonly Command[] = commands,
+): () => void {
+  const listener = (event: Event) => onKey(workspace, known, event as KeyboardEvent);
   root.addEventListener("keydown", listener);
   return () => root.removeEventListener("keydown", listener);
 }

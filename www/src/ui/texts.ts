@@ -1,5 +1,6 @@
 /** Titles and explanations of metrics and stages. */
 import type { Metrics, Stage } from "sim3align";
+import type { Options } from "../state/options.js";
 import { percent, significant, small, type Unit } from "./format.js";
 
 export interface MetricText {
@@ -85,4 +86,11 @@ export const stageTitles: { readonly [S in Stage]: string } = {
   search: "Searching",
   refine: "Refining",
   metrics: "Computing metrics",
+};
+
+export const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
+  auto: "Automatic",
+  fast: "Fast",
+  balanced: "Balanced",
+  best: "Best",
 };

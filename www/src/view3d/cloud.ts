@@ -16,6 +16,7 @@ import {
   BufferGeometry,
   Color,
   Mesh,
+  type Node,
   NodeMaterial,
   type PerspectiveCamera,
   SRGBColorSpace,
@@ -35,12 +36,21 @@ export const rgbOf = (color: Color): Rgb => {
   return [r, g, b];
 };
 
+/** How much farther away points are drawn, as a share of their distance: noise does not pierce a mesh that fits them. */
+const BEHIND = 0.008;
+
+/** The width of a point of the veil in pixels of the depth map: without gaps. */
+const VEIL_WIDTH = 1.2;
+
 /** A point cloud. */
 export class Cloud {
   readonly object: Mesh<BufferGeometry, NodeMaterial>;
+  /** The same points without those of objects, as depth only: in front of a photo, they hide the meshes behind them. */
+  readonly veil: Mesh<BufferGeometry, NodeMaterial>;
   readonly points: Points;
   /** Half a point's width at one metre, in the directions of x and y. */
   private readonly halfWidth = uniform(new Vector2());
+  private readonly veilWidth = uniform(new Vector2());
   /** Half a screen pixel at one metre, the lower bound. */
   private readonly minHalfWidth = uniform(0);
   private readonly tones: BufferAttribute;
@@ -59,20 +69,28 @@ export class Cloud {
     geometry.setAttribute("position", new BufferAttribute(repeated(this.points.positions, 3), 3));
     geometry.setAttribute("tone", this.tones);
     geometry.setIndex(new BufferAttribute(squares(this.points.pixels.length), 1));
-    this.object = new Mesh(geometry, this.material());
-    // Computing its bounds would cost more than culling saves: the cloud is nearly always in view.
+    this.object = new Mesh(geometry, this.material(vec2(this.halfWidth)));
+    // The points of objects have no width there.
+    const veil = this.material(vec2(this.veilWidth).mul(attribute<"vec4">("tone", "vec4").w));
+    veil.colorWrite = false;
+    this.veil = new Mesh(geometry, veil);
+    this.veil.renderOrder = -1;
+    this.veil.visible = false;
+    // Computing their bounds would cost more than culling saves: the cloud is nearly always in view.
     this.object.frustumCulled = false;
+    this.veil.frustumCulled = false;
+    this.setWidth(this.veilWidth.value, VEIL_WIDTH);
   }
 
-  /** Squares that face the screen, unlit. */
-  private material(): NodeMaterial {
-    const inView = modelViewMatrix.mul(vec4(positionGeometry, 1));
+  /** Squares that face the screen, unlit, with half this width at one metre. */
+  private material(width: Node<"vec2">): NodeMaterial {
+    const exact = modelViewMatrix.mul(vec4(positionGeometry, 1));
+    const inView = vec4(exact.xyz.mul(1 + BEHIND), 1);
     const corner = vec2(float(vertexIndex.bitAnd(1)), float(vertexIndex.shiftRight(1).bitAnd(1)))
       .mul(2)
       .sub(1);
-    const half = vec2(this.halfWidth)
-      .mul(positionGeometry.z)
-      .max(vec2(this.minHalfWidth.mul(inView.z.negate())));
+    const least = vec2(this.minHalfWidth.mul(inView.z.negate()));
+    const half = width.mul(positionGeometry.z).max(least.mul(width.x.greaterThan(0).select(1, 0)));
     const material = new NodeMaterial();
     material.vertexNode = cameraProjectionMatrix.mul(inView.add(vec4(corner.mul(half), 0, 0)));
     // The bytes are sRGB; the renderer computes in linear light.
@@ -84,9 +102,13 @@ export class Cloud {
 
   /** Sets the width of a point, in pixels of the depth map. */
   setPointSize(size: number): void {
+    this.setWidth(this.halfWidth.value, Math.max(1e-3, size));
+  }
+
+  private setWidth(halfWidth: Vector2, size: number): void {
     const { fx, fy } = this.scene.camera;
-    const half = 0.5 * Math.max(0, size) * this.points.stride;
-    this.halfWidth.value.set(half / fx, half / fy);
+    const half = 0.5 * size * this.points.stride;
+    halfWidth.set(half / fx, half / fy);
   }
 
   /** Sets the colours of a scene without a photo. */
@@ -107,6 +129,7 @@ export class Cloud {
         for (let at = 4 * i; at < 4 * i + 3; at++) {
           tones[at] = (1 - share) * (this.base[at] as number) + share * 255 * (rgb[at % 4] as number) + 0.5;
         }
+        tones[4 * i + 3] = 0;
       }
     }
     (this.tones.array as Uint8Array).set(repeated(tones, 4));
@@ -120,6 +143,7 @@ export class Cloud {
   }
 
   dispose(): void {
+    release(this.veil);
     release(this.object);
   }
 }

@@ -63,6 +63,11 @@ export class Gizmo {
     this.events.onChange();
   }
 
+  /** The handles as drawn. */
+  get object() {
+    return this.controls.getHelper();
+  }
+
   /** Switches to the new canvas after a graphics device was lost. */
   connect(canvas: HTMLCanvasElement): void {
     this.controls.disconnect();

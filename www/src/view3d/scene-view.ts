@@ -1,21 +1,22 @@
 /** The 3D view: point cloud, meshes, gizmo and viewpoint. */
-import { DirectionalLight, Group, HemisphereLight, Sphere, Vector3 } from "three/webgpu";
+import { Group, HemisphereLight, Sphere, Vector3 } from "three/webgpu";
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { cropOf } from "./crop.js";
 import { description } from "./description.js";
 import { Gizmo } from "./gizmo.js";
-import { groundOf } from "./ground.js";
+import { whileHidden } from "./hidden.js";
 import { markOf } from "./label.js";
-import { floorOf, frustumOf, type Lines } from "./lines.js";
 import { type Measure, Measures } from "./measures.js";
 import { Model } from "./model.js";
 import { pick } from "./picker.js";
+import { PlaneViews, SHARE } from "./plane-views.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
 import { release } from "./release.js";
 import { Sizes } from "./sizes.js";
 import { Stage } from "./stage.js";
+import { Surroundings } from "./surroundings.js";
 import { colours } from "./theme.js";
 import type {
   Animation,
@@ -43,7 +44,6 @@ export class SceneView {
   private readonly mark = markOf();
   private readonly ruler = new Measures(0xffd23f, 4);
   private measured: readonly Measure[] = [];
-  private floor: Lines | null = null;
   private plane: PlaneInput | null = null;
   private gizmoSettings: GizmoSettings = { isLocal: false, snaps: false };
   private readonly animations = new Animations();
@@ -52,12 +52,8 @@ export class SceneView {
   private pointer: Pointer;
   private scene: SceneInput | null = null;
   private cloud: Cloud | null = null;
-  private frustum: Lines | null = null;
-  private ground: ReturnType<typeof groundOf> | null = null;
-  /** The other cameras. */
-  private readonly others: Lines[] = [];
-  /** About the depth of the nearest surfaces, metres. */
-  private firstDepth = 1;
+  private readonly surroundings = new Surroundings(this.root);
+  private planes: PlaneViews | null = null;
   private readonly sizes = new Sizes(this.root);
   private objects: readonly ObjectInput[] = [];
   private selected: string | null = null;
@@ -91,10 +87,6 @@ export class SceneView {
     });
     this.root.rotation.x = Math.PI;
     this.root.add(this.mark, this.ruler.object);
-    // The light moves with the camera.
-    const lamp = new DirectionalLight(0xffffff, 2.1);
-    lamp.position.set(-0.4, 1, 0.8);
-    camera.add(lamp, lamp.target);
     stage.scene.add(this.root, camera, new HemisphereLight(0xffffff, 0x8d8a86, 1.5));
     this.pointer = this.listen();
     stage.run(camera, {
@@ -102,8 +94,9 @@ export class SceneView {
       onFrame: (_, height) => {
         const isMoving = this.animations.step();
         const isDamping = controls.update();
-        this.cloud?.prepare(camera, height);
         this.sizes.spread(camera, stage.canvas.clientHeight, this.ruler.labels);
+        this.planes?.draw(JSON.stringify([this.display, this.selected, this.plane, this.objects.length]));
+        this.cloud?.prepare(camera, height);
         return isMoving || isDamping;
       },
       onCanvas: (canvas) => {
@@ -150,18 +143,13 @@ export class SceneView {
   /** Replaces the point cloud and resets the viewpoint. */
   setScene(scene: SceneInput): void {
     this.cloud?.dispose();
-    release(this.frustum);
-    release(this.ground);
-    const { near, far, frustum } = colours(this.display.theme, this.host);
     this.scene = scene;
+    const { near, far, frustum } = colours(this.display.theme, this.host);
     this.cloud = new Cloud(scene, near, far, this.stage.isSoftware ? maxPoints.software : maxPoints.hardware);
     const depths = sortedDepths(this.cloud.points);
     const [first, last] = [quantile(depths, 0.01) || 1, quantile(depths, 0.99) || 1];
-    this.firstDepth = first;
-    this.frustum = frustumOf(scene, 0.22 * first, frustum);
-    this.ground = scene.ground ? groundOf(scene, scene.ground, last) : null;
-    this.root.add(this.cloud.object, this.frustum);
-    if (this.ground) this.root.add(this.ground);
+    this.root.add(this.cloud.object, this.cloud.veil);
+    this.surroundings.setScene(scene, first, last, frustum);
     this.viewpoint.setScene(scene, first, last);
     this.lookFrom(this.look, this.fits);
     this.highlight();
@@ -220,7 +208,6 @@ export class SceneView {
     this.update();
   }
 
-  /** Handles a drag of the gizmo. */
   private moved(model: Model, phase: "drag" | "end"): void {
     const { pose } = model;
     if (!pose) return;
@@ -247,13 +234,7 @@ export class SceneView {
   /** Shows the ground as a grid; `null` hides it. */
   setGround(plane: PlaneInput | null): void {
     this.plane = plane;
-    release(this.floor);
-    this.floor = null;
-    if (plane !== null) {
-      const { centre, radius } = this.extent();
-      this.floor = floorOf(plane, centre, radius, colours(this.display.theme, this.host).frustum);
-      this.root.add(this.floor);
-    }
+    this.surroundings.setGround(plane, this.extent(), colours(this.display.theme, this.host).frustum);
     this.update();
   }
 
@@ -270,7 +251,7 @@ export class SceneView {
     if (isOther) {
       const { near, far, frustum } = colours(display.theme, this.host);
       this.cloud?.setTheme(near, far);
-      this.frustum?.material.color.copy(frustum);
+      this.surroundings.recolour(frustum);
       this.highlight();
     }
     this.update();
@@ -292,16 +273,7 @@ export class SceneView {
 
   /** Shows where other cameras are: their poses in the frame of the depth camera, 16 numbers each, column-major. */
   setCameras(poses: readonly Matrix[]): void {
-    for (const frustum of this.others.splice(0)) release(frustum);
-    if (!this.scene) return;
-    const { frustum: colour } = colours(this.display.theme, this.host);
-    for (const pose of poses) {
-      const frustum = frustumOf(this.scene, 0.1 * this.firstDepth, colour);
-      frustum.matrixAutoUpdate = false;
-      frustum.matrix.fromArray(Array.from(pose));
-      this.root.add(frustum);
-      this.others.push(frustum);
-    }
+    this.surroundings.setCameras(poses, this.scene, colours(this.display.theme, this.host).frustum);
     this.update();
   }
 
@@ -338,25 +310,51 @@ export class SceneView {
   private update(): void {
     const { display, selected, stage, viewpoint } = this;
     stage.background = colours(display.theme, this.host).background;
-    const showsGround = this.ground !== null && viewpoint.isCamera && display.cloud;
-    if (this.ground) this.ground.visible = showsGround;
+    const showsGround = this.surroundings.hasImage && viewpoint.isCamera && display.cloud;
+    this.surroundings.show(showsGround, !viewpoint.isCamera);
     if (this.cloud) {
       this.cloud.object.visible = display.cloud && !showsGround;
+      this.cloud.veil.visible = showsGround;
       this.cloud.setPointSize(display.pointSize);
     }
-    for (const lines of [this.frustum, this.floor, ...this.others]) if (lines) lines.visible = !viewpoint.isCamera;
     for (const model of this.models.values()) {
       model.show(display, model.id === selected, display.hidden?.includes(model.id));
     }
     this.showSizes();
+    if ((display.planes === true) !== (this.planes !== null)) this.togglePlanes();
     this.gizmo?.set(this.models.get(selected ?? "") ?? null, this.gizmoMode, this.gizmoSettings);
     stage.canvas.setAttribute("aria-label", this.label());
     stage.invalidate();
   }
 
+  private togglePlanes(): void {
+    const surface = {
+      stage: this.stage,
+      model: () => this.models.get(this.selected ?? "") ?? null,
+      plane: () => this.plane,
+      undecorated: (draw: () => void) => this.undecorated(draw),
+      onPose: (model: Model, phase: "drag" | "end") => this.moved(model, phase),
+    };
+    this.planes?.dispose();
+    this.planes = this.planes ? null : new PlaneViews(this.host, surface);
+    // Draws at once.
+    this.stage.setShare(this.planes ? 1 - SHARE : 1);
+  }
+
+  /** Runs while points and meshes alone are visible. */
+  private undecorated(draw: () => void): void {
+    const { cloud, gizmo, mark, ruler, sizes } = this;
+    this.surroundings.show(false, false);
+    if (cloud) cloud.object.visible = this.display.cloud;
+    whileHidden([gizmo.object, mark, ruler.object, ...sizes.objects, ...(cloud ? [cloud.veil] : [])], draw);
+    this.update();
+  }
+
   private showSizes(): void {
     const { dimensions, unit = null } = this.display;
-    this.sizes.update(this.models, this.selected, unit, (id) => dimensions === true && !this.animations.isRunning(id));
+    // Labels would cover the handles.
+    const isShown = dimensions === true && this.gizmoMode === null;
+    this.sizes.update(this.models, this.selected, unit, (id) => isShown && !this.animations.isRunning(id));
     this.ruler.show(this.measured, unit);
   }
 
@@ -391,7 +389,9 @@ export class SceneView {
     for (const model of this.models.values()) model.dispose();
     this.models.clear();
     this.cloud?.dispose();
-    for (const part of [this.mark, this.floor, this.ground, this.frustum, ...this.others]) release(part);
+    release(this.mark);
+    this.planes?.dispose();
+    this.surroundings.dispose();
     this.stage.dispose();
   }
 }

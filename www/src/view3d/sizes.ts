@@ -38,6 +38,11 @@ export class Sizes {
     }
   }
 
+  /** The lines and labels. */
+  get objects(): Group[] {
+    return [...this.measures.values()].map(({ object }) => object);
+  }
+
   /** Keeps the labels apart from one another and from others, as seen from the camera in a view of this height in CSS pixels. */
   spread(camera: PerspectiveCamera, viewPx: number, others: readonly Sprite[]): void {
     const own = [...this.measures.values()].filter(({ object }) => object.visible).flatMap(({ labels }) => labels);

@@ -1,7 +1,7 @@
 /** The viewpoint: exactly the depth camera, or an orbit around a target. */
 import { applyPinhole } from "sim3align/three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { PerspectiveCamera, Spherical, type Vector3 } from "three/webgpu";
+import { DirectionalLight, PerspectiveCamera, Spherical, type Vector3 } from "three/webgpu";
 import type { Look, SceneInput } from "./types.js";
 
 /** Viewpoints as angles from the depth camera in degrees: to the right, and up. */
@@ -57,6 +57,10 @@ export class Viewpoint {
     canvas: HTMLCanvasElement,
     private readonly onChange: () => void,
   ) {
+    // The light moves with the camera.
+    const lamp = new DirectionalLight(0xffffff, 2.1);
+    lamp.position.set(-0.4, 1, 0.8);
+    this.camera.add(lamp, lamp.target);
     this.controls = new OrbitControls(this.camera, canvas);
     this.listenToKeys(canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;

@@ -4,7 +4,7 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import { differenceLimit } from "sim3align/pictures/colours";
 import { depthGradient } from "../draw/colours.js";
 import type { Workspace } from "../state/workspace.js";
-import { Check } from "../ui/controls.js";
+import { Check, Menu } from "../ui/controls.js";
 import { depth, small } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
@@ -61,18 +61,20 @@ export function ImageView() {
     <section class="view image" part="image" aria-labelledby="image-title">
       <div class="view-head">
         <h2 id="image-title">Image</h2>
-        <fieldset>
-          <legend class="visually-hidden">Layers of the image view</legend>
-          <select
-            aria-label="Background"
-            value={shownBase}
-            onChange={({ currentTarget }) => setLayer("base", currentTarget.value as "photo" | "depth")}
-          >
-            <option value="photo" disabled={whole?.rgba === null}>
-              Photo
-            </option>
-            <option value="depth">Depth</option>
-          </select>
+        <Menu title="Layers" label="Layers of the image">
+          <label class="field-inline">
+            <span>Background</span>
+            <select
+              aria-label="Background"
+              value={shownBase}
+              onChange={({ currentTarget }) => setLayer("base", currentTarget.value as "photo" | "depth")}
+            >
+              <option value="photo" disabled={whole?.rgba === null}>
+                Photo
+              </option>
+              <option value="depth">Depth</option>
+            </select>
+          </label>
           {switches.map(([name, title]) => (
             <Check
               key={name}
@@ -82,7 +84,7 @@ export function ImageView() {
               onCheck={(checked) => setLayer(name, checked)}
             />
           ))}
-        </fieldset>
+        </Menu>
       </div>
       <div class="view-host">
         <div class="picture" style={{ "--ratio": ratio, "--zoom": factor, "--x": x, "--y": y }}>
@@ -110,9 +112,9 @@ export function ImageView() {
             min="0"
             max="1"
             step="0.01"
-            value={wipe}
-            aria-label="Share of the view that shows the start poses"
-            onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
+            value={1 - wipe}
+            aria-label="Share of the view that shows the present poses"
+            onInput={({ currentTarget }) => setLayer("wipe", 1 - currentTarget.valueAsNumber)}
           />
           <span>After</span>
         </label>

@@ -2,17 +2,18 @@
 import { useEffect, useRef } from "preact/hooks";
 import { samples, sampleUrl } from "../load/samples.js";
 import type { Display3d } from "../state/display.js";
-import { Check } from "../ui/controls.js";
+import { Check, Menu } from "../ui/controls.js";
 import { size, type Unit } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 
-const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
+const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions" | "planes", title: string][] = [
   ["cloud", "Points"],
   ["mesh", "Mesh"],
   ["wireframe", "Wireframe"],
   ["dimensions", "Sizes"],
+  ["planes", "Top, side and front"],
 ];
 
 const viewpoints = [
@@ -45,66 +46,72 @@ export function SpaceView() {
   }, [workspace, isWanted]);
   const state = space.value;
   const { pointSize } = display3d.value;
+  const viewpointButton = ([from, title]: (typeof viewpoints)[number]) => (
+    <button
+      key={from}
+      type="button"
+      onClick={() => state.kind === "ready" && state.view.lookFrom(from, from === "camera")}
+    >
+      {title}
+    </button>
+  );
   return (
     <section class="view space" part="space" aria-labelledby="space-title" data-state={state.kind}>
       <div class="view-head">
         <h2 id="space-title">3D</h2>
-        <fieldset disabled={state.kind !== "ready"}>
-          <legend class="visually-hidden">Layers of the 3D view</legend>
-          {switches.map(([name, title]) => (
-            <Check
-              key={name}
-              title={title}
-              checked={display3d.value[name]}
-              onCheck={(checked) => set({ [name]: checked })}
-            />
-          ))}
-          <label class="check points">
-            <span>Point size</span>
-            <input
-              type="range"
-              min="0.4"
-              max="3"
-              step="0.2"
-              value={pointSize}
-              onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
-            />
-          </label>
-        </fieldset>
-        <fieldset disabled={state.kind !== "ready"}>
-          <legend class="visually-hidden">Compare and measure</legend>
-          <button
-            type="button"
-            aria-pressed={showsBefore.value}
-            onClick={() => {
-              showsBefore.value = !showsBefore.peek();
-            }}
-          >
-            Before
-          </button>
-          <button
-            type="button"
-            id="measure"
-            aria-pressed={measured.value !== null}
-            onClick={() => {
-              measured.value = measured.peek() === null ? [] : null;
-            }}
-          >
-            Measure
-          </button>
-          {measured.value !== null && <output id="measured">{measuredText(measured.value, unit.value)}</output>}
-        </fieldset>
         <fieldset class="viewpoints" disabled={state.kind !== "ready"}>
           <legend class="visually-hidden">Viewpoint</legend>
-          {viewpoints.map(([from, title]) => (
-            <button
-              key={from}
-              type="button"
-              onClick={() => state.kind === "ready" && state.view.lookFrom(from, from === "camera")}
-            >
-              {title}
-            </button>
-          ))}
+          {viewpoints.slice(0, 1).map(viewpointButton)}
+          <Menu title="View" label="View of the 3D scene">
+            <fieldset disabled={state.kind !== "ready"}>
+              <legend>Viewpoint</legend>
+              {viewpoints.slice(1).map(viewpointButton)}
+            </fieldset>
+            <fieldset disabled={state.kind !== "ready"}>
+              <legend>Layers</legend>
+              {switches.map(([name, title]) => (
+                <Check
+                  key={name}
+                  title={title}
+                  checked={display3d.value[name]}
+                  onCheck={(checked) => set({ [name]: checked })}
+                />
+              ))}
+              <label class="check points">
+                <span>Point size</span>
+                <input
+                  type="range"
+                  min="0.4"
+                  max="3"
+                  step="0.2"
+                  value={pointSize}
+                  onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
+                />
+              </label>
+            </fieldset>
+            <fieldset disabled={state.kind !== "ready"}>
+              <legend>Compare and measure</legend>
+              <button
+                type="button"
+                aria-pressed={showsBefore.value}
+                onClick={() => {
+                  showsBefore.value = !showsBefore.peek();
+                }}
+              >
+                Before
+              </button>
+              <button
+                type="button"
+                id="measure"
+                aria-pressed={measured.value !== null}
+                onClick={() => {
+                  measured.value = measured.peek() === null ? [] : null;
+                }}
+              >
+                Measure
+              </button>
+            </fieldset>
+          </Menu>
         </fieldset>
       </div>
       <div class="view-host" ref={host} data-backend={state.kind === "ready" ? state.view.backend : undefined}>
@@ -113,6 +120,11 @@ export function SpaceView() {
           <p class="view-note" role="note">
             {state.reason} All results are shown in the image view.
           </p>
+        )}
+        {measured.value !== null && (
+          <output id="measured" class="over">
+            {measuredText(measured.value, unit.value)}
+          </output>
         )}
       </div>
     </section>

@@ -2,15 +2,17 @@
 /** The command line program `sim3align`. */
 import { readFileSync } from "node:fs";
 import { Command, CommanderError } from "commander";
-import { alignCommand } from "./cli/align-command.js";
-import { bopCommand } from "./cli/bop-command.js";
-import { statusHelp } from "./cli/case-options.js";
-import { evaluateCommand } from "./cli/evaluate-command.js";
-import { sceneCommand } from "./cli/scene-command.js";
-import { trackCommand } from "./cli/track-command.js";
-import { UsageError } from "./cli/usage-error.js";
+import { alignCommand } from "./align-command.js";
+import { bopCommand } from "./bop-command.js";
+import { statusHelp } from "./case-options.js";
+import { evaluateCommand } from "./evaluate-command.js";
+import { sceneCommand } from "./scene-command.js";
+import { trackCommand } from "./track-command.js";
+import { UsageError } from "./usage-error.js";
 
-const { version } = JSON.parse(readFileSync(new URL("./package.json", import.meta.url), "utf8")) as { version: string };
+const { version } = JSON.parse(readFileSync(new URL("../package.json", import.meta.url), "utf8")) as {
+  version: string;
+};
 
 const help = `
 Examples

@@ -1,0 +1,51 @@
+/** The WebAssembly modules of the package by name, and where the caller has them. */
+import { invalidArgument } from "./error.js";
+import type { LazySource, WasmSource } from "./platform.js";
+import { isKind, isRecord } from "./values.js";
+
+/** The sources of the modules, each loaded when it is first needed. Those left out are next to the script. */
+export interface WasmModules {
+  /** The core module, which `createAligner` loads: `core_bg.wasm`. */
+  core?: WasmSource | undefined;
+  /** The formats module, for files of meshes, images and arrays: `formats_bg.wasm`. */
+  formats?: WasmSource | undefined;
+  /** The depth-files module, for depth as NPZ, EXR, TIFF or PFM: `depth-files_bg.wasm`. */
+  depthFiles?: WasmSource | undefined;
+  /** The splats module, for meshes as 3D Gaussians: `splats_bg.wasm`. */
+  splats?: WasmSource | undefined;
+  /** The joint module, for `alignScene`, `alignViews` and `track`: `joint_bg.wasm`. */
+  joint?: WasmSource | undefined;
+  /** The registration module, for `register`, `estimateSim3` and `preset: "paper"`: `registration_bg.wasm`. */
+  registration?: WasmSource | undefined;
+}
+
+/** The name of a module among the options. */
+export type ModuleName = keyof WasmModules;
+
+/** The source of each module, or a function that returns it on demand. */
+export type LazyModules = { readonly [K in ModuleName]?: LazySource | undefined };
+
+/** The file of a module. */
+export const moduleFile = (name: string): string =>
+  `${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}_bg.wasm`;
+
+const names: readonly string[] = [
+  "core",
+  "formats",
+  "depthFiles",
+  "splats",
+  "joint",
+  "registration",
+] satisfies ModuleName[];
+
+/** The option `wasm` of `createAligner`, as one source for each module. */
+export function checkedModules(wasm: unknown): LazyModules {
+  if (wasm === undefined) return {};
+  if (typeof wasm === "string" || isKind<URL>(wasm, "URL")) {
+    const folder = String(wasm).replace(/\/?$/, "/");
+    return Object.fromEntries(names.map((name) => [name, `${folder}${moduleFile(name)}`]));
+  }
+  if (isRecord(wasm) && Object.keys(wasm).every((name) => names.includes(name))) return wasm;
+  const expected = `the URL of the folder of the modules, or the sources of ${names.join(", ")}`;
+  throw invalidArgument("wasm", wasm, expected, "Pass { core: source } for the source of the core module alone.");
+}

@@ -1,0 +1,73 @@
+//! What renders cost, counted where the feature `counts` asks for it: in the lab, never in a module.
+
+/// Counts of renders.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Images: one per pose.
+    pub renders: u64,
+    /// Vertices that were projected.
+    pub vertices: u64,
+    /// Triangles whose corners were gathered.
+    pub triangles: u64,
+    /// Triangles that were filled: not those whose box has no centre of a cell.
+    pub filled: u64,
+    /// Cells that were compared with a triangle, about.
+    pub visited: u64,
+    /// Cells of the grids.
+    pub cells: u64,
+}
+
+#[cfg(feature = "counts")]
+mod counted {
+    use core::cell::Cell;
+
+    use super::Counts;
+
+    thread_local! {
+        static ALL: Cell<Counts> = Cell::default();
+    }
+
+    impl Counts {
+        /// These and those.
+        #[must_use]
+        pub fn and(&self, other: &Self) -> Self {
+            self.with(other, u64::wrapping_add)
+        }
+
+        /// These without those before them.
+        #[must_use]
+        pub fn since(&self, before: &Self) -> Self {
+            self.with(before, u64::wrapping_sub)
+        }
+
+        fn with(&self, other: &Self, of: fn(u64, u64) -> u64) -> Self {
+            Self {
+                renders: of(self.renders, other.renders),
+                vertices: of(self.vertices, other.vertices),
+                triangles: of(self.triangles, other.triangles),
+                filled: of(self.filled, other.filled),
+                visited: of(self.visited, other.visited),
+                cells: of(self.cells, other.cells),
+            }
+        }
+    }
+
+    /// The counts of this thread so far.
+    pub fn so_far() -> Counts {
+        ALL.get()
+    }
+
+    pub(in crate::precise::drawn) fn add(of: impl FnOnce() -> Counts) {
+        ALL.set(ALL.get().and(&of()));
+    }
+}
+
+#[cfg(feature = "counts")]
+pub(super) use counted::add;
+#[cfg(feature = "counts")]
+pub use counted::so_far;
+
+/// Counts nothing.
+#[cfg(not(feature = "counts"))]
+#[inline(always)]
+pub(super) fn add(_: impl FnOnce() -> Counts) {}

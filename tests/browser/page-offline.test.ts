@@ -1,0 +1,73 @@
+/** Without a connection: the page, its samples and own files work after the first visit, and a new version replaces the old one. */
+import assert from "node:assert/strict";
+import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after } from "node:test";
+import { drop, files } from "../support/page-files.js";
+import { PATIENCE, pageTests, siteDir } from "../support/site.js";
+import { serve } from "../support/static-server.js";
+
+const test = pageTests();
+const visit = { serviceWorkers: "allow" } as const;
+
+const folder = mkdtempSync(join(tmpdir(), "sim3align-site-"));
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+test("after the first visit, the page and all samples work without a connection", visit, async (opened, page) => {
+  const isStored = () => page.locator("#privacy", { hasText: "Works offline" }).waitFor(PATIENCE);
+  await isStored();
+  await page.context().setOffline(true);
+  await page.reload();
+  await opened.aligned();
+  await isStored();
+  await opened.choose("#sample", "desk");
+  await opened.shows("Desk");
+  await page.keyboard.press("Control+k");
+  await page.getByRole("combobox", { name: "Find a command" }).waitFor(PATIENCE);
+  await page.keyboard.press("Escape");
+  await drop(opened, files);
+  await page.locator(".start[data-own=true]").waitFor(PATIENCE);
+  await opened.aligned();
+});
+
+test("a connection that is lost after loading is said, and nothing hangs", async (opened, page) => {
+  // Nothing that loads later is there.
+  await page.route("**/assets/**", (route) => route.abort());
+  await page.context().setOffline(true);
+  await page.keyboard.press("?");
+  await drop(opened, files);
+  await opened.says(/^(?!Reading)/);
+  // The browser logs the requests that failed.
+  opened.errors.length = 0;
+});
+
+test("a new version is shown at the next load, and the one before is forgotten", visit, async (_, page) => {
+  cpSync(siteDir, folder, { recursive: true });
+  const server = await serve(folder);
+  try {
+    await page.goto(`${server.url}index.html#sample=mug`);
+    await page.locator("#privacy", { hasText: "Works offline" }).waitFor(PATIENCE);
+    const caches = () => page.evaluate(async () => (await globalThis.caches.keys()).sort());
+    const [old, ...others] = await caches();
+    assert.deepEqual(others, []);
+    const edit = (name: string, from: string | RegExp, to: string) => {
+      const path = join(folder, name);
+      const text = readFileSync(path, "utf8");
+      assert.notEqual(text.replace(from, to), text, name);
+      writeFileSync(path, text.replace(from, to));
+    };
+    edit("index.html", "<title>sim3align</title>", "<title>newer</title>");
+    edit("service-worker.js", /BUILD = "\w+"/, 'BUILD = "newer"');
+    await page.reload();
+    assert.equal(await page.title(), "newer");
+    await page.locator("#privacy", { hasText: "Reload for a new version" }).waitFor(PATIENCE);
+    // Once no page of the old version is open, its files are forgotten.
+    await page.goto("about:blank");
+    await page.goto(`${server.url}index.html#sample=mug`);
+    await page.waitForFunction(async (old) => !(await globalThis.caches.keys()).includes(old ?? ""), old);
+    assert.deepEqual(await caches(), ["sim3align-newer"]);
+  } finally {
+    await server.close();
+  }
+});

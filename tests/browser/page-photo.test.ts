@@ -1,0 +1,178 @@
+/** From one photo: what is there is shown, the sheet says where the rest comes from, and the mask is marked on it. */
+import assert from "node:assert/strict";
+import type { Page } from "playwright-core";
+import { tiff, withExif } from "../support/exif.js";
+import { png } from "../support/files.js";
+import { depthNpy, drop, type Files, files, HEIGHT, maskPng, seen, WIDTH } from "../support/page-files.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
+
+const test = pageTests();
+
+/** Twice as large as the depth map, as photos are. */
+const [ACROSS, DOWN] = [2 * WIDTH, 2 * HEIGHT];
+
+/** The object in orange on a grey-blue ground, with some texture. */
+const rgb = new Uint8Array(3 * ACROSS * DOWN);
+for (let y = 0; y < DOWN; y++) {
+  for (let x = 0; x < ACROSS; x++) {
+    const inside = seen.mask[Math.floor(y / 2) * WIDTH + Math.floor(x / 2)] !== 0;
+    const grain = 6 * ((x * 7 + y * 13) % 5);
+    rgb.set(inside ? [210 + grain, 120 + grain, 40] : [60 + grain, 80 + grain, 110], 3 * (y * ACROSS + x));
+  }
+}
+const photoPng = png(rgb, ACROSS, DOWN, 3);
+
+/** A JPEG of an image; with EXIF data, its focal length is 65 mm on full frame: 300 pixels of the depth map. */
+async function jpeg(page: Page, image: Uint8Array, hasExif = false): Promise<Uint8Array> {
+  const address = await page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
+    canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
+    return canvas.toDataURL("image/jpeg", 0.9);
+  }, Buffer.from(image).toString("base64"));
+  const bytes = Buffer.from(address.split(",")[1] ?? "", "base64");
+  return hasExif
+    ? withExif(bytes, tiff({ make: "Maker" }, { focal35: 65, pixelX: ACROSS, pixelY: DOWN }, true))
+    : bytes;
+}
+
+/** The middle of the object, in shares of the image. */
+function middle(): [number, number] {
+  let [x, y, count] = [0, 0, 0];
+  seen.mask.forEach((inside, i) => {
+    if (inside === 0) return;
+    [x, y, count] = [x + (i % WIDTH), y + Math.floor(i / WIDTH), count + 1];
+  });
+  return [(x / count + 0.5) / WIDTH, (y / count + 0.5) / HEIGHT];
+}
+
+/** Clicks the photo in the mask tool, and waits for the region. */
+async function mark({ page }: SitePage, [u, v]: readonly [number, number]): Promise<void> {
+  const canvas = page.locator(".mask-editor canvas");
+  const box = await canvas.boundingBox();
+  assert.ok(box !== null);
+  await canvas.click({ position: { x: u * box.width, y: v * box.height } });
+  await settled(page);
+}
+
+const settled = (page: Page) =>
+  page.locator("#mask-status[aria-busy=false]").filter({ hasText: "is marked" }).waitFor(PATIENCE);
+
+/** The share of the image that is marked, per cent. */
+const share = async (page: Page) => Number.parseInt((await page.textContent("#mask-status")) ?? "", 10);
+
+const trueShare = (100 * seen.mask.reduce((sum, inside) => sum + inside, 0)) / seen.mask.length;
+
+test("a photo alone is shown with its focal length, and the rest is named with its sources", async (opened, page) => {
+  await drop(opened, { "IMG_0815.jpg": await jpeg(page, photoPng, true) });
+  const sheet = await opened.sheet();
+  const pictured = sheet.locator('[data-field="photo"] canvas');
+  await pictured.waitFor(PATIENCE);
+  assert.equal(await pictured.getAttribute("width"), `${ACROSS}`);
+  assert.match((await sheet.locator('[data-field="photo"]').textContent()) ?? "", /IMG_0815\.jpg.*320 × 240/);
+  assert.match((await sheet.locator('[data-field="camera"]').textContent()) ?? "", /EXIF: 65 mm/);
+  assert.match(await page.inputValue("#camera-fx"), /^6\d\d/);
+  const guide = sheet.locator(".from-photo");
+  const links = await guide.locator("a").evaluateAll((all) => all.map((one) => (one as HTMLAnchorElement).href));
+  assert.ok(links.length >= 6 && links.every((link) => /^https:|docs\//.test(link)), `${links}`);
+  const [own = ""] = links.filter((link) => link.includes("docs/"));
+  assert.match(await page.evaluate(async (link) => (await fetch(link)).text(), own), /From one photo/);
+  assert.ok(await page.isDisabled("#intake-open"));
+  assert.deepEqual(await opened.violations(), []);
+  // A mask of the photo, also one that was saved with losses, is shown on it.
+  await drop(opened, { "mask.jpg": await jpeg(page, maskPng(seen.mask)) });
+  await opened.sheet();
+  await sheet.locator(".pair canvas").first().waitFor(PATIENCE);
+  assert.match((await sheet.locator('[data-field="photo"]').textContent()) ?? "", /IMG_0815\.jpg/);
+  assert.match((await sheet.locator(".pair").textContent()) ?? "", /mask\.jpg/);
+});
+
+test("an object is marked on a photo, and aligned when depth and mesh come", async (opened, page) => {
+  await drop(opened, { "photo.jpg": await jpeg(page, photoPng, true) });
+  await opened.sheet();
+  await page.click("#mark-mask");
+  await page.locator(".mask-editor").waitFor(PATIENCE);
+  assert.ok(await page.isDisabled("#mask-done"));
+  await mark(opened, middle());
+  assert.ok(Math.abs((await share(page)) - trueShare) < 1.5, `${await share(page)} of ${trueShare} %`);
+  assert.deepEqual(await opened.violations(), []);
+  await page.click("#mask-done");
+  await page.locator(".mask-editor").waitFor({ state: "detached", ...PATIENCE });
+  await page.locator(".pair canvas").first().waitFor(PATIENCE);
+  await drop(opened, { "mesh.obj": files["mesh.obj"] as Uint8Array, "depth.npy": depthNpy(seen.depth) });
+  await opened.shows("Own files");
+  assert.ok((await opened.metric("iou")) > 0.85);
+  // A link holds no files.
+  await opened.press("Copy link");
+  await opened.says(/own files cannot be linked/);
+});
+
+test("the mask of a scene with depth is marked by keyboard, corrected and taken back", async (opened, page) => {
+  const { "mask.png": _, ...rest } = files;
+  await drop(opened, rest);
+  await opened.sheet();
+  await page.getByRole("button", { name: "Mark", exact: true }).click();
+  const here = page.locator("#mask-here");
+  await here.waitFor(PATIENCE);
+  await here.press("Enter");
+  await settled(page);
+  const found = await share(page);
+  assert.ok(Math.abs(found - trueShare) < 2, `${found} of ${trueShare} %`);
+  // Without following edges, the brush paints what it covers.
+  await page.uncheck("#mask-edges");
+  await page.locator("#mask-size").press("End");
+  await here.press("x");
+  await here.press("Enter");
+  await page.waitForFunction(
+    (before) => Number.parseInt(document.querySelector("#mask-status")?.textContent ?? "", 10) < before,
+    found,
+  );
+  await here.press("Backspace");
+  await page.locator("#mask-status", { hasText: `${found} % of` }).waitFor(PATIENCE);
+  await page.click("#mask-done");
+  await opened.shows("Own files");
+  assert.ok((await opened.metric("iou")) > 0.85);
+});
+
+test("models of the host see depth and mask in the photo", async (opened, page) => {
+  const requests: string[] = [];
+  page.on("request", (request) => requests.push(new URL(request.url()).protocol));
+  const tensors = { depth: Array.from(seen.depth, (z) => 1 / z - 0.5), mask: Array.from(seen.mask) };
+  await page.evaluate(
+    ({ depth, mask, width, height }) => {
+      globalThis.sim3alignPhotoModel = {
+        title: "recorded tensors",
+        see: async (photo: Blob, place: readonly number[]) => {
+          if (photo.type === undefined || place.some((share) => !(share > 0 && share < 1))) throw new Error("no place");
+          return {
+            predicted_depth: { data: Float32Array.from(depth), dims: [height, width] },
+            depthKind: "affine-invariant-disparity",
+            masks: { data: Uint8Array.from(mask), dims: [1, 1, height, width] },
+            iou_scores: { data: Float32Array.of(0.9), dims: [1, 1, 1] },
+          };
+        },
+      };
+    },
+    { ...tensors, width: WIDTH, height: HEIGHT },
+  );
+  const dropped: Files = { "photo.jpg": await jpeg(page, photoPng, true), "mesh.obj": files["mesh.obj"] as Uint8Array };
+  await drop(opened, dropped);
+  await opened.sheet();
+  await page.getByRole("button", { name: "Mark", exact: true }).click();
+  await page.locator(".mask-editor").waitFor(PATIENCE);
+  await mark(opened, middle());
+  await page.getByRole("button", { name: "Use recorded tensors" }).click();
+  await page.locator(".mask-editor").waitFor({ state: "detached", ...PATIENCE });
+  await opened.shows("Own files");
+  assert.ok((await opened.metric("iou")) > 0.85);
+  assert.ok(
+    requests.every((protocol) => protocol !== "https:"),
+    "the page asked the network",
+  );
+});
+
+declare global {
+  var sim3alignPhotoModel: unknown;
+}

@@ -1,0 +1,99 @@
+/** Masks that are marked on the photo of a draft. */
+import { signal } from "@preact/signals";
+import { useMemo } from "preact/hooks";
+import type { NamedFile } from "../load/files.js";
+import type { Inputs, ObjectFiles } from "../load/inputs.js";
+import { colourOf } from "../load/read-scene.js";
+import { depthFile, maskFile } from "../masking/mask-file.js";
+import { seenBy } from "../masking/photo-model.js";
+import type { Mark } from "../masking/strokes.js";
+import { type Draft, draftInputs } from "../state/draft.js";
+import { lazy } from "../ui/lazy.js";
+import { change } from "./draft.js";
+
+/** The index of the object that is being marked; null for none. */
+const marked = signal<number | null>(null);
+
+/** How masks were made that were made here, for going on with them. */
+const marksOf = new WeakMap<NamedFile, readonly Mark[]>();
+
+const MaskEditor = lazy(
+  () => marked.value !== null,
+  () => import("../masking/editor.js").then(({ MaskEditor }) => MaskEditor),
+);
+
+/** A button that marks an object on the photo or, without one, on the depth map. */
+export const MarkButton = ({ i, title, id }: { i: number; title: string; id?: string }) => (
+  <button
+    type="button"
+    id={id}
+    onClick={() => {
+      marked.value = i;
+    }}
+  >
+    {title}
+  </button>
+);
+
+export function Marking({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
+  const i = marked.value;
+  const { reading } = open;
+  const { shown = null, depth = null, size = null } = reading ?? {};
+  const view = useMemo(
+    () => ground && shown && { ...shown, rgba: ground, depth: depth?.data ?? null },
+    [ground, shown, depth],
+  );
+  if (i === null || view === null || shown === null || size === null) return null;
+  const inputs = draftInputs(open);
+  const { name, mask } = inputs.objects[i] ?? { name: "Object", mask: null };
+  const { photo } = inputs;
+  const close = () => {
+    marked.value = null;
+  };
+  return (
+    <MaskEditor
+      {...{ name, view }}
+      colour={colourOf(i)}
+      before={reading?.objects[i]?.mask ?? null}
+      marks={(mask && marksOf.get(mask.file)) ?? []}
+      model={photo === null ? undefined : globalThis.sim3alignPhotoModel}
+      onCancel={close}
+      onDone={async (drawn, marks) => {
+        const file = await maskFile(drawn, shown, size, name);
+        marksOf.set(file, marks);
+        close();
+        await change(withMask(i, file), true);
+      }}
+      onAsk={async (place) => {
+        const model = globalThis.sim3alignPhotoModel;
+        if (model === undefined || photo === null) return;
+        const found = await seenBy(model, await photo.bytes(), place);
+        const file = found.mask && (await maskFile(found.mask.data, found.mask, size, name));
+        const depth = found.depth && depthFile(found.depth.data, found.depth, name);
+        close();
+        await change((now) => {
+          const masked = file === null ? now : withMask(i, file)(now);
+          if (depth === null) return masked;
+          const files = [
+            ...masked.files.filter(({ role }) => role !== "depth"),
+            { file: depth, role: "depth" as const },
+          ];
+          // The mask is of the photo's size, which the depth need not have.
+          return { ...masked, depth, depthKind: found.depthKind, resizeMasks: true, files };
+        }, true);
+      }}
+    />
+  );
+}
+
+/** Gives an object a mask, or makes an object of it. */
+const withMask =
+  (i: number, file: NamedFile) =>
+  (inputs: Inputs): Inputs => {
+    const before = inputs.objects[i];
+    const object: ObjectFiles = before ?? { name: "Object", mask: null, mesh: null, truth: null, isSure: true };
+    const objects = [...inputs.objects];
+    objects[i] = { ...object, mask: { file }, isSure: true };
+    const files = inputs.files.filter((one) => one.file !== before?.mask?.file);
+    return { ...inputs, objects, files: [...files, { file, role: "mask" }] };
+  };
