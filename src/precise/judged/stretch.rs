@@ -2,8 +2,8 @@
 //!
 //! The result of a search is a similarity. What the search fitted beside it, x = s·R·e^E·p + t with a symmetric E of trace 0
 //! (see [`searched::proportions`](crate::precise::searched::proportions)), is refined here from that similarity with the
-//! freedom that was asked for, and kept. Lengths that it changes by no more than their uncertainty stay as the similarity has
-//! them.
+//! freedom that was asked for, and kept. Lengths that it changes by no more than the evidence tells apart stay as the
+//! similarity has them.
 
 use glam::{DMat3, DVec3};
 
@@ -122,18 +122,19 @@ pub fn deviations_of_lengths(
     shapes: &Shapes,
 ) -> Option<[f64; 3]> {
     let covariance = covariance(equations)?;
-    Some(DVec3::AXES.map(|axis| deviation_along(&covariance, &change_of_length(of_scale, axis, shapes))))
+    let along = |axis| deviation_along(&covariance, &change_of_length(of_scale, axis, shapes));
+    Some(DVec3::AXES.map(|axis| libm::hypot(along(axis), FLOOR)))
 }
 
-/// The standard deviation of what changes so with each parameter.
+/// The standard deviation of what changes so with each parameter, without the [`FLOOR`].
 fn deviation_along(covariance: &[[f64; ALL]; ALL], change: &[f64; ALL]) -> f64 {
     let row = |row: &[f64; ALL]| row.iter().zip(change).map(|(a, b)| a * b).sum::<f64>();
-    let fitted = deviation(covariance.iter().zip(change).map(|(of_row, by)| by * row(of_row)).sum());
-    libm::hypot(INFLATION * fitted, FLOOR)
+    INFLATION * deviation(covariance.iter().zip(change).map(|(of_row, by)| by * row(of_row)).sum())
 }
 
 /// What counts of a fit whose scale and proportions differ from those of the similarity by this growth (logarithm) and this E:
-/// of the changes of lengths, by their principal directions, those that are larger than their uncertainty.
+/// of the changes of lengths, by their principal directions, those that are larger than their deviation. The [`FLOOR`] does not
+/// count here: it would keep lengths as they are that are better changed.
 pub fn significant(
     equations: &NormalEquationsOf<ALL>,
     of_scale: &[f64; PARAMETERS],
