@@ -6,18 +6,17 @@ use super::world_pose::WorldPose;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::precise::drawn::pose::Step;
-use crate::precise::judged::stretch::{ALL, deviations_of_lengths, report, shapes};
+use crate::precise::judged::stretch::{
+    ALL, GRIDS, REACHES, STEPS, climb, deviations_of_lengths, report, shapes, significant,
+};
 use crate::precise::options::Proportions as Freedom;
 use crate::precise::scored::conditioning::fix_roll;
 use crate::precise::scored::score::Score;
 use crate::precise::searched::ascent::{Ascent, ascend};
-use crate::precise::searched::proportions::{InProportion, Proportions, Shapes, Stretched};
-use crate::precise::searched::recipe::{FINE, FINEST};
+use crate::precise::searched::proportions::{InProportion, PROPORTIONS, Proportions, Shapes, Stretched};
+use crate::precise::searched::recipe::FINEST;
 use crate::precise::searched::refine::Refiner;
 use crate::report::Stretch;
-
-/// Steps of the refinement, by grid.
-const STEPS: [(usize, usize); 2] = [(FINE, 12), (FINEST, 12)];
 
 /// The best proportions near a pose in the world; `None` if they are not asked for, or the size of the mesh is given.
 pub fn stretch(views: &Views<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedom) -> Option<Stretch> {
@@ -28,15 +27,24 @@ pub fn stretch(views: &Views<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedo
     let shapes = shapes(&search.equivalence, freedom);
     let mut at = StretchedInWorld { pose: *pose, proportions: Proportions::default() };
     let mut uncertainty = [0.0; 3];
-    for (grid, steps) in STEPS {
+    for (grid, reaches) in GRIDS.into_iter().zip(REACHES) {
         let mut problem = JointInProportion { joint: &mut views.level(grid), shapes };
-        at = ascend(&mut problem, at, steps).pose;
+        let stretched = |at: StretchedInWorld, by| StretchedInWorld { proportions: at.proportions.by(by), ..at };
+        at = climb(&mut problem, at, reaches, &shapes, stretched);
         let score = problem.score(&at);
         let mut equations = problem.equations(&at, &score);
         search.equivalence.free_axis(at.pose.rotation).into_iter().for_each(|axis| fix_roll(&mut equations, axis));
         let mut of_scale = [0.0; PARAMETERS];
         of_scale[3] = 1.0;
-        uncertainty = deviations_of_lengths(&equations, &of_scale)?;
+        uncertainty = deviations_of_lengths(&equations, &of_scale, &shapes)?;
+        if grid == FINEST {
+            let growth = at.pose.log_scale - pose.log_scale;
+            let (kept, proportions) = significant(&equations, &of_scale, &shapes, (growth, &at.proportions))?;
+            let log_scale = at.pose.log_scale + kept - growth;
+            let start = StretchedInWorld { pose: WorldPose { log_scale, ..at.pose }, proportions };
+            problem.joint.lock_scale = true;
+            at = ascend(&mut JointInProportion { shapes: Shapes::FIXED, ..problem }, start, STEPS[0]).pose;
+        }
     }
     Some(report(mesh, &search.mesh.frame, &at.proportions, |frame| at.pose.similarity(frame), uncertainty))
 }
@@ -91,7 +99,14 @@ impl Ascent<ALL> for JointInProportion<'_, '_> {
             for (row, of_pose) in map.iter_mut().zip(view.camera.step_map(&seen)) {
                 row[..PARAMETERS].copy_from_slice(&of_pose);
             }
-            (PARAMETERS..ALL).for_each(|k| map[k][k] = 1.0);
+            if self.joint.lock_scale {
+                map[3][3] = 0.0;
+            }
+            for k in 0..PROPORTIONS {
+                let mut unit = [0.0; PROPORTIONS];
+                unit[k] = 1.0;
+                map[PARAMETERS + k][PARAMETERS..].copy_from_slice(&self.shapes.free(unit));
+            }
             sum.add_mapped(&own, &map);
         }
         self.shapes.add_to(&at.proportions, &mut sum);

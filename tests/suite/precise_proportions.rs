@@ -254,7 +254,30 @@ fn axes_are_stretched_alone_and_symmetry_is_kept() {
     let full = AlignOptions { proportions: Freedom::Full, symmetry: Symmetry::Auto, ..quick() };
     let stretch = fitted(&flat, &observe(&round, &truth()), full).unwrap();
     assert!((stretch.x_axis.x - stretch.y_axis.y).abs() < 2e-3, "{stretch}");
+    // Along its axis, too, if that is no axis of the mesh.
+    let turn = exp(DVec3::new(0.5, -0.7, 0.4)).as_quat();
+    let turned = |mesh: &Mesh| mapped(mesh, |p| turn * p);
+    let tilted = AlignOptions { symmetry: Symmetry::Auto, ..axes.clone() };
+    let stretch = fitted(&turned(&flat), &observe(&turned(&round), &truth()), tilted).unwrap();
+    let lengths = Vec3::AXES.map(|axis| {
+        let axis = (turn * axis).as_dvec3();
+        axis.dot(stretch * axis)
+    });
+    assert!((lengths[0] - lengths[1]).abs() < 2e-3 && lengths[2] > 1.015, "{lengths:?}");
     // A mesh of known size is that of the object itself.
     let known = AlignOptions { scale: ScaleOption::Fixed(truth().scale), ..axes };
     assert_eq!(fitted(&wide, &seen, known), None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn right_proportions_are_kept() {
+    let seen = observe(&body(), &truth());
+    for freedom in [Freedom::Axes, Freedom::Full] {
+        let found = align(&seen, &body(), &AlignOptions { proportions: freedom, ..quick() }, &mut Silent).unwrap();
+        let Stretch { stretch, camera_from_stretched, uncertainty, .. } = found.proportions.unwrap();
+        let change = DMat3::from_cols_array_2d(&stretch) - DMat3::IDENTITY;
+        assert!(change.to_cols_array().iter().all(|x| x.abs() < 2e-3), "{change:?}");
+        assert!((camera_from_stretched.scale / found.camera_from_mesh.scale - 1.0).abs() < 2e-3);
+        assert!(uncertainty.iter().all(|sd| (0.015..0.06).contains(sd)), "{uncertainty:?}");
+    }
 }

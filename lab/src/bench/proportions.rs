@@ -26,7 +26,7 @@ pub struct Record {
 }
 
 /// Uncertainty up to which a side counts as seen.
-const SEEN: f64 = 0.02;
+const SEEN: f64 = 0.03;
 /// Rotation beyond which a pose is wrong, degrees.
 const WRONG_DEG: f64 = 20.0;
 

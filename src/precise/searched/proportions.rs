@@ -25,8 +25,6 @@ const ALL: usize = PARAMETERS + PROPORTIONS;
 
 /// Standard deviation of each parameter. From 0.02 to 0.1, the errors of the similarity on generated cases are about the same.
 const DEVIATION: f64 = 0.03;
-/// Standard deviation of a parameter that is not free.
-const FIXED: f64 = 1e-4;
 /// Maximum magnitude of a parameter.
 const MOST: f64 = 0.25;
 /// Iterations that find the nearest similarity: each squares the relative error, which starts at the size of E.
@@ -63,34 +61,29 @@ impl Shapes {
         Self { cost: DROP / (deviation * deviation), free: Some(free) }
     }
 
-    /// What is not free of the parameter with this index, by parameter.
-    fn fixed(&self, index: usize) -> Option<[f64; PROPORTIONS]> {
-        let mut row = self.free?[index].map(|x| -x);
-        row[index] += 1.0;
-        Some(row)
-    }
-
     /// All, which are equally likely: the prior is that of a sum.
     pub const ANY: Self = Self { cost: 0.0, free: None };
+    /// The one that a mesh has.
+    pub const FIXED: Self = Self { cost: 0.0, free: Some([[0.0; PROPORTIONS]; PROPORTIONS]) };
 
     /// The penalty on the score.
     pub fn cost(&self, Proportions(parameters): &Proportions) -> f64 {
-        let dot = |row: [f64; PROPORTIONS]| row.iter().zip(parameters).map(|(a, b)| a * b).sum::<f64>();
-        let fixed: f64 = (0..PROPORTIONS).filter_map(|i| self.fixed(i)).map(|row| dot(row) * dot(row)).sum();
-        self.cost * parameters.iter().map(|x| x * x).sum::<f64>() + DROP / (FIXED * FIXED) * fixed
+        self.cost * parameters.iter().map(|x| x * x).sum::<f64>()
     }
 
-    /// Adds the quadratic of the penalty.
+    /// Adds the quadratic of the penalty. What is not free, no residual depends on: it keeps those parameters at 0.
     pub fn add_to(&self, Proportions(parameters): &Proportions, equations: &mut NormalEquationsOf<ALL>) {
         for (i, x) in parameters.iter().enumerate() {
             let mut jacobian = [0.0; ALL];
             jacobian[PARAMETERS + i] = 1.0;
             equations.add(&jacobian, *x, 2.0 * self.cost);
-            let Some(row) = self.fixed(i) else { continue };
-            jacobian[PARAMETERS..].copy_from_slice(&row);
-            let residual = row.iter().zip(parameters).map(|(a, b)| a * b).sum();
-            equations.add(&jacobian, residual, 2.0 * DROP / (FIXED * FIXED));
         }
+    }
+
+    /// The free part of parameters, or of a change with them.
+    pub fn free(&self, parameters: [f64; PROPORTIONS]) -> [f64; PROPORTIONS] {
+        let dot = |row: [f64; PROPORTIONS]| row.iter().zip(&parameters).map(|(a, b)| a * b).sum();
+        self.free.as_ref().map_or(parameters, |free| free.map(dot))
     }
 }
 
@@ -110,8 +103,15 @@ impl Proportions {
     }
 
     /// The proportions after a step in all parameters, of which theirs are the last.
-    pub fn moved(mut self, step: &[f64; ALL]) -> Self {
-        for (x, by) in self.0.iter_mut().zip(&step[PARAMETERS..]) {
+    pub fn moved(self, step: &[f64; ALL]) -> Self {
+        let mut by = [0.0; PROPORTIONS];
+        by.copy_from_slice(&step[PARAMETERS..]);
+        self.by(by)
+    }
+
+    /// The proportions after a change of the parameters.
+    pub fn by(mut self, change: [f64; PROPORTIONS]) -> Self {
+        for (x, by) in self.0.iter_mut().zip(change) {
             *x = (*x + by).clamp(-MOST, MOST);
         }
         self
@@ -227,9 +227,10 @@ impl Ascent<ALL> for InProportion<'_, '_> {
             let mut jacobian = [0.0; ALL];
             let arm = to_mesh * (point - canvas.translation);
             let of_pose = refiner.jacobian(canvas, point, gradient);
-            let of_proportions = Proportions::jacobian(arm, to_mesh * gradient);
-            for (to, from) in jacobian.iter_mut().zip(of_pose.iter().chain(&of_proportions)) {
-                *to = f64::from(*from);
+            let of_proportions = Proportions::jacobian(arm, to_mesh * gradient).map(f64::from);
+            let of_proportions = self.shapes.free(of_proportions);
+            for (to, from) in jacobian.iter_mut().zip(of_pose.map(f64::from).iter().chain(&of_proportions)) {
+                *to = *from;
             }
             equations.add(&jacobian, f64::from(residual), f64::from(weight));
         });
