@@ -65,6 +65,10 @@ export async function cases(name, options, build = buildPackage) {
     const remedy = "name one of these, or an unpacked dataset with --from";
     throw failure("UNKNOWN_DATASET", "dataset", name, Object.keys(datasets).join(", "), remedy);
   }
+  if (split !== undefined && split !== known.split) {
+    const remedy = "leave it out, or unpack that split yourself and name the folder with --from";
+    throw failure("NOT_AVAILABLE", "--split", split, `${known.split}, which is the one that is fetched`, remedy);
+  }
   const names = [`${name}_base.zip`, `${name}_models.zip`, known.images];
   const store = join(root, "archives", name);
   const lock = join(store, "lock.json");

@@ -151,8 +151,8 @@ function cut(photo, mask) {
   const context = canvas.getContext("2d", { willReadFrequently: true });
   context.drawImage(mask, 0, 0);
   const { data } = context.getImageData(0, 0, mask.width, mask.height);
-  const box = maskBox(mask.width, mask.height, (i) => data[4 * i] > 0);
-  const [low, high] = [box.map(([first]) => first - 12), box.map(([, last]) => last + 12)];
+  const sides = maskBox(mask.width, mask.height, (i) => data[4 * i] > 0);
+  const [low, high] = [sides.map(([first]) => first - 12), sides.map(([, last]) => last + 12)];
   const [width, height] = [0, 1].map((k) => high[k] - low[k]);
   const part = document.createElement("canvas");
   [part.width, part.height] = [width, height];

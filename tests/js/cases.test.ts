@@ -228,6 +228,7 @@ test("what cannot be is refused by name", async () => {
   await assert.rejects(of("ycb"), { code: "UNKNOWN_DATASET", found: "ycb", expected: /ycbv/ });
   await assert.rejects(of("tless"), { code: "NOT_AVAILABLE", found: "status 404" });
   await assert.rejects(of("lmo", { host: "http://127.0.0.1:1" }), { code: "NOT_AVAILABLE", remedy: /--from/ });
+  await assert.rejects(of("lmo", { split: "train" }), { code: "NOT_AVAILABLE", argument: "--split" });
   await assert.rejects(of("lmo", { from: given, visible: 1.1 }), { code: "NO_CASES", remedy: /--visible/ });
   await assert.rejects(download(archiveOf("lmo_none.zip"), join(root, "none.zip")), { code: "NOT_AVAILABLE" });
   // Somebody else's folder is left alone.
