@@ -12,7 +12,7 @@ import { assertNear } from "../support/random.js";
 import { mesh } from "../support/scene.js";
 import { tableFiles } from "../support/table.js";
 
-const narrow = { ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 0.95 * x : x)) };
+const narrow = { ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 0.9 * x : x)) };
 writeCase("table", tableFiles());
 writeCase("narrow", { ...files, "mesh.glb": glb(narrow) });
 
