@@ -13,7 +13,7 @@ import { blocksPng, texturedGlb } from "./textured.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
 
-/** What was measured, for --json. @type {{ name: string, bytes: number, limit: number }[]} */
+/** The peaks that `--json` writes. @type {{ name: string, bytes: number, limit: number }[]} */
 const measured = [];
 
 /** Limit of the core's memory, in bytes: 128 MB. */

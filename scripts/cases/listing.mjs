@@ -1,6 +1,6 @@
 /**
- * What a host of datasets has of one: the revision, the licence, and the size and SHA-256 of each archive. The first listing
- * is kept in a lock file, so that later downloads are of the same bytes, or fail.
+ * The listing of a dataset on its host: revision, licence, and the size and SHA-256 of each archive. The first listing is kept
+ * in a lock file, so that later downloads return the same bytes or fail.
  */
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname } from "node:path";

@@ -231,7 +231,7 @@ export function argsOf({ args, cases, more = [], prepare }, quick) {
   return [...args, ...(number > 0 ? [`${number}`] : []), ...more];
 }
 
-/** What a reader runs to get the rows of a set. @param {RecordSet} set */
+/** The command that reproduces the rows of a set. @param {RecordSet} set */
 export const commandOf = (set) => set.commands ?? `sim3align-lab ${argsOf(set, false).join(" ")}`;
 
 /** Four digits, which are more than any set can tell. @param {number} value */

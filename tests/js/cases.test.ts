@@ -1,4 +1,4 @@
-/** `npm run cases`: a dataset fetched from a host of this test, its checksums, what goes wrong, and what comes of it. */
+/** `npm run cases`: downloads from a local server, checksums, errors, and the case folders that it writes. */
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
@@ -21,7 +21,7 @@ after(() => rmSync(root, { recursive: true, force: true }));
 const given = join(root, "given", "lmo");
 /** The archives of the host, by name. */
 const archives = new Map<string, Uint8Array>();
-/** What the host states of them; a test may change it. */
+/** The sizes and checksums in the host's listing; a test may change them. */
 const stated = new Map<string, { size?: number; sha256?: string }>();
 /** The connection breaks, once, when so many bytes have reached a file. And the ranges that were asked for. */
 let breaks: { bytes: number; file: string } | undefined;
@@ -89,7 +89,7 @@ before(async () => {
 });
 after(() => server.close());
 
-/** What a call prints. */
+/** The lines that a call prints. */
 async function printed(call: () => Promise<void>): Promise<string> {
   const lines: string[] = [];
   const { log } = console;

@@ -50,7 +50,7 @@ function executed(
   return JSON.parse(readFileSync(made, "utf8"));
 }
 
-/** What the cells of a notebook printed and showed, without pictures. */
+/** The text output of a notebook's cells, without pictures. */
 const textsOf = ({ cells }: Notebook) =>
   cells.flatMap(({ outputs = [] }) =>
     outputs.flatMap(({ text, data }) =>

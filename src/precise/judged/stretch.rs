@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::geometry::similarity::Similarity;
-use crate::geometry::symmetric_eigen::SymmetricEigen;
+use crate::geometry::symmetric_eigen::{SymmetricEigen, outer};
 use crate::precise::drawn::equivalence::Equivalence;
 use crate::precise::drawn::pose::{CropPose, MeshFrame};
 use crate::precise::drawn::render::Canvas;
@@ -132,9 +132,9 @@ fn deviation_along(covariance: &[[f64; ALL]; ALL], change: &[f64; ALL]) -> f64 {
     INFLATION * deviation(covariance.iter().zip(change).map(|(of_row, by)| by * row(of_row)).sum())
 }
 
-/// What counts of a fit whose scale and proportions differ from those of the similarity by this growth (logarithm) and this E:
-/// of the changes of lengths, by their principal directions, those that are larger than their deviation. The [`FLOOR`] does not
-/// count here: it would keep lengths as they are that are better changed.
+/// The part of a fit that the evidence supports. The fit differs from the similarity by `growth` (of log s) and by the E of
+/// `proportions`; changes of length along their principal directions are kept if they exceed their deviation, and dropped
+/// otherwise. The [`FLOOR`] is not added to that deviation: it would drop changes that bring lengths nearer to the truth.
 pub fn significant(
     equations: &NormalEquationsOf<ALL>,
     of_scale: &[f64; PARAMETERS],
@@ -152,10 +152,6 @@ pub fn significant(
     }
     let growth = sum / 3.0;
     Some((growth, Proportions::of_matrix(&(kept - even(growth)))))
-}
-
-fn outer(axis: DVec3) -> DMat3 {
-    DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z)
 }
 
 /// Adds to a projection the part of a direction that it does not have.
