@@ -5,6 +5,7 @@ import { type Inputs, newId } from "../load/inputs.js";
 import { page } from "../state/page.js";
 import { add, openLast, workOf } from "./index.js";
 import { isSession, type Packed, packed, SESSION_FILE, sessionParts } from "./pack.js";
+import type { Work } from "./store.js";
 
 const { inputs, list, options, scene } = page;
 
@@ -35,7 +36,7 @@ export function allResults(): Record<string, SceneResult | null> {
 }
 
 /** What a project file has of a scene. */
-type Saved = Packed & { result: object | null; wasShown: boolean };
+type Saved = Packed & Pick<Work, "result" | "shownAt">;
 
 /** The project as one file: a zip archive of the files of every scene, of what was done with it, and of all results. */
 export async function projectFile(): Promise<Uint8Array> {
@@ -46,7 +47,8 @@ export async function projectFile(): Promise<Uint8Array> {
     const work = workOf(from.id);
     const own = packed(from, isShown(from) ? scene.peek() : null, options.peek());
     const session = isShown(from) ? own.session : (work?.session ?? own.session);
-    const saved: Saved = { ...session, result: resultOf(from), wasShown: isShown(from) || (work?.shownAt ?? 0) > 0 };
+    const shownAt = isShown(from) ? Date.now() : (work?.shownAt ?? 0);
+    const saved: Saved = { ...session, result: resultOf(from), shownAt };
     entries[`${k + 1}/${SESSION_FILE}`] = text(saved);
     // The indices keep files with equal paths apart.
     for (const [i, { path, bytes }] of own.files.entries()) entries[`${k + 1}/${i}/${path}`] = await bytes();
@@ -54,13 +56,16 @@ export async function projectFile(): Promise<Uint8Array> {
   return zipSync(entries, { level: 1 });
 }
 
-/** Opens a project file, given as the files in it, beside the scenes that are there. Returns whether it can be opened. */
+/**
+ * Opens a project file, given as the files in it, beside the scenes that are there, and shows the one that was shown when it
+ * was saved. Returns whether it can be opened.
+ */
 export async function openProject(files: readonly NamedFile[]): Promise<boolean> {
   const opened = [];
   for (const own of files.filter(isSession)) {
     const parts = await sessionParts<Saved>(files, own);
-    const { result, wasShown, ...session } = parts.session;
-    opened.push(add(session, parts.files, { id: newId(), result, shownAt: wasShown ? Date.now() - opened.length : 0 }));
+    const { result, shownAt, ...session } = parts.session;
+    opened.push(add(session, parts.files, { id: newId(), result, shownAt }));
   }
   return openLast(opened);
 }
