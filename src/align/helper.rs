@@ -73,7 +73,11 @@ impl Helper {
         let pyramid = self.mesh.pyramid(&settings.grids)?;
         let mut search = Search::new(clean, pyramid, *settings);
         search.view = view;
-        search.assume(Prior::of(self.request.options(), self.mesh.mesh(), &search.mesh.frame));
+        let options = self.request.options();
+        search.assume(Prior::of(options, self.mesh.mesh(), &search.mesh.frame));
+        if search.prior.initial.is_some() {
+            search.equivalence = search.mesh.equivalence(&options.symmetry).ok()?;
+        }
         if is_surrounded {
             (self.surround)(&mut search);
         }

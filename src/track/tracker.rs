@@ -31,6 +31,7 @@ use crate::precise::drawn::render::Canvas;
 use crate::precise::judged::choice::AGREES;
 use crate::precise::judged::color::{LOOSE, agreement_at, loose_axis, roll};
 use crate::precise::judged::confidence::sureness;
+use crate::precise::options::AlignOptions;
 use crate::precise::scored::objective::Objective;
 use crate::precise::scored::prior::Prior;
 use crate::precise::scored::score::{NOISE, Score};
@@ -96,7 +97,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         prepared.check()?;
         let settings = SearchSettings { lock_scale: true, ..SearchSettings::from(Effort::Fast) };
         let pyramid = prepared.pyramid(&settings.grids).ok_or_else(no_candidate)?;
-        let prior = Prior::of(&options.of_detection(), prepared.mesh(), &pyramid.frame);
+        // The object turns after the first frame.
+        let detection = AlignOptions { initial: None, ..options.of_detection() };
+        let prior = Prior::of(&detection, prepared.mesh(), &pyramid.frame);
         let known = prior.scale.filter(|[min, max]| min == max).map(|[scale, _]| libm::log(scale));
         Ok(Self {
             mesh,
@@ -248,7 +251,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     fn detect(&self, observation: &Observation, before: Option<DQuat>, host: &mut dyn Host) -> Result<Seen> {
         let log_scale = self.size.value().map(|(log_scale, _)| log_scale);
         let known = Known { prior: self.prior, before: before.map(|before| (log_scale, before)) };
-        let options = self.options.of_detection();
+        let initial = self.options.initial.filter(|_| before.is_none());
+        let options = AlignOptions { initial, ..self.options.of_detection() };
         let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host)?;
         // With the settings of the frames after it, so that scores compare.
         let mut search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);

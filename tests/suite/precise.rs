@@ -134,6 +134,24 @@ fn a_local_search_refines_the_pose_it_is_given() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn an_initial_pose_decides_between_turns_that_look_alike_and_no_others() {
+    let brick = cuboid(Vec3::new(1.0, 0.8, 0.55));
+    let observation = observe(&brick, &truth());
+    let half_turns =
+        [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| Rotation3::new(axis * core::f64::consts::PI));
+    let turned = |by: &Rotation3<f64>| Similarity { rotation: truth().rotation * by, ..truth() };
+    for half_turn in half_turns {
+        let initial = turned(&half_turn);
+        let options = AlignOptions { initial: Some(initial), symmetry: Symmetry::None, ..quick() };
+        let found = pose(&align(&observation, &brick, &options, &mut Silent).unwrap());
+        assert!(turn_deg(&found, &initial) < 3.0, "{} for {half_turn}", turn_deg(&found, &initial));
+        // What the image tells, the initial pose does not overrule.
+        let found = pose(&solve(&AlignOptions { initial: Some(initial), ..quick() }));
+        assert!(turn_deg(&found, &truth()) < 1.5, "{} for {half_turn}", turn_deg(&found, &truth()));
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn a_local_search_far_from_the_truth_stays_there() {
     let far = Similarity { rotation: Rotation3::new(Vector3::new(2.5, 0.0, 0.0)) * truth().rotation, ..truth() };
     let result = solve(&AlignOptions { initial: Some(far), search: SearchScope::Local, ..quick() });

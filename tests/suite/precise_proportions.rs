@@ -47,7 +47,7 @@ fn uncertainty_counts_the_proportions_that_are_fitted() {
     let mesh = frame.normalized(&body).unwrap();
     let (model, grid) = (Model::new(&mesh), CropGrid::new(&clean, settings.grids[FINE].cells));
     let scoring = settings.scoring(&clean, FINE);
-    let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+    let objective = objective(&model, &grid, scoring, Prior::default());
     let refiner = Refiner { objective, lock_scale: false };
     let pose = CropPose::of_similarity(&truth(), &frame).unwrap();
     let surface = SurfaceMoments::of(&mesh);
@@ -157,7 +157,7 @@ fn a_mesh_in_other_proportions_is_put_where_it_is_nearest_as_a_whole() {
         let draw = &mut Draw::new(seed);
         let (mesh, grid, scoring, nearest) = disproportionate(&proportions(draw, 0.04));
         let model = Model::new(&mesh);
-        let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+        let objective = objective(&model, &grid, scoring, Prior::default());
         let refiner = Refiner { objective, lock_scale: false };
         let mut canvas = Canvas::default();
         let start = nearest.moved(&core::array::from_fn(|_| draw.between(-0.02, 0.02)));
@@ -186,12 +186,12 @@ fn a_fit_in_proportion_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
     let (model, surface) = (Model::new(&mesh), SurfaceMoments::of(&mesh));
     let mut canvas = Canvas::default();
     let log_scale = |pose: &CropPose| pose.size + pose.distance;
-    let free = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+    let free = objective(&model, &grid, scoring, Prior::default());
     let start = nearest.moved(&[0.02, -0.02, 0.01, 0.03, 0.01, 0.01, 0.0]);
     let locked = Refiner { objective: free, lock_scale: true }.refine_in_proportion(&mut canvas, start, 20, &surface);
     assert!((log_scale(&locked.pose) - log_scale(&start)).abs() < 1e-12, "{locked:?}");
     let bounds = [1.03, 1.1].map(|factor| factor * libm::exp(log_scale(&nearest)));
-    let prior = Prior { scale: Some(bounds), up: None };
+    let prior = Prior { scale: Some(bounds), ..Prior::default() };
     let objective = Objective { prior, ..free };
     let held = Refiner { objective, lock_scale: false }.refine_in_proportion(&mut canvas, start, 20, &surface);
     assert!(prior.is_at_bound(&held.pose), "the truth is below: {held:?}");

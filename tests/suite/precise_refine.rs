@@ -71,8 +71,7 @@ impl Scene {
     }
 
     fn equations(&self, scoring: Scoring, score: &Score, lock_scale: bool) -> NormalEquations {
-        let objective =
-            Objective { model: &self.model, grid: &self.grid, scoring, prior: Prior::default(), surroundings: None };
+        let objective = objective(&self.model, &self.grid, scoring, Prior::default());
         Refiner { objective, lock_scale }.equations(&self.canvas, score, &self.pose)
     }
 
@@ -216,8 +215,7 @@ fn the_depth_residual_is_a_root_mean_square_without_outliers() {
                 left_out += usize::from(!counts);
             }
         }
-        let objective =
-            Objective { model: &scene.model, grid: &scene.grid, scoring, prior: Prior::default(), surroundings: None };
+        let objective = objective(&scene.model, &scene.grid, scoring, Prior::default());
         let found = Refiner { objective, lock_scale: false }.depth_rms(&scene.canvas);
         let expected = (sum / count as f64).sqrt();
         assert!(left_out > 5, "seed {seed}");
@@ -238,7 +236,7 @@ fn observed() -> (Model, CropGrid, Scoring, CropPose) {
 #[wasm_bindgen_test(unsupported = test)]
 fn a_refinement_climbs_back_to_where_the_observation_was_drawn() {
     let (model, grid, scoring, truth) = observed();
-    let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+    let objective = objective(&model, &grid, scoring, Prior::default());
     let (mut canvas, mut other) = (Canvas::default(), Canvas::default());
     for seed in 0..8 {
         let draw = &mut Draw::new(seed);
@@ -277,7 +275,7 @@ fn a_step_of_the_quadratic_raises_each_term() {
     let mut canvas = Canvas::default();
     for (term, weights) in terms {
         let scoring = Scoring { weights, ..scoring };
-        let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+        let objective = objective(&model, &grid, scoring, Prior::default());
         let refiner = Refiner { objective, lock_scale: false };
         for seed in 0..12 {
             let draw = &mut Draw::new(seed);
@@ -309,14 +307,14 @@ fn a_refinement_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
         let draw = &mut Draw::new(seed);
         let step: Step = core::array::from_fn(|_| draw.between(-0.05, 0.05));
         let start = truth.moved(&step);
-        let free = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+        let free = objective(&model, &grid, scoring, Prior::default());
         let locked = Refiner { objective: free, lock_scale: true }.refine(&mut canvas, start, 20);
         assert!((log_scale(&locked.pose) - log_scale(&start)).abs() < 1e-12, "seed {seed}: {locked:?}");
         let before = Refiner { objective: free, lock_scale: true }.refine(&mut canvas, start, 0).score.total;
         assert!(locked.score.total > before, "seed {seed}: nothing but the scale moves");
 
         let bounds = [1.03, 1.1].map(|factor| factor * libm::exp(log_scale(&truth)));
-        let prior = Prior { scale: Some(bounds), up: None };
+        let prior = Prior { scale: Some(bounds), ..Prior::default() };
         let bounded =
             Refiner { objective: Objective { prior, ..free }, lock_scale: false }.refine(&mut canvas, start, 20);
         let scale = libm::exp(log_scale(&bounded.pose));

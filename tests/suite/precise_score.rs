@@ -159,14 +159,15 @@ fn the_objective_is_the_score_of_the_picture_and_the_prior() {
         let draw = &mut Draw::new(100 + seed);
         let observed = pose(draw, 3.0);
         let grid = noisy_grid(draw, &model, &observed, &scoring);
-        let prior = Prior { scale: None, up: Some([rotation(draw) * DVec3::Z, DVec3::X]) };
-        let objective = Objective { model: &model, grid: &grid, scoring, prior, surroundings: None };
+        let prior = Prior { up: Some([rotation(draw) * DVec3::Z, DVec3::X]), ..Prior::default() };
+        let objective = objective(&model, &grid, scoring, prior);
         let tried = pose(draw, 5.0);
         let found = objective.score(&mut canvas, &tried);
         other.draw(&model, &tried, &grid);
         let mut expected = scoring.score(&other, &model, &grid, 1.0);
-        expected.total += prior.score(&tried);
-        assert!(prior.score(&tried) < 0.0, "seed {seed}");
+        let counted = prior.score(&tried, &Equivalence::default());
+        expected.total += counted;
+        assert!(counted < 0.0, "seed {seed}");
         assert_eq!(found, expected, "seed {seed}");
     }
 }
@@ -179,7 +180,7 @@ fn bounds_of_the_scale_hold_at_the_same_distance() {
         let any = CropPose { distance: draw.between(-2.0, 2.0), size: draw.between(-3.0, 1.0), ..pose(draw, 3.0) };
         let low = libm::exp(draw.between(-4.0, 2.0));
         let bounds = [low, low * if seed % 4 == 0 { 1.0 } else { draw.between(1.0, 5.0) }];
-        let prior = Prior { scale: Some(bounds), up: None };
+        let prior = Prior { scale: Some(bounds), ..Prior::default() };
         let held = prior.bounded(any);
         let expected = scale_of(&any).clamp(bounds[0], bounds[1]);
         assert!((scale_of(&held) / expected - 1.0).abs() < 1e-12, "seed {seed}: {} for {expected}", scale_of(&held));
@@ -199,11 +200,11 @@ fn the_more_a_pose_leans_the_less_it_scores() {
         let upright = pose(draw, 3.0);
         let mesh_up = rotation(draw) * DVec3::Z;
         let camera_up = upright.rotation * mesh_up;
-        let prior = Prior { scale: None, up: Some([camera_up, mesh_up]) };
+        let prior = Prior { up: Some([camera_up, mesh_up]), ..Prior::default() };
         let axis = camera_up.any_orthonormal_vector();
         let leaning = |degrees: f64| {
             let rotation: DQuat = exp(axis * degrees.to_radians()) * upright.rotation;
-            prior.score(&CropPose { rotation, ..upright })
+            prior.score(&CropPose { rotation, ..upright }, &Equivalence::default())
         };
         assert!(leaning(0.0).abs() < 1e-6, "seed {seed}: {}", leaning(0.0));
         assert!((leaning(20.0) + 0.15).abs() < 1e-6, "seed {seed}: half of 0.3 at 20°, not {}", leaning(20.0));
@@ -212,7 +213,34 @@ fn the_more_a_pose_leans_the_less_it_scores() {
         assert!(scores[18] > -0.3 && scores[18] < -0.28, "seed {seed}: {scores:?}");
         // A turn about the vertical is no lean.
         let turned = CropPose { rotation: exp(camera_up * 2.0) * upright.rotation, ..upright };
-        assert!(prior.score(&turned).abs() < 1e-6, "seed {seed}");
-        assert_eq!(Prior::default().score(&upright), 0.0, "seed {seed}");
+        assert!(prior.score(&turned, &Equivalence::default()).abs() < 1e-6, "seed {seed}");
+        assert_eq!(Prior::default().score(&upright, &Equivalence::default()), 0.0, "seed {seed}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_pose_far_from_the_initial_rotation_scores_less() {
+    let group = |axis: DVec3| {
+        let axis = SymmetryAxis { axis: vector3(axis.as_vec3()), fold: Some(2) };
+        Equivalence::new(Symmetry::Declared(vec![axis]).group(&cuboid(Vec3::new(1.0, 0.8, 0.6))).unwrap())
+    };
+    for seed in 0..20 {
+        let draw = &mut Draw::new(seed);
+        let initial = pose(draw, 3.0);
+        let prior = Prior { initial: Some(initial.rotation), ..Prior::default() };
+        let axis = rotation(draw) * DVec3::Z;
+        let turned = |degrees: f64, equivalence: &Equivalence| {
+            let rotation = initial.rotation * exp(axis * degrees.to_radians());
+            prior.score(&CropPose { rotation, ..initial }, equivalence)
+        };
+        let none = Equivalence::default();
+        assert!((0..=12).all(|k| turned(2.0 * f64::from(k), &none) == 0.0), "seed {seed}: within 25°");
+        assert!((turned(40.0, &none) + 0.025).abs() < 1e-6, "seed {seed}: half of 0.05, not {}", turned(40.0, &none));
+        let scores: Vec<f32> = (3..=18).map(|k| turned(10.0 * f64::from(k), &none)).collect();
+        assert!(scores.windows(2).all(|pair| pair[1] < pair[0]) && scores[15] > -0.05, "seed {seed}: {scores:?}");
+        // A half turn that the symmetry makes none, and a quarter turn between two equal poses.
+        let half = group(axis);
+        assert_eq!(turned(180.0, &half), 0.0, "seed {seed}");
+        assert!((turned(120.0, &half) - turned(60.0, &half)).abs() < 1e-6, "seed {seed}");
     }
 }

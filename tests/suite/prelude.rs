@@ -18,6 +18,7 @@ pub use sim3align::geometry::surface::sample_surface;
 pub use sim3align::geometry::triangle_tree::TriangleTree;
 pub use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 pub use sim3align::options::scale::ScaleOption;
+pub use sim3align::precise::drawn::equivalence::Equivalence;
 pub use sim3align::precise::drawn::pose::{CropPose, MeshFrame, Step};
 pub use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 pub use sim3align::precise::drawn::render::{Canvas, Model};
@@ -36,3 +37,9 @@ pub use wasm_bindgen_test::wasm_bindgen_test;
 
 pub use crate::shapes::{cuboid, ellipsoid, joined, mapped, sphere};
 pub use crate::support::*;
+
+/// The objective of a mesh without a symmetry, without surroundings.
+pub fn objective<'a>(model: &'a Model, grid: &'a CropGrid, scoring: Scoring, prior: Prior) -> Objective<'a> {
+    let equivalence = Box::leak(Box::<Equivalence>::default());
+    Objective { model, grid, scoring, prior, equivalence, surroundings: None }
+}

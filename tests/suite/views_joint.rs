@@ -105,7 +105,7 @@ fn two_views(seed: u64, check: impl Fn(&mut Joint<'_>, &WorldPose)) {
     let cameras = [PlacedCamera::AT_ORIGIN, other];
     let grids = cameras.map(|camera| noisy_grid(draw, &model, &camera.see(&world).unwrap(), &scoring));
     let views = cameras.iter().zip(&grids).map(|(camera, grid)| JointView {
-        objective: Objective { model: &model, grid, scoring, prior: Prior::default(), surroundings: None },
+        objective: objective(&model, grid, scoring, Prior::default()),
         camera: *camera,
         floor: 0.0,
     });

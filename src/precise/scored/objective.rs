@@ -5,6 +5,7 @@ use glam::Mat3;
 use super::prior::Prior;
 use super::score::{Score, Scoring};
 use super::surroundings::Surroundings;
+use crate::precise::drawn::equivalence::Equivalence;
 use crate::precise::drawn::pose::CropPose;
 use crate::precise::drawn::render::{Canvas, Model};
 use crate::precise::observed::grid::CropGrid;
@@ -20,6 +21,8 @@ pub struct Objective<'a> {
     pub scoring: Scoring,
     /// The prior.
     pub prior: Prior,
+    /// Which poses are equal to the prior.
+    pub equivalence: &'a Equivalence,
     /// What surrounds the object, if that is known.
     pub surroundings: Option<&'a Surroundings>,
 }
@@ -34,7 +37,7 @@ impl Objective<'_> {
     pub fn score_stretched(&self, canvas: &mut Canvas, pose: &CropPose, stretch: &Mat3) -> Score {
         canvas.draw_stretched(self.model, pose, stretch, self.grid);
         let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
-        score.total += self.prior.score(pose);
+        score.total += self.prior.score(pose, self.equivalence);
         if let Some(surroundings) = self.surroundings {
             score.total += surroundings.score(canvas, self.grid, pose);
         }

@@ -51,7 +51,7 @@ impl Coarse<'_> {
 
     /// Renders a pose once, and moves it to the distance that fits the depths; the silhouette does not change.
     pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Found {
-        let Objective { model, grid, scoring, prior, surroundings } = &self.objective;
+        let Objective { model, grid, scoring, prior, equivalence, surroundings } = &self.objective;
         canvas.draw(model, &pose, grid);
         let stretch = median_of_positive(&ratios(canvas, grid)).unwrap_or(1.0);
         let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
@@ -61,7 +61,7 @@ impl Coarse<'_> {
             return Found::of(pose, self.objective.score(canvas, &pose));
         }
         let mut score = scoring.score(canvas, model, grid, stretch);
-        score.total += prior.score(&pose);
+        score.total += prior.score(&pose, equivalence);
         Found::of(pose, score)
     }
 

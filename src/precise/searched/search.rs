@@ -157,6 +157,7 @@ impl Search {
             grid: self.grid(index),
             scoring,
             prior: self.prior,
+            equivalence: &self.equivalence,
             surroundings: self.surroundings.as_ref(),
         }
     }
