@@ -66,8 +66,8 @@ export type {
   CameraFileInput,
   CameraInput,
   CocoRle,
-  DepthAlignInput,
   DepthInput,
+  DepthView,
   EncodedBytes,
   FieldOfViewCamera,
   MaskInput,
@@ -77,10 +77,8 @@ export type {
   MeshFormat,
   MeshInput,
   PhotoInput,
-  PhotoOfView,
   PinholeCamera,
   PixelArray,
-  PointMapAlignInput,
   UnknownCamera,
 } from "./input/types.js";
 export type {
@@ -121,7 +119,6 @@ export type {
   WithoutMetrics,
 } from "./results.js";
 export type {
-  KnownOfObject,
   LabelMap,
   Plane,
   SceneAlignment,
