@@ -23,10 +23,8 @@ export {
   toThree,
 } from "./conventions/frames.js";
 export {
-  type GaussianFrames,
   type GeneratorFrame,
   generatorFrames,
-  type MeshFrames,
 } from "./conventions/generators.js";
 export { exportGlb, type GlbOptions, placeGlb } from "./conventions/glb.js";
 export { type GltfNode, type GltfNodeOptions, toGltfNode } from "./conventions/gltf-node.js";
@@ -47,9 +45,9 @@ export { wxyzFromXyzw, xyzwFromWxyz } from "./conventions/rotation.js";
 export { fromSam3d, type Nested, type Sam3dLayout, type Sam3dVertices, toSam3d } from "./conventions/sam3d.js";
 export { exportSceneGlb, type SceneGlbObject, type SceneGlbOptions } from "./conventions/scene-glb.js";
 export { applyToPoints, compose, invert, toRowMajor, toSim3 } from "./conventions/similarity.js";
-export { placeSplats, type SplatOptions } from "./conventions/splats.js";
+export { placeSplats } from "./conventions/splats.js";
 export { type StretchLike, stretchGlb, stretchMesh } from "./conventions/stretch.js";
-export { depthFromTensor, type MaskChoice, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
+export { depthFromTensor, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
 export { type Upright, type UprightOptions, uprightGlb, uprightMesh } from "./conventions/upright.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export { fromCocoRle, toCocoRle } from "./formats/coco-rle.js";

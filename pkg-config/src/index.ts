@@ -51,7 +51,6 @@ export type {
   Timings,
   TrackState,
   Uncertainty,
-  ViewPose,
   ViewRole,
   ViewsDiagnostics,
   Warning,
@@ -84,13 +83,11 @@ export type {
 export type {
   AlignAllOptions,
   AlignOptions,
-  BestSoFar,
   CallOptions,
   Direction,
   EstimateSim3Options,
   EvaluateOptions,
   OptionRow,
-  OptionsByPreset,
   OptionsOf,
   PaperOptions,
   Progress,
@@ -101,14 +98,12 @@ export type {
   TrackOptions,
   ViewsOptions,
 } from "./options.js";
-export type { BlobLike, CreateWorker, SignalLike, UrlLike, WasmSource, WorkerLike } from "./platform.js";
+export type { BlobLike, SignalLike, UrlLike, WasmSource, WorkerLike } from "./platform.js";
 export { PreparedMesh } from "./prepared-mesh.js";
 export type {
   AlignAllResult,
   Alignment,
-  AlignmentByPreset,
   AlignResult,
-  Clouds,
   Evaluation,
   OfInput,
   PaperAlignment,
@@ -116,7 +111,6 @@ export type {
   TrackedFrame,
   ViewAlignment,
   ViewsAlignment,
-  WithoutMetrics,
 } from "./results.js";
 export type {
   LabelMap,

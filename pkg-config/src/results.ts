@@ -32,20 +32,11 @@ export interface PaperAlignment extends Core.PaperAlignment, OfInput {
   input?: AlignInput;
 }
 
-/** A result of a call with `metrics: false`. */
-export type WithoutMetrics<T> = Omit<T, "metrics"> & { metrics?: undefined };
-
-/** The result of each preset. */
-export interface AlignmentByPreset {
-  precise: Alignment;
-  paper: PaperAlignment;
-}
-
-/** The result of `align` for these options. */
+/** The result of `align` for a preset, with or without `metrics`. */
 export type AlignResult<P extends Core.Preset = Core.Preset, M extends boolean = boolean> = P extends Core.Preset
   ? M extends true
-    ? AlignmentByPreset[P]
-    : WithoutMetrics<AlignmentByPreset[P]>
+    ? { precise: Alignment; paper: PaperAlignment }[P]
+    : Omit<{ precise: Alignment; paper: PaperAlignment }[P], "metrics"> & { metrics?: undefined }
   : never;
 
 /** The object in one of several views. */
@@ -74,14 +65,11 @@ export interface Evaluation extends Core.Evaluation, Pick<OfInput, "depthUnit"> 
 /** The result of `register` and `estimateSim3`: target from source, y = s·R·x + t. */
 export interface Registration extends Core.Registration {
   /** With `transfer: true`: the returned arrays. */
-  input?: Clouds;
-}
-
-/** Two clouds (interleaved x, y, z) and, for `estimateSim3`, the correspondences between their points. */
-export interface Clouds {
-  source: Float32Array | Float64Array;
-  target: Float32Array | Float64Array;
-  correspondences?: Uint32Array;
+  input?: {
+    source: Float32Array | Float64Array;
+    target: Float32Array | Float64Array;
+    correspondences?: Uint32Array;
+  };
 }
 
 /** One of the results of `alignAll`: an alignment, or the error of its input. */

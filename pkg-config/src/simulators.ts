@@ -11,7 +11,7 @@ export type { WasmSource } from "./platform.js";
 export type { ColorSamples } from "./prepared-mesh.js";
 export type { Plane } from "./scene/types.js";
 export type { Sim3Like } from "./sim3.js";
-export { type TextFiles, toMjcf } from "./simulators/mjcf.js";
+export { toMjcf } from "./simulators/mjcf.js";
 export type { ConvexPart } from "./simulators/physics-module.js";
 export {
   SIMULATOR_DEFAULTS,

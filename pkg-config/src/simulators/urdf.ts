@@ -1,6 +1,5 @@
 /** Scenes as URDF: a file per body, and a list of their poses. */
 import { entry } from "../conventions/rotation.js";
-import type { TextFiles } from "./mjcf.js";
 import { inertiaOf, overlappingPairs, type SimulatorBody, type SimulatorScene } from "./scene.js";
 import { meshFiles, spaced } from "./text.js";
 
@@ -39,11 +38,11 @@ if __name__ == "__main__":
 `;
 
 /**
- * A scene as URDF: `NAME.urdf` for each body, `ground.urdf`, their meshes, `scene.json` with poses (metres, quaternions
+ * A scene as URDF, texts by path: `NAME.urdf` for each body, `ground.urdf`, their meshes, `scene.json` with poses (metres, quaternions
  * x, y, z, w, z up; `found` is the pose before a body was put at rest), and `load.py` for PyBullet.
  */
-export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): TextFiles {
-  const files: TextFiles = { "load.py": loader, ...meshFiles(bodies) };
+export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): Record<string, string> {
+  const files: Record<string, string> = { "load.py": loader, ...meshFiles(bodies) };
   for (const body of bodies) files[`${body.name}.urdf`] = urdfOf(body);
   if (hasGround) files["ground.urdf"] = ground;
   const entries = bodies.map(({ name, position, rotation, isFixed, found }) => ({
