@@ -99,7 +99,7 @@ export type {
   ViewsOptions,
 } from "./options.js";
 export type { BlobLike, SignalLike, UrlLike, WasmSource, WorkerLike } from "./platform.js";
-export { PreparedMesh } from "./prepared-mesh.js";
+export { type ColorSamples, PreparedMesh } from "./prepared-mesh.js";
 export type {
   AlignAllResult,
   Alignment,

@@ -1,8 +1,10 @@
 /** Transforms in other tools' conventions, against NumPy, three.js and points that were moved by each one's formula. */
+
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import type { Sim3Like } from "sim3align";
 import {
   applyToPoints,
   type CameraFrame,
@@ -13,7 +15,6 @@ import {
   type GeneratorFrame,
   generatorFrames,
   invert,
-  type Sim3Like,
   toBop,
   toFrame,
   toGltfNode,

@@ -1,7 +1,8 @@
 /** The custom element `<sim3-align>`. */
+
 import { signal } from "@preact/signals";
 import { render } from "preact";
-import type { Sim3Like } from "sim3align/conventions";
+import type { Sim3Like } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import controls from "../../style/controls.css?inline";
 import own from "../../style/element.css?inline";

@@ -9,8 +9,8 @@ import type {
   PixelArray,
   Preset,
   Quality,
+  Sim3Like,
 } from "sim3align";
-import type { Sim3Like } from "sim3align/conventions";
 
 /** An object of a given scene. */
 export interface GivenObject {

@@ -1,7 +1,7 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
 import type { ImageSize } from "sim3align/conventions";
-import { type DepthImage, type DepthReading, readCamera, readExif } from "sim3align/formats";
+import { type DepthImage, type ReadDepthOptions, readCamera, readExif } from "sim3align/formats";
 import { foundCamera } from "sim3align/input/lens";
 import { corrected, provisional, type RawView } from "../state/calibration.js";
 import type { Scene } from "../state/scene.js";
@@ -23,7 +23,7 @@ function suggestedKind({ path }: Pick<NamedFile, "path">, bytes: Uint8Array): De
 export async function readDepthMap(
   file: NamedFile,
   kind: DepthKind | null,
-  scales: Omit<DepthReading, "depthKind">,
+  scales: Omit<ReadDepthOptions, "depthKind">,
 ): Promise<ReadDepthMap> {
   const bytes = await file.bytes();
   const depthKind = kind ?? suggestedKind(file, bytes);

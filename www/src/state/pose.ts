@@ -1,6 +1,6 @@
 /** Poses of a mesh (camera from mesh, OpenCV camera frame, metres) and the bounding box that they transform. */
-import type { MeshArrays } from "sim3align";
-import { applyToPoints, compose, objectDimensions, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
+import type { MeshArrays, Sim3 } from "sim3align";
+import { applyToPoints, compose, objectDimensions, toSim3, type Vector3 } from "sim3align/conventions";
 import { once } from "../load/once.js";
 import type { AnyAlignment } from "./alignment.js";
 
