@@ -6,7 +6,7 @@
  * quaternions are x, y, z, w, matrices are column-major, and pixel centres have integer coordinates.
  * @packageDocumentation
  */
-export { type BopExport, type BopPose, fromBop, toBop } from "./conventions/bop.js";
+export { type BopPose, fromBop, toBop } from "./conventions/bop.js";
 export { correctDepth } from "./conventions/corrected-depth.js";
 export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
 export { type CvatCuboid, fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
@@ -18,7 +18,6 @@ export {
   type RosPose,
   type ThreePose,
   toFrame,
-  toOpenGL,
   toRos,
   toThree,
 } from "./conventions/frames.js";
@@ -30,7 +29,7 @@ export { exportGlb, type GlbOptions, placeGlb } from "./conventions/glb.js";
 export { type GltfNode, type GltfNodeOptions, toGltfNode } from "./conventions/gltf-node.js";
 export { fromLabelStudioRle } from "./conventions/label-studio-rle.js";
 export { type MogeOutput, pointMapFromMoge } from "./conventions/moge.js";
-export { type DimensionOptions, type ObjectBox, objectDimensions } from "./conventions/object-box.js";
+export { type OrientedBoundingBox, orientedBoundingBox } from "./conventions/oriented-bounding-box.js";
 export { exportPly } from "./conventions/ply.js";
 export {
   type CropInput,

@@ -105,7 +105,7 @@ export type {
   Alignment,
   AlignResult,
   Evaluation,
-  OfInput,
+  InputInfo,
   PaperAlignment,
   Registration,
   TrackedFrame,

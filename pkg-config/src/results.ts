@@ -8,7 +8,7 @@ import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import type { AlignInput } from "./input/types.js";
 
 /** How the depth map and the camera of a view were read. */
-export interface OfInput {
+export interface InputInfo {
   /** The unit of the depth, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
   depthUnit?: string;
   /** Where the intrinsics come from, if they were not given: `"depth file"`, `"EXIF: …"`, or `"estimate"`. */
@@ -21,13 +21,13 @@ export interface OfInput {
 }
 
 /** The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV: x right, y down, z forward; metres). */
-export interface Alignment extends Core.Alignment, OfInput {
+export interface Alignment extends Core.Alignment, InputInfo {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
 
 /** The result of `align` with `preset: "paper"`. */
-export interface PaperAlignment extends Core.PaperAlignment, OfInput {
+export interface PaperAlignment extends Core.PaperAlignment, InputInfo {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -40,7 +40,7 @@ export type AlignResult<P extends Core.Preset = Core.Preset, M extends boolean =
   : never;
 
 /** The object in one of several views. */
-export interface ViewAlignment extends Core.ViewPose, OfInput {}
+export interface ViewAlignment extends Core.ViewPose, InputInfo {}
 
 /** The result of `alignViews`: world from mesh, x_world = s·R·p_mesh + t, in metres, and the pose in each view. */
 export interface ViewsAlignment extends Core.ViewsAlignment {
@@ -51,13 +51,13 @@ export interface ViewsAlignment extends Core.ViewsAlignment {
 }
 
 /** The result of `Tracker.next`: camera from mesh, x_cam = s·R·p_mesh + t. */
-export interface TrackedFrame extends Core.TrackedFrame, OfInput {
+export interface TrackedFrame extends Core.TrackedFrame, InputInfo {
   /** With `transfer: true`: the returned arrays of the frame. */
   input?: FrameInput;
 }
 
 /** The result of `evaluate`. */
-export interface Evaluation extends Core.Evaluation, Pick<OfInput, "depthUnit"> {
+export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit"> {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -78,7 +78,7 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
 /** What the files of an input say, for its result. */
-export interface InputNotes extends Pick<OfInput, "depthUnit" | "cameraSource"> {
+export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource"> {
   /** Of the view. */
   warnings: readonly Core.Warning[];
   /** Why the colours of the mesh file are not read. */

@@ -18,7 +18,6 @@ import {
   toBop,
   toFrame,
   toGltfNode,
-  toOpenGL,
   toRos,
   toRowMajor,
   toSam3d,
@@ -122,11 +121,11 @@ for (const frame of frames) {
   });
 }
 
-test("toOpenGL is diag(1, −1, −1) times the transform, by three.js", () => {
+test("the OpenGL frame is diag(1, −1, −1) times the transform, by three.js", () => {
   forSeeds(20, (random, seed) => {
     const pose = random.pose();
     const expected = new Matrix4().makeScale(1, -1, -1).multiply(threeMatrix(pose));
-    const found = toOpenGL(pose);
+    const found = toFrame(pose, "opengl");
     assertNear(found.matrix, expected.elements, seed);
     const { matrix, position, quaternion, scale } = toThree(pose);
     assert.deepEqual(matrix, found.matrix, seed);
@@ -267,7 +266,7 @@ test("glTF's nodes have the transform in parts, and what is known in extras", ()
     const pose = random.pose();
     const { translation, rotation, scale } = toGltfNode(pose);
     const node = new Matrix4().compose(new Vector3(...translation), new Quaternion(...rotation), new Vector3(...scale));
-    assertNear(node.elements, toOpenGL(pose).matrix, seed);
+    assertNear(node.elements, toFrame(pose, "opengl").matrix, seed);
     const asItIs = toGltfNode(pose, { frame: "opencv" });
     assertNear(asItIs.translation, pose.translation, seed);
     assert.equal(asItIs.extras.sim3align.metresPerUnit, pose.scale);

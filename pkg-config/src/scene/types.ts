@@ -3,7 +3,7 @@ import type { Sim3AlignError } from "../error.js";
 import type * as Core from "../generated/types.js";
 import type { DepthView, MaskInput, MeshInput, PixelArray } from "../input/types.js";
 import type { AlignOptions, Progress } from "../options.js";
-import type { Alignment, OfInput } from "../results.js";
+import type { Alignment, InputInfo } from "../results.js";
 
 /** A plane n·x + d = 0 in the OpenCV camera frame, metres; n points to the side of the objects. */
 export interface Plane {
@@ -58,7 +58,7 @@ export interface SceneOptions extends Omit<AlignOptions, "onProgress" | "initial
 }
 
 /** An object of a scene, aligned. */
-export interface SceneAlignment extends Omit<Alignment, "input" | keyof OfInput> {
+export interface SceneAlignment extends Omit<Alignment, "input" | keyof InputInfo> {
   /** The name of the input. */
   name?: string;
   /** What it rests on. */
@@ -94,7 +94,7 @@ export interface SceneMetrics {
 }
 
 /** The result of `alignScene`. */
-export interface SceneResult extends OfInput {
+export interface SceneResult extends InputInfo {
   /** In the order of the input. */
   objects: (SceneAlignment | SceneFailure)[];
   /** What the objects stand on; `null` if nothing in the depth map is a plane that they touch. */

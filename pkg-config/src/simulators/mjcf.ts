@@ -58,14 +58,14 @@ ${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>
 }
 
 function bodyLines(body: SimulatorBody): string[] {
-  const { name, position, rotation, isFixed, parts, colour } = body;
+  const { name, position, rotation, isFixed, parts, color } = body;
   const pose = `pos="${spaced(position)}" quat="${spaced(wxyzFromXyzw(rotation))}"`;
   const inertial = `<inertial pos="${spaced(body.centerOfMass)}" quat="${spaced(wxyzFromXyzw(body.principalAxes))}" mass="${spaced([body.mass])}" diaginertia="${spaced(body.principalMoments)}"/>`;
   return [
     `<body name="${name}" ${pose}>`,
     ...(isFixed ? [] : ["  <freejoint/>"]),
     ...(parts.length > 0 ? [`  ${inertial}`] : []),
-    `  <geom class="visual" mesh="${name}" rgba="${spaced([...colour, 1])}"/>`,
+    `  <geom class="visual" mesh="${name}" rgba="${spaced([...color, 1])}"/>`,
     ...parts.map((_, k) => `  <geom class="collision" mesh="${name}_${k}"/>`),
     "</body>",
   ];

@@ -67,7 +67,7 @@ function viewOf({ position, rotation, fovYDeg, width, height }: SimulatorScene["
 const contact = `<contact><lateral_friction value="0.8"/><rolling_friction value="0.001"/><spinning_friction value="0.002"/></contact>`;
 
 function urdfOf(body: SimulatorBody): string {
-  const { name, mass, centerOfMass, parts, colour } = body;
+  const { name, mass, centerOfMass, parts, color } = body;
   const inertia = inertiaOf(body);
   const at = (i: 0 | 1 | 2, j: 0 | 1 | 2) => spaced([entry(inertia, i, j)]);
   const mesh = (file: string) =>
@@ -75,7 +75,7 @@ function urdfOf(body: SimulatorBody): string {
   const lines = [
     contact,
     `<inertial><origin xyz="${spaced(centerOfMass)}" rpy="0 0 0"/><mass value="${spaced([mass])}"/><inertia ixx="${at(0, 0)}" ixy="${at(0, 1)}" ixz="${at(0, 2)}" iyy="${at(1, 1)}" iyz="${at(1, 2)}" izz="${at(2, 2)}"/></inertial>`,
-    `<visual>${mesh(name)}<material name="colour"><color rgba="${spaced([...colour, 1])}"/></material></visual>`,
+    `<visual>${mesh(name)}<material name="colour"><color rgba="${spaced([...color, 1])}"/></material></visual>`,
     ...parts.map((_, k) => `<collision>${mesh(`${name}_${k}`)}</collision>`),
   ];
   return robot(name, lines);

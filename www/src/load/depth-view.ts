@@ -58,11 +58,11 @@ export async function knownCamera(...given: Parameters<typeof readCamera>): Prom
 
 /** The depth map as it is shown until it is calibrated, and what there is to calibrate. */
 export function viewOf(
-  { data, depthKind }: Pick<ReadDepthMap, "data" | "depthKind">,
+  { data: depth, width, height, depthKind }: Pick<ReadDepthMap, "data" | "width" | "height" | "depthKind">,
   read: ReadCamera | null,
 ): { depthM: Float32Array; raw: RawView | null } {
-  const depthM = corrected({ depth: data, depthKind }, provisional(data, depthKind));
+  const depthM = corrected({ depth, width, height, depthKind }, provisional(depth, depthKind));
   if (read === null || (depthKind === "metric" && read.focalUncertainty === 0)) return { depthM, raw: null };
   const { camera, focalUncertainty, warnings } = read;
-  return { depthM, raw: { depth: data, depthKind, camera, focalUncertainty, warnings } };
+  return { depthM, raw: { depth, width, height, depthKind, camera, focalUncertainty, warnings } };
 }
