@@ -1,7 +1,7 @@
 // From a pose set by hand to an exported annotation: node annotate.mjs [FOLDER] [OUT_FOLDER]
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { createAligner } from "sim3align";
-import { compose, objectDimensions, placeGlb, toBop } from "sim3align/conventions";
+import { compose, orientedBoundingBox, placeGlb, toBop } from "sim3align/conventions";
 import { readMesh } from "sim3align/formats";
 
 const [folder = "../sample/mug", out = "annotation"] = process.argv.slice(2);
@@ -32,7 +32,7 @@ const dragged = compose(aboutCentre, proposal);
 const refined = await aligner.align(input, { initial: dragged, search: "local" });
 
 // 4. The annotator knows a dimension, which fixes the scale. Here it is the height that was found, rounded to millimetres.
-const { sizeM } = objectDimensions(mesh, refined);
+const { sizeM } = orientedBoundingBox(mesh, refined);
 const knownExtentM = Math.round(1000 * sizeM[1]) / 1000;
 const { scale, ...pose } = refined;
 const sized = { scale: scale * (knownExtentM / sizeM[1]), rotation: pose.rotation, translation: pose.translation };
@@ -49,7 +49,7 @@ await writeFile(`${out}/scene_gt.json`, JSON.stringify({ 0: [entry] }, null, 2))
 await writeFile(`${out}/placed.glb`, placeGlb(glb, locked));
 const summary = {
   knownExtentM,
-  sizeM: objectDimensions(mesh, locked).sizeM,
+  sizeM: orientedBoundingBox(mesh, locked).sizeM,
   modelMmPerUnit: 1000 * metresPerUnit,
   poses: [dragged, refined, locked].map(({ matrix }) => matrix),
   scores: [proposal, refined, locked].map(({ diagnostics }) => diagnostics.score),

@@ -1,7 +1,7 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
 import { failure, invalidArgument } from "./error.js";
 import { onAbort } from "./on-abort.js";
-import type { CreateWorker, SignalLike, UrlLike } from "./platform.js";
+import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "./platform.js";
 import { ownOptions, snapshot } from "./snapshot.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
 import type { LazyModules, WasmModules } from "./wasm-modules.js";
@@ -20,7 +20,7 @@ export interface AlignerOptions {
    */
   workers?: number | "auto" | undefined;
   /** Creates a worker that runs `worker.js` of this package. Needed only if that file is not next to this script. */
-  createWorker?: CreateWorker | undefined;
+  createWorker?: (() => WorkerLike) | undefined;
   /**
    * Longest time that a new worker may take until it answers, milliseconds; 60 000 by default. A call whose workers do not
    * answer rejects with `WORKER_FAILED`: their script is another one, or was never loaded.

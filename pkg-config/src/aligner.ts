@@ -311,9 +311,8 @@ export class Aligner {
   }
 
   /** The version of the core module. */
-  async buildInfo(): Promise<{ version: string }> {
-    this.#checkUsable();
-    return this.#modules.core.call((core) => ({ version: core.version() }));
+  get version(): string {
+    return this.#modules.core.call((core) => core.version());
   }
 
   /**

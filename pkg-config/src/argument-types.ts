@@ -16,8 +16,8 @@ export interface SymmetryAxis {
   fold?: number | undefined;
 }
 
-/** The symmetry of an object: none, found on its mesh, or declared. `"auto-revolution"` is a former name of `"auto"`. */
-export type SymmetryOption = "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[];
+/** The symmetry of an object: none, found on its mesh, or declared. */
+export type SymmetryOption = "none" | "auto" | readonly SymmetryAxis[];
 
 /**
  * A similarity as an argument: an object with a 4×4 `matrix` (column-major) or with `scale`, `rotation` (quaternion x,

@@ -10,11 +10,11 @@ import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/typ
 import { ownArgument } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
-/** Files by name, relative to the folder of the case: bytes, or a function that reads them on demand. */
+/** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
 
-/** How to read the files of a case. */
-export type CaseSettings = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask">> & {
+/** How to read the files of a case or scene. */
+export type ReadCaseOptions = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask">> & {
   /** What the values of the depth map are; `"metric"` by default. */
   depthKind?: DepthKind | undefined;
   /** Whether to read the photo; `true` by default. */
@@ -61,7 +61,7 @@ const CAMERA_POSE_FILE = "pose.json";
  * @param place location of the files, for errors
  * @internal
  */
-export async function frameFrom(files: CaseFiles, settings: CaseSettings, place: string): Promise<FrameFiles> {
+export async function frameFrom(files: CaseFiles, settings: ReadCaseOptions, place: string): Promise<FrameFiles> {
   const { find, required, read, optional } = filesOf(files, settings, place);
   const names = { depth: required("depth"), camera: find("camera"), mask: find("mask"), image: find("image") };
   const [depth, cameraFile, mask, image, pose, truth] = await Promise.all([
@@ -84,7 +84,7 @@ export async function frameFrom(files: CaseFiles, settings: CaseSettings, place:
  * @param owner whose parts they are, in errors; by default, the parts themselves
  * @internal
  */
-export function filesOf(files: CaseFiles, { image = true }: CaseSettings, place: string, owner?: string) {
+export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, place: string, owner?: string) {
   /** The name of a part's file; that of the photo only if it is wanted. */
   const find = (part: keyof typeof caseFiles) =>
     part === "image" && !image ? undefined : caseFiles[part].find((candidate) => candidate in files);
@@ -122,7 +122,7 @@ function cameraPose(bytes: Uint8Array): number[] {
  */
 export async function caseFrom(
   files: CaseFiles,
-  settings: CaseSettings,
+  settings: ReadCaseOptions,
   formats: LoadFormats,
   place = "the files",
 ): Promise<Case> {

@@ -4,19 +4,19 @@ import { readdir, readFile } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
 import {
   type Case,
-  type CaseSettings,
   caseFiles,
   caseFrom,
   type FrameFiles,
   fileNotFound,
   frameFrom,
   meshFile,
+  type ReadCaseOptions,
 } from "./case-files.js";
 import { formatsModule } from "./formats-module.js";
 import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
 import { withoutUndefined } from "./values.js";
 
-export type { CaseSettings } from "./case-files.js";
+export type { ReadCaseOptions } from "./case-files.js";
 
 /** A case on disk. `files` contains paths. */
 export interface CaseOnDisk extends Omit<Case, "files"> {
@@ -40,7 +40,7 @@ export const loadFormats = () => formatsModule.load();
  * Reads a case folder.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
-export async function readCaseFolder(folder: string, settings: CaseSettings = {}): Promise<CaseOnDisk> {
+export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
   const names = await namesIn(folder);
   const entries = names.map((name) => [name, () => read("case", join(folder, name))] as const);
   const found = await caseFrom(Object.fromEntries(entries), settings, loadFormats, folder);
@@ -67,7 +67,7 @@ export async function frameNames(folder: string): Promise<string[]> {
  * Reads a case folder with `frame_*` folders.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
-export async function readFrames(folder: string, settings: CaseSettings = {}): Promise<FramesOnDisk> {
+export async function readFrames(folder: string, settings: ReadCaseOptions = {}): Promise<FramesOnDisk> {
   const names = await frameNames(folder);
   const frames = names.map(async (name) => ({ name, ...(await readFrame(join(folder, name), settings)) }));
   return { mesh: await readMeshFile(meshIn(folder)), frames: await Promise.all(frames) };
@@ -93,7 +93,7 @@ export async function readMeshFile(path: string): Promise<MeshFile> {
 }
 
 /** Reads a frame of a case. `files` contains paths. */
-export async function readFrame(folder: string, settings: CaseSettings): Promise<FrameFiles> {
+export async function readFrame(folder: string, settings: ReadCaseOptions): Promise<FrameFiles> {
   const entries = (await readdir(folder)).map((name) => [name, () => read("frame", join(folder, name))] as const);
   const frame = await frameFrom(Object.fromEntries(entries), settings, folder);
   const files = Object.fromEntries(Object.entries(frame.files).map(([part, name]) => [part, join(folder, name)]));
@@ -114,7 +114,11 @@ async function namesIn(folder: string): Promise<string[]> {
 }
 
 /** Reads a case from individual files. */
-export async function readCaseFiles(name: string, paths: CasePaths, settings: CaseSettings = {}): Promise<CaseOnDisk> {
+export async function readCaseFiles(
+  name: string,
+  paths: CasePaths,
+  settings: ReadCaseOptions = {},
+): Promise<CaseOnDisk> {
   const { camera, image: imagePath, ...files } = paths;
   const { image: withImage = true, ...more } = settings;
   const cameraPath = typeof camera === "string" ? camera : undefined;

@@ -6,7 +6,7 @@
  * quaternions are x, y, z, w, matrices are column-major, and pixel centres have integer coordinates.
  * @packageDocumentation
  */
-export { type BopExport, type BopPose, fromBop, toBop } from "./conventions/bop.js";
+export { type BopPose, fromBop, toBop } from "./conventions/bop.js";
 export { correctDepth } from "./conventions/corrected-depth.js";
 export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
 export { type CvatCuboid, fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
@@ -18,21 +18,18 @@ export {
   type RosPose,
   type ThreePose,
   toFrame,
-  toOpenGL,
   toRos,
   toThree,
 } from "./conventions/frames.js";
 export {
-  type GaussianFrames,
   type GeneratorFrame,
   generatorFrames,
-  type MeshFrames,
 } from "./conventions/generators.js";
 export { exportGlb, type GlbOptions, placeGlb } from "./conventions/glb.js";
 export { type GltfNode, type GltfNodeOptions, toGltfNode } from "./conventions/gltf-node.js";
 export { fromLabelStudioRle } from "./conventions/label-studio-rle.js";
 export { type MogeOutput, pointMapFromMoge } from "./conventions/moge.js";
-export { type DimensionOptions, type ObjectBox, objectDimensions } from "./conventions/object-box.js";
+export { type OrientedBoundingBox, orientedBoundingBox } from "./conventions/oriented-bounding-box.js";
 export { exportPly } from "./conventions/ply.js";
 export {
   type CropInput,
@@ -47,15 +44,11 @@ export { wxyzFromXyzw, xyzwFromWxyz } from "./conventions/rotation.js";
 export { fromSam3d, type Nested, type Sam3dLayout, type Sam3dVertices, toSam3d } from "./conventions/sam3d.js";
 export { exportSceneGlb, type SceneGlbObject, type SceneGlbOptions } from "./conventions/scene-glb.js";
 export { applyToPoints, compose, invert, toRowMajor, toSim3 } from "./conventions/similarity.js";
-export { placeSplats, type SplatOptions } from "./conventions/splats.js";
+export { placeSplats } from "./conventions/splats.js";
 export { type StretchLike, stretchGlb, stretchMesh } from "./conventions/stretch.js";
-export { depthFromTensor, type MaskChoice, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
+export { depthFromTensor, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
 export { type Upright, type UprightOptions, uprightGlb, uprightMesh } from "./conventions/upright.js";
-export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export { Sim3AlignError } from "./error.js";
 export { fromCocoRle, toCocoRle } from "./formats/coco-rle.js";
-export type { StatedCamera } from "./formats/pinhole.js";
 export type { DepthPixels, ImageSize, MaskPixels } from "./formats/pixels.js";
-export type { DepthCalibration } from "./generated/types.js";
-export type { CocoRle, MeshArrays, PinholeCamera, PixelArray } from "./input/types.js";
-export type { Sim3, Sim3Like } from "./sim3.js";
 export type { Quaternion, Vector3 } from "./values.js";

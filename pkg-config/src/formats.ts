@@ -1,44 +1,35 @@
 /**
- * Readers for depth maps, masks, meshes, cameras, poses and case folders, without the aligner. `Aligner.align` accepts
- * these files directly; use the readers to inspect their content.
+ * Readers for depth maps, masks, meshes, cameras, poses, case and scene folders, and outputs of SAM 3D Objects, without the
+ * aligner. `Aligner.align` accepts single files directly; use their readers to inspect their content.
  * @packageDocumentation
  */
-import { type Case, type CaseFiles, type CaseSettings, caseFrom, ownFiles } from "./case-files.js";
+import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { fileReaders } from "./file-readers.js";
-import { type CameraFile, type CameraFileOptions, parseCameraFile } from "./formats/camera-file.js";
+import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./formats/camera-file.js";
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
 import { type Formats, formatsModule } from "./formats-module.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
-import type { DepthImage, DepthReading } from "./input/depth-reading.js";
+import type { DepthImage, ReadDepthOptions } from "./input/depth-reading.js";
 import { decodeMesh } from "./input/mesh-file.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
 import type { ColorSamples } from "./prepared-mesh.js";
+import { sam3dFrom } from "./scene/sam3d-files.js";
+import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import { ownArgument, ownOptions } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
-export type { Case, CaseFiles, CaseSettings } from "./case-files.js";
+export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
-export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
-export type { CameraFile, CameraFileOptions } from "./formats/camera-file.js";
+export { Sim3AlignError } from "./error.js";
+export type { CameraFile, ReadCameraOptions } from "./formats/camera-file.js";
 export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
-export type { Pinhole } from "./formats/pinhole.js";
-export type { DepthKind } from "./input/depth-kind.js";
-export type { DepthImage, DepthReading } from "./input/depth-reading.js";
-export type { AlignInput, CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
-export type { WasmSource } from "./platform.js";
-export type { ColorSamples } from "./prepared-mesh.js";
-export type { Sim3 } from "./sim3.js";
-
-/** A mask from a file: row-major, 1 is the object. */
-export type MaskImage = PixelArray<Uint8Array>;
-
-/** A photo from a file: red, green and blue per pixel, row-major, sRGB-encoded. */
-export type PhotoImage = PixelArray<Uint8Array>;
+export type { DepthImage, ReadDepthOptions } from "./input/depth-reading.js";
+export type { SceneCase } from "./scene/scene-files.js";
 
 /** A mesh from a file, in the unit and axes of the file. */
 export interface MeshFromFile {
@@ -78,7 +69,7 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
  * affine-invariant kinds only
  * @throws {@link Sim3AlignError} for any other file
  */
-export async function readDepth(file: EncodedBytes, options: DepthReading = {}): Promise<DepthImage> {
+export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = {}): Promise<DepthImage> {
   const given = optionsOf(options);
   const bytes = await requiredBytes("file", file);
   return decodeDepth("file", bytes, given, fileReaders);
@@ -86,9 +77,10 @@ export async function readDepth(file: EncodedBytes, options: DepthReading = {}):
 
 /**
  * Reads a mask from a PNG, a `.npy` array, or COCO RLE (as an object, or the bytes of a JSON file).
+ * @returns row-major; 1 is the object
  * @throws {@link Sim3AlignError} for any other file
  */
-export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage> {
+export async function readMask(file: EncodedBytes | CocoRle): Promise<PixelArray<Uint8Array>> {
   if (isRecord(file)) return fromCocoRle(ownArgument("rle", file as unknown as CocoRle));
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
@@ -98,9 +90,10 @@ export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage>
 /**
  * Reads a photo from a PNG or a JPEG. The EXIF orientation is applied; alpha and colour profiles are ignored; a photo of
  * more than two megapixels is reduced by a whole number.
+ * @returns red, green and blue per pixel, row-major, sRGB-encoded
  * @throws {@link Sim3AlignError} for any other file
  */
-export async function readImage(file: EncodedBytes): Promise<PhotoImage> {
+export async function readImage(file: EncodedBytes): Promise<PixelArray<Uint8Array>> {
   const bytes = await requiredBytes("file", file);
   return call(bytes, (readers) => readers.readImage(bytes));
 }
@@ -152,8 +145,8 @@ export async function externalResources(file: EncodedBytes): Promise<ExternalRes
  * Open3D and RealSense; bytes, text or parsed JSON. It needs no WebAssembly.
  * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of another image size
  */
-export async function readCamera(file: CameraFileInput, options: CameraFileOptions = {}): Promise<CameraFile> {
-  const given: CameraFileOptions = optionsOf(options);
+export async function readCamera(file: CameraFileInput, options: ReadCameraOptions = {}): Promise<CameraFile> {
+  const given: ReadCameraOptions = optionsOf(options);
   return parseCameraFile(await jsonOf("camera", file), given);
 }
 
@@ -177,8 +170,40 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * const result = await aligner.align(input);
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
-export async function readCase(files: CaseFiles, settings: CaseSettings = {}): Promise<Case> {
+export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<Case> {
   return caseFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+}
+
+/**
+ * Reads a scene folder: a depth map and, optionally, a camera and a photo, as in a case folder; and
+ * `objects/NAME/` with `mask.*`, `mesh.*` and, optionally, `initial.json` (a pose to start from) and `gt.json`.
+ * @param files by path, relative to the folder
+ *
+ * @example
+ * const { input, truths } = await readScene({ "depth.png": depth, "objects/mug/mask.png": mask, "objects/mug/mesh.glb": mesh });
+ * const result = await aligner.alignScene(input);
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ */
+export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
+  return sceneFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+}
+
+/**
+ * Reads an output of SAM 3D Objects as a scene: `pointmap.npy` (or a `.npz` of MoGe, or a depth map), the photo, and for each
+ * object its mask, its GLB or the PLY of its Gaussians, and `pose.json` with `rotation` (w, x, y, z), `translation` and
+ * `scale`, in `objects/NAME/` or with NAME in their names. Its frames are converted. Where it put an object is the object's
+ * `initial`: one candidate among those of the search. The depth of its point maps is `"scale-invariant"`, unless `depthKind`
+ * says otherwise.
+ * @param files by path, relative to the folder
+ *
+ * @example
+ * const { input } = await readSam3d({ "pointmap.npy": points, "0.png": mask, "0.glb": mesh, "0.json": pose });
+ * const result = await aligner.alignScene(input);
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` for an object without mask or mesh, `CORRUPT_FILE`, and the errors of
+ * `fromSam3d` with the name of the file
+ */
+export async function readSam3d(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
+  return sam3dFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
 }
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {

@@ -51,7 +51,6 @@ export type {
   Timings,
   TrackState,
   Uncertainty,
-  ViewPose,
   ViewRole,
   ViewsDiagnostics,
   Warning,
@@ -66,8 +65,8 @@ export type {
   CameraFileInput,
   CameraInput,
   CocoRle,
-  DepthAlignInput,
   DepthInput,
+  DepthView,
   EncodedBytes,
   FieldOfViewCamera,
   MaskInput,
@@ -77,22 +76,18 @@ export type {
   MeshFormat,
   MeshInput,
   PhotoInput,
-  PhotoOfView,
   PinholeCamera,
   PixelArray,
-  PointMapAlignInput,
   UnknownCamera,
 } from "./input/types.js";
 export type {
   AlignAllOptions,
   AlignOptions,
-  BestSoFar,
   CallOptions,
   Direction,
   EstimateSim3Options,
   EvaluateOptions,
   OptionRow,
-  OptionsByPreset,
   OptionsOf,
   PaperOptions,
   Progress,
@@ -103,25 +98,21 @@ export type {
   TrackOptions,
   ViewsOptions,
 } from "./options.js";
-export type { BlobLike, CreateWorker, SignalLike, UrlLike, WasmSource, WorkerLike } from "./platform.js";
-export { PreparedMesh } from "./prepared-mesh.js";
+export type { BlobLike, SignalLike, UrlLike, WasmSource, WorkerLike } from "./platform.js";
+export { type ColorSamples, PreparedMesh } from "./prepared-mesh.js";
 export type {
   AlignAllResult,
   Alignment,
-  AlignmentByPreset,
   AlignResult,
-  Clouds,
   Evaluation,
-  OfInput,
+  InputInfo,
   PaperAlignment,
   Registration,
   TrackedFrame,
   ViewAlignment,
   ViewsAlignment,
-  WithoutMetrics,
 } from "./results.js";
 export type {
-  KnownOfObject,
   LabelMap,
   Plane,
   SceneAlignment,

@@ -23,7 +23,6 @@ import type { CoreMesh } from "./prepared-mesh.js";
 import type { LoadRegistrar, Registrar } from "./registration-module.js";
 import {
   type AlignResult,
-  type Clouds,
   type Evaluation,
   type InputNotes,
   type Registration,
@@ -332,6 +331,9 @@ async function runTask<G extends Glue, T>(
     module.drop(task);
   }
 }
+
+/** Two clouds and, for `estimateSim3`, the correspondences between their points. */
+type Clouds = NonNullable<Registration["input"]>;
 
 function checkedClouds(clouds: Clouds): Clouds {
   for (const argument of ["source", "target"] as const) {

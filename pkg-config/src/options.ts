@@ -11,20 +11,17 @@ export interface Progress {
   /** The fraction of the work that is done, 0 to 1. It never decreases. */
   fraction: number;
   /** The best pose so far. `precise` reports it after each round of its search; the last one is the result. */
-  best?: BestSoFar | undefined;
-}
-
-/** The best pose of a search so far. */
-export interface BestSoFar {
-  /**
-   * Camera from mesh, 16 numbers, column-major, like `matrix` of a result: camera x right, y down, z forward; metres.
-   */
-  matrix: number[];
-  /**
-   * The objective of the search. Higher is better. Scores of different rounds are not comparable, because early rounds
-   * render smaller images. The last one is `diagnostics.score` of the result.
-   */
-  score: number;
+  best?:
+    | {
+        /** Camera from mesh, 16 numbers, column-major, as `matrix` of a result. */
+        matrix: number[];
+        /**
+         * The objective of the search. Higher is better. Scores of different rounds are not comparable, because early
+         * rounds render smaller images. The last one is `diagnostics.score` of the result.
+         */
+        score: number;
+      }
+    | undefined;
 }
 
 /** Options of every call. */
@@ -72,14 +69,8 @@ export interface AlignOptions extends Core.AlignOptions, AlignCallOptions {}
 /** Options of `Aligner.align` with `preset: "paper"`. */
 export interface PaperOptions extends Core.PaperOptions, AlignCallOptions {}
 
-/** The options of each preset. */
-export interface OptionsByPreset {
-  precise: AlignOptions;
-  paper: PaperOptions;
-}
-
 /** Options of `Aligner.align`: `preset` and `metrics` determine the type of the result. */
-export type OptionsOf<P extends Core.Preset, M extends boolean> = OptionsByPreset[P] & {
+export type OptionsOf<P extends Core.Preset, M extends boolean> = { precise: AlignOptions; paper: PaperOptions }[P] & {
   preset?: P | undefined;
   metrics?: M | undefined;
 };

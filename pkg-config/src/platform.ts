@@ -3,13 +3,6 @@
  * without TypeScript's DOM library.
  */
 
-/** A `Response` of `fetch`. */
-export interface ResponseLike {
-  readonly ok: boolean;
-  readonly status: number;
-  arrayBuffer(): Promise<ArrayBuffer>;
-}
-
 /** A `Blob` or a `File`. */
 export interface BlobLike {
   readonly size: number;
@@ -33,11 +26,11 @@ export interface SignalLike {
   removeEventListener(type: "abort", listener: () => void): void;
 }
 
-/** A compiled `WebAssembly.Module`, whose type no library but the DOM's declares. */
-export type CompiledModule = object;
-
-/** The source of a WebAssembly module: a URL, a response, the bytes, or the compiled module. */
-export type WasmSource = UrlLike | string | ResponseLike | ArrayBuffer | ArrayBufferView | CompiledModule;
+/**
+ * The source of a WebAssembly module: a URL (text or `URL`), a `Response`, the bytes, or a compiled `WebAssembly.Module`. No
+ * library but the DOM's declares the type of the last one.
+ */
+export type WasmSource = string | object;
 
 /** The source of a WebAssembly module, or a function that returns one on demand. */
 export type LazySource = WasmSource | (() => WasmSource | Promise<WasmSource>);

@@ -1,7 +1,7 @@
 /** Reports the progress of the core to the caller. */
 
 import { invalidArgument } from "./error.js";
-import type { BestSoFar, Progress } from "./options.js";
+import type { Progress } from "./options.js";
 import type { SignalLike } from "./platform.js";
 
 /** Maximum number of reports per second. */
@@ -13,7 +13,7 @@ export class ProgressListener {
   readonly #failed = new AbortController();
   readonly #times: number[] = [];
   #fraction = 0;
-  #best: BestSoFar | undefined;
+  #best: Progress["best"];
 
   constructor(onProgress: unknown) {
     if (onProgress !== undefined) this.#onProgress = checkedListener(onProgress);

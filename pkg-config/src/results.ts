@@ -8,7 +8,7 @@ import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import type { AlignInput } from "./input/types.js";
 
 /** How the depth map and the camera of a view were read. */
-export interface OfInput {
+export interface InputInfo {
   /** The unit of the depth, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
   depthUnit?: string;
   /** Where the intrinsics come from, if they were not given: `"depth file"`, `"EXIF: …"`, or `"estimate"`. */
@@ -21,35 +21,26 @@ export interface OfInput {
 }
 
 /** The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV: x right, y down, z forward; metres). */
-export interface Alignment extends Core.Alignment, OfInput {
+export interface Alignment extends Core.Alignment, InputInfo {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
 
 /** The result of `align` with `preset: "paper"`. */
-export interface PaperAlignment extends Core.PaperAlignment, OfInput {
+export interface PaperAlignment extends Core.PaperAlignment, InputInfo {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
 
-/** A result of a call with `metrics: false`. */
-export type WithoutMetrics<T> = Omit<T, "metrics"> & { metrics?: undefined };
-
-/** The result of each preset. */
-export interface AlignmentByPreset {
-  precise: Alignment;
-  paper: PaperAlignment;
-}
-
-/** The result of `align` for these options. */
+/** The result of `align` for a preset, with or without `metrics`. */
 export type AlignResult<P extends Core.Preset = Core.Preset, M extends boolean = boolean> = P extends Core.Preset
   ? M extends true
-    ? AlignmentByPreset[P]
-    : WithoutMetrics<AlignmentByPreset[P]>
+    ? { precise: Alignment; paper: PaperAlignment }[P]
+    : Omit<{ precise: Alignment; paper: PaperAlignment }[P], "metrics"> & { metrics?: undefined }
   : never;
 
 /** The object in one of several views. */
-export interface ViewAlignment extends Core.ViewPose, OfInput {}
+export interface ViewAlignment extends Core.ViewPose, InputInfo {}
 
 /** The result of `alignViews`: world from mesh, x_world = s·R·p_mesh + t, in metres, and the pose in each view. */
 export interface ViewsAlignment extends Core.ViewsAlignment {
@@ -60,13 +51,13 @@ export interface ViewsAlignment extends Core.ViewsAlignment {
 }
 
 /** The result of `Tracker.next`: camera from mesh, x_cam = s·R·p_mesh + t. */
-export interface TrackedFrame extends Core.TrackedFrame, OfInput {
+export interface TrackedFrame extends Core.TrackedFrame, InputInfo {
   /** With `transfer: true`: the returned arrays of the frame. */
   input?: FrameInput;
 }
 
 /** The result of `evaluate`. */
-export interface Evaluation extends Core.Evaluation, Pick<OfInput, "depthUnit"> {
+export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit"> {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -74,14 +65,11 @@ export interface Evaluation extends Core.Evaluation, Pick<OfInput, "depthUnit"> 
 /** The result of `register` and `estimateSim3`: target from source, y = s·R·x + t. */
 export interface Registration extends Core.Registration {
   /** With `transfer: true`: the returned arrays. */
-  input?: Clouds;
-}
-
-/** Two clouds (interleaved x, y, z) and, for `estimateSim3`, the correspondences between their points. */
-export interface Clouds {
-  source: Float32Array | Float64Array;
-  target: Float32Array | Float64Array;
-  correspondences?: Uint32Array;
+  input?: {
+    source: Float32Array | Float64Array;
+    target: Float32Array | Float64Array;
+    correspondences?: Uint32Array;
+  };
 }
 
 /** One of the results of `alignAll`: an alignment, or the error of its input. */
@@ -90,7 +78,7 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
 /** What the files of an input say, for its result. */
-export interface InputNotes extends Pick<OfInput, "depthUnit" | "cameraSource"> {
+export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource"> {
   /** Of the view. */
   warnings: readonly Core.Warning[];
   /** Why the colours of the mesh file are not read. */

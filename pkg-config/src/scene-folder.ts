@@ -2,22 +2,22 @@
 import { readdir, stat } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { bopImageId, bopMaskPath, bopModels, bopName, openBopScene, readBopImage, readBopModel } from "./bop-folder.js";
-import { type CaseFiles, type CaseSettings, fileNotFound } from "./case-files.js";
+import { type CaseFiles, fileNotFound, type ReadCaseOptions } from "./case-files.js";
 import { loadFormats, read } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import type { MeshFile } from "./input/types.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
-import { type SceneFiles, sceneFrom } from "./scene/scene-files.js";
+import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type { SceneInput, SceneObjectInput } from "./scene/types.js";
 
 /** A scene on disk. */
-export interface SceneOnDisk extends SceneFiles {
+export interface SceneOnDisk extends SceneCase {
   name: string;
 }
 
 /** How to read a scene. */
-export interface SceneSettings extends CaseSettings {
+export interface SceneSettings extends ReadCaseOptions {
   /** Whether the folder is an output of SAM 3D Objects. */
   sam3d?: boolean;
   /** The folder of the models of a BOP image. */
@@ -101,7 +101,7 @@ async function readBop(folder: string, { models, imageId, sam3d: _, ...settings 
   return { name: `${basename(resolve(folder))}/${bopName(id)}`, input, truths };
 }
 
-const resizeOf = ({ resizeMask }: CaseSettings) => (resizeMask === undefined ? {} : { resizeMask });
+const resizeOf = ({ resizeMask }: ReadCaseOptions) => (resizeMask === undefined ? {} : { resizeMask });
 
 async function namesIn(folder: string): Promise<string[]> {
   return readdir(folder).catch((cause) => {

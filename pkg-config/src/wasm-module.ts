@@ -1,9 +1,12 @@
 /** Loading and calling one WebAssembly module. */
 import { failure, internalError, isCoded, isExhausted, outOfMemory, Sim3AlignError } from "./error.js";
-import type { CompiledModule, LazySource, WasmSource } from "./platform.js";
+import type { LazySource, WasmSource } from "./platform.js";
 import { Queue } from "./queue.js";
 import { isKind } from "./values.js";
 import { moduleFile } from "./wasm-modules.js";
+
+/** A compiled `WebAssembly.Module`, whose type no library but the DOM's declares. */
+type CompiledModule = object;
 
 /** The exports of wasm-bindgen's glue, other than the functions of the module. */
 export interface Glue {

@@ -16,7 +16,8 @@ const apiReportFile = at("docs", "api-report.txt");
  * @property {string[]} stars files whose names are all exported
  */
 
-const word = /[\p{L}_$][\p{L}\p{N}_$]*/gu;
+/** A name, and what is named in it: `Name.Part`. */
+const word = /([\p{L}_$][\p{L}\p{N}_$]*)(?:\.([\p{L}_$][\p{L}\p{N}_$]*))?/gu;
 const declaration =
   /^(?:export )?(?:default )?(?:declare )?(?:abstract )?(?:class|const enum|const|let|var|function|interface|type|enum|namespace) ([\w$]+)/;
 
@@ -113,8 +114,11 @@ export function apiReport(folder = packageDir) {
     const key = `${path}\n${name}`;
     if (declared.has(key)) return;
     declared.set(key, statements.join("\n"));
-    for (const [used] of statements.join("\n").matchAll(word)) {
-      if (used !== name && (file.statements.has(used) || file.imports.has(used))) follow(path, used);
+    for (const [, used = "", part] of statements.join("\n").matchAll(word)) {
+      const link = file.imports.get(used);
+      // Of `import * as All`, `All.Name` refers to that name only.
+      if (part !== undefined && link?.name === "*" && link.file !== undefined) follow(link.file, part);
+      else if (used !== name && (file.statements.has(used) || link !== undefined)) follow(path, used);
     }
   };
   /** @type {(path: string) => string[]} */
@@ -138,14 +142,10 @@ export function apiReport(folder = packageDir) {
     entries.set(names.join(), entry);
     for (const name of names) follow(path, name);
   }
-  const sorted = [...declared].sort(([a], [b]) => (a < b ? -1 : 1));
-  let last = "";
-  for (const [key, text] of sorted) {
-    const [path = ""] = key.split("\n");
-    if (path !== last) lines.push(`file ${path}`, "");
-    last = path;
-    lines.push(text, "");
-  }
+  // By name: the files, between which declarations move, are not part of the API.
+  const nameOf = (/** @type {string} */ key) => key.split("\n")[1] ?? "";
+  const sorted = [...declared].sort(([a], [b]) => (nameOf(a) + a < nameOf(b) + b ? -1 : 1));
+  for (const [, text] of sorted) lines.push(text, "");
   return lines.join("\n");
 }
 

@@ -1,6 +1,5 @@
 // A scene from the side: the support that was found in its depth map, and the meshes.
-import { readMesh } from "sim3align/formats.js";
-import { readScene } from "sim3align/scenes.js";
+import { readMesh, readScene } from "sim3align/formats.js";
 import { figure, legend } from "./cells.js";
 
 const folder = "/www/samples/table/";

@@ -1,6 +1,6 @@
 // Draws the README's picture: what the camera saw, the mesh, and the mesh where it is.
 import { createAligner } from "sim3align";
-import { maskBox, objectDimensions } from "sim3align/conventions.js";
+import { maskBox, orientedBoundingBox } from "sim3align/conventions.js";
 import { readDepth, readMask } from "sim3align/formats.js";
 import { applyToObject3D, cameraFromPinhole, meshInputFromThree } from "sim3align/three.js";
 import * as THREE from "three";
@@ -25,7 +25,7 @@ object.traverse((part) => {
 });
 drawMesh(document.querySelector("#generated"));
 drawPlaced(document.querySelector("#placed"));
-const [wide, high, deep] = objectDimensions(mesh, result, { box: "minimal" }).sizeM.map((metres) =>
+const [wide, high, deep] = orientedBoundingBox(mesh, result, { box: "minimal" }).sizeM.map((metres) =>
   (100 * metres).toFixed(1),
 );
 const sure = `confidence ${result.confidence.toFixed(2)}`;

@@ -170,9 +170,8 @@ fn unknown_option(name: &str, known: &[&str]) -> Error {
     )
 }
 
-/// The named symmetries; the last name is a former one.
-const SYMMETRY_NAMES: [(&str, Symmetry); 3] =
-    [("none", Symmetry::None), ("auto", Symmetry::Auto), ("auto-revolution", Symmetry::Auto)];
+/// The named symmetries.
+const SYMMETRY_NAMES: [(&str, Symmetry); 2] = [("none", Symmetry::None), ("auto", Symmetry::Auto)];
 
 /// `"none"`, `"auto"`, or `[{ axis, fold? }]`.
 fn symmetry(value: &JsValue) -> Result<Symmetry> {

@@ -178,5 +178,5 @@ test("a disposed aligner says so, and others go on", async () => {
 test("an aligner can be disposed of by a using declaration's symbol", async () => {
   const other = await createAligner();
   other[Symbol.dispose]();
-  await assert.rejects(other.buildInfo(), { code: "DISPOSED" });
+  await assert.rejects(other.align(input), { code: "DISPOSED" });
 });

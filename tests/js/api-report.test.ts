@@ -58,17 +58,11 @@ test("the report has the names of each entry, and all that they refer to, withou
   Options
   make
 
-file all.d.ts
-
 export declare const LIMIT = 3;
-
-file mesh.d.ts
 
 export interface Mesh {
     positions: Float32Array;
 }
-
-file parts/create.d.ts
 
 export interface Options {
     mesh?: Mesh;
@@ -85,13 +79,23 @@ export declare function create(options: Options): Own;
   );
 });
 
-test("changes of types that are referred to show, those of comments and of other types do not", () => {
+test("changes of types that are referred to show; comments, other types and the files of types do not", () => {
   const before = reportOf();
   const mesh = files["mesh.d.ts"] ?? "";
   assert.notEqual(reportOf({ "mesh.d.ts": mesh.replace("Float32Array", "Float64Array") }), before);
   assert.equal(reportOf({ "mesh.d.ts": mesh.replace("Other {", "Other {\n    more: string;") }), before);
   assert.equal(reportOf({ "mesh.d.ts": `/** Words. */\n${mesh}` }), before);
+  assert.equal(reportOf({ "mesh.d.ts": 'export type { Mesh } from "./moved.js";\n', "moved.d.ts": mesh }), before);
   assert.notEqual(reportOf({ "all.d.ts": "export declare const LIMIT = 4;\n" }), before);
+});
+
+test("of a whole file that is imported under one name, only what is referred to is in the report", () => {
+  const report = reportOf({
+    "all.d.ts": 'import type * as All from "./mesh.js";\nexport declare const LIMIT: All.Other;\n',
+    "mesh.d.ts": "export interface Other {\n}\nexport interface Third {\n}\nexport interface Mesh {\n}\n",
+  });
+  assert.ok(report.includes("interface Other"));
+  assert.ok(!report.includes("interface Third"));
 });
 
 test("a statement that is not understood is an error, not a gap", () => {

@@ -3,9 +3,9 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { type AlignInput, createAligner, type MeshArrays, type PhotoInput } from "sim3align";
+import { type AlignInput, type ColorSamples, createAligner, type MeshArrays, type PhotoInput } from "sim3align";
 import { cropInput } from "sim3align/conventions";
-import { type ColorSamples, externalResources, readCase, readImage, readMesh } from "sim3align/formats";
+import { externalResources, readCase, readImage, readMesh } from "sim3align/formats";
 import { meshInputFromThree } from "sim3align/three";
 import {
   BoxGeometry,

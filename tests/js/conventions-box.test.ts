@@ -1,7 +1,14 @@
 /** Real dimensions and cuboids, against boxes that were built to size. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { applyToPoints, fromFrame, type ObjectBox, objectDimensions, toCuboid, toFrame } from "sim3align/conventions";
+import {
+  applyToPoints,
+  fromFrame,
+  type OrientedBoundingBox,
+  orientedBoundingBox,
+  toCuboid,
+  toFrame,
+} from "sim3align/conventions";
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { rejectsWith } from "../support/errors.js";
 import { assertNear, forSeeds, type Random } from "../support/random.js";
@@ -45,7 +52,7 @@ const near = (a: readonly number[], b: readonly number[], message: string, toler
   );
 
 /** Checks that a box's parts say the same, and that points are within it. */
-function assertHolds(box: ObjectBox, points: Float32Array | Float64Array, message: string): void {
+function assertHolds(box: OrientedBoundingBox, points: Float32Array | Float64Array, message: string): void {
   const inBox = new Matrix4()
     .compose(new Vector3(...box.centerM), new Quaternion(...box.rotation), new Vector3(1, 1, 1))
     .invert();
@@ -62,7 +69,7 @@ function assertHolds(box: ObjectBox, points: Float32Array | Float64Array, messag
 }
 
 test("the box along the mesh's axes has its extents, scaled, and holds every vertex", () => {
-  const box = objectDimensions(mesh, truth);
+  const box = orientedBoundingBox(mesh, truth);
   const extents = [0, 1, 2].map((k) => {
     const along = Array.from(mesh.positions).filter((_, i) => i % 3 === k);
     return truth.scale * (Math.max(...along) - Math.min(...along));
@@ -81,7 +88,7 @@ test("the smallest box around a turned box is that box", () => {
     const inside = { ...random.pose(), scale: 1 };
     const pose = random.pose();
     const object = boxMesh(sides, inside, random);
-    const box = objectDimensions(object, pose, { box: "minimal" });
+    const box = orientedBoundingBox(object, pose, { box: "minimal" });
     assertHolds(box, applyToPoints(pose, Float64Array.from(object.positions)), seed);
     near(
       box.sizeM,
@@ -97,7 +104,10 @@ test("an upright box keeps its axes' names when it is the smallest", () => {
   forSeeds(5, (random, seed) => {
     const still: Pose = { scale: 1, rotation: [0, 0, 0, 1], translation: [0.1, 0.2, 0.3] };
     const object = boxMesh([0.3, 2, 1], still, random);
-    const [plain, minimal] = [objectDimensions(object, truth), objectDimensions(object, truth, { box: "minimal" })];
+    const [plain, minimal] = [
+      orientedBoundingBox(object, truth),
+      orientedBoundingBox(object, truth, { box: "minimal" }),
+    ];
     assertNear(minimal.sizeM, plain.sizeM, seed);
     assertNear(minimal.rotation, plain.rotation, seed);
   });
@@ -108,15 +118,16 @@ test("the smallest box is never larger than the plain one, nor than any of many 
   assert.ok(fine.positions.length / 3 > 2000, "so many that only the outermost are looked at");
   for (const object of [mesh, fine]) {
     const volume = ([a, b, c]: readonly [number, number, number]) => a * b * c;
-    const found = volume(objectDimensions(object, truth, { box: "minimal" }).sizeM);
+    const found = volume(orientedBoundingBox(object, truth, { box: "minimal" }).sizeM);
     forSeeds(300, (random, seed) => {
       const turn = { ...random.pose(), scale: truth.scale };
       const other = volume(
-        objectDimensions({ ...object, positions: applyToPoints({ ...turn, scale: 1 }, object.positions) }, truth).sizeM,
+        orientedBoundingBox({ ...object, positions: applyToPoints({ ...turn, scale: 1 }, object.positions) }, truth)
+          .sizeM,
       );
       assert.ok(found <= other * 1.02, `${seed}: ${found} against ${other}`);
     });
-    assert.ok(found <= volume(objectDimensions(object, truth).sizeM) * (1 + 1e-6));
+    assert.ok(found <= volume(orientedBoundingBox(object, truth).sizeM) * (1 + 1e-6));
   }
 });
 
@@ -124,8 +135,8 @@ test("flat meshes, and vertices that no triangle has", () => {
   const positions = Float32Array.of(0, 0, 0, 1, 1, 0, 0, 2, 0, 50, 50, 50);
   const flat = { positions, indices: Uint32Array.of(0, 1, 2) };
   const unit = { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] };
-  assertNear(objectDimensions(flat, unit).sizeM, [1, 2, 0], "the stray vertex does not count");
-  const { sizeM } = objectDimensions(flat, unit, { box: "minimal" });
+  assertNear(orientedBoundingBox(flat, unit).sizeM, [1, 2, 0], "the stray vertex does not count");
+  const { sizeM } = orientedBoundingBox(flat, unit, { box: "minimal" });
   assert.ok(Math.min(...sizeM) === 0 && sizeM.every(Number.isFinite), `${sizeM}`);
 });
 
@@ -146,7 +157,7 @@ test("cuboids: length to the front, width to the left, height up; yaw seen from 
       .multiply(new Matrix4().set(0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1));
     const at: [number, number, number] = [random.between(3, 9), random.between(-3, 3), random.between(-1, 1)];
     const inRos = rows.multiply(new Matrix4().makeScale(0.5, 0.5, 0.5)).setPosition(...at);
-    const box = objectDimensions(car, fromFrame(inRos.elements, "ros"));
+    const box = orientedBoundingBox(car, fromFrame(inRos.elements, "ros"));
     const cuboid = toCuboid(box);
     assertNear(cuboid.size, [2, 1, 0.5], seed);
     assertNear(cuboid.center, [at[0], at[1], at[2] + 0.25], seed);
@@ -163,7 +174,7 @@ test("cuboids: length to the front, width to the left, height up; yaw seen from 
 
 test("cuboids of meshes with other fronts and ups", () => {
   const still = toFrame({ scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 5] }, "opencv");
-  const box = { ...objectDimensions(car, still), rotation: [0, 0, 0, 1] as [number, number, number, number] };
+  const box = { ...orientedBoundingBox(car, still), rotation: [0, 0, 0, 1] as [number, number, number, number] };
   // In the OpenCV camera frame, up is −y: this car lies on its roof.
   const upsideDown = toCuboid(box);
   assertNear([upsideDown.tiltRad], [Math.PI], "tilt");
@@ -174,12 +185,12 @@ test("cuboids of meshes with other fronts and ups", () => {
 });
 
 test("wrong axes and boxes are refused", async () => {
-  const box = objectDimensions(car, truth);
+  const box = orientedBoundingBox(car, truth);
   await rejectsWith(() => toCuboid(box, { up: "z" }), "INVALID_OPTION options.up", /"x" or "-x" or "y" or "-y"/);
   await rejectsWith(() => toCuboid(box, { front: "forward" as never }), "INVALID_OPTION options.front", /"-z"/);
   await rejectsWith(() => toCuboid({ ...box, sizeM: [1, 1, -1] }), "INVALID_ARGUMENT box.sizeM", /above 0/);
   await rejectsWith(
-    () => objectDimensions(car, truth, { box: "smallest" as never }),
+    () => orientedBoundingBox(car, truth, { box: "smallest" as never }),
     "INVALID_OPTION options.box",
     /"axes" or "minimal"/,
   );

@@ -1,7 +1,7 @@
 /** Cuboids of CVAT, against how CVAT draws them: a unit box of three.js with position, rotation and scale. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fromCvatCuboid, objectDimensions, toCuboid, toCvatCuboid, toFrame } from "sim3align/conventions";
+import { fromCvatCuboid, orientedBoundingBox, toCuboid, toCvatCuboid, toFrame } from "sim3align/conventions";
 import { Euler, Matrix4, Quaternion, Vector3 } from "three";
 import { rejectsWith } from "../support/errors.js";
 import { assertNear, forSeeds } from "../support/random.js";
@@ -22,7 +22,7 @@ function drawn(points: readonly number[], corner: Three): number[] {
 test("CVAT draws the box around an aligned object", () => {
   const mesh = blob();
   const transform = { ...truth, rotation: new Quaternion().setFromEuler(new Euler(0.4, -0.9, 2)).toArray() as Four };
-  const box = objectDimensions(mesh, transform);
+  const box = orientedBoundingBox(mesh, transform);
   const points = toCvatCuboid(toCuboid(box));
   assert.equal(points.length, 16);
   const sort = (corners: number[][]) => corners.map((corner) => corner.map((x) => x.toFixed(6)).join()).sort();

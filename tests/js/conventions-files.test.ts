@@ -9,11 +9,11 @@ import {
   exportGlb,
   exportPly,
   exportSceneGlb,
-  objectDimensions,
+  orientedBoundingBox,
   placeGlb,
   stretchGlb,
   stretchMesh,
-  toOpenGL,
+  toFrame,
   toSim3,
 } from "sim3align/conventions";
 import { type BufferGeometry, type Group, Mesh, Vector3 } from "three";
@@ -55,7 +55,7 @@ for (const mode of ["node", "baked"] as const) {
       const glb = exportGlb(mesh, truth, { mode, frame });
       const info = await assertValid(glb);
       assert.equal(info.totalTriangleCount, mesh.indices.length / 3);
-      const pose = frame === "opengl" ? toOpenGL(truth) : truth;
+      const pose = frame === "opengl" ? toFrame(truth, "opengl") : truth;
       const scene = await load(glb);
       assertNear(vertices(scene), applyToPoints(pose, mesh.positions), mode, 1e-6);
       const [object] = scene.children;
@@ -70,7 +70,7 @@ test("GLB: meshes without indices, with 16-bit indices, and with one triangle", 
   await assertValid(exportGlb(soup, truth));
   assertNear(
     vertices(await load(exportGlb(soup, truth))),
-    applyToPoints(toOpenGL(truth), soup.positions),
+    applyToPoints(toFrame(truth, "opengl"), soup.positions),
     "soup",
     1e-6,
   );
@@ -104,7 +104,7 @@ test("a result's metrics and confidence go into the file, and the aligner reads 
 for (const name of ["scene.glb", "mesh.glb"]) {
   test(`${name} is put where it is, with all that it has`, async () => {
     const original = readFileSync(join(repository, "tests", "fixtures", name));
-    const expected = applyToPoints(toOpenGL(truth), Float64Array.from(vertices(await load(original))));
+    const expected = applyToPoints(toFrame(truth, "opengl"), Float64Array.from(vertices(await load(original))));
     const placed = placeGlb(original, truth, { name: "placed" });
     await assertValid(placed);
     assertNear(vertices(await load(placed)), expected, name, 1e-6);
@@ -312,9 +312,9 @@ test("an object is measured in the proportions that align found", async () => {
   const { proportions } = found;
   assert.ok(proportions !== undefined);
   const ratio = ([x, y]: readonly number[]) => (x as number) / (y as number);
-  const truthRatio = ratio(objectDimensions(mesh, truth).sizeM);
-  const before = ratio(objectDimensions(narrow, found).sizeM);
-  const after = ratio(objectDimensions(stretchMesh(narrow, proportions), proportions).sizeM);
+  const truthRatio = ratio(orientedBoundingBox(mesh, truth).sizeM);
+  const before = ratio(orientedBoundingBox(narrow, found).sizeM);
+  const after = ratio(orientedBoundingBox(stretchMesh(narrow, proportions), proportions).sizeM);
   assert.ok(
     Math.abs(Math.log(after / truthRatio)) < 0.5 * Math.abs(Math.log(before / truthRatio)),
     `${after}, ${before}, ${truthRatio}`,

@@ -1,8 +1,10 @@
 /** Transforms in other tools' conventions, against NumPy, three.js and points that were moved by each one's formula. */
+
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import type { Sim3Like } from "sim3align";
 import {
   applyToPoints,
   type CameraFrame,
@@ -13,11 +15,9 @@ import {
   type GeneratorFrame,
   generatorFrames,
   invert,
-  type Sim3Like,
   toBop,
   toFrame,
   toGltfNode,
-  toOpenGL,
   toRos,
   toRowMajor,
   toSam3d,
@@ -121,11 +121,11 @@ for (const frame of frames) {
   });
 }
 
-test("toOpenGL is diag(1, −1, −1) times the transform, by three.js", () => {
+test("the OpenGL frame is diag(1, −1, −1) times the transform, by three.js", () => {
   forSeeds(20, (random, seed) => {
     const pose = random.pose();
     const expected = new Matrix4().makeScale(1, -1, -1).multiply(threeMatrix(pose));
-    const found = toOpenGL(pose);
+    const found = toFrame(pose, "opengl");
     assertNear(found.matrix, expected.elements, seed);
     const { matrix, position, quaternion, scale } = toThree(pose);
     assert.deepEqual(matrix, found.matrix, seed);
@@ -266,7 +266,7 @@ test("glTF's nodes have the transform in parts, and what is known in extras", ()
     const pose = random.pose();
     const { translation, rotation, scale } = toGltfNode(pose);
     const node = new Matrix4().compose(new Vector3(...translation), new Quaternion(...rotation), new Vector3(...scale));
-    assertNear(node.elements, toOpenGL(pose).matrix, seed);
+    assertNear(node.elements, toFrame(pose, "opengl").matrix, seed);
     const asItIs = toGltfNode(pose, { frame: "opencv" });
     assertNear(asItIs.translation, pose.translation, seed);
     assert.equal(asItIs.extras.sim3align.metresPerUnit, pose.scale);

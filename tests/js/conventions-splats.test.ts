@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { applyToPoints, exportPly, invert, placeSplats, toOpenGL, toSim3 } from "sim3align/conventions";
+import { applyToPoints, exportPly, invert, placeSplats, toFrame, toSim3 } from "sim3align/conventions";
 import { repository } from "../support/environment.js";
 import { type Fault, rejectsWith } from "../support/errors.js";
 import { assertNear, forSeeds, type Random } from "../support/random.js";
@@ -132,7 +132,7 @@ test(".splat files: positions, and shapes up to the bytes of their rotations", (
 
 test("frames, buffers, and the way back", () => {
   const file = readFileSync(join(repository, "tests", "fixtures", "splat.ply"));
-  assert.deepEqual(placeSplats(file, truth, { frame: "opengl" }), placeSplats(file, toOpenGL(truth)));
+  assert.deepEqual(placeSplats(file, truth, { frame: "opengl" }), placeSplats(file, toFrame(truth, "opengl")));
   assert.deepEqual(placeSplats(Uint8Array.from(file).buffer, truth), placeSplats(file, truth));
   const back = placeSplats(placeSplats(file, truth), invert(truth));
   const floats = (bytes: Uint8Array) => {

@@ -7,7 +7,7 @@ import {
   exportGlb,
   exportSceneGlb,
   invert,
-  objectDimensions,
+  orientedBoundingBox,
   placeGlb,
   toCuboid,
   toSim3,
@@ -78,7 +78,7 @@ test("a box that lies askew in its file gets tight axes, its up and its bottom, 
     const mesh = boxOf(sides, turnOf(random));
     const transform = { scale: random.between(0.1, 2), rotation: turnOf(random), translation: [0.1, 0.2, 2] as Triple };
     // The box stands on a side: the normal is one of its axes in the camera frame.
-    const own = objectDimensions(mesh, transform, { box: "minimal" });
+    const own = orientedBoundingBox(mesh, transform, { box: "minimal" });
     const k = random.whole(0, 2);
     const axis = new Vector3(...[0, 1, 2].map((i) => (i === k ? 1 : 0)));
     const normal = axis.applyQuaternion(new Quaternion(...own.rotation)).toArray() as Triple;
@@ -99,7 +99,7 @@ test("a box that lies askew in its file gets tight axes, its up and its bottom, 
       assertNear([low[u] as number], [0], "the bottom is at the origin", 1e-6);
       for (const i of [0, 1, 2].filter((i) => i !== u))
         assertNear([low[i as 0] + high[i as 0]], [0], "the origin is in the middle", 1e-5);
-      const { sizeM } = objectDimensions(straight.mesh, straight.transform);
+      const { sizeM } = orientedBoundingBox(straight.mesh, straight.transform);
       assertNear(
         sizeM,
         found.map((side) => side * transform.scale),
@@ -174,7 +174,7 @@ test("a GLB and a scene of upright objects have every vertex where it was", asyn
       1e-5,
     );
   }
-  const { tiltRad } = toCuboid(objectDimensions(straight.mesh, straight.transform), { frame: "opencv" });
+  const { tiltRad } = toCuboid(orientedBoundingBox(straight.mesh, straight.transform), { frame: "opencv" });
   const length = Math.hypot(...support.normal);
   assertNear([Math.cos(tiltRad)], [0.9 / length], "the tilt of the cuboid is that of the support", 1e-6);
 });

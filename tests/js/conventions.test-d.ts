@@ -8,7 +8,7 @@ import {
   fromCvatRle,
   fromSam3d,
   maskFromTensor,
-  objectDimensions,
+  orientedBoundingBox,
   resizeDepth,
   toBop,
   toCocoRle,
@@ -51,8 +51,8 @@ export function accepted(): void {
     },
     { left: 0, top: 0, width: 1, height: 1 },
   );
-  const metres: number = objectDimensions({ positions: floats }, alignment, { box: "minimal" }).sizeM[0];
-  toCuboid(objectDimensions({ positions: floats }, alignment), { front: "-x", up: "z" });
+  const metres: number = orientedBoundingBox({ positions: floats }, alignment, { box: "minimal" }).sizeM[0];
+  toCuboid(orientedBoundingBox({ positions: floats }, alignment), { front: "-x", up: "z" });
   toGltfNode(alignment, { metrics: alignment.metrics });
   toGltfNode(alignment, { metrics: null });
   void [x, y, z, single, double, runs, mask, other, depth, input, metres, toBop(alignment).entry.cam_R_m2c];
@@ -85,7 +85,7 @@ export function refused(geometry: BufferGeometry): void {
   // @ts-expect-error depth is no bytes
   resizeDepth({ data: bytes, ...size }, size);
   // @ts-expect-error no such box
-  objectDimensions({ positions: floats }, alignment, { box: "smallest" });
+  orientedBoundingBox({ positions: floats }, alignment, { box: "smallest" });
   // @ts-expect-error a geometry has no pose
   applyToObject3D(geometry, alignment);
   // @ts-expect-error the image's size is needed

@@ -5,8 +5,8 @@ import { mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { createAligner } from "sim3align";
-import { type DepthReading, type Pinhole, readDepth, Sim3AlignError } from "sim3align/formats";
+import { createAligner, type PinholeCamera } from "sim3align";
+import { type ReadDepthOptions, readDepth, Sim3AlignError } from "sim3align/formats";
 import * as inline from "sim3align/inline";
 import { repository } from "../support/environment.js";
 import { npy, png } from "../support/files.js";
@@ -18,10 +18,10 @@ interface Expected {
   width: number;
   height: number;
   unit: string;
-  camera?: Pinhole;
+  camera?: PinholeCamera;
   /** Of angles, whose functions differ in their last bits. */
   cameraTolerance?: number;
-  options?: DepthReading;
+  options?: ReadDepthOptions;
   error?: { code: string; argument: string };
 }
 
@@ -54,7 +54,7 @@ test("files of numpy, OpenCV, OpenEXR and tifffile: values, mask, camera and uni
     if (expected.cameraTolerance === undefined) assert.deepEqual(camera, expected.camera, name);
     else
       for (const [key, value] of Object.entries(expected.camera ?? {})) {
-        const found = camera?.[key as keyof Pinhole] ?? Number.NaN;
+        const found = camera?.[key as keyof PinholeCamera] ?? Number.NaN;
         assert.ok(Math.abs(found / value - 1) <= expected.cameraTolerance, `${name}: ${key} ${found}, not ${value}`);
       }
   }
@@ -64,7 +64,7 @@ test("kinds of depth: what their values mean", async () => {
   const relative = { depthKind: "affine-invariant-disparity" } as const;
   const values = Float32Array.of(0, -2, Number.NaN, 0.5, Number.POSITIVE_INFINITY, 3);
   const file = npy(values, 2, 3);
-  const read = async (options: DepthReading) => Array.from((await readDepth(file, options)).data);
+  const read = async (options: ReadDepthOptions) => Array.from((await readDepth(file, options)).data);
   assert.deepEqual(await read({}), [0, 0, 0, 0.5, 0, 3]);
   assert.deepEqual(await read({ depthKind: "scale-invariant" }), [0, 0, 0, 0.5, 0, 3]);
   assert.deepEqual(await read({ depthKind: "scale-invariant", depthScale: 2 }), [0, 0, 0, 1, 0, 6]);

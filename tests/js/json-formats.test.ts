@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner } from "sim3align";
-import { type CameraFileOptions, readCamera, readCase, readMask, readPose } from "sim3align/formats";
+import { type ReadCameraOptions, readCamera, readCase, readMask, readPose } from "sim3align/formats";
 import { repository } from "../support/environment.js";
 import { type Fault, rejectsWith } from "../support/errors.js";
 import { cocoRle, gltfBuffer, gltfJson, npy, png } from "../support/files.js";
@@ -125,7 +125,7 @@ const others: unknown[] = [
   { "0": { cam_R_m2c: [] } },
 ];
 
-const refusedCameras: [unknown, Fault, RegExp, CameraFileOptions?][] = [
+const refusedCameras: [unknown, Fault, RegExp, ReadCameraOptions?][] = [
   ...corrupt.map((file): [unknown, Fault, RegExp] => [file, "CORRUPT_FILE camera", /JSON.* download or export/]),
   ...others.map((file): [unknown, Fault, RegExp] => [file, "INVALID_CAMERA camera", /fx, fy, cx and cy/]),
   [{ focal: 1, center: 2 }, "INVALID_CAMERA camera", /found an object with focal, center.* Write .* fx, fy, cx and cy/],

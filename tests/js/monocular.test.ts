@@ -32,6 +32,7 @@ const relative = (depthKind: DepthKind): AlignInput => ({
 });
 
 const disparity = relative("affine-invariant-disparity");
+const disparityMap = { data: disparity.depth as Float32Array, width: view.width, height: view.height };
 const expected = await here.align(disparity, quick);
 
 /** Whether a pose looks as the true one: its direction, its apparent size, its rotation. */
@@ -51,7 +52,7 @@ test("relative depth: the pose, and the shift that makes the depth map true to s
   assert.deepEqual([depthKind, isMetric, isFocalEstimated], ["affine-invariant-disparity", false, false]);
   assert.equal(uncertainty.focal, 0);
   assert.ok(uncertainty.shift > 0 && uncertainty.shift < 0.2, `${uncertainty.shift}`);
-  const corrected = correctDepth(disparity.depth as Float32Array, depthCalibration);
+  const { data: corrected } = correctDepth(disparityMap, depthCalibration);
   // The object and the wall behind it: their ratio is that of the true depths.
   const at = (i: number) => (corrected[i] ?? 0) / (view.depth[i] ?? 0);
   const ratio = at(0) / at(view.mask.indexOf(1));
@@ -62,7 +63,7 @@ test("relative depth: the pose, and the shift that makes the depth map true to s
 test("the confidence counts how well the shift is known", async () => {
   const { depthCalibration: calibration, matrix, confidence } = expected;
   assert.ok(calibration !== undefined);
-  const depth = correctDepth(disparity.depth as Float32Array, calibration);
+  const depth = correctDepth(disparityMap, calibration);
   const measured = await here.align({ ...input, depth, camera: calibration.camera }, quick);
   assert.deepEqual(measured.matrix, matrix);
   const certainty = 1 - (calibration.uncertainty.shift / 0.43) ** 2;
@@ -278,7 +279,7 @@ test("lengths are not measured in what is not known", async () => {
   );
   const { depthCalibration } = expected;
   assert.ok(depthCalibration !== undefined);
-  const depth = correctDepth(disparity.depth as Float32Array, depthCalibration);
+  const depth = correctDepth(disparityMap, depthCalibration);
   const { metrics } = await here.evaluate({ ...input, depth, camera: depthCalibration.camera }, expected);
   assert.deepEqual(metrics, expected.metrics);
 });

@@ -222,7 +222,7 @@ test("each call reports workers that cannot start", async () => {
     for (let i = 0; i < 2; i++) {
       await rejectsWith(() => aligner.align(input, quick), "WORKER_FAILED workers", /no such|not allowed/);
     }
-    assert.ok((await aligner.buildInfo()).version);
+    assert.ok(aligner.version);
     aligner.dispose();
   }
 });

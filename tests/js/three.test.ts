@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createAligner } from "sim3align";
-import { toOpenGL } from "sim3align/conventions";
+import { toFrame } from "sim3align/conventions";
 import {
   applyPinhole,
   applyToObject3D,
@@ -51,7 +51,7 @@ test("an object under the camera is where the mesh was found", () => {
     const object = place(new Group(), random);
     place(new PerspectiveCamera(), random, true).add(object);
     applyToObject3D(object, pose);
-    assertNear(object.matrix.elements, toOpenGL(pose).matrix, seed);
+    assertNear(object.matrix.elements, toFrame(pose, "opengl").matrix, seed);
     assertNear(transformFromObject3D(object).matrix, columnMajor(pose), seed);
     applyToObject3D(object, pose, { frame: "opencv" });
     assertNear(object.matrix.elements, columnMajor(pose), seed);

@@ -45,7 +45,7 @@ export async function accepted(aligner: Aligner): Promise<void> {
   void [confidence, others, doubtM];
   const [seen] = alignment.alternatives;
   await aligner.align({} as AlignInput, { scale: 1, initial: alignment, search: "local" });
-  await aligner.align({} as AlignInput, { scale: [0.1, 1], initial: seen ?? null, symmetry: "auto-revolution" });
+  await aligner.align({} as AlignInput, { scale: [0.1, 1], initial: seen ?? null, symmetry: "auto" });
   await aligner.align({} as AlignInput, { scale: "free", initial: { matrix }, quality: "best", workBudget: null });
   await aligner.align({} as AlignInput, { knownExtentM: 0.095, knownExtentAxis: "y" });
   await aligner.align({} as AlignInput, { cameraUp: [0, -1, 0], meshUp: [0, 1, 0], symmetry: [{ axis: [0, 1, 0] }] });

@@ -4,7 +4,7 @@ import type { KnownPose } from "../conventions/pose-file.js";
 import {
   type Aligner,
   type AlignInput,
-  type OfInput,
+  type InputInfo,
   OPTIONS,
   type OptionRow,
   type OptionsOf,
@@ -88,7 +88,7 @@ async function alignFrames(
 export async function errorsOf(
   aligner: Aligner,
   input: AlignInput,
-  pose: Sim3 & OfInput,
+  pose: Sim3 & InputInfo,
   truth: KnownPose | null | undefined,
 ): Promise<PoseErrors | null> {
   if (truth === null || truth === undefined || !isMetric(pose)) return null;

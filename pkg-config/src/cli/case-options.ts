@@ -1,6 +1,6 @@
 /** Flags of all commands that control how a case is read. */
 import { type Command, Option } from "commander";
-import type { CaseSettings } from "../case-folder.js";
+import type { ReadCaseOptions } from "../case-folder.js";
 import { type DepthKind, depthKinds } from "../input/depth-kind.js";
 import { withoutUndefined } from "../values.js";
 import { number } from "./parse.js";
@@ -27,7 +27,7 @@ export function addCaseOptions(command: Command): Command {
 }
 
 /** Converts the flags to settings of a case. */
-export const caseSettings = ({ depthScale, depthKind, imageId, resizeMask, image }: CaseFlags): CaseSettings =>
+export const caseSettings = ({ depthScale, depthKind, imageId, resizeMask, image }: CaseFlags): ReadCaseOptions =>
   withoutUndefined({ depthScale, depthKind, imageId, resizeMask, image: image === false ? false : undefined });
 
 /** The layout of a case folder, for --help. */

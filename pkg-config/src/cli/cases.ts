@@ -1,7 +1,13 @@
 /** The cases of a command line. */
 import { readFileSync, statSync } from "node:fs";
 import { basename, join } from "node:path";
-import { type CaseOnDisk, type CasePaths, type CaseSettings, readCaseFiles, readCaseFolder } from "../case-folder.js";
+import {
+  type CaseOnDisk,
+  type CasePaths,
+  type ReadCaseOptions,
+  readCaseFiles,
+  readCaseFolder,
+} from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
 import { absolutePath } from "./case-identity.js";
 import type { FolderToDo } from "./folders.js";
@@ -33,7 +39,7 @@ export function caseOfFiles(
   flags: FileFlags,
   args: readonly string[],
   hasList: boolean,
-  settings: CaseSettings,
+  settings: ReadCaseOptions,
 ): CaseToDo | undefined {
   const { depth, mask, mesh, camera } = flags;
   const photos = args.filter(isPhoto);
@@ -66,7 +72,7 @@ const isPhoto = (path: string) =>
   /\.(jpe?g|png)$/i.test(path) && !statSync(path, { throwIfNoEntry: false })?.isDirectory();
 
 /** Cases in folders. */
-export const casesIn = (folders: readonly FolderToDo[], settings: CaseSettings): CaseToDo[] =>
+export const casesIn = (folders: readonly FolderToDo[], settings: ReadCaseOptions): CaseToDo[] =>
   folders.map((each) => ({
     ...each,
     // Read when it is asked for: among thousands of cases, the first ones tell.

@@ -13,7 +13,7 @@ export async function correctedInput(
   const { image, mask, mesh, resizeMask } = input;
   // The photo says nothing more about the depth.
   const { view } = await readView({ ...input, image: undefined }, fileReaders);
-  const data = correctDepth(view.depth as Float32Array, calibration);
-  const depth = { data, width: Number(view.width), height: Number(view.height) };
+  const seen = { data: view.depth as Float32Array, width: Number(view.width), height: Number(view.height) };
+  const depth = correctDepth(seen, calibration);
   return { depth, camera: calibration.camera, mask, mesh, image, resizeMask };
 }

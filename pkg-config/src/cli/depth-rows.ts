@@ -1,9 +1,9 @@
 /** How depth and camera were read, for people. */
-import type { DepthCalibration, OfInput } from "../index.js";
+import type { DepthCalibration, InputInfo } from "../index.js";
 import { fixed, type Row, significant } from "./table.js";
 
 /** The unit of the depth, its calibration, and where the camera comes from. */
-export function depthRows({ depthUnit, cameraSource, depthCalibration }: OfInput): Row[] {
+export function depthRows({ depthUnit, cameraSource, depthCalibration }: InputInfo): Row[] {
   return [
     ...(depthUnit === undefined ? [] : [["depth unit", depthUnit] as const]),
     ...(depthCalibration === undefined

@@ -1,6 +1,6 @@
 /** Outcomes of cases, for tables and for JSON. */
 import { describe, failure, Sim3AlignError } from "../error.js";
-import type { AlignResult, Evaluation, OfInput, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
+import type { AlignResult, Evaluation, InputInfo, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
 import { withoutUndefined } from "../values.js";
 import type { Lengths } from "./lengths.js";
 import type { Style } from "./style.js";
@@ -71,7 +71,7 @@ function transformJson<T extends Sim3>({ scale, rotation, rotationMatrix, transl
 }
 
 /** How depth and camera were read. */
-export const ofInputJson = ({ depthUnit, cameraSource, depthCalibration }: OfInput) =>
+export const ofInputJson = ({ depthUnit, cameraSource, depthCalibration }: InputInfo) =>
   withoutUndefined({ depthUnit, cameraSource, depthCalibration });
 
 /** The JSON entry of an aligned case. The keys do not depend on the preset. */

@@ -8,7 +8,7 @@ import type { UprightOptions } from "../conventions/upright.js";
 import type { AlignInput } from "../input/types.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
-import type { OfInput } from "../results.js";
+import type { InputInfo } from "../results.js";
 import { isRecord, withoutUndefined } from "../values.js";
 import { type CaseFlags, caseSettings } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
@@ -85,7 +85,7 @@ export class Pictures {
     if (!this.isWanted || input === undefined || !Array.isArray(entry.matrix)) return;
     const matrix = entry.matrix as number[];
     const { overlay, glb } = this.#flags;
-    const shot = await Shot.of(await correctedInput(input, entry.depthCalibration as OfInput["depthCalibration"]));
+    const shot = await Shot.of(await correctedInput(input, entry.depthCalibration as InputInfo["depthCalibration"]));
     try {
       if (this.#report !== undefined) {
         const others = alternativesOf(entry).map((other) => other.matrix as number[]);

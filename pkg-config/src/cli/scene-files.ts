@@ -9,7 +9,7 @@ import type { SceneInput, SceneResult } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import type { MeshArrays } from "../input/types.js";
 import type { SceneOnDisk } from "../scene-folder.js";
-import { type TextFiles, toMjcf } from "../simulators/mjcf.js";
+import { toMjcf } from "../simulators/mjcf.js";
 import { SIMULATOR_DEFAULTS, type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
@@ -106,7 +106,7 @@ function linesOf({ bodies, supportHeightM }: SimulatorScene): string[] {
   return supportHeightM === 0 ? lines : [ground, ...lines];
 }
 
-function writeTexts(folder: string, files: TextFiles): void {
+function writeTexts(folder: string, files: Record<string, string>): void {
   for (const [path, text] of Object.entries(files)) {
     const file = join(folder, path);
     mkdirSync(dirname(file), { recursive: true });

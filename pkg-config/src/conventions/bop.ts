@@ -14,20 +14,13 @@ export interface BopPose {
   obj_id?: number;
 }
 
-/** A BOP pose, and the scale, which is not part of BOP's format. */
-export interface BopExport {
-  /** The entry for `scene_gt.json`. */
-  entry: { cam_R_m2c: number[]; cam_t_m2c: number[]; obj_id?: number };
-  /** Metres per mesh unit. The model file of the entry contains the vertices of the mesh times 1000 · scale. */
-  scale: number;
-}
-
 /**
  * Converts a pose for BOP's `scene_gt.json`. BOP's models are in millimetres and its poses have no scale, so the model
  * must be written at its real size: the vertices of the mesh times `1000 · scale`.
  *
  * @param transform OpenCV camera from mesh, metres
  * @param options `objId`: the id of the model, at least 1
+ * @returns the entry for `scene_gt.json`, and the scale (metres per mesh unit), which is not part of BOP's format
  *
  * @example
  * const { entry, scale } = toBop(result, { objId: 3 });
@@ -35,7 +28,7 @@ export interface BopExport {
  * const modelMm = mesh.positions.map((x) => 1000 * scale * x);
  * @throws {@link Sim3AlignError} if the transform is not a similarity
  */
-export function toBop(transform: Sim3Like, options: { objId?: number } = {}): BopExport {
+export function toBop(transform: Sim3Like, options: { objId?: number } = {}): { entry: BopPose; scale: number } {
   const { objId } = optionsOf(options);
   const { scale, rotation, translation } = similarityOf(transform);
   const entry = { cam_R_m2c: [...rotation], cam_t_m2c: translation.map((metres) => 1000 * metres) };

@@ -11,7 +11,7 @@ import {
   vector3,
 } from "../values.js";
 import { type CameraFrame, turnTo } from "./frames.js";
-import type { ObjectBox } from "./object-box.js";
+import type { OrientedBoundingBox } from "./oriented-bounding-box.js";
 import {
   column,
   fromColumns,
@@ -56,13 +56,16 @@ export interface Cuboid {
 /**
  * Converts the box around an object to a cuboid for annotation tools.
  *
- * @param box from {@link objectDimensions}
+ * @param box from {@link orientedBoundingBox}
  *
  * @example
- * const { center, size, yawRad } = toCuboid(objectDimensions(mesh, result));
+ * const { center, size, yawRad } = toCuboid(orientedBoundingBox(mesh, result));
  * @throws {@link Sim3AlignError} for an invalid box, and `INVALID_OPTION` if the axes are not perpendicular
  */
-export function toCuboid(box: Pick<ObjectBox, "sizeM" | "centerM" | "rotation">, options: CuboidOptions = {}): Cuboid {
+export function toCuboid(
+  box: Pick<OrientedBoundingBox, "sizeM" | "centerM" | "rotation">,
+  options: CuboidOptions = {},
+): Cuboid {
   const { frame = "ros", front = "z", up = "y" } = optionsOf(options);
   const { sizeM, centerM, rotation } = record("box", box, "{ sizeM, centerM, rotation }");
   const sides = finiteNumbers("box.sizeM", sizeM, 3, "three finite numbers") as Vector3;

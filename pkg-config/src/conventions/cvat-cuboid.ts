@@ -16,7 +16,7 @@ const POINTS = 16;
  * @param cuboid from {@link toCuboid}
  *
  * @example
- * const shape = { type: "cuboid", frame: 0, label_id: 1, points: toCvatCuboid(toCuboid(objectDimensions(mesh, result))) };
+ * const shape = { type: "cuboid", frame: 0, label_id: 1, points: toCvatCuboid(toCuboid(orientedBoundingBox(mesh, result))) };
  * @throws {@link Sim3AlignError} for an invalid cuboid
  */
 export function toCvatCuboid(cuboid: CvatCuboid): number[] {

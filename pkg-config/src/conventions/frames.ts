@@ -44,7 +44,7 @@ export const inFrame = (argument: string, similarity: Similarity, frame: CameraF
  * @returns the transform to that camera frame, in all forms; scale and units are unchanged
  *
  * @example
- * toFrame(result, "opengl").matrix;    // for a camera that looks along −z
+ * toFrame(result, "opengl").matrix;    // for three.js, glTF, Blender: diag(1, −1, −1) times the transform
  * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for an unknown frame
  */
 export const toFrame = (transform: Sim3Like, frame: CameraFrame): Sim3 =>
@@ -60,18 +60,6 @@ export const toFrame = (transform: Sim3Like, frame: CameraFrame): Sim3 =>
  */
 export const fromFrame = (transform: Sim3Like, frame: CameraFrame): Sim3 =>
   sim3Of(composed(rotationOnly(transposed(turnTo("frame", frame))), similarityOf(transform)));
-
-/**
- * Converts a transform for an OpenGL camera (three.js, glTF, Blender): x right, y up, looking along −z. The result is
- * `diag(1, −1, −1)` times the transform.
- *
- * @returns `matrix` (16 numbers, column-major), `scale`, `rotation` (x, y, z, w), `rotationMatrix`, `translation`
- *
- * @example
- * toOpenGL(result).translation[2];    // below 0: in front of the camera
- * @throws {@link Sim3AlignError} as {@link toFrame}
- */
-export const toOpenGL = (transform: Sim3Like): Sim3 => toFrame(transform, "opengl");
 
 /** The pose of a three.js object. */
 export interface ThreePose {
@@ -97,7 +85,7 @@ export interface ThreePose {
  * @throws {@link Sim3AlignError} if the transform is not a similarity
  */
 export function toThree(transform: Sim3Like): ThreePose {
-  const { matrix, scale, rotation, translation } = toOpenGL(transform);
+  const { matrix, scale, rotation, translation } = toFrame(transform, "opengl");
   return { matrix, position: translation, quaternion: rotation, scale: [scale, scale, scale] };
 }
 

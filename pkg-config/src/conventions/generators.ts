@@ -12,20 +12,10 @@ export interface GeneratorFrame {
   readonly front: Readonly<Vector3> | null;
 }
 
-/** The frames of the files of a generator: of its meshes. */
-export interface MeshFrames {
-  readonly mesh: GeneratorFrame;
-}
-
-/** The same, and that of the PLY of its 3D Gaussians. */
-export interface GaussianFrames extends MeshFrames {
-  readonly gaussians: GeneratorFrame;
-}
-
 const frame = (up: Vector3, front: Vector3 | null = null): GeneratorFrame => ({ up, front });
 
 /**
- * Which way is up, and which way is the camera, in the files that generators write: SAM 3D Objects (`sam3d`), TRELLIS,
+ * Which way is up, and which way is the camera, in the files that generators write, their meshes and their 3D Gaussians: SAM 3D Objects (`sam3d`), TRELLIS,
  * Hunyuan3D-2, TripoSR (`run.py`), InstantMesh (`run.py`) and Stable Fast 3D (`sf3d`). The guide "Meshes of generators"
  * has the source of each.
  *
@@ -34,7 +24,8 @@ const frame = (up: Vector3, front: Vector3 | null = null): GeneratorFrame => ({ 
  * await aligner.align(input, { meshUp: generatorFrames.trellis.mesh.up, cameraUp: [0, -1, 0] });
  */
 export const generatorFrames: Readonly<
-  Record<"sam3d" | "trellis", GaussianFrames> & Record<"hunyuan3d" | "triposr" | "instantmesh" | "sf3d", MeshFrames>
+  Record<"sam3d" | "trellis", { readonly mesh: GeneratorFrame; readonly gaussians: GeneratorFrame }> &
+    Record<"hunyuan3d" | "triposr" | "instantmesh" | "sf3d", { readonly mesh: GeneratorFrame }>
 > = {
   sam3d: { mesh: frame([0, 1, 0]), gaussians: frame([0, 0, 1]) },
   trellis: { mesh: frame([0, 1, 0]), gaussians: frame([0, -1, 0]) },

@@ -10,7 +10,7 @@ import { applyToPoints } from "./similarity.js";
  *
  * @param mesh `positions` and `indices`
  * @param transform applied to the vertices: a result of `align` for metres in the OpenCV camera frame, or
- * `toOpenGL(result)`, for example, for another frame; by default, vertices are unchanged
+ * `toFrame(result, "opengl")`, for example, for another frame; by default, vertices are unchanged
  *
  * @example
  * await writeFile("placed.ply", exportPly(mesh, result));

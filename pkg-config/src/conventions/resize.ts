@@ -1,6 +1,6 @@
 /** Resizes and crops images together with their intrinsics. */
 import { describe, failure } from "../error.js";
-import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
+import { pinholeOf } from "../formats/pinhole.js";
 import {
   type DepthPixels,
   depthKinds,
@@ -12,7 +12,7 @@ import {
   pointKinds,
   sizeOf,
 } from "../formats/pixels.js";
-import type { PinholeCamera, PixelArray } from "../input/types.js";
+import type { CameraInput, PinholeCamera, PixelArray } from "../input/types.js";
 import { optionsOf, record, whole } from "../values.js";
 
 /** A region of an image, in integer pixels. */
@@ -83,7 +83,7 @@ export const resizeMask = <T extends MaskPixels>(mask: PixelArray<T>, size: Imag
  * @throws {@link Sim3AlignError} `INVALID_CAMERA`, or for sizes below one pixel
  */
 export function resizeCamera(
-  camera: StatedCamera,
+  camera: CameraInput,
   size: ImageSize & { fromWidth: number; fromHeight: number },
 ): PinholeCamera & ImageSize {
   const { width, height } = sizeOf("size", size);
@@ -132,7 +132,7 @@ export interface CropInput {
   mask?: PixelArray<MaskPixels> | undefined;
   /** RGB or RGBA. */
   image?: PixelArray<MaskPixels> | undefined;
-  camera?: StatedCamera | undefined;
+  camera?: CameraInput | undefined;
 }
 
 /**

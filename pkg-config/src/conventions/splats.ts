@@ -10,12 +10,6 @@ import { quaternionOf, turned } from "./rotation.js";
 import { moved, type Similarity, similarityOf } from "./similarity.js";
 import { type GaussianLayout, gaussianLayout } from "./splat-ply.js";
 
-/** Options of {@link placeSplats}. */
-export interface SplatOptions {
-  /** The frame of the placed splats; `"opencv"` by default, as viewers of 3D Gaussian Splatting expect. */
-  frame?: CameraFrame | undefined;
-}
-
 /**
  * Places 3D Gaussians: transforms their positions, rotations and scales, and turns their spherical harmonics, so that each
  * shows the same colours to a camera that is moved with it. Opacities and all other properties are kept.
@@ -23,6 +17,7 @@ export interface SplatOptions {
  * @param splats the bytes of the aligned file: a binary little-endian PLY of 3D Gaussian Splatting with harmonics up to
  * degree 3, or a `.splat`
  * @param transform OpenCV camera from mesh: a result of `align` for the same file
+ * @param options `frame`: that of the placed splats; `"opencv"` by default, as viewers of 3D Gaussian Splatting expect
  * @returns a file of the same format
  *
  * @example
@@ -32,7 +27,7 @@ export interface SplatOptions {
 export function placeSplats(
   splats: Uint8Array | ArrayBuffer,
   transform: Sim3Like,
-  options: SplatOptions = {},
+  options: { frame?: CameraFrame | undefined } = {},
 ): Uint8Array {
   const { frame = "opencv" } = optionsOf(options);
   const placement = inFrame("options.frame", similarityOf(transform), frame);

@@ -25,7 +25,7 @@ const SYMMETRIC = 1e-6;
  *
  * @example
  * const { proportions } = await aligner.align(input, { proportions: "full" });
- * const { sizeM } = objectDimensions(stretchMesh(mesh, proportions), proportions);
+ * const { sizeM } = orientedBoundingBox(stretchMesh(mesh, proportions), proportions);
  * @throws {@link Sim3AlignError} for an invalid mesh, and `INVALID_ARGUMENT` for a matrix that is not a stretch
  */
 export function stretchMesh<M extends MeshArrays>(mesh: M, proportions: StretchLike): M {

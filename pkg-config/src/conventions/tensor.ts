@@ -14,14 +14,6 @@ export interface TensorLike {
   readonly dims: readonly number[];
 }
 
-/** Selects one of several masks. */
-export interface MaskChoice {
-  /** The index of the mask in the tensor. */
-  index?: number | undefined;
-  /** The scores of the masks, `iou_scores`; the mask with the highest score is selected. */
-  scores?: TensorLike | ArrayLike<number> | undefined;
-}
-
 function dimensions(tensor: unknown) {
   const { data, dims: given } = record("tensor", tensor, "a tensor: { data, dims }");
   const dims = flattened(given);
@@ -45,7 +37,7 @@ function dimensions(tensor: unknown) {
  * one image (bool, 1 × 3 × height × width), or any tensor whose last two dimensions are height and width.
  *
  * @param tensor bool or integers, where non-zero is the object; or floats, which are logits, above 0 for the object
- * @param choice `index`, or `scores` (`iou_scores`, which selects the highest); required if there is more than one mask
+ * @param choice which of several masks: its `index` in the tensor, or `scores` (`iou_scores`), of which the highest wins
  * @returns 1 is the object
  *
  * @example
@@ -53,8 +45,11 @@ function dimensions(tensor: unknown) {
  * const mask = maskFromTensor(masks, { scores: iou_scores });
  * @throws {@link Sim3AlignError} if dimensions and data do not match, or no mask is selected
  */
-export function maskFromTensor(tensor: TensorLike, choice: MaskChoice = {}): PixelArray<Uint8Array> {
-  const { index, scores } = record("choice", choice, "{ index } or { scores }") as MaskChoice;
+export function maskFromTensor(
+  tensor: TensorLike,
+  choice: { index?: number | undefined; scores?: TensorLike | ArrayLike<number> | undefined } = {},
+): PixelArray<Uint8Array> {
+  const { index, scores } = record("choice", choice, "{ index } or { scores }") as typeof choice;
   const { data, width, height, count } = dimensions(tensor);
   const chosen = index ?? (scores === undefined ? undefined : best(scores, count)) ?? (count === 1 ? 0 : undefined);
   if (chosen === undefined || !Number.isInteger(chosen) || chosen < 0 || chosen >= count) {

@@ -5,7 +5,7 @@ import { oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../va
 import { underNode } from "./glb.js";
 import { meshOf } from "./mesh.js";
 import { outermost, smallestBoxAxes, smallestRectangle } from "./minimal-box.js";
-import { extent } from "./object-box.js";
+import { extent } from "./oriented-bounding-box.js";
 import { column, cross, dot, fromColumns, type Matrix3, transposed, turned } from "./rotation.js";
 import { applyToPoints, composed, inverted, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 
@@ -34,14 +34,14 @@ const TIGHTER = 0.99;
  * A mesh in an upright frame of its own, for objects that lie askew in their file, or with another axis up. Up is the
  * normal of the support or, without one, the axis of the smallest box that is nearest to the up of the image. The other
  * axes are those of the smallest rectangle around the object seen from above, named after the nearest axes of the mesh. The
- * origin is the centre of the bottom of the box. All exports and {@link objectDimensions} take the mesh with its transform.
+ * origin is the centre of the bottom of the box. All exports and {@link orientedBoundingBox} take the mesh with its transform.
  *
  * @param mesh the aligned mesh
  * @param transform OpenCV camera from mesh: a result of `align`
  *
  * @example
  * const straight = uprightMesh(mesh, result, { support });
- * const { sizeM: [width, height, depth] } = objectDimensions(straight.mesh, straight.transform);
+ * const { sizeM: [width, height, depth] } = orientedBoundingBox(straight.mesh, straight.transform);
  * @throws {@link Sim3AlignError} for an invalid mesh, transform or plane, and `INVALID_OPTION`
  */
 export function uprightMesh<M extends MeshArrays>(

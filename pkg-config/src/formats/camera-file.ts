@@ -1,12 +1,13 @@
 /** Camera files of data sets and drivers: sim3align, BOP, ROS, RealSense and Open3D. */
 import { describe, failure, invalidArgument } from "../error.js";
+import type { PinholeCamera } from "../input/types.js";
 import { isRecord } from "../values.js";
 import { isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";
 
 /** The content of a camera file. */
-export interface CameraFile extends Pinhole {
+export interface CameraFile extends PinholeCamera {
   /** Width in pixels of the image that the intrinsics belong to. */
   width?: number;
   /** Height in pixels of the image that the intrinsics belong to. */
@@ -18,7 +19,7 @@ export interface CameraFile extends Pinhole {
 }
 
 /** Options for reading a camera file. */
-export interface CameraFileOptions {
+export interface ReadCameraOptions {
   /** Image width in pixels: required for a field of view, otherwise compared with the width in the file. */
   width?: number | undefined;
   /** Image height in pixels: required for a field of view, otherwise compared with the height in the file. */
@@ -55,7 +56,7 @@ const forms = "{ fx, fy, cx, cy }, { K }, { fovYDeg }, intrinsic_matrix, a BOP s
  */
 export function parseCameraFile(
   content: JsonFile,
-  { width, height, imageId }: CameraFileOptions = {},
+  { width, height, imageId }: ReadCameraOptions = {},
   names: CameraFileNames = { file: "camera", options: "options." },
 ): CameraFile {
   const given = { width: side(names, "width", width), height: side(names, "height", height) };

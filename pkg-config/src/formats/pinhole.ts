@@ -1,11 +1,7 @@
 /** Pinhole intrinsics from four numbers, a matrix, or a field of view. */
 import { describe, failure, invalidArgument } from "../error.js";
-import type { CameraInput } from "../input/types.js";
 import { finiteNumbers, flattened, record } from "../values.js";
 import type { ImageSize } from "./pixels.js";
-
-/** A camera with given intrinsics. */
-export type StatedCamera = CameraInput;
 
 /** Pinhole intrinsics in pixels; pixel centres have integer coordinates. */
 export interface Pinhole {

@@ -1,10 +1,9 @@
 /** How depth files are read, and what comes of it. */
-import type { Pinhole } from "../formats/pinhole.js";
 import type { DepthKind } from "./depth-kind.js";
-import type { PixelArray } from "./types.js";
+import type { PinholeCamera, PixelArray } from "./types.js";
 
 /** How the values of a depth map are read. */
-export interface DepthReading {
+export interface ReadDepthOptions {
   /** Metres per unit. */
   depthScale?: number | undefined;
   /** Metres per unit of integers, where there is no `depthScale`: that of a camera file. */
@@ -21,5 +20,5 @@ export interface DepthImage extends PixelArray<Float32Array> {
   /** The unit of the values in the file, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
   unit: string;
   /** The camera in the file, in pixels of the depth map: from its intrinsics, its focal length or its field of view. */
-  camera?: Pinhole;
+  camera?: PinholeCamera;
 }

@@ -5,7 +5,7 @@ import type { Pinhole } from "../formats/pinhole.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
 import { isAffineInvariant } from "./depth-kind.js";
-import type { DepthImage, DepthReading } from "./depth-reading.js";
+import type { DepthImage, ReadDepthOptions } from "./depth-reading.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {
@@ -40,7 +40,7 @@ export interface StatedSize {
 export async function readDepth(
   depth: unknown,
   size: StatedSize,
-  reading: DepthReading,
+  reading: ReadDepthOptions,
   readers: FileReaders,
 ): Promise<ReadDepth> {
   const ofArray = <T extends SizedArray<DepthArray>>(read: T) => ({ ...read, unit: unitOf(read.data, reading) });
@@ -66,7 +66,7 @@ export async function readDepth(
 }
 
 /** The unit of an array, in the words of the readers of files. */
-function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDepthScale }: DepthReading): string {
+function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDepthScale }: ReadDepthOptions): string {
   if (isAffineInvariant(depthKind)) return `none (${depthKind})`;
   // Of anything else than a number, the core says what is wrong.
   if (typeof depthScale === "number") return `${depthScale} m (depthScale)`;
@@ -88,7 +88,7 @@ const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", 
 export function decodeDepth(
   argument: string,
   bytes: Uint8Array,
-  reading: DepthReading,
+  reading: ReadDepthOptions,
   readers: FileReaders,
   rename?: (argument: string) => string,
 ): Promise<DepthImage> {

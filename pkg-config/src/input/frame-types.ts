@@ -1,14 +1,13 @@
 /** The inputs of `alignViews` and of trackers. */
 import type { Sim3Like } from "../sim3.js";
-import type { AlignInput, MaskInput, MeshInput } from "./types.js";
+import type { DepthView, MaskInput, MeshInput } from "./types.js";
 
-/** The properties of an input that describe its depth map and camera. */
-type WithoutObject<T> = T extends unknown ? Omit<T, "mask" | "mesh"> : never;
-
-/** A frame: depth with a camera, or a point map; and the photo and the mask of the object, if they are known. */
-export type FrameInput = WithoutObject<AlignInput> & {
+/** A frame: what a camera saw, and the mask of the object, if it is known. */
+export type FrameInput = DepthView & {
   /** The mask of the object, if it is known. */
   mask?: MaskInput | undefined;
+  /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
+  resizeMask?: "nearest" | undefined;
 };
 
 /** One of several views of an object. */

@@ -151,127 +151,101 @@ export type PhotoInput =
   | ArrayBuffer
   | BlobLike;
 
-/** The photo of a view. */
-export interface PhotoOfView {
-  /** The photo, which is compared with the colours of the mesh, if it has any. */
-  image?: PhotoInput | undefined;
-}
-
 /**
  * The object's mesh, in its own frame: arrays, a GLB, glTF, OBJ, PLY or STL file (node transforms are applied), 3D
  * Gaussians (a PLY or `.splat` file), of which a mesh of their surface is made, or a prepared mesh.
  */
 export type MeshInput = MeshArrays | MeshFile | EncodedBytes | PreparedMesh;
 
-/** The mask and the mesh of an input. */
-export interface ObjectInput {
+/** What a camera saw: a depth map with its camera, or a point map, and the photo, if there is one. */
+export type DepthView = {
+  /** The photo, which is compared with the colours of the mesh, if it has any. */
+  image?: PhotoInput | undefined;
+} & (
+  | {
+      /**
+       * The intrinsics of the camera that took the depth map. Without them, they are fitted to a point map. With a depth map,
+       * they are those in the depth file, if it has any; otherwise, the focal length is that of the photo's EXIF data, or
+       * unknown, and is estimated together with the pose.
+       */
+      camera?: CameraInput | UnknownCamera | undefined;
+      cameraFile?: undefined;
+      imageId?: undefined;
+    }
+  | {
+      camera?: undefined;
+      /** A camera file, instead of `camera`. It also sets the scale of integer depth, unless `depthScale` is given. */
+      cameraFile: CameraFileInput;
+      /** The image id in a BOP `scene_camera.json`. */
+      imageId?: string | number | undefined;
+    }
+) &
+  (
+    | ({
+        /**
+         * Metres per unit of depth, above 0: 0.001 for millimetres. By default, floats are metres, and integers use the
+         * scale of the camera file or, without one, are millimetres.
+         */
+        depthScale?: number | undefined;
+        /**
+         * What the values are; `"metric"` by default. For other kinds, the scale and the shift of the depth map are
+         * estimated together with the pose, and lengths are metric only if one of the object is known (`scale`,
+         * `knownExtentM`): see `depthCalibration` of the result.
+         */
+        depthKind?: DepthKind | undefined;
+        pointMap?: undefined;
+      } & (
+        | {
+            /** The depth map, possibly as a bare array with its size beside it. */
+            depth: DepthInput;
+            /** Width in pixels. */
+            width: number;
+            /** Height in pixels. */
+            height: number;
+          }
+        | {
+            /** A depth map with its own size. */
+            depth: Exclude<DepthInput, Float32Array | Uint16Array>;
+            /** Width in pixels; must match. */
+            width?: number | undefined;
+            /** Height in pixels; must match. */
+            height?: number | undefined;
+          }
+      ))
+    | ({
+        /** Whether the points are in metres, the default, or in an unknown unit. */
+        depthKind?: "metric" | "scale-invariant" | undefined;
+        depth?: undefined;
+        depthScale?: undefined;
+      } & (
+        | {
+            /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
+            pointMap: Float32Array | PixelArray<Float32Array>;
+            /** Width in pixels. */
+            width: number;
+            /** Height in pixels. */
+            height: number;
+          }
+        | {
+            /** A point map with its own size. */
+            pointMap: PixelArray<Float32Array>;
+            /** Width in pixels; must match. */
+            width?: number | undefined;
+            /** Height in pixels; must match. */
+            height?: number | undefined;
+          }
+      ))
+  );
+
+/**
+ * The input of `align` and `evaluate`: what a camera saw of an object, the mask of the object, and its mesh.
+ * `evaluate` measures lengths: it needs a camera, or a point map, and depth without an unknown shift.
+ */
+export type AlignInput = DepthView & {
   /** The mask of the object. */
   mask: MaskInput;
   /** The mesh to align. */
   mesh: MeshInput;
   /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
   resizeMask?: "nearest" | undefined;
-}
-
-/** An input with intrinsics. */
-export interface StatedCameraInput {
-  /** The intrinsics of the camera that took the depth map. */
-  camera: CameraInput;
-  cameraFile?: undefined;
-  imageId?: undefined;
-}
-
-/** An input with a camera file. */
-export interface CameraFromFileInput {
-  camera?: undefined;
-  /** A camera file. It also sets the scale of integer depth, unless `depthScale` is given. */
-  cameraFile: CameraFileInput;
-  /** The image id in a BOP `scene_camera.json`. */
-  imageId?: string | number | undefined;
-}
-
-/**
- * An input without intrinsics. They are fitted to a point map. With a depth map, they are those in the depth file, if it has
- * any; otherwise, the focal length is that of the photo's EXIF data, or unknown, and is estimated together with the pose.
- */
-export interface NoCameraInput {
-  camera?: UnknownCamera | undefined;
-  cameraFile?: undefined;
-  imageId?: undefined;
-}
-
-/** A depth map, possibly as a bare array with its size in the input. */
-export interface SizedDepthInput {
-  /** The depth map. */
-  depth: DepthInput;
-  /** Width in pixels. */
-  width: number;
-  /** Height in pixels. */
-  height: number;
-}
-
-/** A depth map with its own size. */
-export interface OwnSizeDepthInput {
-  /** The depth map. */
-  depth: Exclude<DepthInput, Float32Array | Uint16Array>;
-  /** Width in pixels; must match the depth map. */
-  width?: number | undefined;
-  /** Height in pixels; must match the depth map. */
-  height?: number | undefined;
-}
-
-/** A point map, possibly as a bare array with its size in the input. */
-export interface SizedPointMapInput {
-  /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
-  pointMap: Float32Array | PixelArray<Float32Array>;
-  /** Width in pixels. */
-  width: number;
-  /** Height in pixels. */
-  height: number;
-}
-
-/** A point map with its own size. */
-export interface OwnSizePointMapInput {
-  /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
-  pointMap: PixelArray<Float32Array>;
-  /** Width in pixels; must match the point map. */
-  width?: number | undefined;
-  /** Height in pixels; must match the point map. */
-  height?: number | undefined;
-}
-
-/** An object seen in a depth map. */
-export type DepthAlignInput = ObjectInput &
-  PhotoOfView &
-  (SizedDepthInput | OwnSizeDepthInput) &
-  (StatedCameraInput | CameraFromFileInput | NoCameraInput) & {
-    /**
-     * Metres per unit of depth, above 0: 0.001 for millimetres. By default, floats are metres, and integers use the
-     * scale of the camera file or, without one, are millimetres.
-     */
-    depthScale?: number | undefined;
-    /**
-     * What the values are; `"metric"` by default. For other kinds, the scale and the shift of the depth map are estimated
-     * together with the pose, and lengths are metric only if one of the object is known (`scale`, `knownExtentM`): see
-     * `depthCalibration` of the result.
-     */
-    depthKind?: DepthKind | undefined;
-    pointMap?: undefined;
-  };
-
-/** An object seen in a point map. Without a camera, the intrinsics are fitted to the point map. */
-export type PointMapAlignInput = ObjectInput &
-  PhotoOfView &
-  (SizedPointMapInput | OwnSizePointMapInput) &
-  (StatedCameraInput | CameraFromFileInput | NoCameraInput) & {
-    /** Whether the points are in metres, the default, or in an unknown unit. */
-    depthKind?: "metric" | "scale-invariant" | undefined;
-    depth?: undefined;
-    depthScale?: undefined;
-  };
-
-/**
- * The input of `align` and `evaluate`: depth with its camera, or a point map; the mask; the mesh; the photo, if there is one.
- * `evaluate` measures lengths: it needs a camera, or a point map, and depth without an unknown shift.
- */
-export type AlignInput = DepthAlignInput | PointMapAlignInput;
+};

@@ -10,7 +10,7 @@ import type { AlignInput } from "../input/types.js";
 import type { InputNotes } from "../results.js";
 import type { ClassNames } from "../snapshot.js";
 import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
-import type { KnownOfObject, SceneInput, SceneObjectInput } from "./types.js";
+import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */
 export interface ReadScene {
@@ -27,6 +27,9 @@ export interface ReadScene {
   notes: InputNotes;
 }
 
+/** What is known of an object, beside its mask and mesh. */
+type KnownOfObject = Omit<SceneObjectInput, (typeof objectProperties)[number]>;
+
 /** An object whose mask has been read. */
 export interface ReadObject {
   name: string | undefined;
@@ -36,7 +39,7 @@ export interface ReadObject {
 }
 
 const sceneProperties = ["objects", "labels", "occluders", "support"];
-const objectProperties = ["name", "mask", "label", "resizeMask", "mesh"];
+const objectProperties = ["name", "mask", "label", "resizeMask", "mesh"] as const;
 const knownProperties: readonly string[] = [
   "scale",
   "knownExtentM",

@@ -1,5 +1,5 @@
 /** The output of SAM 3D Objects as the files of a scene. The guide "Meshes of generators" describes the folder. */
-import { type CaseFiles, type CaseSettings, caseFiles, INITIAL_FILE } from "../case-files.js";
+import { type CaseFiles, caseFiles, INITIAL_FILE, type ReadCaseOptions } from "../case-files.js";
 import { fromSam3d } from "../conventions/sam3d.js";
 import { failure, renamed, Sim3AlignError } from "../error.js";
 import { parsedJson } from "../formats/json.js";
@@ -9,7 +9,7 @@ import { requiredBytes } from "../input/bytes.js";
 import type { DepthKind } from "../input/depth-kind.js";
 import { flattened, isRecord } from "../values.js";
 import { viewOfPointMap } from "./point-map-file.js";
-import { type SceneFiles, sceneFrom } from "./scene-files.js";
+import { type SceneCase, sceneFrom } from "./scene-files.js";
 
 /** Names of point maps, in order of preference. */
 const pointMaps = ["pointmap", "point_map", "moge", "points"].flatMap((name) => [`${name}.npy`, `${name}.npz`]);
@@ -47,10 +47,10 @@ export interface MadeScene {
  */
 export async function sam3dFrom(
   files: CaseFiles,
-  settings: CaseSettings,
+  settings: ReadCaseOptions,
   formats: LoadFormats,
   place = "the files",
-): Promise<SceneFiles> {
+): Promise<SceneCase> {
   const made = await sam3dScene(files, place);
   // A point map of a large image is smaller than the image.
   const { depthKind = made.depthKind, resizeMask = "nearest", ...more } = settings;

@@ -1,12 +1,12 @@
 /** A scene from files: one view, and the mask and the mesh of each object. */
-import { type CaseFiles, type CaseSettings, fileNotFound, filesOf, INITIAL_FILE, meshFile } from "../case-files.js";
+import { type CaseFiles, fileNotFound, filesOf, INITIAL_FILE, meshFile, type ReadCaseOptions } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import type { LoadFormats } from "../formats-module.js";
 import { withoutUndefined } from "../values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose files have been read, but not decoded. */
-export interface SceneFiles {
+export interface SceneCase {
   /** The input for `alignScene`. */
   input: SceneInput;
   /** The true pose of each object; `null` if unknown. */
@@ -20,10 +20,10 @@ export interface SceneFiles {
  */
 export async function sceneFrom(
   files: CaseFiles,
-  { resizeMask, ...settings }: CaseSettings,
+  { resizeMask, ...settings }: ReadCaseOptions,
   formats: LoadFormats,
   place = "the files",
-): Promise<SceneFiles> {
+): Promise<SceneCase> {
   const ofView = filesOf(files, settings, place);
   const depth = await ofView.read(ofView.required("depth"));
   const objects: SceneObjectInput[] = [];

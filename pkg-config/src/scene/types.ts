@@ -1,9 +1,9 @@
 /** The input and the result of `alignScene`. */
 import type { Sim3AlignError } from "../error.js";
 import type * as Core from "../generated/types.js";
-import type { AlignInput, MaskInput, MeshInput, ObjectInput, PixelArray } from "../input/types.js";
-import type { AlignOptions, CallOptions, Progress } from "../options.js";
-import type { Alignment, OfInput } from "../results.js";
+import type { DepthView, MaskInput, MeshInput, PixelArray } from "../input/types.js";
+import type { AlignOptions, Progress } from "../options.js";
+import type { Alignment, InputInfo } from "../results.js";
 
 /** A plane n·x + d = 0 in the OpenCV camera frame, metres; n points to the side of the objects. */
 export interface Plane {
@@ -13,14 +13,12 @@ export interface Plane {
   d: number;
 }
 
-/** What is known of one object, beside its mask and mesh. */
-export type KnownOfObject = Pick<
-  AlignOptions,
-  "scale" | "knownExtentM" | "knownExtentAxis" | "meshUp" | "cameraUp" | "symmetry" | "initial" | "search" | "quality"
->;
-
 /** An object of a scene: its mask or its label, its mesh, and what is known of it, which goes before the options. */
-export interface SceneObjectInput extends KnownOfObject {
+export interface SceneObjectInput
+  extends Pick<
+    AlignOptions,
+    "scale" | "knownExtentM" | "knownExtentAxis" | "meshUp" | "cameraUp" | "symmetry" | "initial" | "search" | "quality"
+  > {
   /** Its name, for the result. */
   name?: string | undefined;
   /** The mask of the object. Omit it if the scene has a label map. */
@@ -36,10 +34,8 @@ export interface SceneObjectInput extends KnownOfObject {
 /** One image in which each object has a value of its own; 0 is no object. */
 export type LabelMap = PixelArray<Uint8Array | Uint8ClampedArray | Uint16Array | Uint32Array>;
 
-type ViewInput<I> = I extends AlignInput ? Omit<I, keyof ObjectInput> : never;
-
-/** The input of `alignScene`: depth with a camera, or a point map, as for `align`, and the objects. */
-export type SceneInput = ViewInput<AlignInput> & {
+/** The input of `alignScene`: what a camera saw, as for `align`, and the objects. */
+export type SceneInput = DepthView & {
   /** The objects with a mesh. */
   objects: readonly SceneObjectInput[];
   /** The label map that the labels of the objects refer to. Other labels are occluders. */
@@ -51,7 +47,7 @@ export type SceneInput = ViewInput<AlignInput> & {
 };
 
 /** Options of `Aligner.alignScene`: those of `align`, for every object. */
-export interface SceneOptions extends Omit<AlignOptions, "onProgress" | "initial">, CallOptions {
+export interface SceneOptions extends Omit<AlignOptions, "onProgress" | "initial"> {
   /**
    * Moves each object that touches something along the normal of the support, so that it touches it exactly. The
    * pose says so; the metrics are those of the pose before. Default `false`.
@@ -62,7 +58,7 @@ export interface SceneOptions extends Omit<AlignOptions, "onProgress" | "initial
 }
 
 /** An object of a scene, aligned. */
-export interface SceneAlignment extends Omit<Alignment, "input" | keyof OfInput> {
+export interface SceneAlignment extends Omit<Alignment, "input" | keyof InputInfo> {
   /** The name of the input. */
   name?: string;
   /** What it rests on. */
@@ -98,7 +94,7 @@ export interface SceneMetrics {
 }
 
 /** The result of `alignScene`. */
-export interface SceneResult extends OfInput {
+export interface SceneResult extends InputInfo {
   /** In the order of the input. */
   objects: (SceneAlignment | SceneFailure)[];
   /** What the objects stand on; `null` if nothing in the depth map is a plane that they touch. */

@@ -3,17 +3,14 @@ import { wxyzFromXyzw } from "../conventions/rotation.js";
 import { overlappingPairs, type SimulatorBody, type SimulatorScene, viewRotation } from "./scene.js";
 import { meshFiles, spaced } from "./text.js";
 
-/** Files by their paths, as text. */
-export type TextFiles = Record<string, string>;
-
 /**
- * A scene as MJCF: `scene.xml`, and a mesh in `meshes/` for each body and each of its convex parts. A `numeric` named
+ * A scene as MJCF, texts by path: `scene.xml`, and a mesh in `meshes/` for each body and each of its convex parts. A `numeric` named
  * `NAME_found` holds the pose of a body before it was put at rest, as `pos` and `quat`.
  *
  * @example
  * for (const [path, text] of Object.entries(toMjcf(scene))) await writeFile(path, text);
  */
-export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): TextFiles {
+export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): Record<string, string> {
   const assets = bodies.flatMap(({ name, parts }) => [
     // Its inertia is not used: surfaces of generated meshes need not be closed.
     `<mesh name="${name}" file="${name}.obj" inertia="shell"/>`,
@@ -61,14 +58,14 @@ ${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>
 }
 
 function bodyLines(body: SimulatorBody): string[] {
-  const { name, position, rotation, isFixed, parts, colour } = body;
+  const { name, position, rotation, isFixed, parts, color } = body;
   const pose = `pos="${spaced(position)}" quat="${spaced(wxyzFromXyzw(rotation))}"`;
   const inertial = `<inertial pos="${spaced(body.centerOfMass)}" quat="${spaced(wxyzFromXyzw(body.principalAxes))}" mass="${spaced([body.mass])}" diaginertia="${spaced(body.principalMoments)}"/>`;
   return [
     `<body name="${name}" ${pose}>`,
     ...(isFixed ? [] : ["  <freejoint/>"]),
     ...(parts.length > 0 ? [`  ${inertial}`] : []),
-    `  <geom class="visual" mesh="${name}" rgba="${spaced([...colour, 1])}"/>`,
+    `  <geom class="visual" mesh="${name}" rgba="${spaced([...color, 1])}"/>`,
     ...parts.map((_, k) => `  <geom class="collision" mesh="${name}_${k}"/>`),
     "</body>",
   ];

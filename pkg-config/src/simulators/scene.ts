@@ -92,7 +92,7 @@ export interface SimulatorBody extends SimulatorPose {
   /** The surface, metres. */
   mesh: { positions: Float32Array; indices: Uint32Array };
   /** The mean colour, red, green and blue, 0 to 1, sRGB-encoded. */
-  colour: Vector3;
+  color: Vector3;
   /** How far its centre of mass is from its place in the pose of the transform, metres. */
   movedM: number;
   /** How far it was turned, degrees. */
@@ -166,7 +166,7 @@ export async function simulatorScene(
       principalAxes: Array.from(body.axes) as Quaternion,
       parts: body.parts,
       mesh: { positions: positions.map((x) => x * scale), indices },
-      colour: meanColour((own[i] as SimulatorObject).mesh),
+      color: meanColour((own[i] as SimulatorObject).mesh),
       movedM: body.movedM,
       turnedDeg: body.turnedDeg,
       inside: body.inside,

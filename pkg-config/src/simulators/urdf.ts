@@ -1,6 +1,5 @@
 /** Scenes as URDF: a file per body, and a list of their poses. */
 import { entry } from "../conventions/rotation.js";
-import type { TextFiles } from "./mjcf.js";
 import { inertiaOf, overlappingPairs, type SimulatorBody, type SimulatorScene } from "./scene.js";
 import { meshFiles, spaced } from "./text.js";
 
@@ -39,11 +38,11 @@ if __name__ == "__main__":
 `;
 
 /**
- * A scene as URDF: `NAME.urdf` for each body, `ground.urdf`, their meshes, `scene.json` with poses (metres, quaternions
+ * A scene as URDF, texts by path: `NAME.urdf` for each body, `ground.urdf`, their meshes, `scene.json` with poses (metres, quaternions
  * x, y, z, w, z up; `found` is the pose before a body was put at rest), and `load.py` for PyBullet.
  */
-export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): TextFiles {
-  const files: TextFiles = { "load.py": loader, ...meshFiles(bodies) };
+export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): Record<string, string> {
+  const files: Record<string, string> = { "load.py": loader, ...meshFiles(bodies) };
   for (const body of bodies) files[`${body.name}.urdf`] = urdfOf(body);
   if (hasGround) files["ground.urdf"] = ground;
   const entries = bodies.map(({ name, position, rotation, isFixed, found }) => ({
@@ -68,7 +67,7 @@ function viewOf({ position, rotation, fovYDeg, width, height }: SimulatorScene["
 const contact = `<contact><lateral_friction value="0.8"/><rolling_friction value="0.001"/><spinning_friction value="0.002"/></contact>`;
 
 function urdfOf(body: SimulatorBody): string {
-  const { name, mass, centerOfMass, parts, colour } = body;
+  const { name, mass, centerOfMass, parts, color } = body;
   const inertia = inertiaOf(body);
   const at = (i: 0 | 1 | 2, j: 0 | 1 | 2) => spaced([entry(inertia, i, j)]);
   const mesh = (file: string) =>
@@ -76,7 +75,7 @@ function urdfOf(body: SimulatorBody): string {
   const lines = [
     contact,
     `<inertial><origin xyz="${spaced(centerOfMass)}" rpy="0 0 0"/><mass value="${spaced([mass])}"/><inertia ixx="${at(0, 0)}" ixy="${at(0, 1)}" ixz="${at(0, 2)}" iyy="${at(1, 1)}" iyz="${at(1, 2)}" izz="${at(2, 2)}"/></inertial>`,
-    `<visual>${mesh(name)}<material name="colour"><color rgba="${spaced([...colour, 1])}"/></material></visual>`,
+    `<visual>${mesh(name)}<material name="colour"><color rgba="${spaced([...color, 1])}"/></material></visual>`,
     ...parts.map((_, k) => `<collision>${mesh(`${name}_${k}`)}</collision>`),
   ];
   return robot(name, lines);

@@ -71,7 +71,7 @@ ${indented(prims.join("\n\n"))}
 }
 
 function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
-  const { name, isFixed, inside, position, rotation, found, parts, colour } = body;
+  const { name, isFixed, inside, position, rotation, found, parts, color } = body;
   const filtered = inside.map((k) => `</World/${names[k]}>`);
   const schemas = [
     ...(isFixed ? [] : ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]),
@@ -90,12 +90,12 @@ function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
     ...(filtered.length > 0 ? [`rel physics:filteredPairs = [${filtered.join(", ")}]`] : []),
   ].map((line) => `    ${line}\n`);
   const hull = [`uniform token physics:approximation = "convexHull"`, `uniform token purpose = "guide"`];
-  const colliders = parts.map((part, k) => mesh(`collider_${k}`, part, colour, COLLIDER, hull));
+  const colliders = parts.map((part, k) => mesh(`collider_${k}`, part, color, COLLIDER, hull));
   return `def Xform "${name}"${applied(schemas)}
 {
 ${properties.join("")}${placement(position, rotation)}
 
-${indented([mesh("surface", body.mesh, colour, [], []), ...colliders].join("\n\n"))}
+${indented([mesh("surface", body.mesh, color, [], []), ...colliders].join("\n\n"))}
 }`;
 }
 
@@ -111,7 +111,7 @@ const placement = (position: ArrayLike<number>, rotation: ArrayLike<number>) =>
 function mesh(
   name: string,
   { positions, indices }: { positions: ArrayLike<number>; indices: ArrayLike<number> },
-  colour: readonly number[],
+  color: readonly number[],
   schemas: readonly string[],
   properties: readonly string[],
 ): string {
@@ -120,7 +120,7 @@ function mesh(
   );
   const { min, max } = bounds(positions);
   // Colours of USD are proportional to light.
-  const light = colour.map(lightOf);
+  const light = color.map(lightOf);
   return `def Mesh "${name}"${applied(schemas)}
 {
 ${properties.map((line) => `    ${line}\n`).join("")}    uniform bool doubleSided = 1

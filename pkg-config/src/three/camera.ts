@@ -1,8 +1,9 @@
 /** three.js cameras that match a pinhole camera. */
 
 import { failure } from "../error.js";
-import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
+import { pinholeOf } from "../formats/pinhole.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
+import type { CameraInput } from "../input/types.js";
 import { positive } from "../values.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
@@ -41,7 +42,7 @@ export interface ThreeCamera {
  * const { fov, aspect, projectionMatrix } = cameraFromPinhole({ fx: 600, fy: 600, cx: 320, cy: 240 }, { width: 640, height: 480 });
  * @throws {@link Sim3AlignError} `INVALID_CAMERA`, or for sizes below one pixel
  */
-export function cameraFromPinhole(camera: StatedCamera, lens: LensOptions): ThreeCamera {
+export function cameraFromPinhole(camera: CameraInput, lens: LensOptions): ThreeCamera {
   const { width, height } = sizeOf("lens", lens);
   const near = positive("lens.near", lens.near ?? 0.01);
   const far = positive("lens.far", lens.far ?? 100);
@@ -83,7 +84,7 @@ export function cameraFromPinhole(camera: StatedCamera, lens: LensOptions): Thre
  * applyPinhole(threeCamera, { fx: 600, fy: 600, cx: 310, cy: 250 }, { width: 640, height: 480 });
  * @throws {@link Sim3AlignError} as {@link cameraFromPinhole}
  */
-export function applyPinhole(target: PerspectiveCameraLike, camera: StatedCamera, lens: LensOptions): void {
+export function applyPinhole(target: PerspectiveCameraLike, camera: CameraInput, lens: LensOptions): void {
   const { fov, aspect, near, far, view } = cameraFromPinhole(camera, lens);
   Object.assign(target, { fov, near, far, zoom: 1, filmOffset: 0 });
   target.setViewOffset(view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height);

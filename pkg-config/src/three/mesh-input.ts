@@ -34,15 +34,6 @@ type Matrix4 = readonly number[];
 
 const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-/** Options of {@link meshInputFromThree}. */
-export interface MeshInputOptions {
-  /**
-   * The frame of the positions. "object", the default, is the local frame of the object, before its position,
-   * quaternion and scale, which `applyToObject3D` sets. "world" applies these and those of its parents.
-   */
-  frame?: "object" | "world" | undefined;
-}
-
 /**
  * All triangles of a three.js geometry, or of an object and its descendants, as a mesh for `align`. The matrices of
  * descendants and instances are applied. Bones and morph targets are ignored: the mesh is in its bind pose.
@@ -52,6 +43,8 @@ export interface MeshInputOptions {
  * browsers (a `DataTexture` can be read anywhere). Pass the bytes of the file instead.
  *
  * @param source a `BufferGeometry`, or an `Object3D` such as a `Mesh`, a `Group` or a loaded scene
+ * @param options `frame`: "object", the default, is the local frame of the object, before its position, quaternion and
+ * scale, which `applyToObject3D` sets; "world" applies these and those of its parents
  * @returns interleaved x, y, z in the chosen frame, three indices per triangle, and `colors`, or `samples` if there is a
  * texture
  *
@@ -61,7 +54,7 @@ export interface MeshInputOptions {
  */
 export function meshInputFromThree(
   source: GeometryLike | MeshTree,
-  { frame = "object" }: MeshInputOptions = {},
+  { frame = "object" }: { frame?: "object" | "world" | undefined } = {},
 ): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
   oneOf("options.frame", frame, ["object", "world"]);
   const arrays: Arrays = { positions: [], indices: [], colors: [], isColored: false, isUnknown: false, textured: [] };

@@ -5,36 +5,19 @@ export type Fields = Record<string, unknown>;
 
 export const isObject = (value: unknown): value is Fields => typeof value === "object" && value !== null;
 
-/** A writable `Vector3`. */
-export interface Vector3Like {
-  set(x: number, y: number, z: number): unknown;
-}
-
-/** A writable `Quaternion`. */
-export interface QuaternionLike {
-  set(x: number, y: number, z: number, w: number): unknown;
-}
-
-/** A `Matrix4`: 16 numbers, column-major. */
-export interface Matrix4Like {
-  readonly elements: ArrayLike<number>;
+/** A camera, or any other object whose world matrix is read. */
+export interface PlacedObject {
+  readonly matrixWorld: { readonly elements: ArrayLike<number> };
+  updateWorldMatrix(updateParents: boolean, updateChildren: boolean): void;
 }
 
 /** An `Object3D` with a writable pose. */
-export interface PosableObject {
-  readonly position: Vector3Like;
-  readonly quaternion: QuaternionLike;
-  readonly scale: Vector3Like;
-  readonly matrix: Matrix4Like;
-  readonly matrixWorld: Matrix4Like;
+export interface PosableObject extends PlacedObject {
+  readonly position: { set(x: number, y: number, z: number): unknown };
+  readonly quaternion: { set(x: number, y: number, z: number, w: number): unknown };
+  readonly scale: { set(x: number, y: number, z: number): unknown };
+  readonly matrix: { readonly elements: ArrayLike<number> };
   updateMatrix(): void;
-  updateWorldMatrix(updateParents: boolean, updateChildren: boolean): void;
-}
-
-/** A camera, or any other object whose world matrix is read. */
-export interface PlacedObject {
-  readonly matrixWorld: Matrix4Like;
-  updateWorldMatrix(updateParents: boolean, updateChildren: boolean): void;
 }
 
 /** A `BufferAttribute` or an `InterleavedBufferAttribute`. */

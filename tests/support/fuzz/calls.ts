@@ -1,8 +1,17 @@
 /** Calls with odd arguments. Each must settle, with a result or with an error of a kind that callers can handle. */
 import assert from "node:assert/strict";
 import { type Aligner, createAligner, OPTIONS, type OptionRow, Sim3AlignError, type Tracker } from "sim3align";
-import { externalResources, readCamera, readCase, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
-import { readSam3d, readScene } from "sim3align/scenes";
+import {
+  externalResources,
+  readCamera,
+  readCase,
+  readDepth,
+  readMask,
+  readMesh,
+  readPose,
+  readSam3d,
+  readScene,
+} from "sim3align/formats";
 import type { Random } from "../random.js";
 import { columnMajor, truth } from "../scene.js";
 import { type Fields, mutate } from "./mutations.js";

@@ -57,12 +57,11 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
   ["depthFromDisparity", "depth", () => ({ scale: 2, shift: 0.1 })],
   [
     "correctDepth",
-    () => new Float32Array([0, -1, Number.NaN, 0.5, 1, 2, 1e9, 3, 4]),
+    () => ({ data: new Float32Array([0, -1, Number.NaN, 0.5, 1, 2, 1e9, 3, 4]), width: 3, height: 3 }),
     (random) => ({ depthKind: pick(random, depthKinds), scale: 2, shift: -0.1 }),
   ],
   ["toFrame", "transform", (random) => pick(random, ["opencv", "opengl", "ros", "pytorch3d"])],
   ["fromFrame", "transform", (random) => pick(random, ["opencv", "opengl", "ros", "pytorch3d"])],
-  ["toOpenGL", "transform"],
   ["toThree", "transform"],
   ["toRos", "transform", () => ({ frame: "optical" })],
   ["exportGlb", "mesh", "transform", (random) => ({ mode: pick(random, ["node", "baked"]) })],
@@ -87,7 +86,7 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
   ["toGltfNode", "transform", () => ({ metrics: { iou: 0.9 }, name: "mug" })],
   ["fromLabelStudioRle", () => new Uint8Array([0, 0, 0, 192, 58, 8, 0, 1, 255, 7, 9, 9]), () => ({ ...image })],
   ["pointMapFromMoge", () => ({ points: valid.points().data, ...image, intrinsics: [1, 0, 0.5, 0, 1, 0.5, 0, 0, 1] })],
-  ["objectDimensions", "mesh", "transform", (random) => ({ box: pick(random, ["axes", "minimal"]) })],
+  ["orientedBoundingBox", "mesh", "transform", (random) => ({ box: pick(random, ["axes", "minimal"]) })],
   ["exportPly", "mesh", "transform"],
   [
     "cropInput",

@@ -1,7 +1,8 @@
 /** The custom element `<sim3-align>`. */
+
 import { signal } from "@preact/signals";
 import { render } from "preact";
-import type { Sim3Like } from "sim3align/conventions";
+import type { Sim3, Sim3Like } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import controls from "../../style/controls.css?inline";
 import own from "../../style/element.css?inline";
@@ -17,9 +18,9 @@ import { listenToKeys } from "../ui/shortcuts.js";
 import { WorkspaceProvider } from "../ui/workspace.js";
 import { Embedded } from "./embedded.js";
 import { errorDetail, sendEvents } from "./events.js";
-import { type ElementSession, plainPose, resultOf, sessionOf } from "./results.js";
+import { type ElementSession, poseOf, resultOf, sessionOf } from "./results.js";
 import type * as host from "./sim3-align.js";
-import type { ElementEvents, GivenInput, ObjectResult, PlainPose } from "./sim3-align.js";
+import type { ElementEvents, GivenInput, ObjectResult } from "./sim3-align.js";
 
 let shared: CSSStyleSheet[] | undefined;
 
@@ -111,9 +112,9 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
   }
 
   /** The pose of the selected object: OpenCV camera from mesh, metres; null before the first alignment. */
-  get pose(): PlainPose | null {
+  get pose(): Sim3 | null {
     const object = this.#workspace.selected.peek();
-    return object?.isPlaced ? plainPose(object) : null;
+    return object?.isPlaced ? poseOf(object) : null;
   }
 
   set pose(pose: Sim3Like | null) {

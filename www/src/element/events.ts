@@ -3,7 +3,7 @@ import { effect, untracked } from "@preact/signals";
 import { Sim3AlignError } from "sim3align";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Workspace } from "../state/workspace.js";
-import { plainPose, resultOf } from "./results.js";
+import { poseOf, resultOf } from "./results.js";
 import type { ElementEvents } from "./sim3-align.js";
 
 export type Send = <K extends keyof ElementEvents>(type: K, detail: ElementEvents[K]) => void;
@@ -53,7 +53,7 @@ function sendChanges(workspace: Workspace, object: ObjectModel, send: Send): (()
   let [shown, wasAccepted] = [pose.peek(), isAccepted.peek()];
   return [
     pose.subscribe((next) => {
-      if (next !== shown) send("posechange", { name, pose: plainPose(object), source: next.source });
+      if (next !== shown) send("posechange", { name, pose: poseOf(object), source: next.source });
       shown = next;
     }),
     isAccepted.subscribe((is) => {

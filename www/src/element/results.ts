@@ -1,26 +1,25 @@
 /** What an element says about its objects, as plain data. */
+import type { Sim3 } from "sim3align";
 import { type PackedState, stateOf } from "../session/pack.js";
 import { isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Workspace } from "../state/workspace.js";
-import type { ElementSession as HostSession, ObjectResult, PlainPose } from "./sim3-align.js";
+import type { ElementSession as HostSession, ObjectResult } from "./sim3-align.js";
 
 /** As hosts see it, with the state that is opaque to them. */
 export interface ElementSession extends HostSession {
   objects: { name: string; state: PackedState }[];
 }
 
-export const plainPose = ({ pose }: ObjectModel): PlainPose => {
-  const { scale, rotation, translation, matrix } = pose.peek().transform;
-  return { scale, rotation: [...rotation], translation: [...translation], matrix: [...matrix] };
-};
+/** A copy of the pose, which the host may keep and change. */
+export const poseOf = ({ pose }: ObjectModel): Sim3 => structuredClone(pose.peek().transform);
 
 export function resultOf({ scene }: Workspace, object: ObjectModel): ObjectResult {
   const whole = scene.peek();
   const { source } = object.pose.peek();
   return {
     name: object.name,
-    pose: source === "start" ? null : plainPose(object),
+    pose: source === "start" ? null : poseOf(object),
     source,
     sizeM: [...object.box.peek().sizeM],
     isMetric: whole === null || isMetric(whole),

@@ -9,8 +9,9 @@ import type {
   PixelArray,
   Preset,
   Quality,
+  Sim3,
+  Sim3Like,
 } from "sim3align";
-import type { Sim3Like } from "sim3align/conventions";
 
 /** An object of a given scene. */
 export interface GivenObject {
@@ -46,21 +47,11 @@ export interface GivenScene {
 /** What the property `scene` accepts. */
 export type GivenInput = GivenScene | Blob | readonly File[] | string;
 
-/** A pose: OpenCV camera from mesh, in metres if the result `isMetric`. */
-export interface PlainPose {
-  scale: number;
-  /** Unit quaternion x, y, z, w. */
-  rotation: number[];
-  translation: number[];
-  /** 16 numbers, column-major. */
-  matrix: number[];
-}
-
 /** The result of an object. */
 export interface ObjectResult {
   name: string;
-  /** Null before the first alignment. */
-  pose: PlainPose | null;
+  /** OpenCV camera from mesh, in metres if `isMetric`; null before the first alignment. */
+  pose: Sim3 | null;
   source: "start" | "aligned" | "alternative" | "refined" | "hand" | "tracked";
   /** Sides of the smallest box around the object, named after the nearest axes x, y and z of the mesh. */
   sizeM: number[];
@@ -103,15 +94,17 @@ export interface ElementEvents {
   /** An alignment or a refinement has ended. */
   align: { objects: ObjectResult[] };
   /** A pose has changed: by an alignment, by hand (with every step of a drag), or by an alternative. */
-  posechange: { name: string; pose: PlainPose; source: string };
+  posechange: { name: string; pose: Sim3; source: string };
   /** A person has accepted a pose, or a change has made it open again. */
   accept: ObjectResult;
   /** A scene could not be read, or an object could not be aligned. */
   error: { message: string; name: string | null; code: string | null };
 }
 
-type OwnEvent<K extends keyof ElementEvents> = CustomEvent<ElementEvents[K]>;
-type OtherEvent = Exclude<keyof HTMLElementEventMap, keyof ElementEvents>;
+/** The events by name, as `HTMLElementEventMap` has those of all elements. */
+export type Sim3AlignEventMap = Omit<HTMLElementEventMap, keyof ElementEvents> & {
+  [K in keyof ElementEvents]: CustomEvent<ElementEvents[K]>;
+};
 
 /** A scene with its objects, to be aligned and corrected. */
 export declare class Sim3AlignElement extends HTMLElement {
@@ -119,7 +112,7 @@ export declare class Sim3AlignElement extends HTMLElement {
   get scene(): GivenInput | null;
   set scene(given: GivenInput | null);
   /** The pose of the selected object: OpenCV camera from mesh, metres; null before the first alignment. */
-  get pose(): PlainPose | null;
+  get pose(): Sim3 | null;
   set pose(pose: Sim3Like | null);
   /** The name of the selected object. */
   get selected(): string | null;
@@ -139,24 +132,14 @@ export declare class Sim3AlignElement extends HTMLElement {
   /** Refines the pose of the selected object. */
   refine(): Promise<ObjectResult[]>;
 
-  addEventListener<K extends keyof ElementEvents>(
+  addEventListener<K extends keyof Sim3AlignEventMap>(
     type: K,
-    listener: (this: Sim3AlignElement, event: OwnEvent<K>) => unknown,
+    listener: (this: Sim3AlignElement, event: Sim3AlignEventMap[K]) => unknown,
     options?: boolean | AddEventListenerOptions,
   ): void;
-  addEventListener<K extends OtherEvent>(
+  removeEventListener<K extends keyof Sim3AlignEventMap>(
     type: K,
-    listener: (this: Sim3AlignElement, event: HTMLElementEventMap[K]) => unknown,
-    options?: boolean | AddEventListenerOptions,
-  ): void;
-  removeEventListener<K extends keyof ElementEvents>(
-    type: K,
-    listener: (this: Sim3AlignElement, event: OwnEvent<K>) => unknown,
-    options?: boolean | EventListenerOptions,
-  ): void;
-  removeEventListener<K extends OtherEvent>(
-    type: K,
-    listener: (this: Sim3AlignElement, event: HTMLElementEventMap[K]) => unknown,
+    listener: (this: Sim3AlignElement, event: Sim3AlignEventMap[K]) => unknown,
     options?: boolean | EventListenerOptions,
   ): void;
 }
@@ -172,7 +155,7 @@ export type Sim3AlignProps = {
   src?: string | undefined;
   manual?: boolean | undefined;
   theme?: "light" | "dark" | undefined;
-} & { [K in keyof ElementEvents as `on${K}`]?: ((event: OwnEvent<K>) => void) | undefined };
+} & { [K in keyof ElementEvents as `on${K}`]?: ((event: Sim3AlignEventMap[K]) => void) | undefined };
 
 declare global {
   interface HTMLElementTagNameMap {

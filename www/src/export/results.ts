@@ -1,6 +1,5 @@
 /** Results of scenes as plain data. */
-import type { Metrics } from "sim3align";
-import type { Sim3 } from "sim3align/conventions";
+import type { Metrics, Sim3 } from "sim3align";
 import type { Inputs, MaskSource } from "../load/inputs.js";
 import { isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";

@@ -1,5 +1,6 @@
 /** Recognises the frames of a video among the scenes of a drop. */
-import { type Sim3, toSim3 } from "sim3align/conventions";
+import type { Sim3 } from "sim3align";
+import { toSim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
 import type { Video } from "../state/video.js";
 import { titleOf } from "./pairing.js";

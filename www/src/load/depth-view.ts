@@ -1,7 +1,7 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
 import type { ImageSize } from "sim3align/conventions";
-import { type DepthImage, type DepthReading, readCamera, readExif } from "sim3align/formats";
+import { type DepthImage, type ReadDepthOptions, readCamera, readExif } from "sim3align/formats";
 import { foundCamera } from "sim3align/input/lens";
 import { corrected, provisional, type RawView } from "../state/calibration.js";
 import type { Scene } from "../state/scene.js";
@@ -23,7 +23,7 @@ function suggestedKind({ path }: Pick<NamedFile, "path">, bytes: Uint8Array): De
 export async function readDepthMap(
   file: NamedFile,
   kind: DepthKind | null,
-  scales: Omit<DepthReading, "depthKind">,
+  scales: Omit<ReadDepthOptions, "depthKind">,
 ): Promise<ReadDepthMap> {
   const bytes = await file.bytes();
   const depthKind = kind ?? suggestedKind(file, bytes);
@@ -58,11 +58,11 @@ export async function knownCamera(...given: Parameters<typeof readCamera>): Prom
 
 /** The depth map as it is shown until it is calibrated, and what there is to calibrate. */
 export function viewOf(
-  { data, depthKind }: Pick<ReadDepthMap, "data" | "depthKind">,
+  { data: depth, width, height, depthKind }: Pick<ReadDepthMap, "data" | "width" | "height" | "depthKind">,
   read: ReadCamera | null,
 ): { depthM: Float32Array; raw: RawView | null } {
-  const depthM = corrected({ depth: data, depthKind }, provisional(data, depthKind));
+  const depthM = corrected({ depth, width, height, depthKind }, provisional(depth, depthKind));
   if (read === null || (depthKind === "metric" && read.focalUncertainty === 0)) return { depthM, raw: null };
   const { camera, focalUncertainty, warnings } = read;
-  return { depthM, raw: { depth: data, depthKind, camera, focalUncertainty, warnings } };
+  return { depthM, raw: { depth, width, height, depthKind, camera, focalUncertainty, warnings } };
 }

@@ -1,7 +1,7 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
-import type { DepthKind, MeshArrays } from "sim3align";
+import type { DepthKind, MeshArrays, PixelArray } from "sim3align";
 import { type ImageSize, resizeCamera } from "sim3align/conventions";
-import { type CameraFile, type MeshFromFile, type PixelArray, readCamera, readPose } from "sim3align/formats";
+import { type CameraFile, type MeshFromFile, readCamera, readPose } from "sim3align/formats";
 import type { RawView } from "../state/calibration.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";

@@ -7,6 +7,8 @@ import type { Scene } from "./scene.js";
 export interface RawView {
   /** The values of the depth map. */
   readonly depth: Float32Array;
+  readonly width: number;
+  readonly height: number;
   readonly depthKind: DepthKind;
   readonly camera: Scene["camera"];
   /** Relative standard deviation of the focal length; 0 if it is known. */
@@ -32,9 +34,12 @@ export function provisional(values: Float32Array, depthKind: DepthKind): Numbers
 }
 
 /** The depth map of a raw view with these numbers. */
-export function corrected({ depth, depthKind }: Pick<RawView, "depth" | "depthKind">, numbers: Numbers): Float32Array {
+export function corrected(
+  { depth, width, height, depthKind }: Pick<RawView, "depth" | "width" | "height" | "depthKind">,
+  numbers: Numbers,
+): Float32Array {
   if (depthKind === "metric") return depth;
-  return correctDepth(depth, numbers as DepthCalibration);
+  return correctDepth({ data: depth, width, height }, numbers as DepthCalibration).data;
 }
 
 /** Whether lengths of a scene are metres. */

@@ -1,6 +1,6 @@
 /** Poses of a mesh (camera from mesh, OpenCV camera frame, metres) and the bounding box that they transform. */
-import type { MeshArrays } from "sim3align";
-import { applyToPoints, compose, objectDimensions, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
+import type { MeshArrays, Sim3 } from "sim3align";
+import { applyToPoints, compose, orientedBoundingBox, toSim3, type Vector3 } from "sim3align/conventions";
 import { once } from "../load/once.js";
 import type { AnyAlignment } from "./alignment.js";
 
@@ -42,7 +42,7 @@ const identity = { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] };
 
 /** Files are often tilted in their own axes, along which no person would measure. */
 export const tightBoundsOf = once((mesh: MeshArrays): TightBounds => {
-  const { centerM, sizeM, corners } = objectDimensions(mesh, identity, { box: "minimal" });
+  const { centerM, sizeM, corners } = orientedBoundingBox(mesh, identity, { box: "minimal" });
   return { centre: centerM, sides: sizeM, corners };
 });
 

@@ -1,7 +1,6 @@
 /** The video: frames with one object, and its tracked poses. */
 import { signal } from "@preact/signals";
-import type { DepthCalibration, TrackState } from "sim3align";
-import type { Sim3 } from "sim3align/conventions";
+import type { DepthCalibration, Sim3, TrackState } from "sim3align";
 import type { Inputs } from "../load/inputs.js";
 
 /** The pose of a frame. */

@@ -8,7 +8,7 @@ import { type Matrix3, product, quaternionOf, transposed, turned } from "./rotat
 import { moved, similarityOf } from "./similarity.js";
 
 /** An oriented box around an object, in the OpenCV camera frame. */
-export interface ObjectBox {
+export interface OrientedBoundingBox {
   /** Side lengths along the box's x, y and z, in metres; for a mesh with y up: width, height, depth. */
   sizeM: Vector3;
   /** The centre, in metres. */
@@ -17,15 +17,6 @@ export interface ObjectBox {
   rotation: Quaternion;
   /** The corners, in metres: from the smallest to the largest x, y, z of the box, with x changing fastest. */
   corners: [Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3];
-}
-
-/** Options of {@link objectDimensions}. */
-export interface DimensionOptions {
-  /**
-   * "axes", the default, uses the axes of the mesh; "minimal" uses the smallest box found, whose axes are named after
-   * the nearest axes of the mesh.
-   */
-  box?: "axes" | "minimal" | undefined;
 }
 
 /**
@@ -38,12 +29,18 @@ export interface DimensionOptions {
  *
  * @param mesh the aligned mesh
  * @param transform OpenCV camera from mesh: a result of `align`
+ * @param options `box`: "axes", the default, uses the axes of the mesh; "minimal" uses the smallest box found, whose axes
+ * are named after the nearest axes of the mesh
  *
  * @example
- * const { sizeM: [width, height, depth] } = objectDimensions(mesh, result);
+ * const { sizeM: [width, height, depth] } = orientedBoundingBox(mesh, result);
  * @throws {@link Sim3AlignError} for an invalid mesh or transform, and `INVALID_OPTION`
  */
-export function objectDimensions(mesh: MeshArrays, transform: Sim3Like, options: DimensionOptions = {}): ObjectBox {
+export function orientedBoundingBox(
+  mesh: MeshArrays,
+  transform: Sim3Like,
+  options: { box?: "axes" | "minimal" | undefined } = {},
+): OrientedBoundingBox {
   const { box = "axes" } = optionsOf(options);
   const checked = meshOf("mesh", mesh);
   const similarity = similarityOf(transform);
