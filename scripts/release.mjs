@@ -17,6 +17,7 @@ await script(async () => {
   });
   const [tag = ""] = positionals;
   const version = packageVersion();
-  const notes = releaseNotes(tag, version, readFileSync(at("CHANGELOG.md"), "utf8"));
+  const text = (/** @type {string} */ name) => readFileSync(at(name), "utf8");
+  const notes = releaseNotes(tag, version, text("CHANGELOG.md"), text("CITATION.cff"));
   print(`${values["distribution-tag"] ? distributionTag(version) : notes}\n`);
 });

@@ -1,14 +1,20 @@
-/** What a release needs: a tag that names the version, and a section of the changelog. */
+/** What a release needs: a tag that names the version, a dated section of the changelog, and a citation of both. */
+
+/**
+ * The section of a version in the changelog, with its heading.
+ * @param {string} changelog
+ * @param {string} version
+ */
+const wholeSection = (changelog, version) =>
+  changelog.split(/^(?=## \[)/m).find((text) => text.startsWith(`## [${version}]`));
 
 /**
  * The section of a version in the changelog, without its heading.
  * @param {string} changelog
  * @param {string} version
- * @returns {string | undefined}
  */
 export function sectionOf(changelog, version) {
-  const sections = changelog.split(/^(?=## \[)/m);
-  const section = sections.find((text) => text.startsWith(`## [${version}]`));
+  const section = wholeSection(changelog, version);
   return section?.slice(section.indexOf("\n") + 1).trim();
 }
 
@@ -17,10 +23,11 @@ export function sectionOf(changelog, version) {
  * @param {string} tag such as v1.0.0
  * @param {string} version of the package
  * @param {string} changelog
+ * @param {string} citation what CITATION.cff says
  * @returns {string}
- * @throws if the tag names another version, or the changelog is not ready
+ * @throws if the tag names another version, or changelog or citation are not ready
  */
-export function releaseNotes(tag, version, changelog) {
+export function releaseNotes(tag, version, changelog, citation) {
   if (tag !== `v${version}`) {
     throw new Error(
       `The tag is ${tag}, the package has version ${version}. Remedy: tag v${version}, or raise the version.`,
@@ -31,6 +38,12 @@ export function releaseNotes(tag, version, changelog) {
   const left = sectionOf(changelog, "Unreleased");
   if (left) {
     throw new Error(`CHANGELOG.md has unreleased changes. Remedy: move them to the section ## [${version}].`);
+  }
+  const date = wholeSection(changelog, version)?.match(/^## .* - (\d{4}-\d\d-\d\d)$/m)?.[1];
+  if (!date) throw new Error(`CHANGELOG.md has no date of ${version}. Remedy: write ## [${version}] - YYYY-MM-DD.`);
+  for (const line of [`version: ${version}`, `date-released: ${date}`]) {
+    if (!citation.split(/\r?\n/).includes(line))
+      throw new Error(`CITATION.cff does not say "${line}". Remedy: write it there.`);
   }
   return notes;
 }

@@ -1,18 +1,29 @@
-/** The examples of the help texts: each runs as it is written, on data of the names that it uses. */
+/** The examples of the help texts, and the commands of the documents: each runs as written, on data of the names that it uses. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { chmodSync, cpSync } from "node:fs";
+import { chmodSync, cpSync, readdirSync, readFileSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { before, test } from "node:test";
 import { resultsText, writeBop } from "../support/bop-dataset.js";
 import { files, folder, pixels, run, writeCase } from "../support/command-line.js";
-import { commandLine } from "../support/environment.js";
+import { commandLine, repository } from "../support/environment.js";
 import { cocoRle, glb, npy, obj, png, writeFiles } from "../support/files.js";
 import { frameAt, frameFiles } from "../support/rig.js";
 import { sam3dFiles } from "../support/sam3d.js";
 import { mesh, poseJson, truth, view } from "../support/scene.js";
 import { masks, poses, standingGlb, tableFiles, tableView } from "../support/table.js";
 import { deflated, zip } from "../support/zip.js";
+
+const skip = process.platform === "win32" ? "the examples are for a POSIX shell" : false;
+
+/** Runs a line of a shell in a folder of the data. */
+function shell(line: string, cwd: string): string {
+  const env = { ...process.env, PATH: `${join(folder, "bin")}${delimiter}${process.env.PATH}` };
+  const { status, stdout, stderr } = spawnSync("sh", ["-c", line], { cwd, encoding: "utf8", env });
+  assert.equal(status, 0, stderr);
+  assert.ok((stdout + stderr).trim() !== "", "it says something");
+  return stdout;
+}
 
 const write = (path: string, content: Uint8Array | string | object) => writeFiles(folder, { [path]: content });
 
@@ -57,10 +68,11 @@ before(() => {
   write("cnos_lmo-test.json", [{ ...detection, segmentation: cocoRle(mask, 640, 480) }]);
   write("other_lmo-test.csv", resultsText());
   write("bin/sim3align", `#!/bin/sh\nexec "${process.execPath}" "${commandLine}" "$@"\n`);
+  write("bin/npx", `#!/bin/sh\nexec "$@"\n`);
   // As much of jq as the examples use.
   const follow = `process.argv[1].slice(1).split(".").reduce((value, key) => value[key], JSON.parse(fs.readFileSync(0)))`;
   write("bin/jq", `#!/bin/sh\nexec "${process.execPath}" -p '${follow}' "$1"\n`);
-  for (const name of ["sim3align", "jq"]) chmodSync(join(folder, "bin", name), 0o755);
+  for (const name of ["sim3align", "npx", "jq"]) chmodSync(join(folder, "bin", name), 0o755);
 });
 
 for (const command of ["", "align", "scene", "track", "evaluate", "bop"]) {
@@ -75,12 +87,35 @@ for (const command of ["", "align", "scene", "track", "evaluate", "bop"]) {
   });
 
   for (const example of examples) {
-    test(example, { skip: process.platform === "win32" ? "the examples are for a POSIX shell" : false }, () => {
-      const env = { ...process.env, PATH: `${join(folder, "bin")}${delimiter}${process.env.PATH}` };
-      const { status, stdout, stderr } = spawnSync("sh", ["-c", example], { cwd: folder, encoding: "utf8", env });
-      assert.equal(status, 0, stderr);
-      assert.ok((stdout + stderr).trim() !== "", "it says something");
+    test(example, { skip }, () => {
+      const stdout = shell(example, folder);
       if (example.includes("jq")) assert.ok(Number(stdout) > 0, stdout);
     });
+  }
+}
+
+/** What the documents' commands read: the data of the help texts, some under other names. */
+const data = ["bop", "cases", "outputs", "scenes", "videos", "views", "d.png", "m.png", "mug.glb", "photo.jpg"];
+const others = {
+  ...{ "cases/mug": "mug", cases: "target/cases/cases/lmo" },
+  ...{ "d.npy": "depth.npy", "moge.npz": "depth.npz", "m.png": "mask.png" },
+};
+const documents = join(folder, "documents");
+before(() => {
+  const copies = [
+    ...[...data, "cnos_lmo-test.json", "other_lmo-test.csv"].map((name) => [name, name]),
+    ...Object.entries(others),
+  ];
+  for (const [from = "", to = ""] of copies) cpSync(join(folder, from), join(documents, to), { recursive: true });
+});
+
+const guides = readdirSync(join(repository, "docs", "guides")).map((name) => join("docs", "guides", name));
+const known = new Set<string>();
+for (const document of ["README.md", ...guides]) {
+  const text = readFileSync(join(repository, document), "utf8");
+  for (const [, command = ""] of text.matchAll(/^ {4}(npx sim3align .*)$/gm)) {
+    if (known.has(command)) continue;
+    known.add(command);
+    test(`${document}: ${command}`, { skip }, () => void shell(command, documents));
   }
 }

@@ -10,22 +10,34 @@ const { distributionTag, releaseNotes, sectionOf } = await scriptModule("lib/rel
 
 const changelog =
   "# Changelog\n\n## [Unreleased]\n\n## [1.1.0] - 2030-01-02\n\n### Added\n\n- New.\n\n## [1.0.0]\n\n- Old.\n";
+const citation = "type: software\nversion: 1.1.0\ndate-released: 2030-01-02\n";
 
 test("the notes of a release are the section of its version", () => {
-  assert.equal(releaseNotes("v1.1.0", "1.1.0", changelog), "### Added\n\n- New.");
-  assert.equal(releaseNotes("v1.0.0", "1.0.0", changelog), "- Old.");
+  assert.equal(releaseNotes("v1.1.0", "1.1.0", changelog, citation), "### Added\n\n- New.");
+  assert.equal(sectionOf(changelog, "1.0.0"), "- Old.");
 });
 
 test("a release needs its version's tag and section, and leaves nothing unreleased", () => {
   assert.throws(
-    () => releaseNotes("v1.0.0", "1.1.0", changelog),
+    () => releaseNotes("v1.0.0", "1.1.0", changelog, citation),
     /The tag is v1\.0\.0, the package has version 1\.1\.0/,
   );
-  assert.throws(() => releaseNotes("1.1.0", "1.1.0", changelog), /tag v1\.1\.0/);
-  assert.throws(() => releaseNotes("v1.2.0", "1.2.0", changelog), /says nothing of 1\.2\.0/);
-  assert.throws(() => releaseNotes("v1.1", "1.1", changelog), /says nothing of 1\.1\./);
+  assert.throws(() => releaseNotes("1.1.0", "1.1.0", changelog, citation), /tag v1\.1\.0/);
+  assert.throws(() => releaseNotes("v1.2.0", "1.2.0", changelog, citation), /says nothing of 1\.2\.0/);
+  assert.throws(() => releaseNotes("v1.1", "1.1", changelog, citation), /says nothing of 1\.1\./);
   const unreleased = changelog.replace("[Unreleased]\n", "[Unreleased]\n\n- Later.\n");
-  assert.throws(() => releaseNotes("v1.1.0", "1.1.0", unreleased), /unreleased changes/);
+  assert.throws(() => releaseNotes("v1.1.0", "1.1.0", unreleased, citation), /unreleased changes/);
+});
+
+test("a release has a date, and the citation names both", () => {
+  assert.throws(() => releaseNotes("v1.0.0", "1.0.0", changelog, citation), /no date of 1\.0\.0/);
+  const without = (line: string) => citation.replace(`${line}\n`, "");
+  for (const line of ["version: 1.1.0", "date-released: 2030-01-02"]) {
+    assert.throws(
+      () => releaseNotes("v1.1.0", "1.1.0", changelog, without(line)),
+      new RegExp(`does not say "${line}"`),
+    );
+  }
 });
 
 test("prereleases are installed on request only", () => {

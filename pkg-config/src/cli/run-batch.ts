@@ -42,14 +42,16 @@ export async function runBatch<T extends CaseKey>(
   const batch = new Batch(tasks.length, output, pictures, flags);
   const resumed = new Set<T>();
   if (flags.resume) {
+    let recorded = 0;
     for await (const { task, name, entry } of resumedEntries(output, tasks)) {
+      recorded += 1;
       output.addRecorded(name, entry);
       if (task === undefined) continue;
       resumed.add(task);
       await work.draw?.(pictures, task, entry, true);
       batch.resume(name, entry);
     }
-    console.error(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
+    if (recorded > 0) console.error(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
   }
   const left = tasks.filter((task) => !resumed.has(task));
   const { workers = "auto" } = flags;
