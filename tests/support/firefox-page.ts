@@ -16,7 +16,12 @@ export class FirefoxPage {
   async has(selector: string, text = /(?:)/): Promise<void> {
     const isThere = (selector: string, pattern: string) =>
       [...document.querySelectorAll(selector)].some(({ textContent }) => new RegExp(pattern).test(textContent ?? ""));
-    await this.page.waitForFunction(isThere, PATIENCE, selector, text.source);
+    try {
+      await this.page.waitForFunction(isThere, PATIENCE, selector, text.source);
+    } catch (cause) {
+      const found = await this.texts(`${selector}, #status, .intake [role=alert]`);
+      throw new Error(`No ${selector} with ${text}, but ${JSON.stringify(found).slice(0, 500)}`, { cause });
+    }
   }
 
   /** Waits until no element is found. */

@@ -88,6 +88,20 @@ export function hugeMesh(): Files {
   return { ...rest, "scan.glb": glbOf(json, new Uint8Array(1 << 21)) };
 }
 
+/** Twice as large as the depth map, as photos are. */
+export const [ACROSS, DOWN] = [2 * WIDTH, 2 * HEIGHT];
+
+/** The object in orange on a grey-blue ground, with some texture. */
+const rgb = new Uint8Array(3 * ACROSS * DOWN);
+for (let y = 0; y < DOWN; y++) {
+  for (let x = 0; x < ACROSS; x++) {
+    const inside = seen.mask[Math.floor(y / 2) * WIDTH + Math.floor(x / 2)] !== 0;
+    const grain = 6 * ((x * 7 + y * 13) % 5);
+    rgb.set(inside ? [210 + grain, 120 + grain, 40] : [60 + grain, 80 + grain, 110], 3 * (y * ACROSS + x));
+  }
+}
+export const photoPng = png(rgb, ACROSS, DOWN, 3);
+
 /** A script of a page that encodes an image as JPEG: its bytes in base64. */
 export const jpegOf = (image: Uint8Array): string => `(async () => {
   const bitmap = await createImageBitmap(await (await fetch("data:;base64,${Buffer.from(image).toString("base64")}")).blob());
