@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import type { BrowserContextOptions } from "playwright-core";
 import { WEBGL } from "../support/browser.js";
+import { cutParts } from "../support/layout.js";
 import { drop, files } from "../support/page-files.js";
 import { PATIENCE, pageTests } from "../support/site.js";
 
@@ -162,28 +163,7 @@ test("nothing is cut on any screen, nor are lengths above a metre", { address: "
     [1920, 1080],
   ] as const) {
     await page.setViewportSize({ width, height });
-    const cut = await page.evaluate(() => {
-      const shown = document.querySelector("#dimensions")?.firstElementChild;
-      // Lengths as those of a sofa.
-      for (const [i, text] of ["123.4", "100.2", "215.5"].entries()) {
-        const last = shown?.parentElement?.children[i]?.lastChild;
-        if (last) last.nodeValue = text;
-      }
-      return [...document.querySelectorAll("#dimensions, .drop, .run, .view-head, .hand-panel > *, .decision, .head")]
-        .filter((one) => one.checkVisibility())
-        .filter((one) => {
-          const own = one.getBoundingClientRect();
-          const { left, right } = (one.closest(".panel, .run, .view") ?? document.body).getBoundingClientRect();
-          return own.left < left - 0.5 || own.right > right + 0.5 || one.scrollWidth > one.clientWidth + 1;
-        })
-        .filter((one) => getComputedStyle(one).display !== "inline" || one.getBoundingClientRect().width > 0)
-        .map((one) => `${one.id || one.className} ${one.scrollWidth} of ${one.clientWidth}`);
-    });
-    assert.deepEqual(
-      cut.filter((text) => !text.endsWith("of 0")),
-      [],
-      `${width} × ${height}`,
-    );
+    assert.deepEqual(await page.evaluate(cutParts), [], `${width} × ${height}`);
     const rows = await page.evaluate(() =>
       [...document.querySelectorAll(".view-head")].map((one) => one.getBoundingClientRect().height),
     );

@@ -1,6 +1,7 @@
 /** Wrong inputs: each says at its own field what is wrong and what helps, and nothing runs meanwhile. */
 import assert from "node:assert/strict";
-import { glbOf, png } from "../support/files.js";
+import { png } from "../support/files.js";
+import { hugeMesh, otherCamera } from "../support/page-cases.js";
 import {
   cameraFile,
   choose,
@@ -158,19 +159,14 @@ test("remedies are buttons", async (opened, page) => {
 });
 
 test("a camera of a resized image is scaled, that of another image is not", async (opened, page) => {
-  const scaled = { fx: 2 * pinhole.fx, fy: 2 * pinhole.fy, cx: 2 * pinhole.cx + 0.5, cy: 2 * pinhole.cy + 0.5 };
-  const camera = (width: number, height: number) => ({
-    ...files,
-    "camera.json": jsonFile({ ...scaled, width, height }),
-  });
-  await drop(opened, camera(2 * WIDTH, HEIGHT));
+  await drop(opened, otherCamera(2 * WIDTH, HEIGHT));
   assert.match(
     (await problems(opened)).camera ?? "",
     /camera\.json|320 × 120.*cropped or stretched \(0\.5 in x, 1 in y\)/,
   );
   assert.equal(await page.getByRole("button", { name: "Scale it" }).count(), 0);
   await page.click("#intake-cancel");
-  await drop(opened, camera(2 * WIDTH, 2 * HEIGHT));
+  await drop(opened, otherCamera(2 * WIDTH, 2 * HEIGHT));
   assert.match((await problems(opened)).camera ?? "", /320 × 240, and this one is 160 × 120/);
   await page.getByRole("button", { name: "Scale it" }).click();
   await opened.shows("Own files");
@@ -183,18 +179,7 @@ test("a camera of a resized image is scaled, that of another image is not", asyn
 test("a mesh with too many triangles is refused by its header, and the scene stays", async (opened, page) => {
   await drop(opened, files);
   await opened.shows("Own files");
-  const accessors = [
-    { count: 3, componentType: 5126, type: "VEC3" },
-    { count: 51_000_000, componentType: 5125, type: "SCALAR" },
-  ];
-  const json = {
-    asset: { version: "2.0" },
-    nodes: [{ mesh: 0 }],
-    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
-    accessors,
-  };
-  const { "mesh.obj": _, ...rest } = files;
-  await drop(opened, { ...rest, "scan.glb": glbOf(json, new Uint8Array(1 << 21)) });
+  await drop(opened, hugeMesh());
   assert.match(
     (await problems(opened)).mesh ?? "",
     /scan\.glb: Found 17 000 000 triangles; expected at most 4 194 304/,

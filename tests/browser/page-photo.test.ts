@@ -2,37 +2,15 @@
 import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
 import { tiff, withExif } from "../support/exif.js";
-import { png } from "../support/files.js";
+import { ACROSS, DOWN, jpegOf, photoPng } from "../support/page-cases.js";
 import { depthNpy, drop, type Files, files, HEIGHT, maskPng, seen, WIDTH } from "../support/page-files.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
 
-/** Twice as large as the depth map, as photos are. */
-const [ACROSS, DOWN] = [2 * WIDTH, 2 * HEIGHT];
-
-/** The object in orange on a grey-blue ground, with some texture. */
-const rgb = new Uint8Array(3 * ACROSS * DOWN);
-for (let y = 0; y < DOWN; y++) {
-  for (let x = 0; x < ACROSS; x++) {
-    const inside = seen.mask[Math.floor(y / 2) * WIDTH + Math.floor(x / 2)] !== 0;
-    const grain = 6 * ((x * 7 + y * 13) % 5);
-    rgb.set(inside ? [210 + grain, 120 + grain, 40] : [60 + grain, 80 + grain, 110], 3 * (y * ACROSS + x));
-  }
-}
-const photoPng = png(rgb, ACROSS, DOWN, 3);
-
 /** A JPEG of an image; with EXIF data, its focal length is 65 mm on full frame: 300 pixels of the depth map. */
 async function jpeg(page: Page, image: Uint8Array, hasExif = false): Promise<Uint8Array> {
-  const address = await page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes]));
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
-    canvas.getContext("2d")?.drawImage(bitmap, 0, 0);
-    return canvas.toDataURL("image/jpeg", 0.9);
-  }, Buffer.from(image).toString("base64"));
-  const bytes = Buffer.from(address.split(",")[1] ?? "", "base64");
+  const bytes = Buffer.from((await page.evaluate(jpegOf(image))) as string, "base64");
   return hasExif
     ? withExif(bytes, tiff({ make: "Maker" }, { focal35: 65, pixelX: ACROSS, pixelY: DOWN }, true))
     : bytes;

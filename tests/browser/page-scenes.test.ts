@@ -2,16 +2,11 @@
 import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
 import { violations } from "../support/axe.js";
-import { depthNpy, drop, dropFolder, type Files, files, inFolder, seen } from "../support/page-files.js";
+import { farther, four } from "../support/page-cases.js";
+import { drop, dropFolder, files, inFolder } from "../support/page-files.js";
 import { PATIENCE, pageTests, SitePage, until } from "../support/site.js";
 
 const test = pageTests();
-
-/** The same scene, farther away: another depth map. */
-const farther = (byM: number): Files => ({ ...files, "depth.npy": depthNpy(seen.depth.map((z) => z + byM)) });
-
-/** Four scenes, each in a folder of its own. */
-const four: Files = Object.assign({}, ...[1, 2, 3, 4].map((i) => inFolder(`IMG_00${i}`, farther(0.01 * i))));
 
 const isShown = (page: Page, scene: string) => page.locator(`main[data-scene="${scene}"]`).waitFor(PATIENCE);
 

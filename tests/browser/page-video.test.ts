@@ -1,56 +1,12 @@
 /** Videos: frames in folders are tracked through, shown on a time axis, and corrected in the middle. */
 import assert from "node:assert/strict";
 import { WEBGL } from "../support/browser.js";
-import { obj } from "../support/files.js";
-import {
-  cameraFile,
-  depthNpy,
-  dropFolder,
-  type Files,
-  HEIGHT,
-  jsonFile,
-  maskPng,
-  pinhole,
-  WIDTH,
-} from "../support/page-files.js";
-import { mesh, type Pose, render, truth } from "../support/scene.js";
+import { COUNT, cameraAt, frames, poseIn } from "../support/page-cases.js";
+import { dropFolder } from "../support/page-files.js";
+import { truth } from "../support/scene.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests(WEBGL);
-
-const COUNT = 5;
-
-/** The pose in a frame: the object moves aside, 2 % of its distance from frame to frame. */
-function poseIn(frame: number): Pose {
-  const [x, y, z] = truth.translation;
-  return { ...truth, translation: [x + 0.02 * z * (frame - (COUNT - 1) / 2), y, z] };
-}
-
-/** The pose of a camera that has moved along x, as a file. */
-function cameraAt(x: number): Uint8Array {
-  const rows = [
-    [1, 0, 0, x],
-    [0, 1, 0, 0],
-    [0, 0, 1, 0],
-    [0, 0, 0, 1],
-  ];
-  return jsonFile({ camera_to_world: rows });
-}
-
-/** The folders of the frames. */
-function frames(hasMasks: boolean): Files {
-  const files: Files = { "toy/mesh.obj": obj(mesh) };
-  for (let i = 0; i < COUNT; i++) {
-    const seen = render(mesh, poseIn(i), pinhole, WIDTH, HEIGHT);
-    const folder = `toy/frame_0${i}/`;
-    files[`${folder}depth.npy`] = depthNpy(seen.depth);
-    files[`${folder}camera.json`] = cameraFile;
-    // The camera moves along; the world is that of the first frame.
-    files[`${folder}pose.json`] = cameraAt(0.01 * i);
-    if (hasMasks || i === 0) files[`${folder}mask.png`] = maskPng(seen.mask);
-  }
-  return files;
-}
 
 /** The x of the object's centre, metres. */
 async function centreX({ page }: SitePage): Promise<number> {

@@ -1,5 +1,5 @@
 /** Firefox, driven by WebDriver BiDi, and a static server for its pages. */
-import puppeteer, { type Browser, type Page } from "puppeteer-core";
+import puppeteer, { type Browser, type BrowserContext, type Page } from "puppeteer-core";
 import { type Server, serve } from "./static-server.js";
 
 const executablePath = process.env.FIREFOX_PATH;
@@ -8,6 +8,12 @@ const executablePath = process.env.FIREFOX_PATH;
 export const skipFirefox: string | false = executablePath
   ? false
   : "No Firefox. Remedy: install it (Debian: apt-get install firefox-esr), or name it in FIREFOX_PATH.";
+
+/** A page and its errors, a list that grows. */
+interface Opened {
+  page: Page;
+  errors: string[];
+}
 
 /** Firefox and a server of a folder. */
 export class FirefoxTest {
@@ -23,16 +29,27 @@ export class FirefoxTest {
     return new FirefoxTest(browser, await serve(folder));
   }
 
-  /** Opens a page. Returns it and its errors, a list that grows. */
-  async open(path: string): Promise<{ page: Page; errors: string[] }> {
-    const page = await this.browser.newPage();
+  /**
+   * Opens a page, which keeps its data for itself.
+   * @param path its path in the folder, or a URL
+   * @param script runs in the page before its own scripts
+   */
+  async open(path: string, script?: () => void): Promise<Opened> {
+    const context = await this.browser.createBrowserContext();
+    return FirefoxTest.tab(context, new URL(path, this.server.url).href, script);
+  }
+
+  /** Opens a page beside others, which share their data. */
+  static async tab(context: BrowserContext, url: string, script?: () => void): Promise<Opened> {
+    const page = await context.newPage();
     await page.setViewport({ width: 1280, height: 800 });
+    if (script !== undefined) await page.evaluateOnNewDocument(script);
     const errors: string[] = [];
     page.on("pageerror", (error) => errors.push(`${error}`));
     page.on("console", (message) => {
       if (message.type() === "error") errors.push(message.text());
     });
-    await page.goto(new URL(path, this.server.url).href);
+    await page.goto(url);
     return { page, errors };
   }
 

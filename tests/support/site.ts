@@ -35,7 +35,7 @@ declare global {
 }
 
 /** Runs in the page: replaces `Worker` by one whose messages wait for the gate. */
-function installWorkerGate(): void {
+export function installWorkerGate(): void {
   let isOpen = true;
   let isPassing = false;
   const waiting: (() => void)[] = [];

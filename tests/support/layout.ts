@@ -1,0 +1,20 @@
+/** What the layout of the page does, measured in it. */
+
+/** Runs in the page: the parts that are cut, with lengths as those of a sofa. */
+export function cutParts(): string[] {
+  const shown = document.querySelector("#dimensions")?.firstElementChild;
+  for (const [i, text] of ["123.4", "100.2", "215.5"].entries()) {
+    const last = shown?.parentElement?.children[i]?.lastChild;
+    if (last) last.nodeValue = text;
+  }
+  return [...document.querySelectorAll("#dimensions, .drop, .run, .view-head, .hand-panel > *, .decision, .head")]
+    .filter((one) => one.checkVisibility())
+    .filter((one) => {
+      const own = one.getBoundingClientRect();
+      const { left, right } = (one.closest(".panel, .run, .view") ?? document.body).getBoundingClientRect();
+      return own.left < left - 0.5 || own.right > right + 0.5 || one.scrollWidth > one.clientWidth + 1;
+    })
+    .filter((one) => getComputedStyle(one).display !== "inline" || one.getBoundingClientRect().width > 0)
+    .map((one) => `${one.id || one.className} ${one.scrollWidth} of ${one.clientWidth}`)
+    .filter((text) => !text.endsWith("of 0"));
+}

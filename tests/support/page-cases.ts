@@ -1,0 +1,147 @@
+/** Scenes that the tests of the page drop on it: several ones, a video, and inputs of which one is wrong or odd. */
+import { zipSync } from "fflate";
+import { glbOf, obj, png } from "./files.js";
+import {
+  cameraFile,
+  depthNpy,
+  type Files,
+  files,
+  HEIGHT,
+  inFolder,
+  jsonFile,
+  maskPng,
+  pinhole,
+  seen,
+  WIDTH,
+} from "./page-files.js";
+import { cuboid, mesh, type Pose, render, transformed, truth } from "./scene.js";
+
+/** Files as one archive. */
+export const zipped = (content: Files): Files => ({ "folder.zip": Buffer.from(zipSync(content)) });
+
+/** The complete case with another depth map, mask or mesh. */
+const changed = (more: Files): Files => ({ ...files, ...more });
+
+/** The same scene, farther away: another depth map. */
+export const farther = (byM: number): Files => changed({ "depth.npy": depthNpy(seen.depth.map((z) => z + byM)) });
+
+/** Four scenes, each in a folder of its own. */
+export const four: Files = Object.assign({}, ...[1, 2, 3, 4].map((i) => inFolder(`IMG_00${i}`, farther(0.01 * i))));
+
+/** The sides of a box of sugar, metres. */
+export const SIDES_M = [0.045, 0.092, 0.176] as const;
+
+/** That box, in a file whose axes are tilted against its sides, in another unit, as generated meshes are. */
+export function tiltedBox(): Files {
+  const box = cuboid(SIDES_M[0] / 2, SIDES_M[1] / 2, SIDES_M[2] / 2);
+  const tilt = { ...truth, scale: 7, rotation: [0.42, 0.36, -0.18, 0.814], translation: [1, 2, 3] } satisfies Pose;
+  const view = render(box, { ...truth, scale: 1 }, pinhole, WIDTH, HEIGHT);
+  return changed({
+    "depth.npy": depthNpy(view.depth),
+    "mask.png": maskPng(view.mask),
+    "mesh.obj": obj({ positions: Float32Array.from(transformed(box.positions, tilt)), indices: box.indices }),
+  });
+}
+
+/** The mask is a patch of the wall, which is not quite parallel to the image: no object at all. */
+export function bareWall(): Files {
+  const depth = seen.depth.map((z, i) => (z === 1.5 ? 1 / (1 / z + 0.0006 * (i % WIDTH)) : z));
+  const mask = new Uint8Array(WIDTH * HEIGHT);
+  for (let v = 8; v < 40; v++) mask.fill(1, v * WIDTH + 8, v * WIDTH + 48);
+  return changed({ "depth.npy": depthNpy(depth), "mask.png": maskPng(mask) });
+}
+
+/** Depth of the shape that depth models return, passed as metres. */
+export const relativeDepth = (): Files =>
+  changed({ "depth.npy": depthNpy(seen.depth.map((z) => (z > 0 ? 0.05 + 2 * (z - 0.6) : 0))) });
+
+/** Depth in another unit than millimetres, as some datasets have it. */
+export function depthInUnits(perMetre: number): Files {
+  const depth = png(
+    Uint16Array.from(seen.depth, (z) => Math.round(perMetre * z)),
+    WIDTH,
+    HEIGHT,
+  );
+  const { "depth.npy": _, ...rest } = files;
+  return { ...rest, "depth.png": depth };
+}
+
+/** The intrinsics are those of an image of twice the size, or of another one. */
+export function otherCamera(width: number, height: number): Files {
+  const scaled = { fx: 2 * pinhole.fx, fy: 2 * pinhole.fy, cx: 2 * pinhole.cx + 0.5, cy: 2 * pinhole.cy + 0.5 };
+  return changed({ "camera.json": jsonFile({ ...scaled, width, height }) });
+}
+
+/** The header of the mesh says that it has 17 million triangles. */
+export function hugeMesh(): Files {
+  const accessors = [
+    { count: 3, componentType: 5126, type: "VEC3" },
+    { count: 51_000_000, componentType: 5125, type: "SCALAR" },
+  ];
+  const json = {
+    asset: { version: "2.0" },
+    nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+    accessors,
+  };
+  const { "mesh.obj": _, ...rest } = files;
+  return { ...rest, "scan.glb": glbOf(json, new Uint8Array(1 << 21)) };
+}
+
+/** Twice as large as the depth map, as photos are. */
+export const [ACROSS, DOWN] = [2 * WIDTH, 2 * HEIGHT];
+
+/** The object in orange on a grey-blue ground, with some texture. */
+const rgb = new Uint8Array(3 * ACROSS * DOWN);
+for (let y = 0; y < DOWN; y++) {
+  for (let x = 0; x < ACROSS; x++) {
+    const inside = seen.mask[Math.floor(y / 2) * WIDTH + Math.floor(x / 2)] !== 0;
+    const grain = 6 * ((x * 7 + y * 13) % 5);
+    rgb.set(inside ? [210 + grain, 120 + grain, 40] : [60 + grain, 80 + grain, 110], 3 * (y * ACROSS + x));
+  }
+}
+export const photoPng = png(rgb, ACROSS, DOWN, 3);
+
+/** A script of a page that encodes an image as JPEG: its bytes in base64. */
+export const jpegOf = (image: Uint8Array): string => `(async () => {
+  const bitmap = await createImageBitmap(await (await fetch("data:;base64,${Buffer.from(image).toString("base64")}")).blob());
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
+  canvas.getContext("2d").drawImage(bitmap, 0, 0);
+  return canvas.toDataURL("image/jpeg", 0.9).split(",")[1];
+})()`;
+
+/** The number of frames of the video. */
+export const COUNT = 5;
+
+/** The pose in a frame: the object moves aside, 2 % of its distance from frame to frame. */
+export function poseIn(frame: number): Pose {
+  const [x, y, z] = truth.translation;
+  return { ...truth, translation: [x + 0.02 * z * (frame - (COUNT - 1) / 2), y, z] };
+}
+
+/** The pose of a camera that has moved along x, as a file. */
+export function cameraAt(x: number): Uint8Array {
+  const rows = [
+    [1, 0, 0, x],
+    [0, 1, 0, 0],
+    [0, 0, 1, 0],
+    [0, 0, 0, 1],
+  ];
+  return jsonFile({ camera_to_world: rows });
+}
+
+/** A video: the folders of its frames. */
+export function frames(hasMasks: boolean): Files {
+  const files: Files = { "toy/mesh.obj": obj(mesh) };
+  for (let i = 0; i < COUNT; i++) {
+    const seen = render(mesh, poseIn(i), pinhole, WIDTH, HEIGHT);
+    const folder = `toy/frame_0${i}/`;
+    files[`${folder}depth.npy`] = depthNpy(seen.depth);
+    files[`${folder}camera.json`] = cameraFile;
+    // The camera moves along; the world is that of the first frame.
+    files[`${folder}pose.json`] = cameraAt(0.01 * i);
+    if (hasMasks || i === 0) files[`${folder}mask.png`] = maskPng(seen.mask);
+  }
+  return files;
+}
