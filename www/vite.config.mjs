@@ -17,7 +17,7 @@ const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(run\/(advice|video|known-size)|load\/(allowance|archives|case-url|label-masks|mesh-header|slices)|draw\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|panels\/(advised|kept|palette|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
+  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(run\/(advice|video|known-size)|load\/(allowance|archives|case-url|label-masks|mesh-header|slices)|draw\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(nudges|reveal)|panels\/(advised|choices|kept|palette|palette-commands|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);

@@ -8,6 +8,7 @@ import { HandPanel, OptionsPanel } from "./panels/later.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
+import { ScenesPanel } from "./panels/scenes.js";
 import { StartPanel } from "./panels/start-panel.js";
 import { draft } from "./state/draft.js";
 import { isHelpOpen, isPaletteOpen } from "./state/help.js";
@@ -61,6 +62,7 @@ export function App() {
             <StartPanel />
             <ResultPanel />
             <ObjectsPanel />
+            <ScenesPanel />
             <ExportPanel />
             <InputPanel />
             <OptionsPanel />

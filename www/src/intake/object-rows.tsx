@@ -3,6 +3,7 @@ import { useMemo } from "preact/hooks";
 import { maskThumbnail, meshThumbnail } from "../draw/thumbnails.js";
 import { baseName } from "../load/files.js";
 import type { Inputs, MeshSource, ObjectFiles } from "../load/inputs.js";
+import { maskExtensions } from "../load/masks.js";
 import { withoutObject } from "../load/problems.js";
 import { colourOf, type ReadObject } from "../load/read-scene.js";
 import { type Draft, draftInputs } from "../state/draft.js";
@@ -17,6 +18,8 @@ import { meshExtensions, resourceExtensions } from "./roles.js";
 /** Width and height of a thumbnail in pixels. */
 const SIZE = 112;
 
+const endings = (extensions: readonly string[]) => extensions.map((one) => `.${one}`).join();
+
 const emptyObject: ReadObject = { mask: null, mesh: null, glb: null, truth: null };
 
 export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
@@ -28,14 +31,14 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
         <h3 id="pairs-title">Objects: mask and mesh</h3>
         <span class="field-inline">
           <span>Masks</span>
-          <FieldFiles field="mask" title="Masks" accept=".png,.npy,.json" isWrong={isWrong("mask")} multiple />
+          <FieldFiles field="mask" title="Masks" accept={endings(maskExtensions)} isWrong={isWrong("mask")} multiple />
         </span>
         <span class="field-inline">
           <span>Meshes</span>
           <FieldFiles
             field="mesh"
             title="Meshes"
-            accept={[...meshExtensions, ...resourceExtensions].map((ending) => `.${ending}`).join()}
+            accept={endings([...meshExtensions, ...resourceExtensions])}
             isWrong={isWrong("mesh")}
             multiple
           />

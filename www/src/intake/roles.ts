@@ -3,9 +3,9 @@ import { INITIAL_FILE } from "sim3align/case-files";
 import { baseName, extension, type NamedFile } from "../load/files.js";
 import type { Role, Typed } from "../load/inputs.js";
 import { isBlackAndWhite } from "../load/label-masks.js";
+import { photoExtensions } from "../load/photo.js";
 
 export const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
-const photoExtensions = ["jpg", "jpeg", "webp", "avif", "heic", "heif"];
 export const resourceExtensions = ["bin", "mtl"];
 /** Files of depth models. */
 const depthExtensions = ["npz", "exr", "tif", "tiff", "pfm"];

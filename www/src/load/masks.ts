@@ -4,6 +4,7 @@ import { resizeMask } from "sim3align/conventions";
 import { extension, type NamedFile } from "./files.js";
 import type { MaskSource } from "./inputs.js";
 import { once } from "./once.js";
+import { photoExtensions } from "./photo.js";
 import { readMask } from "./reader.js";
 
 /** A mask, 1 is the object, at its own size. */
@@ -13,11 +14,11 @@ export interface ReadMask {
   height: number;
 }
 
-/** Images that only the browser decodes. */
-const isPicture = ({ path }: NamedFile) => /^(jpe?g|webp|avif|heic|heif)$/.test(extension(path));
+/** The endings of files that may be masks. */
+export const maskExtensions = ["png", "npy", "json", ...photoExtensions];
 
 const plainMask = once(async (file: NamedFile): Promise<ReadMask> => {
-  if (isPicture(file)) return (await import("./label-masks.js")).maskOfPicture(file);
+  if (photoExtensions.includes(extension(file.path))) return (await import("./label-masks.js")).maskOfPicture(file);
   return readMask(await file.bytes());
 });
 

@@ -15,6 +15,9 @@ interface Size {
   height: number;
 }
 
+/** Images that only the browser decodes. */
+export const photoExtensions = ["jpg", "jpeg", "webp", "avif", "heic", "heif"];
+
 /** The longest side of a photo that is shown without a depth map, pixels. */
 const MAX_SIDE = 1280;
 

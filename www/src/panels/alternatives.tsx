@@ -3,7 +3,6 @@ import { useMemo } from "preact/hooks";
 import { poseThumbnail } from "../draw/pose-thumbnail.js";
 import { applyAlternative, shownAlternative } from "../run/alternatives.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { Tip } from "../ui/controls.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "../views/image.js";
@@ -21,13 +20,7 @@ export function Alternatives({ object }: { object: ObjectModel | null }) {
   const shown = shownAlternative(object);
   return (
     <fieldset class="alternatives">
-      <legend>
-        Alternatives
-        <Tip label="alternatives">
-          Other poses that explain the observation nearly as well, best first. Objects that look similar from several
-          sides have several. The angle is the rotation from the result.
-        </Tip>
-      </legend>
+      <legend>Alternatives, by their rotation from the best</legend>
       {[best, ...alternatives].map((pose, i) => (
         <button
           key={`${i} ${pose.matrix[0]}`}

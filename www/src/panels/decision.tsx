@@ -18,13 +18,10 @@ export function accept(workspace: Workspace): void {
 export function fix({ gizmo }: Workspace, { currentTarget }: Event): void {
   gizmo.value = gizmo.peek() ?? "translate";
   const root = (currentTarget as Element).getRootNode() as Document | ShadowRoot;
-  const panel = root.querySelector<HTMLDetailsElement>(".hand-panel");
-  if (panel === null) return;
-  panel.open = true;
-  panel.scrollIntoView({ block: "nearest" });
+  const panel = root.querySelector(".hand-panel");
+  panel?.scrollIntoView({ block: "nearest" });
   // Without a 3D view there are no handles.
-  const buttons = [...panel.querySelectorAll<HTMLElement>("button:enabled")];
-  buttons.find((button) => button.checkVisibility())?.focus();
+  panel?.querySelector<HTMLElement>(".handles button:enabled, #refine")?.focus();
 }
 
 /** Selects the next object that is not accepted yet, or else the next one; after the last one, opens the next scene. */

@@ -22,9 +22,40 @@ export function Details({ object }: { object: ObjectModel | null }) {
           </p>
         ))}
       {object !== null && <StageTimes object={object} />}
+      <Meanings />
     </details>
   );
 }
+
+/** What the numbers of a result mean. */
+const meanings: readonly (readonly [title: string, text: string])[] = [
+  [
+    "Confidence",
+    "Probability that the pose is correct: scale within 5 %, rotation within 10°, position within 5 % of the object's size. It is calibrated on generated cases and assumes that the mesh is that of the object.",
+  ],
+  [
+    "Alternatives",
+    "Other poses that explain the observation nearly as well, best first. Objects that look similar from several sides have several. The angle is the rotation from the result.",
+  ],
+  ...metricTexts.map(
+    ({ title, about, better }) =>
+      [title, `${about} ${better === "higher" ? "Higher is better." : "Lower is better."}`] as const,
+  ),
+];
+
+const Meanings = () => (
+  <details class="more meanings">
+    <summary>What the numbers mean</summary>
+    <dl>
+      {meanings.map(([title, text]) => (
+        <div key={title}>
+          <dt>{title}</dt>
+          <dd>{text}</dd>
+        </div>
+      ))}
+    </dl>
+  </details>
+);
 
 function Pose({ object }: { object: ObjectModel | null }) {
   const { scene, unit: shownUnit } = useWorkspace();

@@ -4,11 +4,11 @@ import { page } from "../state/page.js";
 
 const { list, scene, selected, video } = page;
 
-/** The formats that are not behind "More formats": files for other programs, and everything at once. */
+/** What is not behind "More formats": the mesh and the numbers for other programs, and everything in one file. */
 const first = new Set<unknown>([
   videoExport,
   listExport,
-  ...allExports.filter(([title]) => /^(GLB|JSON)$/.test(title)),
+  ...allExports.filter(([title]) => ["GLB", "JSON", "Project"].includes(title)),
 ]);
 
 export function ExportPanel() {

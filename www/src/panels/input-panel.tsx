@@ -3,7 +3,6 @@ import { baseName } from "../load/files.js";
 import { editInputs } from "../load/open.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
-import { Scenes } from "./scenes.js";
 
 const { inputs, objects, scene, unit } = page;
 
@@ -32,9 +31,11 @@ export function InputPanel() {
     ["Objects", pairs.map(({ name }) => name).join(", ")],
   ] as const;
   return (
-    <details class="panel input-panel" id="inputs" open>
+    <details class="panel input-panel" id="inputs">
       <summary>
         <h2>Files</h2>
+        {/* A wrong unit makes every size wrong, so it is said at all times. */}
+        {whole !== null && <span class="quiet">Unit: {unitText(whole)}</span>}
       </summary>
       {whole !== null && (
         <>
@@ -48,7 +49,7 @@ export function InputPanel() {
           </dl>
           <div class="row">
             <button type="button" id="edit-files" onClick={editInputs}>
-              Change …
+              Change or add …
             </button>
             {whole.sample === null && (
               <button
@@ -63,7 +64,6 @@ export function InputPanel() {
           </div>
         </>
       )}
-      <Scenes />
     </details>
   );
 }

@@ -32,11 +32,12 @@ export function Kept() {
             {more > 0 && ` and ${more} more`} open.
           </p>
           <div class="row">
-            <button type="button" onClick={async () => (await others()).copyOthers()}>
+            <button type="button" id="copy-others" onClick={async () => (await others()).copyOthers()}>
               Open a copy
             </button>
             <button
               type="button"
+              id="take-over"
               title="The other tab closes what it has open; nothing of it is lost"
               onClick={async () => (await others()).takeOverOthers()}
             >

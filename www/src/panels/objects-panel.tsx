@@ -1,9 +1,11 @@
-/** The outliner: the objects of the scene, each to be selected, shown, locked, renamed and removed. */
-import { useState } from "preact/hooks";
+/** The outliner: the objects of the scene. The selected one has a menu, by which it is shown, locked, renamed and removed. */
+import { alignSelected } from "../run/align.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
+import { Check, Menu } from "../ui/controls.js";
 import { percent, type Unit } from "../ui/format.js";
 import { Icon } from "../ui/icons.js";
 import { useWorkspace } from "../ui/workspace.js";
+import { NameField } from "./object-name.js";
 
 function stateOf(run: Run, object: ObjectModel, unit: Unit): string {
   if (run.state === "waiting") return "waiting";
@@ -16,22 +18,14 @@ function stateOf(run: Run, object: ObjectModel, unit: Unit): string {
 }
 
 export function ObjectsPanel() {
-  const { fileActions, inputs, isReading, scene } = useWorkspace();
-  const files = fileActions.value;
+  const { inputs, isReading, scene } = useWorkspace();
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
     <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
-      <div class="card-head">
-        <h2 id="objects-title">Objects</h2>
-        {files !== null && (
-          <button type="button" onClick={files.edit}>
-            Add or pair …
-          </button>
-        )}
-      </div>
+      <h2 id="objects-title">Objects</h2>
       <ul class="objects">
         {objects.map((object) => (
           <Row key={object.id} object={object} />
@@ -49,78 +43,69 @@ export function ObjectsPanel() {
 }
 
 function Row({ object }: { object: ObjectModel }) {
-  const { isReadonly, isRunning, removeObject } = useWorkspace();
-  const { name, isShown, isLocked } = object;
-  const [isRenamed, setRenamed] = useState(false);
+  const { isReadonly, renamed, selected } = useWorkspace();
   return (
-    <li data-shown={isShown.value} data-plain={isShown.value && !isLocked.value}>
-      {isRenamed && !isReadonly.value ? (
-        <input
-          class="rename"
-          aria-label={`New name of ${name}`}
-          value={name}
-          ref={(field) => field?.select()}
-          onKeyDown={({ key, currentTarget }) => (key === "Enter" || key === "Escape") && currentTarget.blur()}
-          onBlur={({ currentTarget }) => {
-            object.title.value = currentTarget.value.trim() || name;
-            setRenamed(false);
-          }}
-        />
-      ) : (
-        <ObjectButton object={object} onRename={() => setRenamed(true)} />
-      )}
-      <Toggle
-        label={`Show ${name}`}
-        isOn={isShown.value}
-        icon={isShown.value ? "shown" : "hidden"}
-        onToggle={() => toggle(isShown)}
-      />
-      {!isReadonly.value && (
-        <>
-          <Toggle
-            label={`Lock ${name}`}
-            isOn={isLocked.value}
-            icon={isLocked.value ? "locked" : "unlocked"}
-            onToggle={() => toggle(isLocked)}
-          />
-          <button
-            type="button"
-            class="icon"
-            aria-label={`Remove ${name}`}
-            disabled={isRunning.value}
-            onClick={() => removeObject(object)}
-          >
-            ×
-          </button>
-        </>
-      )}
+    <li data-shown={object.isShown.value}>
+      {renamed.value === object && !isReadonly.value ? <NameField object={object} /> : <ObjectButton object={object} />}
+      {selected.value === object && <ObjectMenu object={object} />}
     </li>
   );
 }
 
-const toggle = (state: { value: boolean }) => {
-  state.value = !state.value;
-};
-
-interface ToggleProps {
-  label: string;
-  isOn: boolean;
-  icon: Parameters<typeof Icon>[0]["name"];
-  onToggle(): void;
-}
-
-function Toggle({ label, isOn, icon, onToggle }: ToggleProps) {
+function ObjectMenu({ object }: { object: ObjectModel }) {
+  const workspace = useWorkspace();
+  const { isReadonly, isRunning, removeObject, renamed } = workspace;
+  const { name, isShown, isLocked } = object;
   return (
-    <button type="button" class="icon" aria-label={label} aria-pressed={isOn} title={label} onClick={onToggle}>
-      <Icon name={icon} />
-    </button>
+    <Menu title="⋯" isIcon label={`More for ${name}`}>
+      <Check
+        title={`Show ${name}`}
+        checked={isShown.value}
+        onCheck={(checked) => {
+          isShown.value = checked;
+        }}
+      />
+      {!isReadonly.value && (
+        <>
+          <Check
+            title="Lock its pose"
+            checked={isLocked.value}
+            onCheck={(checked) => {
+              isLocked.value = checked;
+            }}
+          />
+          <button
+            type="button"
+            disabled={isRunning.value || isLocked.value}
+            aria-keyshortcuts="A"
+            onClick={() => alignSelected(workspace)}
+          >
+            Align this object
+          </button>
+          <button
+            type="button"
+            onClick={() => {
+              renamed.value = object;
+            }}
+          >
+            Rename
+          </button>
+          <button type="button" disabled={isRunning.value} onClick={() => removeObject(object)}>
+            Remove
+          </button>
+        </>
+      )}
+    </Menu>
   );
 }
 
-function ObjectButton({ object, onRename }: { object: ObjectModel; onRename(): void }) {
-  const { select, selected, unit } = useWorkspace();
-  const { id, name, colour, run, isAccepted } = object;
+function ObjectButton({ object }: { object: ObjectModel }) {
+  const { renamed, select, selected, unit } = useWorkspace();
+  const { id, name, colour, run, isAccepted, isLocked, isShown } = object;
   const { confidence } = object;
+  const rename = () => {
+    renamed.value = object;
+  };
   return (
     <button
       type="button"
@@ -128,11 +113,13 @@ function ObjectButton({ object, onRename }: { object: ObjectModel; onRename(): v
       aria-pressed={selected.value === object}
       title="Double-click to rename"
       onClick={() => select(id)}
-      onDblClick={onRename}
-      onKeyDown={({ key }) => key === "F2" && onRename()}
+      onDblClick={rename}
+      onKeyDown={({ key }) => key === "F2" && rename()}
     >
       <span class="swatch" style={{ background: colour }} />
       <span class="name">{name}</span>
+      {!isShown.value && <Icon name="hidden" />}
+      {isLocked.value && <Icon name="locked" />}
       <span class="state">{stateOf(run.value, object, unit.value)}</span>
       <span class="confidence">{isAccepted.value ? "✓" : confidence === null ? "" : percent(confidence)}</span>
     </button>

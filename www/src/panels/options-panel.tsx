@@ -1,60 +1,20 @@
 /** Options of the alignment: prior knowledge about the object, and the seed. */
-import { choices, defaultOptions, MAX_SEED, type Options } from "../state/options.js";
-import type { Workspace } from "../state/workspace.js";
+import { defaultOptions, MAX_SEED } from "../state/options.js";
 import { Choices, Tip } from "../ui/controls.js";
-import { qualityTitles } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
+import { type Choice, effort, symmetry, up } from "./choices.js";
 
-/** Presets and qualities as one list. */
-const efforts: readonly (readonly [value: string, title: string])[] = [
-  ...choices.quality.map((quality) => [quality, qualityTitles[quality]] as const),
-  ["paper", "Paper (baseline)"],
-];
-
-function chooseEffort({ setOption }: Workspace, value: string): void {
-  const quality = choices.quality.find((quality) => quality === value);
-  setOption("preset", quality === undefined ? "paper" : "precise");
-  setOption("quality", quality ?? defaultOptions.quality);
-}
-
-type ChoiceName = "up" | "symmetry";
-
-interface SelectProps<K extends ChoiceName> {
-  name: K;
-  title: string;
-  about: string;
-  /** Titles of the values. */
-  titles: { readonly [V in Options[K]]: string };
-}
-
-const up: SelectProps<"up"> = {
-  name: "up",
-  title: "Stands upright",
-  about:
-    "Prefers upright poses. Use it if the camera was level and the object stands upright. The mesh's up axis is y in glTF, and z in many other files.",
-  titles: { unknown: "unknown", y: "mesh y is up", z: "mesh z is up" },
-};
-
-const symmetry: SelectProps<"symmetry"> = {
-  name: "symmetry",
-  title: "Symmetry",
-  about: "Poses that differ only by a symmetry of the object are not listed as alternatives.",
-  titles: { auto: "Find on the mesh", none: "None" },
-};
-
-function Select<K extends ChoiceName>({ name, title, about, titles }: SelectProps<K>) {
-  const { options, setOption } = useWorkspace();
-  const id = `option-${name}`;
-  const values: readonly Options[K][] = choices[name];
+function Select({ id, title, about, titles, chosen, choose }: Choice) {
+  const workspace = useWorkspace();
   return (
     <div class="option">
       <label for={id}>{title}</label>
       <Tip label={title.toLowerCase()}>{about}</Tip>
       <Choices
         id={id}
-        value={options.value[name]}
-        choices={values.map((value) => [value, titles[value]] as const)}
-        onChoose={(value) => setOption(name, value)}
+        value={chosen(workspace.options.value)}
+        choices={titles}
+        onChoose={(value) => choose(workspace, value)}
       />
     </div>
   );
@@ -104,16 +64,7 @@ export function OptionsPanel() {
       <summary>
         <h2>Quality and constraints</h2>
       </summary>
-      <div class="option">
-        <label for="effort">Quality</label>
-        <Tip label="quality">How much is searched. “Automatic” searches longer where the case is hard.</Tip>
-        <Choices
-          id="effort"
-          value={isPaper ? "paper" : options.value.quality}
-          choices={efforts}
-          onChoose={(value) => chooseEffort(workspace, value)}
-        />
-      </div>
+      <Select {...effort} />
       {isPaper ? (
         <p class="quiet">The baseline uses only the seed.</p>
       ) : (
@@ -140,6 +91,7 @@ export function OptionsPanel() {
       />
       <button
         type="button"
+        id="reset-options"
         onClick={() => {
           options.value = defaultOptions;
         }}

@@ -1,35 +1,15 @@
 /** The command palette: every command with its key, filtered by typing. */
 import { useEffect, useRef, useState } from "preact/hooks";
-import { allExports, listExport } from "../export/export.js";
-import { openSample } from "../load/open.js";
-import { samples } from "../load/samples.js";
-import { alignAll } from "../run/align.js";
 import { isPaletteOpen } from "../state/help.js";
 import { page } from "../state/page.js";
-import { pageCommands, togglePalette } from "../ui/page-commands.js";
 import type { Command } from "../ui/shortcuts.js";
 import { Keys } from "./keys.js";
-
-/** All commands but the palette itself, and what is chosen from lists elsewhere on the page. */
-const commands: readonly Command[] = [
-  ...pageCommands.filter(({ act, key }) => act !== togglePalette && key !== "0" && key !== "Mod+y"),
-  ...[...allExports, listExport].map(([title, save]) => ({
-    about: `Export: ${title}`,
-    act: () => {
-      const [whole, object] = [page.scene.peek(), page.selected.peek()];
-      if (whole !== null && object?.isPlaced) save(whole, object);
-    },
-  })),
-  ...samples.map((sample) => ({
-    about: `Sample: ${sample.title}`,
-    act: async () => (await openSample(sample)) && alignAll(page),
-  })),
-];
+import { commandsNow } from "./palette-commands.js";
 
 /** The commands whose text contains all words. */
 function matches(query: string): readonly Command[] {
   const words = query.toLowerCase().split(/\s+/);
-  return commands.filter(({ about }) => words.every((word) => about.toLowerCase().includes(word)));
+  return commandsNow().filter(({ about }) => words.every((word) => about.toLowerCase().includes(word)));
 }
 
 export function Palette() {
@@ -92,7 +72,7 @@ export function Palette() {
         {found.map((command, i) => (
           // biome-ignore lint/a11y/useKeyWithClickEvents: the field above has the focus and handles the keys.
           <div
-            key={command.about + (command.key ?? "")}
+            key={idOf(i)}
             id={idOf(i)}
             role="option"
             tabIndex={-1}

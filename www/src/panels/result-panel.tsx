@@ -6,15 +6,18 @@ import type { PoseErrors } from "sim3align";
 import { fieldOf } from "../load/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
-import { Tip } from "../ui/controls.js";
 import { orDash, percent, significant, size } from "../ui/format.js";
+import { metricTexts } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { Decision } from "./decision.js";
 import { Advised, Alternatives, Details, Remedies, Warnings } from "./later.js";
-import { MainMetrics } from "./metrics.js";
+import { MAIN, MetricTable } from "./metrics.js";
+import { NameField } from "./object-name.js";
 
 export function ResultPanel() {
-  const { isReadonly, selected } = useWorkspace();
+  const { isReadonly, objects, renamed, selected } = useWorkspace();
+  // Several objects are renamed where they are listed.
+  const isRenamed = renamed.value !== null && objects.value.length === 1 && !isReadonly.value;
   const chosen = selected.value;
   const run = chosen?.run.value;
   const object = chosen?.isPlaced ? chosen : null;
@@ -30,7 +33,8 @@ export function ResultPanel() {
           "Result"
         ) : (
           <>
-            <span class="swatch" style={{ background: chosen.colour }} /> {chosen.name}
+            <span class="swatch" style={{ background: chosen.colour }} />
+            {isRenamed ? <NameField object={chosen} /> : ` ${chosen.name}`}
           </>
         )}
       </h2>
@@ -44,7 +48,7 @@ export function ResultPanel() {
           <Alternatives object={object} />
         </>
       )}
-      <MainMetrics object={object} />
+      <MetricTable object={object} metrics={metricTexts.slice(0, MAIN)} id="metrics" />
       <Truth object={object} />
       <Warnings object={object} />
       <Details object={object} />
@@ -117,10 +121,6 @@ function Confidence({ object }: { object: ObjectModel | null }) {
       <span id="confidence">
         {percent(confidence)} · {advice}
       </span>
-      <Tip label="confidence">
-        Probability that the pose is correct: scale within 5 %, rotation within 10°, position within 5 % of the object's
-        size. It is calibrated on generated cases and assumes that the mesh is that of the object.
-      </Tip>
     </p>
   );
 }

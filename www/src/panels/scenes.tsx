@@ -11,12 +11,13 @@ function textOf(one: Listed): string {
   return accepted === 0 ? state : `${state}, ${accepted} of ${objects} accepted`;
 }
 
-export function Scenes() {
+export function ScenesPanel() {
   const all = list.value;
   if (all.length < 2) return null;
   return (
-    <>
-      <ul class="scenes" aria-label="Your scenes">
+    <section class="panel scenes-panel" aria-labelledby="scenes-title">
+      <h2 id="scenes-title">Scenes</h2>
+      <ul class="scenes" aria-labelledby="scenes-title">
         {all.map((one) => (
           <li key={one.inputs.id} data-state={progressOf(one)?.state ?? "to do"}>
             <button
@@ -32,6 +33,6 @@ export function Scenes() {
       <button type="button" id="next-scene" disabled={nextListed() === null} onClick={openNext}>
         Next scene ({all.filter(isOpen).length} left)
       </button>
-    </>
+    </section>
   );
 }

@@ -22,17 +22,33 @@ export function StartPanel() {
   const shown = scene.value?.sample ?? "";
   return (
     <section class="panel start" aria-label="Open" data-own={scene.value !== null && shown === ""}>
-      <div class="row">
-        <FileButton id="files" look="primary drop" multiple onFiles={openFiles}>
-          <span>Drop or choose files</span>
-          <small>Depth map, masks, meshes and camera</small>
-        </FileButton>
-        <Menu title="More" label="More: folders and samples">
-          <FileButton id="folder" webkitdirectory onFiles={openFiles}>
-            <span>Open a folder</span>
-          </FileButton>
+      <FileButton id="files" look="primary drop" multiple onFiles={openFiles}>
+        <span>Drop or choose files</span>
+        <small>Depth map, masks, meshes and camera</small>
+      </FileButton>
+      <p class="quiet" id="privacy">
+        Nothing leaves this device.{offlineTexts[offlineState.value]}
+      </p>
+      <Menu title="Samples" label="Samples and folders">
+        <ul class="samples">
+          {pictured.map(({ id, title, about, picture = "" }) => (
+            <li key={id}>
+              <button
+                type="button"
+                data-sample={id}
+                aria-pressed={shown === id}
+                title={about}
+                onClick={() => choose(id)}
+              >
+                <img src={sampleUrl(picture)} alt="" width="160" height="120" loading="lazy" />
+                <span>{title}</span>
+              </button>
+            </li>
+          ))}
+        </ul>
+        <div class="row">
           <label class="field-inline">
-            <span>Samples</span>
+            <span>All samples</span>
             <select
               id="sample"
               value={shown}
@@ -50,21 +66,11 @@ export function StartPanel() {
               ))}
             </select>
           </label>
-        </Menu>
-      </div>
-      <p class="quiet" id="privacy">
-        Nothing leaves this device.{offlineTexts[offlineState.value]}
-      </p>
-      <ul class="samples">
-        {pictured.map(({ id, title, about, picture = "" }) => (
-          <li key={id}>
-            <button type="button" data-sample={id} aria-pressed={shown === id} title={about} onClick={() => choose(id)}>
-              <img src={sampleUrl(picture)} alt="" width="160" height="120" />
-              <span>{title}</span>
-            </button>
-          </li>
-        ))}
-      </ul>
+          <FileButton id="folder" webkitdirectory onFiles={openFiles}>
+            <span>Open a folder</span>
+          </FileButton>
+        </div>
+      </Menu>
     </section>
   );
 }

@@ -29,11 +29,23 @@ export function TimePanel() {
   const canCorrect = !isTracking.value && poses[index] != null && source !== "tracked" && source !== "start";
   return (
     <section class="panel time" aria-label="Frames">
-      <button type="button" aria-label="Previous frame" disabled={index === 0} onClick={() => showFrame(index - 1)}>
+      <button
+        type="button"
+        id="previous-frame"
+        aria-label="Previous frame"
+        disabled={index === 0}
+        onClick={() => showFrame(index - 1)}
+      >
         ‹
       </button>
       <Play count={count} />
-      <button type="button" aria-label="Next frame" disabled={index + 1 >= count} onClick={() => showFrame(index + 1)}>
+      <button
+        type="button"
+        id="next-frame"
+        aria-label="Next frame"
+        disabled={index + 1 >= count}
+        onClick={() => showFrame(index + 1)}
+      >
         ›
       </button>
       <div class="axis">
@@ -89,7 +101,7 @@ export function TimePanel() {
 function Play({ count }: { count: number }) {
   useEffect(() => stopPlaying, []);
   return (
-    <button type="button" aria-label="Play" disabled={isTracking.value} onClick={() => play(count)}>
+    <button type="button" id="play" aria-label="Play" disabled={isTracking.value} onClick={() => play(count)}>
       ▶
     </button>
   );

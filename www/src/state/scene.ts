@@ -52,6 +52,9 @@ export function sceneState() {
     () => objects.value.find(({ id }) => id === selectedId.value) ?? objects.value[0] ?? null,
   );
 
+  /** The object whose name is being changed. */
+  const renamed = signal<ObjectModel | null>(null);
+
   /** How lengths are shown. */
   const unit = computed<number | null>(() => scene.value && unitOf(scene.value));
 
@@ -78,7 +81,7 @@ export function sceneState() {
     return current.objects.find(({ mask, isShown }) => isShown.value && mask[y * current.width + x] !== 0) ?? null;
   }
 
-  return { scene, objects, support, selected, unit, recalibrate, select, objectAt };
+  return { scene, objects, support, selected, renamed, unit, recalibrate, select, objectAt };
 }
 
 export type SceneState = ReturnType<typeof sceneState>;

@@ -86,15 +86,21 @@ interface PopoverProps {
   title: string;
   /** Class of the button; the box has the same with "-box". */
   look: "tip" | "menu";
+  /** Whether the title is a symbol. */
+  isIcon?: boolean;
   children: ComponentChildren;
 }
 
 /** A button that opens a box beside it. */
-function Popover({ label, title, look, children }: PopoverProps) {
+function Popover({ label, title, look, isIcon = false, children }: PopoverProps) {
   const id = useId();
   const button = useRef<HTMLButtonElement>(null);
   const popover = useRef<HTMLDivElement>(null);
 
+  /** Actions close the box; what is set in it leaves it open. */
+  const onClick = ({ target }: Event) => {
+    if (target instanceof Element && target.closest("button") !== null) popover.current?.hidePopover();
+  };
   const position = () => {
     const [anchor, box] = [button.current, popover.current];
     if (anchor === null || box === null) return;
@@ -108,10 +114,12 @@ function Popover({ label, title, look, children }: PopoverProps) {
   };
   return (
     <>
-      <button type="button" class={look} ref={button} popoverTarget={id} aria-label={label}>
+      <button type="button" class={isIcon ? `${look} icon` : look} ref={button} popoverTarget={id} aria-label={label}>
         {title}
       </button>
-      <div id={id} popover="auto" class={`${look}-box`} ref={popover} onToggle={position}>
+      {/* biome-ignore lint/a11y/noStaticElementInteractions: its buttons are operated by keys, which click them. */}
+      {/* biome-ignore lint/a11y/useKeyWithClickEvents: for the same reason. */}
+      <div id={id} popover="auto" class={`${look}-box`} ref={popover} onToggle={position} onClick={onClick}>
         {children}
       </div>
     </>
@@ -126,8 +134,4 @@ export const Tip = ({ label, children }: { label: string; children: ComponentChi
 );
 
 /** A button that opens further controls. */
-export const Menu = ({ title, label, children }: { title: string; label?: string; children: ComponentChildren }) => (
-  <Popover look="menu" title={title} {...(label === undefined ? {} : { label })}>
-    {children}
-  </Popover>
-);
+export const Menu = (menu: Omit<PopoverProps, "look">) => <Popover look="menu" {...menu} />;

@@ -1,11 +1,9 @@
-/** Commands and their keys. The palette and the help list this table. */
+/** The commands with keys, of the page and of an embedded element. The palette and the help list them. */
 
 import { accept, next } from "../panels/decision.js";
 import { alignAll, alignSelected, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
-import { choices } from "../state/options.js";
 import type { Workspace } from "../state/workspace.js";
-import { qualityTitles } from "./texts.js";
 
 export interface Command {
   /** `KeyboardEvent.key`, after "Mod+" if it is pressed with Control or Command. */
@@ -15,6 +13,8 @@ export interface Command {
   about: string;
   /** Whether the key works in text fields, too. */
   isGlobal?: boolean;
+  /** Whether the command can do something now; always, if it does not say. */
+  isOffered?(): boolean;
   act(workspace: Workspace): unknown;
 }
 
@@ -41,21 +41,15 @@ const selectNeighbour =
   };
 
 const toggle3d =
-  (name: "cloud" | "mesh" | "wireframe" | "dimensions" | "planes") =>
+  (name: "cloud" | "mesh" | "wireframe" | "planes") =>
   ({ display3d }: Workspace) => {
     display3d.value = { ...display3d.peek(), [name]: !display3d.peek()[name] };
   };
 
 const toggleLayer =
-  (name: "outline" | "silhouette" | "difference" | "zoom") =>
+  (name: "difference" | "zoom") =>
   ({ layers, setLayer }: Workspace) =>
     setLayer(name, !layers.peek()[name]);
-
-const toggleSetting =
-  (name: "snaps" | "isLocal") =>
-  ({ gizmoSettings }: Workspace) => {
-    gizmoSettings.value = { ...gizmoSettings.peek(), [name]: !gizmoSettings.peek()[name] };
-  };
 
 export const commands: readonly Command[] = [
   { key: "a", title: "A", about: "Align the selected object", act: alignSelected },
@@ -65,8 +59,6 @@ export const commands: readonly Command[] = [
   { key: "g", title: "G", about: "Handles to move", act: toggleHandles("translate") },
   { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
   { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
-  { about: "Handles move in steps", act: toggleSetting("snaps") },
-  { about: "Handles along the axes of the mesh", act: toggleSetting("isLocal") },
   { key: "l", title: "L", about: "Lock the scale", act: toggleScaleLock },
   { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: ({ undo }) => undo() },
   { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: ({ redo }) => redo() },
@@ -83,12 +75,7 @@ export const commands: readonly Command[] = [
   { key: "w", title: "W", about: "Wireframe", act: toggle3d("wireframe") },
   { key: "p", title: "P", about: "Show or hide the points", act: toggle3d("cloud") },
   { key: "m", title: "M", about: "Show or hide the mesh", act: toggle3d("mesh") },
-  { about: "Show or hide the sizes", act: toggle3d("dimensions") },
-  { about: "Measure a distance", act: toggleMeasuring },
   { key: "d", title: "D", about: "Depth difference", act: toggleLayer("difference") },
-  { about: "Show or hide the mask", act: toggleLayer("outline") },
-  { about: "Show or hide the silhouette", act: toggleLayer("silhouette") },
-  { about: "Photo or depth map", act: toggleBase },
   {
     key: "b",
     title: "B",
@@ -98,23 +85,7 @@ export const commands: readonly Command[] = [
   { key: "z", title: "Z", about: "Zoom to the objects", act: toggleLayer("zoom") },
   { key: "v", title: "V", about: "Swap the views", act: swapViews },
   { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
-  ...choices.quality.map((quality) => ({
-    about: `Quality: ${qualityTitles[quality]}`,
-    act: ({ setOption }: Workspace) => {
-      setOption("preset", "precise");
-      setOption("quality", quality);
-    },
-  })),
 ];
-
-function toggleMeasuring({ measured }: Workspace): void {
-  measured.value = measured.peek() === null ? [] : null;
-}
-
-function toggleBase({ layers, setLayer, scene }: Workspace): void {
-  const hasPhoto = scene.peek()?.rgba != null;
-  setLayer("base", layers.peek().base === "depth" && hasPhoto ? "photo" : "depth");
-}
 
 function toggleScaleLock({ selected, unit }: Workspace): void {
   const object = selected.peek();

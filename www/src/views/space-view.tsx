@@ -59,60 +59,57 @@ export function SpaceView() {
     <section class="view space" part="space" aria-labelledby="space-title" data-state={state.kind}>
       <div class="view-head">
         <h2 id="space-title">3D</h2>
-        <fieldset class="viewpoints" disabled={state.kind !== "ready"}>
-          <legend class="visually-hidden">Viewpoint</legend>
-          {viewpoints.slice(0, 1).map(viewpointButton)}
-          <Menu title="View" label="View of the 3D scene">
-            <fieldset disabled={state.kind !== "ready"}>
-              <legend>Viewpoint</legend>
-              {viewpoints.slice(1).map(viewpointButton)}
-            </fieldset>
-            <fieldset disabled={state.kind !== "ready"}>
-              <legend>Layers</legend>
-              {switches.map(([name, title]) => (
-                <Check
-                  key={name}
-                  title={title}
-                  checked={display3d.value[name]}
-                  onCheck={(checked) => set({ [name]: checked })}
-                />
-              ))}
-              <label class="check points">
-                <span>Point size</span>
-                <input
-                  type="range"
-                  min="0.4"
-                  max="3"
-                  step="0.2"
-                  value={pointSize}
-                  onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
-                />
-              </label>
-            </fieldset>
-            <fieldset disabled={state.kind !== "ready"}>
-              <legend>Compare and measure</legend>
-              <button
-                type="button"
-                aria-pressed={showsBefore.value}
-                onClick={() => {
-                  showsBefore.value = !showsBefore.peek();
-                }}
-              >
-                Before
-              </button>
-              <button
-                type="button"
-                id="measure"
-                aria-pressed={measured.value !== null}
-                onClick={() => {
-                  measured.value = measured.peek() === null ? [] : null;
-                }}
-              >
-                Measure
-              </button>
-            </fieldset>
-          </Menu>
-        </fieldset>
+        <Menu title="View" label="View of the 3D scene">
+          <fieldset disabled={state.kind !== "ready"}>
+            <legend>Viewpoint</legend>
+            {viewpoints.map(viewpointButton)}
+          </fieldset>
+          <fieldset disabled={state.kind !== "ready"}>
+            <legend>Layers</legend>
+            {switches.map(([name, title]) => (
+              <Check
+                key={name}
+                title={title}
+                checked={display3d.value[name]}
+                onCheck={(checked) => set({ [name]: checked })}
+              />
+            ))}
+            <label class="check points">
+              <span>Point size</span>
+              <input
+                id="point-size"
+                type="range"
+                min="0.4"
+                max="3"
+                step="0.2"
+                value={pointSize}
+                onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
+              />
+            </label>
+          </fieldset>
+          <fieldset disabled={state.kind !== "ready"}>
+            <legend>Compare and measure</legend>
+            <button
+              type="button"
+              aria-pressed={showsBefore.value}
+              onClick={() => {
+                showsBefore.value = !showsBefore.peek();
+              }}
+            >
+              Before
+            </button>
+            <button
+              type="button"
+              id="measure"
+              aria-pressed={measured.value !== null}
+              onClick={() => {
+                measured.value = measured.peek() === null ? [] : null;
+              }}
+            >
+              Measure
+            </button>
+          </fieldset>
+        </Menu>
       </div>
       <div class="view-host" ref={host} data-backend={state.kind === "ready" ? state.view.backend : undefined}>
         {state.kind === "loading" && <Preview />}
