@@ -100,8 +100,9 @@ options! {
         /// `"auto"` finds it on the surface of the mesh; `[{ axis: [0, 1, 0], fold: 4 }]` declares quarter turns about the
         /// mesh's y axis, without `fold` any turn about it.
         symmetry: Symmetry = Symmetry::Auto, Symmetry;
-        /// A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's. Its scale
-        /// has to be within `scale`.
+        /// A pose to start from, camera from mesh, in metres: for example an annotator's, or a generator's. Its scale has
+        /// to be within `scale`. It is one candidate among those of the search; between turns that the image hardly
+        /// tells apart, the one near its rotation is favoured.
         initial: Option<Similarity> = None, Transform;
         /// Where to search: everywhere, or around `initial` only.
         search: SearchScope = SearchScope::Global, Choice;

@@ -161,7 +161,7 @@ const initial = {
   kind: "transform",
   isNullable: true,
   default: null,
-  summary: "A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's",
+  summary: "A pose to start from, camera from mesh, in metres: for example an annotator's, or a generator's",
 } as const;
 
 const inlierDistanceVoxels = {

@@ -65,8 +65,9 @@ export interface AlignOptions {
    */
   symmetry?: SymmetryOption | undefined;
   /**
-   * A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's. Its scale has
-   * to be within `scale`. Default `null`.
+   * A pose to start from, camera from mesh, in metres: for example an annotator's, or a generator's. Its scale has to
+   * be within `scale`. It is one candidate among those of the search; between turns that the image hardly tells
+   * apart, the one near its rotation is favoured. Default `null`.
    */
   initial?: Sim3Like | null | undefined;
   /** Where to search: everywhere, or around `initial` only. Default `"global"`. */
