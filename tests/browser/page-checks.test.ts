@@ -40,7 +40,7 @@ test("a rejected file leaves the scene, its files and its name as they were", as
     ["depth", "grey.png", eightBit],
     ["mesh", "notes.glb", Buffer.from("no mesh")],
   ] as const) {
-    await page.click("#edit-files");
+    await opened.click("#edit-files");
     await opened.sheet();
     await choose(opened, field, name, bytes);
     const found = await problems(opened);
@@ -51,7 +51,7 @@ test("a rejected file leaves the scene, its files and its name as they were", as
     assert.doesNotMatch((await page.textContent("#inputs")) ?? "", new RegExp(name));
   }
   // Keys do not run anything behind the sheet either.
-  await page.click("#edit-files");
+  await opened.click("#edit-files");
   await opened.sheet();
   await choose(opened, "depth", "grey.png", eightBit);
   await problems(opened);
@@ -171,7 +171,7 @@ test("a camera of a resized image is scaled, that of another image is not", asyn
   await page.getByRole("button", { name: "Scale it" }).click();
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.9);
-  await page.click("#edit-files");
+  await opened.click("#edit-files");
   await opened.sheet();
   assert.equal(await page.inputValue("#camera-cx"), `${pinhole.cx}`);
 });
@@ -211,7 +211,7 @@ test("a damaged archive and unknown files say so, at no other field", async (ope
 test("numbers out of range are errors of the camera", async (opened, page) => {
   await drop(opened, files);
   await opened.shows("Own files");
-  await page.click("#edit-files");
+  await opened.click("#edit-files");
   await opened.sheet();
   await page.fill("#camera-fov", "500");
   await page.press("#camera-fov", "Enter");

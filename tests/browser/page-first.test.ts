@@ -23,22 +23,29 @@ test("the page opens with a photo, whose objects are placed at their sizes", lap
     .waitFor(PATIENCE);
 });
 
-test("one sentence, one large button and three pictures are in sight", laptop, async (opened, page) => {
-  assert.equal(await page.textContent(".claim"), "Place a 3D model in your photo at true scale.");
-  const pictures = page.locator(".samples button");
-  assert.equal(await pictures.count(), 3);
-  for (const part of [".claim", ".drop", ".samples button >> nth=2", "#dimensions", "#confidence"]) {
-    const box = await page.locator(part).boundingBox();
-    assert.ok(box !== null && box.y >= 0 && box.y + box.height <= 900, `${part} is at ${box?.y}`);
-  }
-  await page.waitForFunction(() =>
-    [...document.images].every(({ complete, naturalWidth }) => complete && naturalWidth > 0),
-  );
-  await page.locator('[data-sample="hammer"]').click();
-  await opened.shows("Hammer");
-  assert.equal(await page.getAttribute('[data-sample="hammer"]', "aria-pressed"), "true");
-  assert.equal(await page.getAttribute('[data-sample="table"]', "aria-pressed"), "false");
-});
+test(
+  "one sentence, one large button and the result are in sight, and samples a click away",
+  laptop,
+  async (opened, page) => {
+    assert.equal(await page.textContent(".claim"), "Place a 3D model in your photo at true scale.");
+    const isInSight = async (part: string) => {
+      const box = await page.locator(part).boundingBox();
+      assert.ok(box !== null && box.y >= 0 && box.y + box.height <= 900, `${part} is at ${box?.y}`);
+    };
+    for (const part of [".claim", ".drop", "#dimensions", "#confidence", "#accept", ".objects", ".exports >> nth=0"])
+      await isInSight(part);
+    await page.getByRole("button", { name: "Samples and folders" }).click();
+    assert.equal(await page.locator(".samples button").count(), 3);
+    await isInSight(".samples button >> nth=2");
+    await page.waitForFunction(() =>
+      [...document.images].every(({ complete, naturalWidth }) => complete && naturalWidth > 0),
+    );
+    await page.locator('[data-sample="hammer"]').click();
+    await opened.shows("Hammer");
+    assert.equal(await page.getAttribute('[data-sample="hammer"]', "aria-pressed"), "true");
+    assert.equal(await page.getAttribute('[data-sample="table"]', "aria-pressed"), "false");
+  },
+);
 
 test("a sample that cannot be loaded leaves the scene and the list of samples as they are", async (opened, page) => {
   await page.route("**/samples/hammer/**", (route) => route.abort());

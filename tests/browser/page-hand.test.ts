@@ -79,8 +79,7 @@ test("a known size is one step, and every alignment keeps it", async (opened, pa
   const longest = async () => Math.max(...(await opened.dimensions()));
   const before = await longest();
   const known = (0.97 * before).toFixed(1);
-  await page.fill("#known-size", known);
-  await page.press("#known-size", "Enter");
+  await opened.enter("#known-size", known);
   await page.locator(".trial").waitFor(PATIENCE);
   assert.equal(await longest(), before);
   assert.deepEqual(await opened.violations(), []);
@@ -97,7 +96,7 @@ test("a known size is one step, and every alignment keeps it", async (opened, pa
   await page.click("#align");
   await opened.isNow("aligned");
   assert.equal(await longest(), Number(known));
-  await page.uncheck("#lock-scale");
+  await opened.click("#lock-scale");
   await page.click("#align");
   await page.locator("#cancel").waitFor({ state: "detached" });
   await opened.aligned();

@@ -222,7 +222,7 @@ test("intrinsics can be entered, or assumed with a warning", async (opened, page
   await opened.shows("Own files");
   assert.match((await page.textContent(".warnings")) ?? "", /assumed/);
   const assumed = await opened.dimensions();
-  await page.click("#edit-files");
+  await opened.click("#edit-files");
   await opened.sheet();
   for (const [name, value] of Object.entries(pinhole)) {
     await page.fill(`#camera-${name}`, `${value}`);

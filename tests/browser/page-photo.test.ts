@@ -62,6 +62,7 @@ test("a photo alone is shown with its focal length, and the rest is named with i
   // A mask of the photo, also one that was saved with losses, is shown on it.
   await drop(opened, { "mask.jpg": await jpeg(page, maskPng(seen.mask)) });
   await opened.sheet();
+  assert.ok((await page.getAttribute("#mask-file", "accept"))?.split(",").includes(".jpg"));
   await sheet.locator(".pair canvas").first().waitFor(PATIENCE);
   assert.match((await sheet.locator('[data-field="photo"]').textContent()) ?? "", /IMG_0815\.jpg/);
   assert.match((await sheet.locator(".pair").textContent()) ?? "", /mask\.jpg/);

@@ -87,8 +87,7 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
 
   // The longest side of the blob, which nobody has told yet.
   const longest = 100 * Math.max(...trueSides());
-  await page.fill("#known-size", longest.toFixed(2));
-  await page.press("#known-size", "Enter");
+  await opened.enter("#known-size", longest.toFixed(2));
   await page.locator("#dimensions", { hasText: "cm" }).waitFor();
   const metric = await opened.dimensions();
   assert.ok(Math.abs(Math.max(...metric) - longest) < 0.1, `${metric}, known is ${longest}`);
@@ -153,8 +152,7 @@ test("several objects calibrate a scene together, and one known size makes all o
   assert.ok(Math.abs(longest(sizes[1] ?? "") / ratio - 1) < 0.1, `${sizes}, true ratio is ${ratio}`);
   // The size of the second one tells that of the first one.
   await page.locator(".objects .select").nth(1).click();
-  await page.fill("#known-size", (100 * ratio * Math.max(...trueSides())).toFixed(2));
-  await page.press("#known-size", "Enter");
+  await opened.enter("#known-size", (100 * ratio * Math.max(...trueSides())).toFixed(2));
   await page.locator(".objects .select").nth(0).click();
   const first = Math.max(...(await opened.dimensions())) / 100;
   assert.ok(Math.abs(first / Math.max(...trueSides()) - 1) < 0.1, `${first} m`);

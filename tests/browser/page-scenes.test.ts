@@ -62,7 +62,7 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   // The last one was never opened: it is aligned as from a drop.
   await page.locator(".scenes button", { hasText: "IMG_004" }).click();
   await opened.shows("IMG_004");
-  await page.click("#forget");
+  await opened.click("#forget");
   await isShown(page, "IMG_003");
   assert.equal(await page.locator(".scenes li").count(), 3);
 });

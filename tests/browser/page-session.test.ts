@@ -13,7 +13,7 @@ async function worked(opened: SitePage): Promise<string> {
   await opened.shows("Own files");
   await page.click(".hand-panel .more summary");
   await opened.press("Move left");
-  await page.check("#lock-scale");
+  await opened.click("#lock-scale");
   await opened.isNow("hand");
   await page.click("#accept");
   return (await page.textContent("#centre")) ?? "";
@@ -54,16 +54,16 @@ test("a reload restores the scene, the pose and the decision; unstored work asks
   // The restored scene can be aligned, and its files can be changed.
   await page.click("#align");
   await opened.aligned();
-  await page.click("#edit-files");
+  await opened.click("#edit-files");
   await opened.sheet();
   await page.click("#intake-cancel");
   await page.click("#accept");
   // What was decided is not forgotten unasked.
   page.once("dialog", (dialog) => dialog.dismiss());
-  await page.click("#forget");
+  await opened.click("#forget");
   assert.equal(await page.getAttribute("main", "data-scene"), "Own files");
   page.once("dialog", (dialog) => dialog.accept());
-  await page.click("#forget");
+  await opened.click("#forget");
   await page.locator('main[data-scene="Table"]').waitFor(PATIENCE);
   await page.reload();
   await opened.shows("Table");

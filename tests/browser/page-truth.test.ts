@@ -21,8 +21,7 @@ test("sizes are those of the object's sides, in a file of any axes", async (open
   // The length of another edge, or a wrong number, changes nothing unless a person takes it.
   const before = await opened.dimensions();
   const trial = page.locator(".hand-panel .trial");
-  await page.fill("#known-size", "25");
-  await page.press("#known-size", "Enter");
+  await opened.enter("#known-size", "25");
   await trial.locator("p", { hasText: "fits worse" }).waitFor(PATIENCE);
   assert.deepEqual(await opened.dimensions(), before);
   await opened.press("Keep the old");
@@ -31,8 +30,7 @@ test("sizes are those of the object's sides, in a file of any axes", async (open
   assert.equal(await page.inputValue("#known-size"), Math.max(...before).toFixed(1));
   // A known edge leaves the others in proportion.
   await page.selectOption('.hand-panel [aria-label="Edge"]', "1");
-  await page.fill("#known-size", "9.3");
-  await page.press("#known-size", "Enter");
+  await opened.enter("#known-size", "9.3");
   await trial.locator("p", { hasText: "The mesh fits" }).waitFor(PATIENCE);
   await opened.press("Use");
   const known = sorted(await opened.dimensions());

@@ -7,7 +7,8 @@ export function cutParts(): string[] {
     const last = shown?.parentElement?.children[i]?.lastChild;
     if (last) last.nodeValue = text;
   }
-  return [...document.querySelectorAll("#dimensions, .drop, .run, .view-head, .hand-panel > *, .decision, .head")]
+  const parts = "#dimensions, .drop, .drop > :not(input), .run, .view-head, .hand-panel > *, .decision, .head";
+  return [...document.querySelectorAll(parts)]
     .filter((one) => one.checkVisibility())
     .filter((one) => {
       const own = one.getBoundingClientRect();

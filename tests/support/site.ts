@@ -209,6 +209,32 @@ export class SitePage {
     await this.reveal(found, () => found.click());
   }
 
+  /** Clicks a control, wherever it is. */
+  async click(control: string): Promise<void> {
+    const found = this.page.locator(control);
+    await this.reveal(found, () => found.click());
+  }
+
+  /** Enters a number in a field, wherever it is. */
+  async enter(field: string, value: string): Promise<void> {
+    const found = this.page.locator(field);
+    await this.reveal(found, async () => {
+      await found.fill(value);
+      await found.press("Enter");
+    });
+  }
+
+  /** The commands that the palette lists, without their keys. */
+  async commands(): Promise<string[]> {
+    await this.page.keyboard.press("Control+k");
+    await this.page.locator(".palette[open]").waitFor(PATIENCE);
+    const options = this.page.locator(".palette [role=option]");
+    const texts = await options.evaluateAll((all) => all.map((one) => one.firstChild?.textContent ?? ""));
+    await this.page.keyboard.press("Escape");
+    await this.page.locator(".palette").waitFor({ state: "hidden", ...PATIENCE });
+    return texts;
+  }
+
   /** Holds back all messages of workers, so that a running alignment does not end. */
   async closeWorkerGate(): Promise<void> {
     await this.page.evaluate(() => workerGate.close());
