@@ -147,7 +147,7 @@ test("nothing is cut on any screen, nor are lengths above a metre", { address: "
       }
       return [
         ...document.querySelectorAll(
-          "#dimensions, .drop, .drop > *, .run, .view-head, .hand-panel > *, .decision, .head",
+          "#dimensions, .drop, .drop > :not(input), .run, .view-head, .hand-panel > *, .decision, .head",
         ),
       ]
         .filter((one) => one.checkVisibility())
@@ -239,7 +239,7 @@ test("the layout does not shift while the page loads and aligns twice", first, a
     Object.assign(globalThis, { flush });
   });
   await opened.aligned();
-  await page.click("#align");
+  await page.click("#align-all");
   await opened.aligned();
   await page.locator('.space:not([data-state="loading"])').waitFor(PATIENCE);
   // The second callback runs after the frame with the last changes, whose shifts are then recorded.
