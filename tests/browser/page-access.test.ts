@@ -215,7 +215,7 @@ test("the layout does not shift while the page loads and aligns twice", first, a
     Object.assign(globalThis, { flush });
   });
   await opened.aligned();
-  await page.click("#align");
+  await page.click("#align-all");
   await opened.aligned();
   await page.locator('.space:not([data-state="loading"])').waitFor(PATIENCE);
   // The second callback runs after the frame with the last changes, whose shifts are then recorded.

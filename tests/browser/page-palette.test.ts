@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
 import { WEBGL } from "../support/browser.js";
-import { dropFolder, files, inFolder } from "../support/page-files.js";
+import { depthNpy, dropFolder, files, inFolder, seen } from "../support/page-files.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests(WEBGL);
@@ -18,7 +18,10 @@ interface Control {
 const controlsOf = (page: Page): Promise<Control[]> =>
   page.evaluate(() =>
     [...document.querySelectorAll<HTMLElement>("button, input, select")]
-      .filter((one) => !one.matches(":disabled, [aria-disabled=true], .menu, .tip") && one.closest("dialog") === null)
+      .filter(
+        (one) =>
+          !one.matches(":disabled, [aria-disabled=true], #commands, .menu, .tip") && one.closest("dialog") === null,
+      )
       .map((one) => ({
         name: one.id || one.getAttribute("aria-label") || (one.closest("label") ?? one).textContent?.trim() || "",
         choices: one instanceof HTMLSelectElement ? [...one.options].map(({ text }) => text) : [],
@@ -126,14 +129,15 @@ test("the palette lists what every control does: of several objects", "", async 
 
 test("the palette lists what every control does: of several scenes, with alternatives", async (opened, page) => {
   await opened.choose("#option-symmetry", "none");
-  await dropFolder(opened, { ...inFolder("first", files), ...inFolder("second", files) });
+  const other = { ...files, "depth.npy": depthNpy(seen.depth.map((z) => z + 0.01)) };
+  await dropFolder(opened, { ...inFolder("IMG_001", files), ...inFolder("IMG_002", other) });
   await opened.sheet();
   await page.click("#intake-open");
-  await opened.shows("first");
+  await opened.shows("IMG_001");
   await opened.has3d("webgl");
   await listsAll(opened, 60);
   const listed = await opened.commands();
-  for (const one of ["Export: JSON of all scenes", "Scene: second", "Forget the scene"])
+  for (const one of ["Export: JSON of all scenes", "Scene: IMG_002", "Forget the scene"])
     assert.ok(listed.includes(one), one);
   // What can do nothing is not listed.
   for (const one of ["Next frame", "Remove the object", "Export: JSON of all frames"])
