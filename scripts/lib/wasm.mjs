@@ -25,8 +25,8 @@ import { step } from "./step.mjs";
 
 /** @type {readonly WasmModule[]} */
 export const wasmModules = [
-  { name: "core", crate: "sim3align-core", budget: 189_000 },
-  { name: "joint", crate: "sim3align-joint", budget: 294_000 },
+  { name: "core", crate: "sim3align-core", budget: 190_000 },
+  { name: "joint", crate: "sim3align-joint", budget: 295_000 },
   { name: "registration", crate: "sim3align-registration", budget: 141_000 },
   { name: "formats", crate: "sim3align-module-formats", budget: 260_000 },
   { name: "depth-files", crate: "sim3align-depth-files", budget: 242_000 },
