@@ -60,9 +60,9 @@ test("a wrong mesh is named, and a known size is tried at once", hammer, async (
 
 test("objects are hidden, locked, renamed and removed", "#sample=desk", async (opened, page) => {
   const rows = page.locator(".objects li");
-  const before = await opened.imagePixels();
   // The selected object has a menu.
   await page.locator(".objects .select", { hasText: "Teapot" }).click();
+  const before = await opened.imagePixels();
   const show = async (isShown: boolean) => {
     await page.getByRole("button", { name: "More for Teapot" }).click();
     await page.getByLabel("Show Teapot").setChecked(isShown);

@@ -30,12 +30,12 @@ test(
   "#sample=desk",
   async (opened, page) => {
     const confidence = () => page.textContent(".badge");
-    const pictures = page.locator(".alternatives button:not(.tip)");
+    const pictures = page.locator(".alternatives button");
     const before = [await confidence(), await pictures.count()];
     await opened.choose("#effort", "fast");
     await page.click(".options-panel summary");
     await opened.choose("#option-symmetry", "none");
-    await page.click("#align");
+    await opened.press("Align this object");
     await page.locator("#cancel").waitFor({ state: "detached" });
     await opened.aligned();
     const after = [await confidence(), await pictures.count()];

@@ -14,7 +14,7 @@ interface Control {
   kind: string;
 }
 
-/** All controls that act or set something, also those in menus and behind disclosures, except those that only open these. */
+/** All controls that act, set or choose something, also in menus and behind disclosures, but not what opens these. */
 const controlsOf = (page: Page): Promise<Control[]> =>
   page.evaluate(() =>
     [...document.querySelectorAll<HTMLElement>("button, input, select")]
@@ -22,6 +22,7 @@ const controlsOf = (page: Page): Promise<Control[]> =>
         (one) =>
           !one.matches(":disabled, [aria-disabled=true], #commands, .menu, .tip") && one.closest("dialog") === null,
       )
+      .filter((one) => !(one instanceof HTMLSelectElement) || one.querySelectorAll("option:enabled").length > 1)
       .map((one) => ({
         name: one.id || one.getAttribute("aria-label") || (one.closest("label") ?? one).textContent?.trim() || "",
         choices: one instanceof HTMLSelectElement ? [...one.options].map(({ text }) => text) : [],
