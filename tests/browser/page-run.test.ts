@@ -95,6 +95,6 @@ test("contradictory options show the error of the library", contradictory, async
   assert.match((await page.textContent(".result .error")) ?? "", /options\.scale/);
   await page.click(".options-panel summary");
   for (const name of ["scaleMin", "scaleMax"]) await page.fill(`#option-${name}`, "");
-  await page.click("#align");
+  await page.click("#align-all");
   await opened.aligned();
 });

@@ -107,10 +107,12 @@ function Popover({ label, title, look, isIcon = false, children }: PopoverProps)
     const place = anchor.getBoundingClientRect();
     const size = box.getBoundingClientRect();
     const wanted = look === "tip" ? place.left - size.width / 2 : place.left;
-    const left = Math.min(Math.max(MARGIN, wanted), innerWidth - size.width - MARGIN);
     const fitsBelow = place.bottom + 6 + size.height < innerHeight;
-    box.style.left = `${left}px`;
-    box.style.top = `${fitsBelow ? place.bottom + 6 : Math.max(MARGIN, place.top - size.height - 6)}px`;
+    // The button itself may be out of sight, if a command opens the box.
+    const inside = (at: number, length: number, all: number) => Math.max(MARGIN, Math.min(at, all - length - MARGIN));
+    const top = fitsBelow ? place.bottom + 6 : place.top - size.height - 6;
+    box.style.left = `${inside(wanted, size.width, innerWidth)}px`;
+    box.style.top = `${inside(top, size.height, innerHeight)}px`;
   };
   return (
     <>
