@@ -25,7 +25,7 @@ const script = (entry: string) => `
   console.log(JSON.stringify({ touched: [...touched], names: Object.keys(module).length, handles: process.getActiveResourcesInfo() }));
 `;
 
-for (const entry of ["", "/inline", "/formats", "/conventions", "/scenes", "/simulators"].map(
+for (const entry of ["", "/inline", "/formats", "/conventions", "/simulators"].map(
   (path) => `sim3align${path}`,
 )) {
   test(`importing ${entry} touches no browser globals`, () => {
