@@ -1,5 +1,5 @@
 /** The field in which the name of an object is changed. */
-import { useEffect, useRef } from "preact/hooks";
+import { useLayoutEffect, useRef } from "preact/hooks";
 import type { ObjectModel } from "../state/object-model.js";
 import { useWorkspace } from "../ui/workspace.js";
 
@@ -7,7 +7,8 @@ export function NameField({ object }: { object: ObjectModel }) {
   const { renamed } = useWorkspace();
   const { name } = object;
   const field = useRef<HTMLInputElement>(null);
-  useEffect(() => {
+  // At once: the next key belongs to the name.
+  useLayoutEffect(() => {
     field.current?.focus();
     field.current?.select();
   }, []);
