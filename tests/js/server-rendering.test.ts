@@ -25,9 +25,7 @@ const script = (entry: string) => `
   console.log(JSON.stringify({ touched: [...touched], names: Object.keys(module).length, handles: process.getActiveResourcesInfo() }));
 `;
 
-for (const entry of ["", "/inline", "/formats", "/conventions", "/simulators"].map(
-  (path) => `sim3align${path}`,
-)) {
+for (const entry of ["", "/inline", "/formats", "/conventions", "/simulators"].map((path) => `sim3align${path}`)) {
   test(`importing ${entry} touches no browser globals`, () => {
     const args = ["--input-type=module", "--eval", script(entry)];
     const found = JSON.parse(execFileSync(process.execPath, args, { cwd: installDir, encoding: "utf8" }));
