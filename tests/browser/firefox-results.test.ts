@@ -1,7 +1,7 @@
 /** The page in Firefox: what it says is so, files are understood or named, and nothing is cut. */
 import assert from "node:assert/strict";
 import { type FirefoxPage, firefoxTests } from "../support/firefox-page.js";
-import { cutParts } from "../support/layout.js";
+import { cutParts, screens } from "../support/layout.js";
 import {
   bareWall,
   COUNT,
@@ -128,12 +128,7 @@ test("in Firefox, photo and mask are shown without depth, also if saved with los
 });
 
 test("in Firefox, nothing is cut on any screen, and the decision is in sight", { address: "" }, async (opened) => {
-  for (const [width, height] of [
-    [390, 844],
-    [1024, 768],
-    [1440, 900],
-    [1920, 1080],
-  ] as const) {
+  for (const [width, height] of screens) {
     await opened.page.setViewport({ width, height });
     assert.deepEqual(await opened.page.evaluate(cutParts), [], `${width} × ${height}`);
     const ends = await opened.page.evaluate(() =>

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import type { BrowserContextOptions } from "playwright-core";
 import { WEBGL } from "../support/browser.js";
-import { cutParts } from "../support/layout.js";
+import { cutParts, screens } from "../support/layout.js";
 import { drop, files } from "../support/page-files.js";
 import { PATIENCE, pageTests } from "../support/site.js";
 
@@ -132,12 +132,7 @@ for (const [name, context, least] of [
 }
 
 test("nothing is cut on any screen, nor are lengths above a metre", { address: "" }, async (_, page) => {
-  for (const [width, height] of [
-    [390, 844],
-    [1024, 768],
-    [1440, 900],
-    [1920, 1080],
-  ] as const) {
+  for (const [width, height] of screens) {
     await page.setViewportSize({ width, height });
     assert.deepEqual(await page.evaluate(cutParts), [], `${width} × ${height}`);
     const rows = await page.evaluate(() =>

@@ -1,5 +1,13 @@
 /** What the layout of the page does, measured in it. */
 
+/** Screens from a phone to a desktop, width and height in pixels. */
+export const screens = [
+  [390, 844],
+  [1024, 768],
+  [1440, 900],
+  [1920, 1080],
+] as const;
+
 /** Runs in the page: the parts that are cut, with lengths as those of a sofa. */
 export function cutParts(): string[] {
   const shown = document.querySelector("#dimensions")?.firstElementChild;

@@ -21,7 +21,7 @@ pub struct Objective<'a> {
     pub scoring: Scoring,
     /// The prior.
     pub prior: Prior,
-    /// Which poses are equal to the prior.
+    /// Which poses of the mesh are equivalent.
     pub equivalence: &'a Equivalence,
     /// What surrounds the object, if that is known.
     pub surroundings: Option<&'a Surroundings>,
