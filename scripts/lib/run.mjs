@@ -43,7 +43,11 @@ function environment() {
  * returning it
  * @property {(line: string) => void} [onLine] gets every line of standard output as it comes
  * @property {boolean} [attach] let the command have the console, and return nothing
+ * @property {boolean} [watched] end the command when it has printed nothing for {@link SILENCE_MINUTES}: it hangs
  */
+
+/** Far longer than any test or compilation takes between two lines, on a busy machine too. */
+const SILENCE_MINUTES = 20;
 
 /**
  * Runs a command to its end, whatever that end is.
@@ -63,9 +67,19 @@ export function attempt(command, args, options = {}) {
       shell: process.platform === "win32" && /^np[mx]$/.test(command),
     });
     let [output, stdout] = ["", ""];
+    const watch = () => {
+      end(`ended, for it printed nothing for ${SILENCE_MINUTES} minutes`);
+      child.kill();
+      // What the command itself has started may live on, and must not keep this process.
+      child.stdout?.destroy();
+      child.stderr?.destroy();
+      child.unref();
+    };
+    const watchdog = options.watched ? setTimeout(watch, SILENCE_MINUTES * 60_000) : undefined;
     child.stdout?.setEncoding("utf8");
     child.stderr?.setEncoding("utf8");
     child.stdout?.on("data", (chunk) => {
+      watchdog?.refresh();
       output += chunk;
       stdout += chunk;
       if (options.echo === true) print(chunk);
@@ -73,11 +87,15 @@ export function attempt(command, args, options = {}) {
     const { onLine } = options;
     if (child.stdout && onLine) createInterface({ input: child.stdout }).on("line", onLine);
     child.stderr?.on("data", (chunk) => {
+      watchdog?.refresh();
       output += chunk;
       if (options.echo === true) print(chunk);
       else if (options.echo) process.stderr.write(chunk);
     });
-    const end = (/** @type {string} */ reason) => resolve({ output, stdout, reason });
+    const end = (/** @type {string} */ reason) => {
+      clearTimeout(watchdog);
+      resolve({ output, stdout, reason });
+    };
     child.on("error", (error) => end(error.message));
     child.on("close", (code, signal) => {
       end(code === 0 ? "" : signal ? `ended by ${signal}` : `exit status ${code}`);

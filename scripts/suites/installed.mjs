@@ -19,6 +19,9 @@ export const testEnvironment = { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAM
 /** Tests that use the installed package, and what they share. */
 const testFolders = ["js", "browser", "bundlers", "examples", "support"];
 
+/** Far longer than any file of tests takes, on a busy machine too. */
+const HANGING_MINUTES = 15;
+
 /** The package's tarball: its file, and its size in bytes. */
 export const packed = once(async () => {
   const folder = at("target", "packed");
@@ -65,15 +68,19 @@ export const install = once(async () => {
 async function nodeTest(folder, env = {}) {
   await install();
   const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
-  // By default, Node leaves one core free. Its versions before 20.10 know no other number.
+  // By default, Node leaves one core free, and waits for ever for a test that hangs. Its versions before 20.11 know no
+  // other way.
   const [major = 0, minor = 0] = process.versions.node.split(".").map(Number);
-  const concurrency = major > 20 || minor >= 10 ? [`--test-concurrency=${availableParallelism()}`] : [];
-  const args = ["--enable-source-maps", "--test", "--test-reporter=spec", ...concurrency, ...files];
+  const options = [`--test-concurrency=${availableParallelism()}`, `--test-timeout=${HANGING_MINUTES * 60_000}`];
+  const chosen = major > 20 || minor >= 11 ? options : [];
+  const args = ["--enable-source-maps", "--test", "--test-reporter=spec", ...chosen, ...files];
   const { output, reason } = await attempt(process.execPath, args, {
     cwd: installDir,
     echo: true,
+    watched: true,
     env: { ...testEnvironment, ...env },
   });
+  if (reason !== "") print(`node --test: ${reason}\n`);
   return withStatus(nodeCounts(output), reason === "");
 }
 

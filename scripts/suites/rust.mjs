@@ -3,6 +3,7 @@ import { readFileSync } from "node:fs";
 import { relative } from "node:path";
 import { cached, digest, filesBelow } from "../lib/cache.mjs";
 import { rustCounts, sum, withStatus } from "../lib/counts.mjs";
+import { print } from "../lib/output.mjs";
 import { at } from "../lib/paths.mjs";
 import { attempt, run } from "../lib/run.mjs";
 import { generateSamples, pageSamplesDir } from "../lib/sample.mjs";
@@ -14,7 +15,12 @@ import { runChecks } from "../lib/step.mjs";
  * @param {import("../lib/run.mjs").RunOptions} [options]
  */
 async function cargoTest(args, options = {}) {
-  const { output, reason } = await attempt("cargo", ["test", "--no-fail-fast", ...args], { echo: true, ...options });
+  const { output, reason } = await attempt("cargo", ["test", "--no-fail-fast", ...args], {
+    echo: true,
+    watched: true,
+    ...options,
+  });
+  if (reason !== "") print(`cargo test: ${reason}\n`);
   return withStatus(rustCounts(output), reason === "");
 }
 
