@@ -47,15 +47,15 @@ function environment() {
  */
 
 /** Far longer than any test or compilation takes between two lines, on a busy machine too. */
-const SILENCE_MINUTES = 20;
+const SILENCE_MINUTES = 15;
 
 /**
  * Runs a command to its end, whatever that end is.
  * @param {string} command
  * @param {readonly string[]} args
  * @param {RunOptions} [options]
- * @returns {Promise<{ output: string, stdout: string, reason: string }>} the output is standard output and error
- * together; the reason is empty after a success
+ * @returns {Promise<{ output: string, stdout: string, reason: string, hung: boolean }>} the output is standard output
+ * and error together; the reason is empty after a success; a command that hung was {@link RunOptions.watched}
  */
 export function attempt(command, args, options = {}) {
   return new Promise((resolve) => {
@@ -68,7 +68,7 @@ export function attempt(command, args, options = {}) {
     });
     let [output, stdout] = ["", ""];
     const watch = () => {
-      end(`ended, for it printed nothing for ${SILENCE_MINUTES} minutes`);
+      end(`ended, for it printed nothing for ${SILENCE_MINUTES} minutes`, true);
       child.kill();
       // What the command itself has started may live on, and must not keep this process.
       child.stdout?.destroy();
@@ -92,9 +92,9 @@ export function attempt(command, args, options = {}) {
       if (options.echo === true) print(chunk);
       else if (options.echo) process.stderr.write(chunk);
     });
-    const end = (/** @type {string} */ reason) => {
+    const end = (/** @type {string} */ reason, hung = false) => {
       clearTimeout(watchdog);
-      resolve({ output, stdout, reason });
+      resolve({ output, stdout, reason, hung });
     };
     child.on("error", (error) => end(error.message));
     child.on("close", (code, signal) => {
