@@ -43,11 +43,12 @@ function environment() {
  * returning it
  * @property {(line: string) => void} [onLine] gets every line of standard output as it comes
  * @property {boolean} [attach] let the command have the console, and return nothing
- * @property {boolean} [watched] end the command when it has printed nothing for {@link SILENCE_MINUTES}: it hangs
+ * @property {boolean} [patient] wait for a command however long it prints nothing; others hang after
+ * {@link SILENCE_MINUTES}, and are ended
  */
 
-/** Far longer than any test or compilation takes between two lines, on a busy machine too. */
-const SILENCE_MINUTES = 15;
+/** Far longer than a test, a compilation or a download takes between two lines, on a busy machine too. */
+const SILENCE_MINUTES = 20;
 
 /**
  * Runs a command to its end, whatever that end is.
@@ -55,7 +56,7 @@ const SILENCE_MINUTES = 15;
  * @param {readonly string[]} args
  * @param {RunOptions} [options]
  * @returns {Promise<{ output: string, stdout: string, reason: string, hung: boolean }>} the output is standard output
- * and error together; the reason is empty after a success; a command that hung was {@link RunOptions.watched}
+ * and error together; the reason is empty after a success; a command that hung was ended
  */
 export function attempt(command, args, options = {}) {
   return new Promise((resolve) => {
@@ -75,7 +76,7 @@ export function attempt(command, args, options = {}) {
       child.stderr?.destroy();
       child.unref();
     };
-    const watchdog = options.watched ? setTimeout(watch, SILENCE_MINUTES * 60_000) : undefined;
+    const watchdog = options.attach || options.patient ? undefined : setTimeout(watch, SILENCE_MINUTES * 60_000);
     child.stdout?.setEncoding("utf8");
     child.stderr?.setEncoding("utf8");
     child.stdout?.on("data", (chunk) => {

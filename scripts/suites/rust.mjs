@@ -16,7 +16,7 @@ import { runChecks } from "../lib/step.mjs";
  * @param {import("../lib/run.mjs").RunOptions} [options]
  */
 async function cargoTest(args, options = {}) {
-  const test = () => attempt("cargo", ["test", "--no-fail-fast", ...args], { echo: true, watched: true, ...options });
+  const test = () => attempt("cargo", ["test", "--no-fail-fast", ...args], { echo: true, ...options });
   const first = await test();
   const { output, reason } = first.hung ? await test() : first;
   if (first.hung) print(`\ncargo test, at first: ${first.reason}.\n`);
