@@ -13,10 +13,13 @@ export interface Command {
   about: string;
   /** Whether the key works in text fields, too. */
   isGlobal?: boolean;
-  /** Whether the command can do something now; always, if it does not say. */
+  /** Whether the palette lists the command, because it can do something now; always, if it does not say. */
   isOffered?(): boolean;
   act(workspace: Workspace): unknown;
 }
+
+/** For the palette itself, a second key of a command, and keys of what is listed by name. */
+export const isNever = () => false;
 
 const toggleHandles =
   (mode: "translate" | "rotate" | "scale") =>
@@ -59,11 +62,25 @@ export const commands: readonly Command[] = [
   { key: "g", title: "G", about: "Handles to move", act: toggleHandles("translate") },
   { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
   { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
+  {
+    key: "ArrowLeft",
+    title: "← → ↑ ↓ PgUp PgDn",
+    about: "Move, rotate or scale in steps, with handles shown",
+    act: () => {},
+    isOffered: isNever,
+  },
   { key: "l", title: "L", about: "Lock the scale", act: toggleScaleLock },
   { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: ({ undo }) => undo() },
   { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: ({ redo }) => redo() },
-  { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: ({ redo }) => redo() },
+  { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: ({ redo }) => redo(), isOffered: isNever },
   { key: "Enter", title: "Enter", about: "Accept the pose", act: accept },
+  {
+    key: "Mod+Enter",
+    title: "Ctrl Enter",
+    about: "Accept the pose, with the focus on any button",
+    act: accept,
+    isOffered: isNever,
+  },
   { key: "n", title: "N", about: "Next object or scene", act: next },
   { key: "[", title: "[", about: "Previous object", act: selectNeighbour(-1) },
   { key: "]", title: "]", about: "Next object", act: selectNeighbour(1) },
@@ -84,7 +101,7 @@ export const commands: readonly Command[] = [
   },
   { key: "z", title: "Z", about: "Zoom to the objects", act: toggleLayer("zoom") },
   { key: "v", title: "V", about: "Swap the views", act: swapViews },
-  { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
+  { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {}, isOffered: isNever },
 ];
 
 function toggleScaleLock({ selected, unit }: Workspace): void {
@@ -108,13 +125,23 @@ const isTyping = (target: EventTarget | null) =>
   target.matches('input:not([type="checkbox"], [type="radio"], [type="range"]), select, textarea');
 
 function onKey(workspace: Workspace, known: readonly Command[], event: KeyboardEvent): void {
-  const { key, ctrlKey, metaKey, altKey, target } = event;
+  const { ctrlKey, metaKey, altKey, shiftKey, target } = event;
+  // Caps Lock makes no other commands of letters.
+  const letter = shiftKey ? event.key.toUpperCase() : event.key.toLowerCase();
+  const key = event.key.length === 1 ? letter : event.key;
   if (altKey || event.defaultPrevented || document.querySelector("dialog[open], :popover-open") !== null) return;
   const isMod = ctrlKey || metaKey;
   const command = known.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${key}`);
   if (isTyping(target) && command?.isGlobal !== true) return;
   // Enter presses the button that has the focus.
-  if (key === "Enter" && target !== document.body) return;
+  if (key === "Enter" && !isMod && target !== document.body) return;
+  if (!isMod && /^(Arrow|Page)/.test(key)) {
+    // Sliders have these keys, too; and without handles, they scroll.
+    if (workspace.gizmo.peek() === null || target instanceof HTMLInputElement) return;
+    event.preventDefault();
+    import("./nudges.js").then(({ nudgeByKey }) => nudgeByKey(workspace, event));
+    return;
+  }
   if (!isMod && /^\d$/.test(key)) {
     const object = workspace.selected.peek();
     if (object !== null) applyAlternative(workspace, object, Number(key) - 1);
@@ -133,6 +160,7 @@ export function listenToKeys(
   known: readonly Command[] = commands,
 ): () => void {
   const listener = (event: Event) => onKey(workspace, known, event as KeyboardEvent);
-  root.addEventListener("keydown", listener);
-  return () => root.removeEventListener("keydown", listener);
+  // Before the 3D view, which turns by arrows.
+  root.addEventListener("keydown", listener, true);
+  return () => root.removeEventListener("keydown", listener, true);
 }
