@@ -24,7 +24,7 @@ const fuzzers = {
       const program = join(installDir, "tests", "support", "fuzz", "program.js");
       const remedy = "mend what the seeds show, and keep each as a test of its own";
       const args = ["--enable-source-maps", program, minutes, seed];
-      await run(process.execPath, args, { cwd: installDir, echo: true, env: testEnvironment, remedy });
+      await run(process.execPath, args, { cwd: installDir, echo: true, patient: true, env: testEnvironment, remedy });
     },
   },
   core: {

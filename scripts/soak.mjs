@@ -17,5 +17,5 @@ await script(async () => {
   await install();
   const program = join(installDir, "tests", "support", "soak.js");
   const args = ["--expose-gc", "--enable-source-maps", program, values.count ?? "10000", values.seed ?? "1"];
-  await run(process.execPath, args, { cwd: installDir, echo: true, env: testEnvironment });
+  await run(process.execPath, args, { cwd: installDir, echo: true, patient: true, env: testEnvironment });
 });

@@ -60,6 +60,16 @@ export function nodeCounts(output) {
 }
 
 /**
+ * The files of tests that `node --test` ended, because they took too long.
+ * @param {string} output
+ */
+export const hungFiles = (output) => [
+  ...new Set(
+    Array.from(plain(output).matchAll(/^✖ (\S+\.test\.js) \(.*\)\n +'test timed out/gm), ([, file = ""]) => file),
+  ),
+];
+
+/**
  * A test program that ended badly has failed, even where it counted no failure (it did not compile, or crashed).
  * @param {Counts} counts
  * @param {boolean} succeeded

@@ -43,10 +43,11 @@ function environment() {
  * returning it
  * @property {(line: string) => void} [onLine] gets every line of standard output as it comes
  * @property {boolean} [attach] let the command have the console, and return nothing
- * @property {boolean} [watched] end the command when it has printed nothing for {@link SILENCE_MINUTES}: it hangs
+ * @property {boolean} [patient] wait for a command however long it prints nothing; others hang after
+ * {@link SILENCE_MINUTES}, and are ended
  */
 
-/** Far longer than any test or compilation takes between two lines, on a busy machine too. */
+/** Far longer than a test, a compilation or a download takes between two lines, on a busy machine too. */
 const SILENCE_MINUTES = 20;
 
 /**
@@ -54,8 +55,8 @@ const SILENCE_MINUTES = 20;
  * @param {string} command
  * @param {readonly string[]} args
  * @param {RunOptions} [options]
- * @returns {Promise<{ output: string, stdout: string, reason: string }>} the output is standard output and error
- * together; the reason is empty after a success
+ * @returns {Promise<{ output: string, stdout: string, reason: string, hung: boolean }>} the output is standard output
+ * and error together; the reason is empty after a success; a command that hung was ended
  */
 export function attempt(command, args, options = {}) {
   return new Promise((resolve) => {
@@ -68,14 +69,14 @@ export function attempt(command, args, options = {}) {
     });
     let [output, stdout] = ["", ""];
     const watch = () => {
-      end(`ended, for it printed nothing for ${SILENCE_MINUTES} minutes`);
+      end(`ended, for it printed nothing for ${SILENCE_MINUTES} minutes`, true);
       child.kill();
       // What the command itself has started may live on, and must not keep this process.
       child.stdout?.destroy();
       child.stderr?.destroy();
       child.unref();
     };
-    const watchdog = options.watched ? setTimeout(watch, SILENCE_MINUTES * 60_000) : undefined;
+    const watchdog = options.attach || options.patient ? undefined : setTimeout(watch, SILENCE_MINUTES * 60_000);
     child.stdout?.setEncoding("utf8");
     child.stderr?.setEncoding("utf8");
     child.stdout?.on("data", (chunk) => {
@@ -92,9 +93,9 @@ export function attempt(command, args, options = {}) {
       if (options.echo === true) print(chunk);
       else if (options.echo) process.stderr.write(chunk);
     });
-    const end = (/** @type {string} */ reason) => {
+    const end = (/** @type {string} */ reason, hung = false) => {
       clearTimeout(watchdog);
-      resolve({ output, stdout, reason });
+      resolve({ output, stdout, reason, hung });
     };
     child.on("error", (error) => end(error.message));
     child.on("close", (code, signal) => {

@@ -11,15 +11,15 @@ import { rustToolchain, wasmBindgen, wasmBindgenProgram, wasmTarget } from "../l
 import { runChecks } from "../lib/step.mjs";
 
 /**
+ * Runs tests; once more if they hang, because Node itself may: its end can deadlock (nodejs/node#54918).
  * @param {readonly string[]} args
  * @param {import("../lib/run.mjs").RunOptions} [options]
  */
 async function cargoTest(args, options = {}) {
-  const { output, reason } = await attempt("cargo", ["test", "--no-fail-fast", ...args], {
-    echo: true,
-    watched: true,
-    ...options,
-  });
+  const test = () => attempt("cargo", ["test", "--no-fail-fast", ...args], { echo: true, ...options });
+  const first = await test();
+  const { output, reason } = first.hung ? await test() : first;
+  if (first.hung) print(`\ncargo test, at first: ${first.reason}.\n`);
   if (reason !== "") print(`cargo test: ${reason}\n`);
   return withStatus(rustCounts(output), reason === "");
 }

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { scriptModule } from "../support/internals.js";
 
-const { nodeCounts, rustCounts, withStatus } = await scriptModule("lib/counts.mjs");
+const { hungFiles, nodeCounts, rustCounts, withStatus } = await scriptModule("lib/counts.mjs");
 
 test("the result lines of all Rust test programs are added, in colour or not, with the times of the tests", () => {
   const output = [
@@ -33,6 +33,13 @@ test("Node's summary is read, cancelled tests as failed", () => {
     skipped: 2,
     times: [{ name: "pass 100 balls", ms: 1.5 }],
   });
+});
+
+test("files of tests that hang are told from tests that fail, each once", () => {
+  const hung =
+    "\u001b[31m✖ /tests/js/pool.test.js \u001b[90m(900000.5ms)\u001b[39m\u001b[39m\n  'test timed out after 900000ms'\n";
+  const failed = "✖ a mesh is read (3.5ms)\n  'expected 3'\n";
+  assert.deepEqual(hungFiles(`${hung}${failed}\n✖ failing tests:\n\n${hung}`), ["/tests/js/pool.test.js"]);
 });
 
 test("a program that ends badly has failed, whatever it counted", () => {

@@ -19,8 +19,8 @@ use sim3align::register::icp::IcpMetric;
 use sim3align::report::Alignment;
 use sim3align::scene::task::{SceneAlignment, align_scene};
 
-/// The file with a generator's own placement, beside that of the truth.
-const PLACEMENT: &str = "sam3d.json";
+/// The files with a generator's own placement, beside that of the truth; the first one that is there counts.
+const PLACEMENTS: [&str; 2] = ["initial.json", "sam3d.json"];
 /// Largest distance of correspondences of ICP, relative to the diameter of the mesh; and its iterations.
 const REACH: f64 = 0.1;
 const ITERATIONS: usize = 200;
@@ -61,8 +61,8 @@ impl PlacedScene {
         let scene = BenchScene::read(folder)?;
         let folders = entries(&folder.join("objects")).into_iter().filter(|path| path.is_dir());
         let placement = |folder: PathBuf| {
-            let bytes = fs::read(folder.join(PLACEMENT)).ok();
-            bytes.map(|bytes| pose::similarity(PLACEMENT, &json::parse(PLACEMENT, &bytes)?)).transpose()
+            let found = PLACEMENTS.iter().find_map(|name| Some((name, fs::read(folder.join(name)).ok()?)));
+            found.map(|(name, bytes)| pose::similarity(name, &json::parse(name, &bytes)?)).transpose()
         };
         Ok(Self { scene, placements: folders.map(placement).collect::<Result<_>>()? })
     }

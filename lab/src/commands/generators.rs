@@ -22,8 +22,8 @@ them, after point-to-point ICP from there, and aligned: each alone and all toget
 placement as `initial`, and alone with an up direction that is 5° off; and how the aligned mesh in the proportions found
 agrees with the image. Objects without gt.json are left out.
 
-  --cases DIR...     scene folders, or folders of scene folders; objects/NAME/sam3d.json is the placement: scale, rotation
-                     as three rows, translation in metres, OpenCV camera from mesh
+  --cases DIR...     scene folders, or folders of scene folders; objects/NAME/initial.json (or sam3d.json) is the placement:
+                     scale, rotation as three rows, translation in metres, OpenCV camera from mesh
   --scenes N         N generated cluttered scenes, with placements that are off as those of SAM 3D Objects are
   --prior P          what made their meshes: detailed (default) or smooth
   --set-seed S       seed of the set, default 0

@@ -358,6 +358,8 @@ fn the_placement_of_a_generator_is_compared_with_ours() {
     let first = listed(&folder.join("objects")).unwrap().into_iter().next().unwrap();
     let mut placement: serde_json::Value = serde_json::from_slice(&fs::read(first.join("gt.json")).unwrap()).unwrap();
     placement["scale"] = (1.08 * placement["scale"].as_f64().unwrap()).into();
+    fs::write(first.join("initial.json"), placement.to_string()).unwrap();
+    placement["scale"] = 1.0.into();
     fs::write(first.join("sam3d.json"), placement.to_string()).unwrap();
     let options = AlignOptions { quality: Quality::Fast, ..AlignOptions::default() };
     let records = PlacedScene::read(&folder).unwrap().records(&options).unwrap();

@@ -26,6 +26,8 @@ const HEIGHT: usize = 480;
 const RAYS: usize = 2;
 /// Triangles are split until no edge is longer: the colours of vertices then show the print.
 const MAX_EDGE_M: f32 = 0.008;
+/// The same, for edges of generated meshes at which the paint changes.
+const MAX_PAINT_EDGE_M: f32 = 0.002;
 /// Where the wall is, behind the origin.
 const WALL_M: f64 = 0.42;
 /// Half the range of the noise of the depth map, as a share of depth.
@@ -71,7 +73,11 @@ impl TableScene {
             let (mesh, _) = put_down_turned(&object, &Matrix3::identity())?;
             let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), f64::to_radians(heading)).into_inner();
             let world_from_object = Similarity::from_parts(1.0, turn, Vector3::new(at[0], at[1], 0.0))?;
-            let surface = Surface::new(&surface::split(&mesh, MAX_EDGE_M)?, &world_from_object)?;
+            let corners = mesh.positions().iter().map(|&p| [p]).collect();
+            let is_long = |[p]: &[Vec3; 1], [q]: &[Vec3; 1]| p.distance(*q) > MAX_EDGE_M;
+            let (corners, triangles) = surface::split(corners, mesh.triangles().to_vec(), is_long);
+            let mesh = Mesh::new(corners.into_iter().flatten().collect(), triangles)?;
+            let surface = Surface::new(&mesh, &world_from_object)?;
             objects.push(Placed { family, paint, surface, world_from_object });
         }
         let eye = Vector3::new(-0.05, -0.62, 0.36);
@@ -165,9 +171,19 @@ impl TableScene {
         let seen = corners_of(surface.mesh(), seen.map(|(_, &triangle)| triangle));
         let object = surface.in_object()?;
         let invented = hallucinate(&object, &seen, 0.012, mixed([self.seed, k as u64]))?;
+        // Where the paint changes, small triangles make for smooth edges.
+        let size = surface.size();
+        let is_long = |from: &[Vec3; 2], to: &[Vec3; 2]| {
+            let [p, q] = [from[0], to[0]].map(vector3);
+            let [first, middle, last] = [p, 0.5 * (p + q), q].map(|place| paint.at(&place, &size));
+            from[0].distance(to[0]) > MAX_PAINT_EDGE_M && (first != middle || middle != last)
+        };
+        let pairs = object.positions().iter().zip(invented.positions()).map(|(&own, &other)| [own, other]).collect();
+        let (pairs, triangles) = surface::split(pairs, object.triangles().to_vec(), is_long);
+        let [object, invented] = [0, 1].map(|k| pairs.iter().map(|pair| pair[k]).collect());
+        let [object, invented] = [Mesh::new(object, triangles.clone())?, Mesh::new(invented, triangles)?];
         let (mesh, object_from_mesh) = upright(&invented)?;
-        let places = object.positions().iter().map(|p| Vector3::new(p.x, p.y, p.z).cast::<f64>());
-        let colors = places.map(|place| light::bytes(paint.at(&place, &surface.size()))).collect();
+        let colors = paint.of_vertices(&object, &size).into_iter().map(light::bytes).collect();
         Ok((mesh, colors, world_from_object.compose(&object_from_mesh)))
     }
 

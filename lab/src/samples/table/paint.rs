@@ -13,6 +13,10 @@ pub enum Paint {
     Carton,
 }
 
+/// Weights of the second and third corner, of points that fill the part of a triangle around its first corner.
+const NEAR_A_CORNER: [[f64; 2]; 6] =
+    [[0.08, 0.08], [0.25, 0.08], [0.08, 0.25], [0.42, 0.08], [0.25, 0.25], [0.08, 0.42]];
+
 const fn linear(red: f64, green: f64, blue: f64) -> Vector3<f64> {
     Vector3::new(red, green, blue)
 }
@@ -38,6 +42,28 @@ impl Paint {
             }
             Self::Carton => carton(place, &share, low, high),
         }
+    }
+
+    /// The albedo of each vertex of a mesh in the object's frame: the mean of the triangles around it, up to half-way to
+    /// their other corners. The albedo of the vertex itself would give edges the teeth of the triangles.
+    pub fn of_vertices(self, mesh: &Mesh, size: &[Vector3<f64>; 2]) -> Vec<Vector3<f64>> {
+        let mut sums = vec![(Vector3::zeros(), 0.0); mesh.positions().len()];
+        for &triangle in mesh.triangles() {
+            let corners = mesh.corners(triangle).map(vector3);
+            let area = (corners[1] - corners[0]).cross(&(corners[2] - corners[0])).norm();
+            for k in 0..3 {
+                let [own, second, third] = [0, 1, 2].map(|j| corners[(k + j) % 3]);
+                let mean = NEAR_A_CORNER
+                    .map(|[b, c]| self.at(&(own + (second - own) * b + (third - own) * c), size))
+                    .iter()
+                    .sum::<Vector3<f64>>()
+                    / NEAR_A_CORNER.len() as f64;
+                let (sum, weight) = &mut sums[triangle[k] as usize];
+                *sum += mean * area;
+                *weight += area;
+            }
+        }
+        sums.into_iter().map(|(sum, weight)| sum / f64::max(weight, f64::MIN_POSITIVE)).collect()
     }
 
     /// How much the surface mirrors the light.

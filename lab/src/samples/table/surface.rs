@@ -75,10 +75,13 @@ fn face(mesh: &Mesh, triangle: [u32; 3]) -> Vector3<f64> {
     (b - a).cross(&(c - a))
 }
 
-/// The mesh with every triangle split in four that has an edge longer than `max_edge`, and its neighbours at that edge in two
-/// or three, until there is none.
-pub fn split(mesh: &Mesh, max_edge: f32) -> Result<Mesh> {
-    let (mut positions, mut triangles) = (mesh.positions().to_vec(), mesh.triangles().to_vec());
+/// A mesh with every triangle split in four that has a long edge, and its neighbours at that edge in two or three, until there
+/// is none. Vertices may have several positions, which are split together.
+pub fn split<const N: usize>(
+    mut positions: Vec<[Vec3; N]>,
+    mut triangles: Vec<[u32; 3]>,
+    is_long: impl Fn(&[Vec3; N], &[Vec3; N]) -> bool,
+) -> (Vec<[Vec3; N]>, Vec<[u32; 3]>) {
     for _ in 0..MOST_SPLITS {
         let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
         let mut next = Vec::with_capacity(2 * triangles.len());
@@ -86,11 +89,11 @@ pub fn split(mesh: &Mesh, max_edge: f32) -> Result<Mesh> {
             let [a, b, c] = *triangle;
             let mut middle = |p: u32, q: u32| -> Option<u32> {
                 let [from, to] = [positions[p as usize], positions[q as usize]];
-                if from.distance(to) <= max_edge {
+                if !is_long(&from, &to) {
                     return None;
                 }
                 Some(*middles.entry((p.min(q), p.max(q))).or_insert_with(|| {
-                    positions.push(0.5 * (from + to));
+                    positions.push(core::array::from_fn(|k| 0.5 * (from[k] + to[k])));
                     positions.len() as u32 - 1
                 }))
             };
@@ -110,5 +113,5 @@ pub fn split(mesh: &Mesh, max_edge: f32) -> Result<Mesh> {
         }
         triangles = next;
     }
-    Mesh::new(positions, triangles)
+    (positions, triangles)
 }
