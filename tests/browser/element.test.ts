@@ -282,6 +282,19 @@ test("read-only, nothing can be changed, and tokens and parts style the element"
   await give(page, "a");
   await told(page, "a", "ready");
   assert.equal(await page.locator("#a :is(#align, #accept, #refine, .hand-panel)").count(), 0);
+  await told(page, "a", "align");
+  const state = () =>
+    page.evaluate(() => {
+      const { pose, results } = document.querySelector("#a") as Element;
+      return JSON.stringify([pose, results[0]?.isAccepted]);
+    });
+  const before = await state();
+  const press = async () => {
+    await page.locator("#a canvas").first().focus();
+    for (const key of ["g", "ArrowLeft", "PageUp", "l", "Control+Enter"]) await page.keyboard.press(key);
+  };
+  await press();
+  assert.equal(await state(), before);
   const outline = await page.locator("#a .result").evaluate((panel) => getComputedStyle(panel).outlineWidth);
   assert.equal(outline, "3px");
   assert.equal(
@@ -292,6 +305,9 @@ test("read-only, nothing can be changed, and tokens and parts style the element"
     (document.querySelector("#a") as Element).readonly = false;
   });
   await page.locator("#a #align").waitFor(PATIENCE);
+  await press();
+  await told(page, "a", "accept");
+  assert.notEqual(await state(), before);
   await page.close();
 });
 

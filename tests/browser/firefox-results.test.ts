@@ -1,5 +1,9 @@
 /** The page in Firefox: what it says is so, files are understood or named, and nothing is cut. */
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
+import { repository } from "../support/environment.js";
+import { setWindow } from "../support/firefox.js";
 import { type FirefoxPage, firefoxTests } from "../support/firefox-page.js";
 import { cutParts, screens } from "../support/layout.js";
 import {
@@ -60,6 +64,39 @@ test("in Firefox, a pose by hand has no confidence of a search, and undo restore
   assert.equal(await confidence(), "Set by hand");
 });
 
+const desk = { address: "#sample=desk&symmetry=none" };
+test(
+  "in Firefox, what is refined from afar has the confidence and alternatives of its own pose",
+  desk,
+  async (opened) => {
+    type Shown = { translation: number[]; confidence: number | null; source: string };
+    const shown = async () => {
+      await opened.metric("iou");
+      const [one] = Object.values(JSON.parse(await opened.saved("JSON")) as Record<string, Shown>);
+      const [badge, alternatives] = [await opened.text(".badge"), await opened.texts(".alternatives button")];
+      return { ...(one as Shown), badge, alternatives };
+    };
+    const found = await shown();
+    assert.ok(found.alternatives.length > 1);
+    // By 15 cm.
+    const x = await opened.page.$eval("#centre-x", (one) => (one as HTMLInputElement).valueAsNumber);
+    await opened.enter("#centre-x", `${x + 15}`);
+    await opened.has(".badge", /^Moved by hand$/);
+    const moved = await shown();
+    assert.deepEqual([moved.confidence, moved.source], [null, "hand"]);
+    await opened.click("#refine");
+    await opened.isNow("refined");
+    const refined = await shown();
+    const offM = Math.hypot(...refined.translation.map((at, k) => at - (found.translation[k] ?? 0)));
+    assert.ok(offM < 0.01 || (refined.confidence ?? 1) < 0.7, `${refined.badge}, ${offM} m off`);
+    assert.ok(refined.badge.startsWith(`${Math.round(100 * (refined.confidence ?? 0))} %`));
+    for (const before of [moved, found]) {
+      await opened.click("#undo");
+      assert.deepEqual(await shown(), before);
+    }
+  },
+);
+
 /** Waits for the cause that the page names, and its sentence. */
 const advises = (opened: FirefoxPage, cause: string, says: RegExp) =>
   opened.has(`.advice[data-cause="${cause}"]`, says);
@@ -85,6 +122,17 @@ test("in Firefox, the cause of what does not fit is named", async (opened) => {
   // Dragged far behind the wall, the object is hidden as well, but not where it was seen.
   await opened.enter("#centre-z", "500");
   await advises(opened, "moved", /^Moved by hand/);
+});
+
+const occluded = { address: "#sample=occluded" };
+test("in Firefox, an occluder and the mesh of another object are named", occluded, async (opened) => {
+  await advises(opened, "occluded", /\d+ % of the object is behind something else/);
+  const sample = async (name: string) => readFile(join(repository, "www", "samples", "hammer", name));
+  const [depth, mask, camera] = await Promise.all(["depth.png", "mask.png", "camera.json"].map(sample));
+  const hammer = { "depth.png": depth, "mask.png": mask, "camera.json": camera } as Files;
+  await opened.drop({ ...hammer, "mesh.obj": files["mesh.obj"] as Uint8Array });
+  await opened.shows("Own files");
+  await advises(opened, "mesh", /probably that of another object/);
 });
 
 /** Drops files, waits for what the sheet says of a field, and closes the sheet. */
@@ -129,7 +177,7 @@ test("in Firefox, photo and mask are shown without depth, also if saved with los
 
 test("in Firefox, nothing is cut on any screen, and the decision is in sight", { address: "" }, async (opened) => {
   for (const [width, height] of screens) {
-    await opened.page.setViewport({ width, height });
+    await setWindow(opened.page, width, height);
     assert.deepEqual(await opened.page.evaluate(cutParts), [], `${width} × ${height}`);
     const ends = await opened.page.evaluate(() =>
       [".drop", "#dimensions", "#accept"].map((part) => document.querySelector(part)?.getBoundingClientRect().bottom),

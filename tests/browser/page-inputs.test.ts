@@ -179,6 +179,7 @@ test("missing files are asked for, and can be added one by one", async (opened, 
   await drop(opened, { "mask.png": files["mask.png"] as Uint8Array });
   const sheet = await opened.sheet();
   assert.match((await sheet.textContent()) ?? "", /Depth map missing.*Mesh missing/);
+  await sheet.locator(".pair canvas").waitFor(PATIENCE);
   // The sample's files do not fill the gaps.
   for (const name of ["fx", "fy", "cx", "cy"]) assert.equal(await page.inputValue(`#camera-${name}`), "");
   await drop(opened, { "mesh.obj": files["mesh.obj"] as Uint8Array, "depth.npy": files["depth.npy"] as Uint8Array });

@@ -138,7 +138,9 @@ export class FirefoxPage {
 
   /** Another tab of the same browser, which shares what is kept. */
   async tab(): Promise<FirefoxPage> {
-    const { page, errors } = await FirefoxTest.tab(this.page.browserContext(), this.page.url());
+    // Firefox 140 does not tell Puppeteer that the page has changed its address.
+    const address = await this.page.evaluate(() => location.href);
+    const { page, errors } = await FirefoxTest.tab(this.page.browserContext(), address);
     return new FirefoxPage(page, errors);
   }
 }

@@ -15,6 +15,15 @@ interface Opened {
   errors: string[];
 }
 
+/** Sets the size of what a page sees. */
+export async function setWindow(page: Page, width: number, height: number): Promise<void> {
+  await page.setViewport({ width, height }).catch((error: unknown) => {
+    // Puppeteer also sets the orientation of the screen, which Firefox 140 does not know.
+    if (!`${error}`.includes("unknown command emulation.setScreenOrientationOverride")) throw error;
+  });
+  await page.waitForFunction((width) => innerWidth === width, {}, width);
+}
+
 /** Firefox and a server of a folder. */
 export class FirefoxTest {
   private constructor(
@@ -42,7 +51,7 @@ export class FirefoxTest {
   /** Opens a page beside others, which share their data. */
   static async tab(context: BrowserContext, url: string, script?: () => void): Promise<Opened> {
     const page = await context.newPage();
-    await page.setViewport({ width: 1280, height: 800 });
+    await setWindow(page, 1280, 800);
     if (script !== undefined) await page.evaluateOnNewDocument(script);
     const errors: string[] = [];
     page.on("pageerror", (error) => errors.push(`${error}`));

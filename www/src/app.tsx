@@ -60,8 +60,8 @@ export function App() {
             <Kept />
             <RunBar />
             <StartPanel />
-            <ResultPanel />
             <ObjectsPanel />
+            <ResultPanel />
             <ScenesPanel />
             <ExportPanel />
             <InputPanel />

@@ -68,9 +68,9 @@ export function squareAround(mask: Uint8Array, width: number, margin: number): S
   return { u0: (left + right - side) / 2, v0: (top + bottom - side) / 2, side };
 }
 
-/** An image in which everything but a mask is faded, cropped to the mask. */
+/** An image, or grey, in which everything but a mask is faded, cropped to the mask. */
 export function maskThumbnail(
-  rgba: Uint8ClampedArray,
+  rgba: Uint8ClampedArray | null,
   mask: Uint8Array,
   width: number,
   size: number,
@@ -87,7 +87,7 @@ export function maskThumbnail(
       const pixel = v * width + u;
       const inside = mask[pixel] !== 0;
       const mixed = own.map((part, k) => {
-        const seen = rgba[4 * pixel + k] ?? 0;
+        const seen = rgba?.[4 * pixel + k] ?? 128;
         return inside ? 0.65 * seen + 0.35 * part : 0.3 * seen;
       });
       image.data.set([...mixed, 255], 4 * (y * size + x));

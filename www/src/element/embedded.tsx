@@ -20,8 +20,8 @@ export function Embedded() {
       <ImageView />
       <div class="side" part="side">
         {canChange ? <RunBar /> : <p role="status">{status.value.kind === "failed" ? status.value.text : ""}</p>}
-        <ResultPanel />
         <ObjectsPanel />
+        <ResultPanel />
         {canChange && (
           <>
             <HandPanel />

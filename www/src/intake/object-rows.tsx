@@ -96,7 +96,7 @@ function Row({ inputs, object, read, i, ground, width }: RowProps) {
   const { mask, mesh } = read;
   const colour = colourOf(i);
   const seen = useMemo(
-    () => (mask === null || ground === null ? null : maskThumbnail(ground, mask, width, SIZE, colour)),
+    () => (mask === null ? null : maskThumbnail(ground, mask, width, SIZE, colour)),
     [mask, ground, width, colour],
   );
   const shape = useMemo(() => (mesh === null ? null : meshThumbnail(mesh, SIZE, colour)), [mesh, colour]);

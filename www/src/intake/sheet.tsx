@@ -20,6 +20,11 @@ export function Sheet() {
   useEffect(() => {
     if (dialog.current?.open === false) dialog.current.showModal();
   }, []);
+  // The first focus is on the name, because the button cannot have it before the files are read.
+  const canOpen = open !== null && isReady(open);
+  useEffect(() => {
+    if (canOpen && document.activeElement?.matches(".scene-name")) document.getElementById("intake-open")?.focus();
+  }, [canOpen]);
   const depth = open?.reading?.depth ?? null;
   const ground = useMemo(() => (depth === null ? null : depthImage(depth.data)), [depth]);
   if (open === null) return null;
@@ -68,7 +73,7 @@ export function Sheet() {
         <p class="quiet" role="status">
           {summary(open)}
         </p>
-        <button type="button" id="intake-open" class="primary" disabled={!isReady(open)} onClick={accept}>
+        <button type="button" id="intake-open" class="primary" disabled={!canOpen} onClick={accept}>
           {open.isEdit ? "Apply and align" : "Align"}
         </button>
       </footer>

@@ -107,7 +107,10 @@ export async function readInputs(
   const canShow = read !== null || depthFile === null;
   const readingPhoto =
     photoFile === null || !canShow ? null : attempt("photo", photoFile, () => readPhoto(photoFile, read));
-  const shown = read ?? (await readingPhoto)?.shown ?? null;
+  // Without both, masks are shown by themselves.
+  const [mask] = canShow ? inputs.objects.flatMap(({ mask }) => mask ?? []) : [];
+  const shown =
+    read ?? (await readingPhoto)?.shown ?? (mask === undefined ? null : await maskOf(mask).catch(() => null));
   const [photo, objects] = await Promise.all([
     readingPhoto,
     Promise.all(

@@ -1,7 +1,7 @@
 /** Adjusting the pose by hand: undo and redo, handles, refine; behind "More", what a correction rarely needs. */
 import { refine } from "../run/align.js";
 import { Check } from "../ui/controls.js";
-import { nudgeGroups } from "../ui/nudges.js";
+import { canNudge, nudgeGroups } from "../ui/nudges.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { KnownSize } from "./known-size.js";
 import { Numbers } from "./numbers.js";
@@ -17,9 +17,14 @@ const settings = [
   ["local-axes", "isLocal", "Axes of the mesh"],
 ] as const;
 
+const steps = [
+  ["undo", "Undo", "Control+Z", "canUndo"],
+  ["redo", "Redo", "Control+Shift+Z", "canRedo"],
+] as const;
+
 export function HandPanel() {
   const workspace = useWorkspace();
-  const { canRedo, canUndo, gizmo, gizmoSettings, isRunning, nudge, redo, selected, space, undo, unit } = workspace;
+  const { gizmo, gizmoSettings, isRunning, nudge, selected, space, unit } = workspace;
   const object = selected.value;
   const lockScale = object !== null && object.knownScale.value !== null;
   const isReady = object !== null && !isRunning.value && !object.isLocked.value;
@@ -30,29 +35,22 @@ export function HandPanel() {
       <div class="panel-head">
         <h2 id="hand-title">By hand</h2>
         {/* Each is in sight while it can do something, or has the focus. */}
-        <button
-          type="button"
-          id="undo"
-          class="step"
-          aria-disabled={!canUndo.value}
-          aria-keyshortcuts="Control+Z"
-          onClick={undo}
-        >
-          Undo
-        </button>
-        <button
-          type="button"
-          id="redo"
-          class="step"
-          aria-disabled={!canRedo.value}
-          aria-keyshortcuts="Control+Shift+Z"
-          onClick={redo}
-        >
-          Redo
-        </button>
+        {steps.map(([name, title, keys, can]) => (
+          <button
+            key={name}
+            type="button"
+            id={name}
+            class="step"
+            aria-disabled={!workspace[can].value}
+            aria-keyshortcuts={keys}
+            onClick={workspace[name]}
+          >
+            {title}
+          </button>
+        ))}
       </div>
       <fieldset class="handles" disabled={!isReady || space.value.kind !== "ready"}>
-        <legend>Handles in the 3D view</legend>
+        <legend>Handles in 3D, and arrow keys</legend>
         {modes.map(([mode, title, key]) => (
           <button
             key={mode}
@@ -104,15 +102,15 @@ export function HandPanel() {
           ))}
         </div>
         <Numbers object={object} isReady={isReady} />
-        {nudgeGroups.map(({ legend, verb, nudges }) => (
-          <fieldset key={legend} class="steps" disabled={!isReady || (verb === "" && lockScale)}>
-            <legend>{legend}</legend>
-            {nudges.map(([title, symbol, change]) => (
+        {nudgeGroups.map((group) => (
+          <fieldset key={group.mode} class="steps" disabled={object === null || !canNudge(workspace, object, group)}>
+            <legend>{group.legend}</legend>
+            {group.nudges.map(([title, symbol, change]) => (
               <button
                 key={title}
                 type="button"
-                aria-label={verb + title}
-                title={verb && title}
+                aria-label={group.verb + title}
+                title={group.verb && title}
                 onClick={() => object !== null && nudge(object, change(object))}
               >
                 {symbol}

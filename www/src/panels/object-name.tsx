@@ -20,7 +20,11 @@ export function NameField({ object }: { object: ObjectModel }) {
       ref={field}
       onKeyDown={({ key, currentTarget }) => {
         if (key === "Escape") currentTarget.value = name;
-        if (key === "Enter" || key === "Escape") currentTarget.blur();
+        if (key !== "Enter" && key !== "Escape") return;
+        const row = currentTarget.parentElement;
+        currentTarget.blur();
+        // The focus would be lost with the field.
+        requestAnimationFrame(() => row?.querySelector("button")?.focus());
       }}
       onBlur={({ currentTarget }) => {
         object.title.value = currentTarget.value.trim() || name;

@@ -1,4 +1,5 @@
 /** The outliner: the objects of the scene. The selected one has a menu, by which it is shown, locked, renamed and removed. */
+import { useEffect, useRef } from "preact/hooks";
 import { alignSelected } from "../run/align.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
 import { Check, Menu } from "../ui/controls.js";
@@ -44,10 +45,19 @@ export function ObjectsPanel() {
 
 function Row({ object }: { object: ObjectModel }) {
   const { isReadonly, renamed, selected } = useWorkspace();
+  const row = useRef<HTMLLIElement>(null);
+  const isSelected = selected.value === object;
+  // In a long list, the selected object is in sight. The page itself does not scroll.
+  useEffect(() => {
+    const list = row.current?.parentElement;
+    if (!isSelected || row.current === null || list == null) return;
+    const { offsetTop: top, offsetHeight: height } = row.current;
+    list.scrollTop = Math.min(top, Math.max(list.scrollTop, top + height - list.clientHeight));
+  }, [isSelected]);
   return (
-    <li data-shown={object.isShown.value}>
+    <li data-shown={object.isShown.value} ref={row}>
       {renamed.value === object && !isReadonly.value ? <NameField object={object} /> : <ObjectButton object={object} />}
-      {selected.value === object && <ObjectMenu object={object} />}
+      {isSelected && <ObjectMenu object={object} />}
     </li>
   );
 }

@@ -7,8 +7,8 @@ import { applyAlternative } from "../run/alternatives.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { theme } from "../state/theme.js";
-import { nudgeGroups } from "../ui/nudges.js";
-import { pageCommands, togglePalette } from "../ui/page-commands.js";
+import { canNudge, keysOf, nudgeGroups } from "../ui/nudges.js";
+import { pageCommands } from "../ui/page-commands.js";
 import { reveal } from "../ui/reveal.js";
 import type { Command } from "../ui/shortcuts.js";
 import { choices } from "./choices.js";
@@ -74,14 +74,15 @@ const byHand: readonly Command[] = [
   goTo("Known size of the object …", "known-size"),
   goTo("Centre of the object in numbers …", "centre-x"),
   goTo("Turn the object by an angle …", "turn-deg"),
-  ...nudgeGroups.flatMap(({ legend, verb, nudges }) =>
-    nudges.map(([title, , change]) =>
-      ofObject(
-        verb === "" ? `${title}: ${legend.toLowerCase()}` : `${verb}${title}`,
+  ...nudgeGroups.flatMap((group) =>
+    group.nudges.map(([title, , change], i) => ({
+      ...ofObject(
+        group.verb === "" ? `${title}: ${group.legend.toLowerCase()}` : `${group.verb}${title}`,
         (object) => page.nudge(object, change(object)),
-        (object) => !isRunning.peek() && !object.isLocked.peek() && (verb !== "" || object.knownScale.peek() === null),
+        (object) => canNudge(page, object, group),
       ),
-    ),
+      title: keysOf(group, i),
+    })),
   ),
   toggle("Handles move in steps", gizmoSettings, "snaps"),
   toggle("Handles along the axes of the mesh", gizmoSettings, "isLocal"),
@@ -194,8 +195,17 @@ const alternativesOf = (object: ObjectModel | null): Command[] =>
 
 /** All commands that can do something now. */
 export function commandsNow(): readonly Command[] {
-  // The palette itself, a second key of a command, and the key of what is listed by name.
-  const keyed = pageCommands.filter(({ act, key }) => act !== togglePalette && key !== "Mod+y" && key !== "0");
-  const all = [keyed, ofSelected, byHand, ofViews, ofOptions, ofFiles, ofVideos, ofLists(), ofExports, ofPage].flat();
+  const all = [
+    pageCommands,
+    ofSelected,
+    byHand,
+    ofViews,
+    ofOptions,
+    ofFiles,
+    ofVideos,
+    ofLists(),
+    ofExports,
+    ofPage,
+  ].flat();
   return all.filter(({ isOffered }) => isOffered?.() ?? true);
 }

@@ -29,8 +29,9 @@ export function Palette() {
 
   const run = (command: Command | undefined) => {
     if (command === undefined) return;
-    // Closing gives the focus back, so that a command may move it.
+    // Closing gives the focus back, so that a command may move it. Its event comes later, and the next key may be first.
     dialog.current?.close();
+    isPaletteOpen.value = false;
     command.act(page);
   };
   const onKeyDown = (event: KeyboardEvent) => {

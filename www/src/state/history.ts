@@ -80,8 +80,14 @@ export function historyState({ objects, recalibrate, scene, select, support }: S
       object.accepted.value = object.pose.peek();
     });
 
-  /** Changes the pose of an object by hand. */
-  const nudge = (object: ObjectModel, change: Nudge) => place(object, byHand(object, change));
+  /** Changes the pose of an object by hand, as a step of its own or as a part of the last one. */
+  function nudge(object: ObjectModel, change: Nudge, continues = false): void {
+    const last = undoSteps.peek().at(-1);
+    place(object, byHand(object, change));
+    if (!continues || last?.object !== object) return;
+    const [after] = undoSteps.peek().slice(-1);
+    undoSteps.value = [...undoSteps.peek().slice(0, -2), { ...last, ...(after && { after: after.after }) }];
+  }
 
   /** Moves the last step from one list to the other, and shows the state on one side of it. */
   function move(from: Signal<readonly Step[]>, to: Signal<readonly Step[]>, side: "before" | "after"): void {

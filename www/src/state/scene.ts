@@ -42,14 +42,14 @@ export function sceneState() {
   /** The plane on which the objects of the scene stand, once it is known. */
   const support = signal<Support | null>(null);
 
-  const selectedId = signal<string | null>(null);
+  const chosen = signal<ObjectModel | null>(null);
 
   /** Only another scene has other ones: the same list means the same scene, perhaps in another calibration. */
   const objects = computed<readonly ObjectModel[]>(() => scene.value?.objects ?? []);
 
-  /** The object that panels and handles apply to. */
+  /** The object that panels and handles apply to: in another scene, the first one. */
   const selected = computed<ObjectModel | null>(
-    () => objects.value.find(({ id }) => id === selectedId.value) ?? objects.value[0] ?? null,
+    () => objects.value.find((object) => object === chosen.value) ?? objects.value[0] ?? null,
   );
 
   /** The object whose name is being changed. */
@@ -71,7 +71,7 @@ export function sceneState() {
   }
 
   function select(id: string | null): void {
-    if (id !== null) selectedId.value = id;
+    chosen.value = objects.peek().find((object) => object.id === id) ?? chosen.peek();
   }
 
   /** The object whose mask contains the pixel. */

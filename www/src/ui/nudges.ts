@@ -1,7 +1,9 @@
-/** Small changes of a pose, as buttons and as commands. */
+/** Small changes of a pose, as buttons, as keys and as commands. */
 import type { Vector3 } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
+import type { Workspace } from "../state/workspace.js";
+import type { GizmoMode } from "../view3d/types.js";
 
 /** A fiftieth of the object's size in a direction of the camera frame: visible, but small compared with the mask. */
 const moveBy =
@@ -18,6 +20,8 @@ const turnBy =
 const scaleBy = (scale: number) => (): Nudge => ({ scale });
 
 export interface NudgeGroup {
+  /** The handles that do the same. */
+  mode: GizmoMode;
   legend: string;
   /** Before the titles of the buttons. */
   verb: string;
@@ -27,6 +31,7 @@ export interface NudgeGroup {
 /** Camera frame of OpenCV: y down, z forward. */
 export const nudgeGroups: readonly NudgeGroup[] = [
   {
+    mode: "translate",
     legend: "Move in the camera view",
     verb: "Move ",
     nudges: [
@@ -39,6 +44,7 @@ export const nudgeGroups: readonly NudgeGroup[] = [
     ],
   },
   {
+    mode: "rotate",
     legend: "Rotate by 5°",
     verb: "Rotate ",
     nudges: [
@@ -51,6 +57,7 @@ export const nudgeGroups: readonly NudgeGroup[] = [
     ],
   },
   {
+    mode: "scale",
     legend: "Scale by 2 %",
     verb: "",
     nudges: [
@@ -59,3 +66,30 @@ export const nudgeGroups: readonly NudgeGroup[] = [
     ],
   },
 ];
+
+/** By the position of a nudge in its group: its key, while the handles of the group are shown, and how the palette shows it. */
+const stepKeys = [
+  ["ArrowLeft", "←"],
+  ["ArrowRight", "→"],
+  ["ArrowUp", "↑"],
+  ["ArrowDown", "↓"],
+  ["PageDown", "PgDn"],
+  ["PageUp", "PgUp"],
+] as const;
+
+/** The key of a group's handles, and that of a nudge. */
+export const keysOf = ({ mode }: NudgeGroup, at: number) =>
+  `${{ translate: "G", rotate: "R", scale: "S" }[mode]} ${stepKeys[at]?.[1]}`;
+
+/** Whether the pose of an object can be changed in this way now. */
+export const canNudge = ({ isRunning }: Workspace, object: ObjectModel, { mode }: NudgeGroup): boolean =>
+  !isRunning.value && !object.isLocked.value && (mode !== "scale" || object.knownScale.value === null);
+
+/** Changes the pose of the selected object as a key says. While the key is held down, that is one step to undo. */
+export function nudgeByKey(workspace: Workspace, { key, repeat }: KeyboardEvent): void {
+  const object = workspace.selected.peek();
+  const group = nudgeGroups.find(({ mode }) => mode === workspace.gizmo.peek());
+  const change = group?.nudges[stepKeys.findIndex(([own]) => own === key)]?.[2];
+  if (object === null || group === undefined || change === undefined || !canNudge(workspace, object, group)) return;
+  workspace.nudge(object, change(object), repeat);
+}

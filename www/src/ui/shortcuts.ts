@@ -11,12 +11,17 @@ export interface Command {
   /** The key as the help shows it. */
   title?: string;
   about: string;
+  /** Whether it changes a pose or a decision, which a read-only element does not. */
+  changes?: true;
   /** Whether the key works in text fields, too. */
   isGlobal?: boolean;
-  /** Whether the command can do something now; always, if it does not say. */
+  /** Whether the palette lists the command, because it can do something now; always, if it does not say. */
   isOffered?(): boolean;
   act(workspace: Workspace): unknown;
 }
+
+/** For the palette itself, a second key of a command, and keys of what is listed by name. */
+export const isNever = () => false;
 
 const toggleHandles =
   (mode: "translate" | "rotate" | "scale") =>
@@ -52,18 +57,34 @@ const toggleLayer =
     setLayer(name, !layers.peek()[name]);
 
 export const commands: readonly Command[] = [
-  { key: "a", title: "A", about: "Align the selected object", act: alignSelected },
-  { key: "A", title: "Shift A", about: "Align all objects", act: alignAll },
+  { key: "a", changes: true, title: "A", about: "Align the selected object", act: alignSelected },
+  { key: "A", changes: true, title: "Shift A", about: "Align all objects", act: alignAll },
   { key: "Escape", title: "Esc", about: "Cancel; hide the handles", act: cancelOrHideHandles },
-  { key: "f", title: "F", about: "Refine from the current pose", act: refine },
-  { key: "g", title: "G", about: "Handles to move", act: toggleHandles("translate") },
-  { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
-  { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
-  { key: "l", title: "L", about: "Lock the scale", act: toggleScaleLock },
-  { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: ({ undo }) => undo() },
-  { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: ({ redo }) => redo() },
-  { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: ({ redo }) => redo() },
-  { key: "Enter", title: "Enter", about: "Accept the pose", act: accept },
+  { key: "f", changes: true, title: "F", about: "Refine from the current pose", act: refine },
+  { key: "g", changes: true, title: "G", about: "Handles to move", act: toggleHandles("translate") },
+  { key: "r", changes: true, title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
+  { key: "s", changes: true, title: "S", about: "Handles to scale", act: toggleHandles("scale") },
+  {
+    key: "ArrowLeft",
+    changes: true,
+    title: "← → ↑ ↓ PgUp PgDn",
+    about: "Move, rotate or scale in steps, with handles shown",
+    act: () => {},
+    isOffered: isNever,
+  },
+  { key: "l", changes: true, title: "L", about: "Lock the scale", act: toggleScaleLock },
+  { key: "Mod+z", changes: true, title: "Ctrl Z", about: "Undo", act: ({ undo }) => undo() },
+  { key: "Mod+Z", changes: true, title: "Ctrl Shift Z", about: "Redo", act: ({ redo }) => redo() },
+  { key: "Mod+y", changes: true, title: "Ctrl Y", about: "Redo", act: ({ redo }) => redo(), isOffered: isNever },
+  { key: "Enter", changes: true, title: "Enter", about: "Accept the pose", act: accept },
+  {
+    key: "Mod+Enter",
+    changes: true,
+    title: "Ctrl Enter",
+    about: "Accept the pose, with the focus on any button",
+    act: accept,
+    isOffered: isNever,
+  },
   { key: "n", title: "N", about: "Next object or scene", act: next },
   { key: "[", title: "[", about: "Previous object", act: selectNeighbour(-1) },
   { key: "]", title: "]", about: "Next object", act: selectNeighbour(1) },
@@ -84,7 +105,14 @@ export const commands: readonly Command[] = [
   },
   { key: "z", title: "Z", about: "Zoom to the objects", act: toggleLayer("zoom") },
   { key: "v", title: "V", about: "Swap the views", act: swapViews },
-  { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
+  {
+    key: "0",
+    changes: true,
+    title: "0 to 9",
+    about: "The result (0) and its alternatives",
+    act: () => {},
+    isOffered: isNever,
+  },
 ];
 
 function toggleScaleLock({ selected, unit }: Workspace): void {
@@ -108,14 +136,26 @@ const isTyping = (target: EventTarget | null) =>
   target.matches('input:not([type="checkbox"], [type="radio"], [type="range"]), select, textarea');
 
 function onKey(workspace: Workspace, known: readonly Command[], event: KeyboardEvent): void {
-  const { key, ctrlKey, metaKey, altKey, target } = event;
+  const { ctrlKey, metaKey, altKey, shiftKey, target } = event;
+  // Caps Lock makes no other commands of letters.
+  const letter = shiftKey ? event.key.toUpperCase() : event.key.toLowerCase();
+  const key = event.key.length === 1 ? letter : event.key;
   if (altKey || event.defaultPrevented || document.querySelector("dialog[open], :popover-open") !== null) return;
   const isMod = ctrlKey || metaKey;
-  const command = known.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${key}`);
+  const listed = /^\d$/.test(key) ? "0" : /^(Arrow|Page)/.test(key) ? "ArrowLeft" : key;
+  const command = known.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${listed}`);
+  if (command?.changes && workspace.isReadonly.peek()) return;
   if (isTyping(target) && command?.isGlobal !== true) return;
   // Enter presses the button that has the focus.
-  if (key === "Enter" && target !== document.body) return;
-  if (!isMod && /^\d$/.test(key)) {
+  if (key === "Enter" && !isMod && target !== document.body) return;
+  if (command?.key === "ArrowLeft") {
+    // Sliders have these keys, too; and without handles, they scroll.
+    if (workspace.gizmo.peek() === null || target instanceof HTMLInputElement) return;
+    event.preventDefault();
+    import("./nudges.js").then(({ nudgeByKey }) => nudgeByKey(workspace, event));
+    return;
+  }
+  if (command?.key === "0") {
     const object = workspace.selected.peek();
     if (object !== null) applyAlternative(workspace, object, Number(key) - 1);
     return;
@@ -133,6 +173,7 @@ export function listenToKeys(
   known: readonly Command[] = commands,
 ): () => void {
   const listener = (event: Event) => onKey(workspace, known, event as KeyboardEvent);
-  root.addEventListener("keydown", listener);
-  return () => root.removeEventListener("keydown", listener);
+  // Before the 3D view, which turns by arrows.
+  root.addEventListener("keydown", listener, true);
+  return () => root.removeEventListener("keydown", listener, true);
 }

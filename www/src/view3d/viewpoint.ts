@@ -81,7 +81,7 @@ export class Viewpoint {
     canvas.tabIndex = 0;
     canvas.addEventListener("keydown", (event) => {
       const turn = keys[event.key];
-      if (event.ctrlKey || event.metaKey || event.altKey || turn === undefined) return;
+      if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey || turn === undefined) return;
       event.preventDefault();
       this.orbit(...turn);
       this.onChange();
