@@ -163,12 +163,15 @@ test("in Firefox, the work on all scenes of a drop is kept, saved and restored",
 /** The page from a server of its own, which goes away once the page is as wanted. */
 async function withoutServer(firefox: FirefoxTest, isReady: (page: FirefoxPage) => Promise<void>, script?: () => void) {
   const server = await serve(siteDir);
-  const { page, errors } = await firefox.open(`${server.url}index.html#sample=mug`, script);
-  const opened = new FirefoxPage(page, errors);
-  await opened.aligned();
-  await isReady(opened);
-  await server.close();
-  return opened;
+  try {
+    const { page, errors } = await firefox.open(`${server.url}index.html#sample=mug`, script);
+    const opened = new FirefoxPage(page, errors);
+    await opened.aligned();
+    await isReady(opened);
+    return opened;
+  } finally {
+    await server.close();
+  }
 }
 
 test("in Firefox, the page, its samples and own files work without its server, once it is stored", async (_, firefox) => {

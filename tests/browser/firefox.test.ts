@@ -36,8 +36,9 @@ test("the package has the same bits in Firefox as in Node, in both entries, with
   await page.close();
 });
 
-test("the element works in Firefox, also from another origin", { skip }, async () => {
+test("the element works in Firefox, also from another origin", { skip }, async (context) => {
   const host = await crossOriginHost();
+  context.after(host.close);
   const { page, errors } = await firefox.open(host.path);
   const given = {
     depth: Array.from(input.depth),
@@ -71,5 +72,4 @@ test("the element works in Firefox, also from another origin", { skip }, async (
   assert.ok(area > 20_000, "the sheets of the element apply");
   assert.deepEqual(errors, []);
   await page.close();
-  await host.close();
 });
