@@ -13,7 +13,9 @@ const samples = join(www, "samples", "index.json");
 
 const guides = documents(repository);
 
-const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js")).href);
+// Modules, not bundles: the page also uses some that the package does not export.
+const compiled = join(repository, "target", "compiled");
+const { OPTIONS } = await import(pathToFileURL(join(compiled, "index.js")).href);
 
 /** Scripts that are loaded when they are needed. */
 const later =
@@ -48,8 +50,8 @@ export default defineConfig({
   publicDir: false,
   resolve: {
     alias: [
-      { find: /^sim3align$/, replacement: join(repository, "pkg", "index.js") },
-      { find: /^sim3align\/(.+)$/, replacement: join(repository, "pkg", "$1.js") },
+      { find: /^sim3align$/, replacement: join(compiled, "index.js") },
+      { find: /^sim3align\/(.+)$/, replacement: join(compiled, "$1.js") },
     ],
   },
   define: {

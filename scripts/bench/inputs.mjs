@@ -2,13 +2,19 @@
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
-import { packageDir } from "../lib/paths.mjs";
+import { compiledDir, packageDir } from "../lib/paths.mjs";
 
 /**
  * A module of the built package.
  * @param {string} file
  */
 export const packageModule = (file) => import(pathToFileURL(join(packageDir, file)).href);
+
+/**
+ * A module of the package's sources, of which the package holds only bundles.
+ * @param {string} file
+ */
+export const compiledModule = (file) => import(pathToFileURL(join(compiledDir, file)).href);
 
 /** The names of the qualities, from the built package's table of options. @returns {Promise<string[]>} */
 export async function qualities() {

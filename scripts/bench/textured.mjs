@@ -1,6 +1,6 @@
 /** Textured meshes and photos as files, for measurements. */
 import { rgbPng } from "../lib/png.mjs";
-import { packageModule } from "./inputs.mjs";
+import { compiledModule } from "./inputs.mjs";
 
 /** Width of the blocks of one colour in {@link blocksPng}, pixels. */
 const block = 16;
@@ -29,7 +29,7 @@ export function blocksPng([width = 1, height = 1]) {
  * @returns {Promise<Uint8Array>}
  */
 export async function texturedGlb({ positions, indices }, png) {
-  const { glbOfParts } = await packageModule("conventions/glb.js");
+  const { glbOfParts } = await compiledModule("conventions/glb.js");
   const count = positions.length / 3;
   const coordinates = new Float32Array(2 * count).map((_, i) => (positions[3 * (i >> 1) + (i % 2)] ?? 0) + 0.5);
   const views = [positions, coordinates, indices, png].map(

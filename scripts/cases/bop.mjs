@@ -1,7 +1,7 @@
 /** Case folders, or scene folders, of a dataset in the layout of BOP. The package's own reader reads it. */
 import { copyFileSync, existsSync, linkSync, mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { basename, extname, join } from "node:path";
-import { packageModule } from "../bench/inputs.mjs";
+import { compiledModule, packageModule } from "../bench/inputs.mjs";
 import { failure } from "./failure.mjs";
 import { select } from "./selection.mjs";
 
@@ -12,7 +12,7 @@ const facts = ["scene_camera.json", "scene_gt.json", "scene_gt_info.json"];
 
 /** The package's reader of a split. @param {string} folder @param {string} split */
 async function open(folder, split) {
-  const { BopDataset } = await packageModule("bop-dataset.js");
+  const { BopDataset } = await compiledModule("bop-dataset.js");
   return new BopDataset(folder, split);
 }
 
@@ -24,7 +24,7 @@ async function open(folder, split) {
  * @param {import("./selection.mjs").Selection} selection
  */
 export async function unpackBop(archives, folder, split, selection) {
-  const { bopName } = await packageModule("bop-folder.js");
+  const { bopName } = await compiledModule("bop-folder.js");
   const { paths } = archives;
   const isFact = (/** @type {string} */ path) =>
     path === "test_targets_bop19.json" ||
@@ -69,7 +69,7 @@ const modelsIn = (paths) =>
  */
 export async function makeCases({ folder, split, out, selection, scenes, source }) {
   const dataset = await open(folder, split);
-  const { bopMaskPath, bopId, bopName } = await packageModule("bop-folder.js");
+  const { bopMaskPath, bopId, bopName } = await compiledModule("bop-folder.js");
   const selected = await select(dataset, selection);
   const models = await dataset.models();
   const info = await dataset.info().catch(() => new Map());
@@ -106,8 +106,8 @@ export async function makeCases({ folder, split, out, selection, scenes, source 
  * @param {number} imageId
  */
 async function writeImage(home, scene, imageId) {
-  const { bopId, bopName } = await packageModule("bop-folder.js");
-  const { parseCameraFile } = await packageModule("formats/camera-file.js");
+  const { bopId, bopName } = await compiledModule("bop-folder.js");
+  const { parseCameraFile } = await compiledModule("formats/camera-file.js");
   const depth = join(scene.folder, "depth", `${bopName(imageId)}.png`);
   if (!existsSync(depth)) {
     const remedy = "choose another split: depth in other formats than PNG is not read";

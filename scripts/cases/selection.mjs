@@ -1,5 +1,5 @@
 /** Which objects of a dataset become cases. The same dataset and the same numbers select the same objects. */
-import { packageModule } from "../bench/inputs.mjs";
+import { compiledModule } from "../bench/inputs.mjs";
 
 /**
  * An instance of an object in an image: `place` is its place in `scene_gt.json`.
@@ -22,8 +22,8 @@ export const selectionText = ({ images, visible }) =>
  * @returns {Promise<Selected[]>} in the order of scenes, images and objects
  */
 export async function select(dataset, { images, visible }) {
-  const { mostVisible } = await packageModule("bop-dataset.js");
-  const { bopId } = await packageModule("bop-folder.js");
+  const { mostVisible } = await compiledModule("bop-dataset.js");
+  const { bopId } = await compiledModule("bop-folder.js");
   /** @type {{ sceneId: number, imageId: number, objectId: number, count: number }[]} */
   const targets = await dataset.targets();
   const selected = [];

@@ -1,7 +1,7 @@
 /** The API report: what the package exports, as one text whose differences show in a review. */
 import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join, relative, sep } from "node:path";
-import { at, packageDir } from "./paths.mjs";
+import { at, compiledDir, packageDir } from "./paths.mjs";
 
 /** The committed report. */
 const apiReportFile = at("docs", "api-report.txt");
@@ -58,7 +58,9 @@ function readDeclarations(folder, path) {
     return specifier.startsWith(".") && existsSync(file) ? relative(folder, file).split(sep).join("/") : undefined;
   };
   for (const statement of statementsOf(readFileSync(join(folder, path), "utf8"))) {
-    const link = /^(import|export) (?:type )?(?:\{([^}]*)\}|\*(?: as ([\w$]+))?)(?: from "([^"]+)")?;$/.exec(statement);
+    const link = /^(import|export) (?:type )?(?:\{([^}]*)\}|\*(?: as ([\w$]+))?)(?: from ["']([^"']+)["'])?;$/.exec(
+      statement,
+    );
     // Who imports an entry gets what it declares for all files, too.
     const isGlobal = statement.startsWith("declare global {");
     const name = isGlobal ? "global" : declaration.exec(statement)?.[1];
@@ -76,7 +78,7 @@ function readDeclarations(folder, path) {
     } else if (name !== undefined) {
       found.statements.set(name, [...(found.statements.get(name) ?? []), statement]);
       if (isGlobal || statement.startsWith("export ")) found.exports.set(name, { file: undefined, name });
-    } else if (!/^import "/.test(statement)) throw new Error(`${path}: ${statement} is not understood.`);
+    } else if (!/^import ["']/.test(statement)) throw new Error(`${path}: ${statement} is not understood.`);
   }
   return found;
 }
@@ -85,7 +87,7 @@ function readDeclarations(folder, path) {
  * The report of a built package: the names of each entry, and every declaration that they refer to, without comments.
  * @param {string} [folder] of the package
  */
-export function apiReport(folder = packageDir) {
+export function apiReport(folder = compiledDir) {
   /** @type {{ exports: Record<string, { types?: string } | string> }} */
   const manifest = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
   /** @type {Map<string, Declarations>} */
@@ -152,10 +154,15 @@ export function apiReport(folder = packageDir) {
 /** Writes the report of the built package. */
 export const writeApiReport = () => writeFileSync(apiReportFile, apiReport());
 
-/** @throws if the committed report is not that of the built package */
+/** The lines of a report with the names of each entry. @param {string} report */
+const entriesOf = (report) => report.match(/^(entry .*| {2}[\w$]+)$/gm) ?? [];
+
+/** @throws if the committed report is not that of the sources, or the package exports other names than they do */
 export function checkApiReport() {
   const found = existsSync(apiReportFile) ? readFileSync(apiReportFile, "utf8") : "";
   const expected = apiReport();
+  const [compiled, packaged] = [expected, apiReport(packageDir)].map((report) => entriesOf(report).join("\n"));
+  if (compiled !== packaged) throw new Error("The bundled declarations export other names than the sources do.");
   if (found === expected) return;
   const [old, now] = [found, expected].map((text) => new Set(text.split("\n")));
   const gone = found.split("\n").filter((line) => !now?.has(line));

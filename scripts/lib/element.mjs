@@ -1,10 +1,11 @@
 /** `sim3align/element`: the custom element and its page for iframes, in one folder, which uses the WebAssembly of the package around it. */
-import { readFileSync, writeFileSync } from "node:fs";
-import { basename, dirname, join, relative, sep } from "node:path";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { basename, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { definitions } from "../../www/definitions.mjs";
+import { fromFolder, withAddresses } from "./bundle.mjs";
 import { allowBundled } from "./notices.mjs";
-import { at, packageDir } from "./paths.mjs";
+import { at, compiledDir, packageDir } from "./paths.mjs";
 
 const sources = at("www", "src");
 const folder = join(packageDir, "element");
@@ -13,7 +14,7 @@ const folder = join(packageDir, "element");
 const ownFiles = /** @type {import("esbuild").Plugin} */ ({
   name: "own-files",
   setup(build) {
-    build.onResolve({ filter: /^sim3align(\/|$)/ }, ({ path }) => ({ path: join(packageDir, ownModule(path)) }));
+    build.onResolve({ filter: /^sim3align(\/|$)/ }, ({ path }) => ({ path: join(compiledDir, ownModule(path)) }));
     build.onResolve({ filter: /\.css\?inline$/ }, ({ path, resolveDir }) => ({
       path: join(resolveDir, path.replace("?inline", "")),
     }));
@@ -27,10 +28,7 @@ const ownFiles = /** @type {import("esbuild").Plugin} */ ({
       if (path.includes("node_modules")) return undefined;
       // Browsers lack the modules of Node, and bundlers would warn of these imports.
       const ofBrowsers = text.replaceAll(/import\(\s*\/\* webpackIgnore: true \*\/[^)]*\)/g, "Promise.reject()");
-      const contents = ofBrowsers.replaceAll(
-        /new URL\(["']([^"']+)["'](?=, (String\()?import\.meta\.url)/g,
-        (_, file) => `new URL(${JSON.stringify(fromBundle(join(dirname(path), file)))}`,
-      );
+      const contents = withAddresses(ofBrowsers, path, fromBundle);
       return { contents, loader: path.endsWith(".ts") ? "ts" : "js" };
     });
   },
@@ -46,10 +44,10 @@ const ownModule = (specifier) => `${specifier.slice("sim3align/".length) || "ind
 function fromBundle(file) {
   const isWorker = /worker\.[jt]s$/.test(file);
   if (isWorker) return `./${basename(file).replace(/ts$/, "js")}`;
-  return relative(folder, file).split(sep).join("/");
+  return fromFolder("element", file);
 }
 
-/** Bundles `www/src/element` against the compiler's output in pkg/. */
+/** Bundles `www/src/element` against the compiler's output. */
 export async function bundleElement() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
@@ -59,7 +57,7 @@ export async function bundleElement() {
       "sim3-align": join(sources, "element", "index.ts"),
       frame: join(sources, "element", "frame.ts"),
       "reader-worker": join(sources, "load", "reader-worker.ts"),
-      worker: join(packageDir, "worker.js"),
+      worker: join(compiledDir, "worker.js"),
     },
     outdir: folder,
     // Parts that the first alignment does not need are files of their own.
@@ -84,5 +82,6 @@ export async function bundleElement() {
     /(?<=from ")sim3align(\/\w+)?(?=")/g,
     (specifier) => `../${ownModule(specifier)}`,
   );
-  writeFileSync(join(folder, basename(declarations)), text);
+  mkdirSync(join(compiledDir, "element"));
+  writeFileSync(join(compiledDir, "element", basename(declarations)), text);
 }

@@ -1,8 +1,8 @@
 /** `sim3align/inline`: the package in one piece, and the worker's script, whole, in it. */
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { refuseForeign } from "./notices.mjs";
-import { packageDir } from "./paths.mjs";
+import { compiledDir, packageDir } from "./paths.mjs";
 import { wasmFile, wasmModules } from "./wasm.mjs";
 
 /** Options of both bundles. A bundle has no files next to it, so that `import.meta.url` is of no use. */
@@ -15,14 +15,14 @@ const common = /** @type {const} */ ({
   metafile: true,
 });
 
-/** Bundles the compiler's output in pkg/. */
+/** Bundles the compiler's output. */
 export async function bundleInline() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
   const base64 = Object.fromEntries(
     wasmModules.map((module) => [module.name, readFileSync(wasmFile(module)).toString("base64")]),
   );
-  const worker = await build({ ...common, entryPoints: [join(packageDir, "worker.js")], write: false, minify: true });
+  const worker = await build({ ...common, entryPoints: [join(compiledDir, "worker.js")], write: false, minify: true });
   refuseForeign(worker.metafile);
   const inlined = new Map([
     ["core", base64.core],
@@ -35,12 +35,10 @@ export async function bundleInline() {
     if (name !== "core" && name !== "physics")
       writeFileSync(join(packageDir, "inline", `${name}.js`), `${exported(module)}\n`);
   }
-  rmSync(join(packageDir, "inlined.d.ts"), { force: true });
   const { metafile } = await build({
     ...common,
-    entryPoints: [join(packageDir, "inline.js")],
+    entryPoints: [join(compiledDir, "inline.js")],
     outfile: join(packageDir, "inline.js"),
-    allowOverwrite: true,
     format: "esm",
     plugins: [
       {

@@ -3,12 +3,12 @@
 import { createHash } from "node:crypto";
 import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { bundleScripts, bundleTypes } from "./bundle.mjs";
 import { once } from "./cache.mjs";
-import { bundleCommandLine } from "./command-line.mjs";
 import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
 import { NOTICE } from "./notices.mjs";
-import { at, glueDir, packageDir, skinDir } from "./paths.mjs";
+import { at, compiledDir, glueDir, packageDir, skinDir } from "./paths.mjs";
 import { bundleReportPage } from "./report-page.mjs";
 import { attempt, nodeProgram, run } from "./run.mjs";
 import { wasmBindgenVersion } from "./setup.mjs";
@@ -20,14 +20,15 @@ export const buildPackage = once(async () => {
   const version = packageVersion();
   await buildWasm();
   await step("package", async (say) => {
-    rmSync(packageDir, { recursive: true, force: true });
+    for (const folder of [compiledDir, packageDir]) rmSync(folder, { recursive: true, force: true });
     const [node, tsc] = nodeProgram("typescript", "tsc");
     await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
     copyFiles();
-    await bundleCommandLine();
+    await bundleScripts();
     await bundleInline();
     await bundleReportPage();
     await bundleElement();
+    await bundleTypes();
     await writeBuildInfo(version);
     say(`pkg/ holds sim3align ${version}`);
   });
@@ -49,15 +50,17 @@ export function packageVersion() {
 }
 
 function copyFiles() {
-  copyFileSync(join(skinDir, "package.json"), join(packageDir, "package.json"));
+  mkdirSync(packageDir);
+  for (const folder of [compiledDir, packageDir])
+    copyFileSync(join(skinDir, "package.json"), join(folder, "package.json"));
   for (const name of ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICE]) {
     if (!existsSync(at(name))) throw new Error(`${name} is missing. Remedy: restore it; the package carries it.`);
     copyFileSync(at(name), join(packageDir, name));
   }
-  mkdirSync(join(packageDir, "wasm"), { recursive: true });
-  // The declarations of a module's raw exports are internal: they would be resolved for imports of the .wasm file.
-  const isPublic = (/** @type {string} */ path) => !path.endsWith(".wasm.d.ts");
-  cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isPublic });
+  cpSync(glueDir, join(compiledDir, "wasm"), { recursive: true });
+  // Its declarations are internal, and those of raw exports would be resolved for imports of the .wasm file.
+  const isUsed = (/** @type {string} */ path) => !path.endsWith(".d.ts");
+  cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isUsed });
 }
 
 /**

@@ -12,6 +12,8 @@ export const at = (...parts) => join(repository, ...parts);
 
 /** The publishable package, written by `npm run build`. */
 export const packageDir = at("pkg");
+/** The package as the compiler writes it, a module for each source; the package's bundles are made of these. */
+export const compiledDir = at("target", "compiled");
 /** The package's sources: TypeScript, and its package.json. */
 export const skinDir = at("pkg-config");
 /** The generated glue, beside the TypeScript that imports it. */

@@ -3,9 +3,9 @@ import { cpSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { history } from "../record/history.mjs";
 import { recordPage } from "../record/page.mjs";
-import { cached, digest, filesBelow, once } from "./cache.mjs";
+import { cached, digest, once } from "./cache.mjs";
 import { buildPackage } from "./package.mjs";
-import { at, packageDir, siteDir } from "./paths.mjs";
+import { at, compiledDir, siteDir } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
 import { step } from "./step.mjs";
 
@@ -13,8 +13,6 @@ import { step } from "./step.mjs";
 export const buildSite = once(async () => {
   await buildPackage();
   await step("site", async (say) => {
-    // The facts about the build differ from commit to commit, and the site does not use them.
-    const used = filesBelow([packageDir]).filter((file) => !/build-info\.json$|\.md$/.test(file));
     const inputs = digest([
       at("www"),
       at("docs", "record"),
@@ -23,7 +21,7 @@ export const buildSite = once(async () => {
       at("docs", "how-it-works.md"),
       at("README.md"),
       at("package-lock.json"),
-      ...used,
+      compiledDir,
     ]);
     const isNew = await cached(at("target", "www.stamp"), inputs, [join(siteDir, "index.html")], async () => {
       const [node, vite] = nodeProgram("vite");

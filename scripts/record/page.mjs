@@ -85,12 +85,19 @@ function versionTable(versions) {
   const rows = versions.map(({ run, rows: all }) => {
     const general = all.find(({ set, row }) => set === "general" && row === "align");
     return [
-      ...[run.version, run.date.slice(0, 10), fixed(general?.ms), fixed(general?.work)],
+      ...[run.version, run.date.slice(0, 10), run.machine, fixed(general?.ms), fixed(general?.work)],
       ...modules.map((name) => fixed((run.sizes[name] ?? Number.NaN) / 1000, 1)),
     ];
   });
-  const titles = ["version", "date", "ms a case", "renders a case", ...modules.map((name) => `${name}, kB gz`)];
-  return `${table(titles, rows)}<p class="command"><code>npm test -- --only size</code></p><p>Times are CPU time of the native build; compare them on one machine only.</p>`;
+  const titles = [
+    "version",
+    "date",
+    "machine",
+    "ms a case",
+    "renders a case",
+    ...modules.map((name) => `${name}, kB gz`),
+  ];
+  return `${table(titles, rows)}<p class="command"><code>npm test -- --only size</code></p><p>Times are CPU time of the native build; compare them on one machine only; the renders compare on any.</p>`;
 }
 
 /** @param {import("./history.mjs").Run} run */

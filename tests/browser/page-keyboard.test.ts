@@ -77,7 +77,7 @@ test(
     await opened.shows("table");
     const names = [await title()];
     for (let i = 1; i < 3; i++) {
-      await press("]");
+      await press("j");
       names.push(await title());
     }
     assert.deepEqual(names, ["box", "mug", "teapot"]);

@@ -102,7 +102,7 @@ test("a statement that is not understood is an error, not a gap", () => {
   assert.throws(() => reportOf({ "all.d.ts": 'export * as all from "./mesh.js";\n' }), /is not understood/);
 });
 
-test("the package's report has its methods, options and errors", () => {
+test("the report of the package, whose declarations are bundled, has its methods, options and errors", () => {
   const report = apiReport(join(installDir, "node_modules", "sim3align"));
   for (const text of [
     "alignScene(scene: SceneInput",

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { type Aligner, createAligner, type Progress } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
-import { internalModule } from "../support/internals.js";
+import { sourceModule } from "../support/internals.js";
 import { input, truth } from "../support/scene.js";
 import { Gate, slowInput, Workers, withoutTimes } from "../support/workers.js";
 
@@ -204,7 +204,7 @@ test("a hundred calls with one signal leave no listener behind", async () => {
 });
 
 test("a task is freed when it fails, also where it runs at once, as in a worker", async () => {
-  const { perform } = await internalModule("jobs.js");
+  const { perform } = await sourceModule("jobs.js");
   const failure = new Error("no consensus");
   let freed = 0;
   const task = {

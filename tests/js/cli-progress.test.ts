@@ -12,7 +12,7 @@ interface Progress {
 type Stream = { isTTY: boolean; columns: number; write(text: string): void };
 
 const { BatchProgress }: { BatchProgress: new (stream: Stream, total: number, now: () => number) => Progress } =
-  await sourceModule("cli/batch-progress.ts");
+  await sourceModule("cli/batch-progress.js");
 
 /** What a batch shows whose cases take two seconds each, of which some fail. */
 function shown(total: number, failures: readonly number[], isTTY: boolean, columns = 100): string[] {

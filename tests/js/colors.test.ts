@@ -26,13 +26,13 @@ import { folder, pixels, run, writeCase } from "../support/command-line.js";
 import { repository } from "../support/environment.js";
 import { codesOf, type Fault, rejectsWith } from "../support/errors.js";
 import { glb, glbOf, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
-import { internalModule } from "../support/internals.js";
+import { sourceModule } from "../support/internals.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 
 const { width, height, depth, mask, camera } = view;
-const { resolveInput } = await internalModule("input/resolve.js");
-const { fileReaders } = await internalModule("file-readers.js");
+const { resolveInput } = await sourceModule("input/resolve.js");
+const { fileReaders } = await sourceModule("file-readers.js");
 const aligner = await createAligner();
 
 /** What the core gets. */

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { Worker } from "node:worker_threads";
 import { type Aligner, createAligner, Sim3AlignError } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
-import { internalModule } from "../support/internals.js";
+import { glueModule } from "../support/internals.js";
 import { input, mesh, render, truth } from "../support/scene.js";
 import { Workers, withoutTimes, workerUrl } from "../support/workers.js";
 
@@ -13,11 +13,9 @@ const aligner = await createAligner();
 const expected = withoutTimes(await aligner.align(input, quick));
 
 type Name = "core" | "joint";
-const heap = async (name: Name): Promise<WebAssembly.Memory> => {
-  const loader = await internalModule(name === "core" ? "core.js" : "joint-module.js");
-  await loader[`${name}Module`].load();
-  return (await (await internalModule(`wasm/${name}.js`)).default()).memory;
-};
+// Loads the joint module.
+(await aligner.track(mesh)).close();
+const heap = async (name: Name): Promise<WebAssembly.Memory> => (await glueModule(name)).initSync().memory;
 const bytesOf = async (name: Name) => (await heap(name)).buffer.byteLength;
 
 /** More than an idle heap may have; the pages are never touched. */
@@ -88,7 +86,7 @@ test("a heap that has grown is let go when no call runs; a prepared mesh is prep
 
 test("a heap stays while calls wait for it", async () => {
   await grow("core", LARGE);
-  const glue = await internalModule("wasm/core.js");
+  const glue = await glueModule("core");
   const during: number[] = [];
   const onProgress = () => during.push(glue.initSync().memory.buffer.byteLength);
   await Promise.all([aligner.align(input, quick), aligner.align(input, { ...quick, onProgress })]);
@@ -162,13 +160,8 @@ test("a tracker whose memory or worker is gone says so", async () => {
   const lost = ["TRACKER_LOST tracker", /Open another one.*options.initial/] as const;
   using tracker = await aligner.track(mesh);
   await tracker.next(frame);
-  const { jointModule } = await internalModule("joint-module.js");
-  const joint = await jointModule.load();
-  assert.throws(() =>
-    joint.call(() => {
-      throw new WebAssembly.RuntimeError("unreachable");
-    }),
-  );
+  await grow("joint", ALL * PAGE);
+  await rejectsWith(() => aligner.alignViews({ views: [largeFrame], mesh }, quick), "OUT_OF_MEMORY input");
   await rejectsWith(() => tracker.next(frame), ...lost);
   await rejectsWith(() => tracker.correct(truth), ...lost);
   const workers = new Workers();

@@ -4,7 +4,7 @@ import { getEventListeners } from "node:events";
 import { after, test } from "node:test";
 import { type Aligner, createAligner, type FrameInput, type Sim3AlignError, TRACK_DEFAULTS } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
-import { internalModule } from "../support/internals.js";
+import { glueModule } from "../support/internals.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { mesh, truth } from "../support/scene.js";
 import { Workers } from "../support/workers.js";
@@ -125,11 +125,10 @@ test("a signal closes the tracker, and an aligner its trackers", async () => {
 });
 
 test("closed trackers are freed, also those of a disposed aligner", async () => {
-  const { jointModule } = await internalModule("joint-module.js");
-  const module = await jointModule.load();
+  const joint = await glueModule("joint");
   const isOpen = (id: number) => {
     try {
-      module.call((joint: { trackFrame(id: number, frame: object): object }) => joint.trackFrame(id, {}));
+      joint.trackFrame(id, {});
       return true;
     } catch (error) {
       return (error as Sim3AlignError).argument !== "tracker";

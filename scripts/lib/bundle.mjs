@@ -1,0 +1,104 @@
+/** The package's scripts and declarations, bundled by entry: what several entries share is in parts beside them. */
+import { chmodSync, readFileSync } from "node:fs";
+import { dirname, join, normalize, relative, sep } from "node:path";
+import { refuseForeign } from "./notices.mjs";
+import { compiledDir, packageDir, skinDir } from "./paths.mjs";
+
+/** What several entries share; beside them, so that the same paths lead from there to the modules. */
+const PART = "part-[hash]";
+
+/** The names of the files in package.json that end in this way. @param {string} extension */
+function named(extension) {
+  const { bin, exports } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
+  const paths = [bin, ...Object.values(exports)].flatMap((target) => Object.values(target));
+  return paths.filter((path) => path.endsWith(extension)).map((path) => normalize(path.slice(0, -extension.length)));
+}
+
+/** Entries whose scripts are bundled in ways of their own. */
+const apart = ["inline", join("element", "sim3-align")];
+
+/**
+ * Files that are named relative to a script, as seen from another place.
+ * @param {string} text of the script
+ * @param {string} from its path
+ * @param {(file: string) => string} toPlace
+ */
+export const withAddresses = (text, from, toPlace) =>
+  text.replaceAll(
+    /new URL\(["']([^"']+)["'](?=, (String\()?import\.meta\.url)/g,
+    (_, file) => `new URL(${JSON.stringify(toPlace(join(dirname(from), file)))}`,
+  );
+
+/**
+ * A path below {@link compiledDir} as seen from a folder of the package.
+ * @param {string} folder
+ * @param {string} file
+ */
+export function fromFolder(folder, file) {
+  const path = relative(join(compiledDir, folder), file).split(sep).join("/");
+  return path.startsWith("../") ? path : `./${path}`;
+}
+
+/** Bundles the compiler's scripts. The glue of the modules stays beside them. */
+export async function bundleScripts() {
+  // The set-up installs it first.
+  const { build } = await import("esbuild");
+  const names = named(".js").filter((name) => !apart.includes(name));
+  const { metafile } = await build({
+    entryPoints: names.map((name) => join(compiledDir, `${name}.js`)),
+    outdir: packageDir,
+    outbase: compiledDir,
+    ...{ bundle: true, splitting: true, format: "esm", platform: "neutral", target: "es2022", logLevel: "warning" },
+    chunkNames: PART,
+    external: ["node:*", "commander", "tinyglobby"],
+    metafile: true,
+    plugins: [
+      {
+        name: "own-files",
+        setup(build) {
+          build.onResolve({ filter: /\/wasm\/[\w-]+\.js$/ }, ({ path, resolveDir }) => ({
+            path: fromFolder("", join(resolveDir, path)),
+            external: true,
+          }));
+          build.onLoad({ filter: /\.js$/ }, ({ path }) => {
+            const folder = path.startsWith(join(compiledDir, "cli", sep)) ? "cli" : "";
+            const toPlace = (/** @type {string} */ file) => fromFolder(folder, file);
+            return { contents: withAddresses(readFileSync(path, "utf8"), path, toPlace) };
+          });
+        },
+      },
+    ],
+  });
+  refuseForeign(metafile);
+  chmodSync(join(packageDir, "cli", "main.js"), 0o755);
+}
+
+/** Bundles the compiler's declarations. */
+export async function bundleTypes() {
+  // The set-up installs them first.
+  const { rollup } = await import("rollup");
+  const { dts } = await import("rollup-plugin-dts");
+  const names = named(".d.ts");
+  const bundle = await rollup({
+    input: Object.fromEntries(names.map((name) => [name, join(compiledDir, `${name}.d.ts`)])),
+    plugins: [dts()],
+    external: [/^node:/, "three"],
+    onLog: (_, { code, message }) => {
+      // The worker exports nothing.
+      if (code !== "EMPTY_BUNDLE") throw new Error(message);
+    },
+  });
+  await bundle.write({
+    dir: packageDir,
+    entryFileNames: "[name].d.ts",
+    chunkFileNames: `${PART}.d.ts`,
+    banner: ({ moduleIds }) => references(moduleIds),
+  });
+  await bundle.close();
+}
+
+/** The references of declarations to libraries of the compiler, which a bundle would lose. @param {string[]} files */
+function references(files) {
+  const found = files.flatMap((file) => readFileSync(file, "utf8").match(/^\/\/\/ <reference lib=.*$/gm) ?? []);
+  return [...new Set(found)].join("\n");
+}
