@@ -8,7 +8,7 @@ import { browserFor, WEBGL } from "../support/browser.js";
 import { crossOriginHost, elementFolder, servedFolder } from "../support/element-host.js";
 import { obj } from "../support/files.js";
 import { type Files, files, HEIGHT, inFolder, jsonFile, pinhole, seen, WIDTH } from "../support/page-files.js";
-import { mesh } from "../support/scene.js";
+import { mesh, truth } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
 import { serve } from "../support/static-server.js";
 
@@ -279,10 +279,10 @@ test("pose and session are set and read, and survive a transfer as JSON", async 
 test("read-only, nothing can be changed, and tokens and parts style the element", async () => {
   const style = `<style>sim3-align { --accent: rgb(1 2 3); } sim3-align::part(result) { outline: 3px solid red; }</style>`;
   const { page } = await host(`${style}<sim3-align id="a" readonly></sim3-align>`);
-  await give(page, "a");
-  await told(page, "a", "ready");
+  // It is not aligned.
+  await give(page, "a", { pose: truth });
+  await told(page, "a", "posechange");
   assert.equal(await page.locator("#a :is(#align, #accept, #refine, .hand-panel)").count(), 0);
-  await told(page, "a", "align");
   const state = () =>
     page.evaluate(() => {
       const { pose, results } = document.querySelector("#a") as Element;
