@@ -66,7 +66,7 @@ export interface Core extends Glue {
 }
 
 /** The core, shared by all aligners of this realm. */
-export const coreModule = new WasmModule<Core>(
+export const coreModule = /* @__PURE__ */ new WasmModule<Core>(
   "core",
   () => new URL("./wasm/core_bg.wasm", import.meta.url),
   () => glue as unknown as Core,

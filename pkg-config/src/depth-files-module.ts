@@ -11,7 +11,7 @@ export interface DepthFiles extends Glue {
 export type LoadDepthFiles = () => Promise<LoadedModule<DepthFiles>>;
 
 /** The module, shared by all aligners of this realm. */
-export const depthFilesModule = new WasmModule<DepthFiles>(
+export const depthFilesModule = /* @__PURE__ */ new WasmModule<DepthFiles>(
   "depthFiles",
   () => new URL("./wasm/depth-files_bg.wasm", import.meta.url),
   async () => (await import("./wasm/depth-files.js")) as unknown as DepthFiles,

@@ -8,7 +8,7 @@ export type Formats = typeof import("./wasm/formats.js");
 export type LoadFormats = () => Promise<LoadedModule<Formats>>;
 
 /** The file readers, shared by all aligners of this realm. */
-export const formatsModule = new WasmModule<Formats>(
+export const formatsModule = /* @__PURE__ */ new WasmModule<Formats>(
   "formats",
   () => new URL("./wasm/formats_bg.wasm", import.meta.url),
   () => import("./wasm/formats.js"),

@@ -78,7 +78,7 @@ export interface JointAligner extends Glue {
 export type LoadJoint = () => Promise<LoadedModule<JointAligner>>;
 
 /** The module, shared by all aligners of this realm. */
-export const jointModule = new WasmModule<JointAligner>(
+export const jointModule = /* @__PURE__ */ new WasmModule<JointAligner>(
   "joint",
   () => new URL("./wasm/joint_bg.wasm", import.meta.url),
   async () => (await import("./wasm/joint.js")) as unknown as JointAligner,

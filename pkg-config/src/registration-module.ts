@@ -16,7 +16,7 @@ export interface Registrar extends Glue {
 export type LoadRegistrar = () => Promise<LoadedModule<Registrar>>;
 
 /** The module, shared by all aligners of this realm. */
-export const registrationModule = new WasmModule<Registrar>(
+export const registrationModule = /* @__PURE__ */ new WasmModule<Registrar>(
   "registration",
   () => new URL("./wasm/registration_bg.wasm", import.meta.url),
   async () => (await import("./wasm/registration.js")) as unknown as Registrar,

@@ -11,7 +11,7 @@ export interface Splats extends Glue {
 export type LoadSplats = () => Promise<LoadedModule<Splats>>;
 
 /** The module, shared by all aligners of this realm. */
-export const splatsModule = new WasmModule<Splats>(
+export const splatsModule = /* @__PURE__ */ new WasmModule<Splats>(
   "splats",
   () => new URL("./wasm/splats_bg.wasm", import.meta.url),
   async () => (await import("./wasm/splats.js")) as unknown as Splats,

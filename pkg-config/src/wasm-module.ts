@@ -26,7 +26,7 @@ const MAX_IDLE_HEAP = 192 * 2 ** 20;
  * The heaps of the modules of this thread. The jobs that run here use them one after the other, as in a worker: otherwise,
  * each that has begun would hold its memory until all have ended.
  */
-export const heaps = new Queue(["heaps"]);
+export const heaps = /* @__PURE__ */ new Queue(["heaps"]);
 
 const loaded = new Set<{ letGo(): void }>();
 

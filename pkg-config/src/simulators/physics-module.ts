@@ -36,7 +36,7 @@ export interface Physics extends Glue {
 }
 
 /** The module, shared by all scenes of this realm. */
-export const physicsModule = new WasmModule<Physics>(
+export const physicsModule = /* @__PURE__ */ new WasmModule<Physics>(
   "physics",
   () => new URL("../wasm/physics_bg.wasm", import.meta.url),
   async () => (await import("../wasm/physics.js")) as unknown as Physics,
