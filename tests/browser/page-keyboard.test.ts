@@ -52,8 +52,13 @@ test(
     assert.ok((await width()) < 0.95 * larger);
     await press("Control+z");
     assert.equal(await width(), larger);
-    await press("Escape", "ArrowLeft");
-    assert.equal(await width(), larger);
+    // Keys that come at once count in their order: without handles, an arrow changes nothing.
+    await page.evaluate(() => {
+      for (const key of ["ArrowRight", "Escape", "ArrowLeft"])
+        document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+    });
+    const largest = await width();
+    assert.ok(Math.abs(largest / larger - 1.02) < 0.01, `${larger}, then ${largest} cm`);
     await until(
       () => opened.metric("iou"),
       (now) => now < overlap - 0.02,

@@ -4,6 +4,7 @@ import { accept, next } from "../panels/decision.js";
 import { alignAll, alignSelected, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
 import type { Workspace } from "../state/workspace.js";
+import { nudgeByKey } from "./nudges.js";
 
 export interface Command {
   /** `KeyboardEvent.key`, after "Mod+" if it is pressed with Control or Command. */
@@ -152,7 +153,8 @@ function onKey(workspace: Workspace, known: readonly Command[], event: KeyboardE
     // Sliders have these keys, too; and without handles, they scroll.
     if (workspace.gizmo.peek() === null || target instanceof HTMLInputElement) return;
     event.preventDefault();
-    import("./nudges.js").then(({ nudgeByKey }) => nudgeByKey(workspace, event));
+    // Loaded from the start: the next key can change the handles.
+    nudgeByKey(workspace, event);
     return;
   }
   if (command?.key === "0") {
