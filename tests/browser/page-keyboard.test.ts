@@ -52,9 +52,11 @@ test(
     assert.ok((await width()) < 0.95 * larger);
     await press("Control+z");
     assert.equal(await width(), larger);
+    await press("Escape", "ArrowLeft");
+    assert.equal(await width(), larger);
     // Keys that come at once count in their order: without handles, an arrow changes nothing.
     await page.evaluate(() => {
-      for (const key of ["ArrowRight", "Escape", "ArrowLeft"])
+      for (const key of ["s", "ArrowRight", "Escape", "ArrowLeft"])
         document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
     });
     const largest = await width();
