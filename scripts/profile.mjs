@@ -7,7 +7,7 @@
 import { readdirSync } from "node:fs";
 import { basename, resolve } from "node:path";
 import { parseArgs } from "node:util";
-import { packageModule, qualities } from "./bench/inputs.mjs";
+import { compiledModule, qualities } from "./bench/inputs.mjs";
 import { median } from "./bench/table.mjs";
 import { profileVideo, readVideo, turningRing } from "./bench/videos.mjs";
 import { runLab } from "./lib/lab.mjs";
@@ -58,7 +58,7 @@ async function native(folder, quality, runs) {
  * @returns {Promise<Result[]>}
  */
 async function webAssembly(folder, quality, runs) {
-  const [{ createAligner }, { readCaseFolder }] = await Promise.all(["index.js", "case-folder.js"].map(packageModule));
+  const [{ createAligner }, { readCaseFolder }] = await Promise.all(["index.js", "case-folder.js"].map(compiledModule));
   const aligner = await createAligner();
   const { input } = await readCaseFolder(folder);
   const results = [];

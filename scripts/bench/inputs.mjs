@@ -59,7 +59,7 @@ export const within = (folder) =>
  */
 export async function readTypedCase(folder) {
   const [{ readCaseFolder }, { resolveInput }, { fileReaders }] = await Promise.all(
-    ["case-folder.js", "input/resolve.js", "file-readers.js"].map(packageModule),
+    ["case-folder.js", "input/resolve.js", "file-readers.js"].map(compiledModule),
   );
   const { name, input, truth } = await readCaseFolder(folder);
   const { core } = await resolveInput(input, fileReaders);
@@ -90,7 +90,7 @@ function declaredSymmetry(folder) {
 
 /** An aligner, and the memory of the core, in a new instance. */
 export async function freshCore() {
-  const { createAligner } = await packageModule("index.js");
+  const { createAligner } = await compiledModule("index.js");
   const aligner = await createAligner();
   return { aligner, memory: await freshMemory("core") };
 }
@@ -102,7 +102,7 @@ export async function freshCore() {
  */
 export async function freshMemory(name) {
   const files = [name === "core" ? "core.js" : `${name}-module.js`, `wasm/${name}.js`];
-  const [loader, glue] = await Promise.all(files.map(packageModule));
+  const [loader, glue] = await Promise.all(files.map(compiledModule));
   await loader[`${name}Module`].load();
   glue.__wbg_reset_state();
   return (await glue.default()).memory;

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { bumpyRing, freshCore, freshMemory, packageModule, pictureOf, qualities } from "./inputs.mjs";
+import { bumpyRing, freshCore, freshMemory, compiledModule, pictureOf, qualities } from "./inputs.mjs";
 import { markdownTable, megabytes, printWithin } from "./table.mjs";
 import { blocksPng, texturedGlb } from "./textured.mjs";
 
@@ -54,7 +54,7 @@ const early = 50;
  */
 async function meshFrom(folder) {
   const [{ readMesh }, { formatsModule }] = await Promise.all(
-    ["input/mesh.js", "formats-module.js"].map(packageModule),
+    ["input/mesh.js", "formats-module.js"].map(compiledModule),
   );
   let best = null;
   for (const name of readdirSync(folder).filter((file) => file.endsWith(".glb"))) {

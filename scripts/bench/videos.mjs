@@ -1,6 +1,6 @@
 /** Videos of measurements: folders with frames, and a generated one. */
 import { join } from "node:path";
-import { bumpyRing, packageModule, pictureOf } from "./inputs.mjs";
+import { bumpyRing, compiledModule, pictureOf } from "./inputs.mjs";
 import { fixed, markdownTable, mean, quantile } from "./table.mjs";
 
 /**
@@ -20,7 +20,7 @@ const noise = 0.002;
  */
 export async function readVideo(folder) {
   const [{ frameNames, meshIn, readFrame, readMeshFile }, { resolveFrame }, { fileReaders }] = await Promise.all(
-    ["case-folder.js", "input/frames.js", "file-readers.js"].map(packageModule),
+    ["case-folder.js", "input/frames.js", "file-readers.js"].map(compiledModule),
   );
   const frames = [];
   for (const name of await frameNames(folder)) {
@@ -67,7 +67,7 @@ export function turningRing(count) {
  * @param {number} runs
  */
 export async function profileVideo({ name, mesh, frames }, runs) {
-  const { createAligner } = await packageModule("index.js");
+  const { createAligner } = await compiledModule("index.js");
   const aligner = await createAligner();
   const prepared = await aligner.prepareMesh(mesh);
   const rows = [];
