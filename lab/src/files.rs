@@ -5,9 +5,6 @@ use std::fs;
 use crate::prelude::*;
 use sim3align_geometry::error::Text;
 
-/// The name of a file in a folder, and its content.
-pub type NamedFile = (&'static str, Vec<u8>);
-
 /// Reads a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).map_err(|error| unreadable(path, error))
@@ -17,16 +14,6 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(path, bytes));
     written.map_err(|error| unwritable(path, error))
-}
-
-/// Writes files to a folder, and creates it if necessary.
-pub(crate) fn write_files(folder: &Path, files: &[NamedFile]) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
-    for (name, bytes) in files {
-        let path = folder.join(name);
-        fs::write(&path, bytes).map_err(|error| unwritable(&path, error))?;
-    }
-    Ok(())
 }
 
 /// Paths of the entries of a folder, sorted by name.

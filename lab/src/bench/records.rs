@@ -26,11 +26,11 @@ pub struct RecordKey {
 struct Line<T> {
     #[serde(flatten)]
     key: RecordKey,
+    #[serde(flatten)]
     record: T,
 }
 
-/// A file of records, open for appending. `T` is the content kept of existing records; [`serde::de::IgnoredAny`] if
-/// only their existence matters.
+/// A file of records, open for appending. Of several records of one key, the last is kept.
 #[derive(Debug)]
 pub struct RecordFile<T> {
     file: Mutex<File>,
@@ -83,17 +83,25 @@ impl<T: DeserializeOwned> RecordFile<T> {
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] where it can't be written.
     pub fn add(&self, key: &RecordKey, record: &impl Serialize) -> Result<()> {
-        let line = serde_json::to_string(&Line { key: key.clone(), record }).map_err(|error| unencodable(&error))?;
-        let line = format!("{line}\n");
-        // A thread that panicked wrote all of its line or, at the end of the file, part of one.
+        self.add_all(key, core::slice::from_ref(record))
+    }
+
+    /// Appends the records of one key.
+    ///
+    /// # Errors
+    /// As [`RecordFile::add`].
+    pub fn add_all(&self, key: &RecordKey, records: &[impl Serialize]) -> Result<()> {
+        let line = |record| serde_json::to_string(&Line { key: key.clone(), record }).map(|line| format!("{line}\n"));
+        let lines: String = records.iter().map(line).collect::<Result<_, _>>().map_err(|error| unencodable(&error))?;
+        // A thread that panicked wrote all of its lines or, at the end of the file, a part of them.
         let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        file.write_all(line.as_bytes()).map_err(|error| unusable(&self.path, &error))
+        file.write_all(lines.as_bytes()).map_err(|error| unusable(&self.path, &error))
     }
 }
 
 fn unusable(name: &str, error: &std::io::Error) -> Error {
     let remedy = "Name a file in a folder that exists, on a disk that is not full.";
-    let found = format!("a file system that says: {error}");
+    let found = format!("the file system error: {error}");
     Error::new(ErrorCode::InvalidArgument, name.to_owned(), found, "a file to read and write", remedy)
 }
 

@@ -6,7 +6,6 @@ mod depth_camera;
 pub mod kitti;
 pub mod lidar;
 pub mod lidar_set;
-pub mod object_set;
 pub mod overlap;
 pub mod pair;
 pub mod room;

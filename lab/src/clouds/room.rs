@@ -1,6 +1,6 @@
 //! A furnished room: metres, z up, the floor's middle at the origin.
 
-use crate::cases::solid::Solid;
+use crate::objects::solid::Solid;
 use crate::prelude::*;
 
 /// Random stream of walls and furniture.

@@ -7,6 +7,36 @@ use std::str::FromStr;
 use super::{Failure, usage};
 use sim3align_lab::prelude::*;
 
+/// A command that reads its arguments by itself.
+pub struct Command {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub about: &'static str,
+    /// Its usage.
+    pub usage: &'static str,
+    /// Runs it.
+    pub run: fn(&mut Arguments) -> Result<(), Failure>,
+}
+
+/// The arguments after the name of such a command.
+#[derive(clap::Args)]
+pub struct Rest {
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    words: Vec<OsString>,
+}
+
+impl Rest {
+    /// Runs the command.
+    pub fn run(self, command: Command) -> Result<(), Failure> {
+        if self.words.iter().any(|word| word == "--help") {
+            println!("{}: {}\n\n{}", command.name, command.about, command.usage);
+            return Ok(());
+        }
+        (command.run)(&mut Arguments::new(self.words.into_iter()))
+    }
+}
+
 /// The arguments that have not been asked for yet.
 pub struct Arguments(Vec<OsString>);
 
@@ -16,26 +46,11 @@ impl Arguments {
         Self(arguments.collect())
     }
 
-    /// Whether the usage is asked for.
-    pub fn ask_for_help(&self) -> bool {
-        self.0.iter().any(|argument| argument == "--help" || argument == "-h")
-    }
-
     /// Whether an option without value is given.
     pub fn flag(&mut self, name: &str) -> bool {
         let before = self.0.len();
         self.0.retain(|argument| argument.to_str().is_none_or(|word| word.strip_prefix("--") != Some(name)));
         self.0.len() < before
-    }
-
-    /// Whether an option has a value; if so, it is taken out.
-    pub fn take(&mut self, name: &str, value: &str) -> Result<bool, Failure> {
-        let before = self.0.clone();
-        let is_so = self.all(name)?.pop().is_some_and(|text| text == value);
-        if !is_so {
-            self.0 = before;
-        }
-        Ok(is_so)
     }
 
     /// The texts of an option that may be repeated.
@@ -71,21 +86,6 @@ impl Arguments {
         self.optional::<String>(name)?.map(|text| text.split(',').map(parse).collect()).transpose()
     }
 
-    /// The paths that follow an option, up to the next option; it may be repeated.
-    pub fn paths(&mut self, name: &str) -> Result<Vec<PathBuf>, Failure> {
-        let mut paths = Vec::new();
-        while let Some(at) = self.place(name) {
-            self.0.remove(at);
-            let is_path = |argument: &&OsString| !argument.to_string_lossy().starts_with("--");
-            let count = self.0[at..].iter().take_while(is_path).count();
-            if count == 0 {
-                return Err(usage(format!("--{name} without a value")));
-            }
-            paths.extend(self.0.drain(at..at + count).map(PathBuf::from));
-        }
-        Ok(paths)
-    }
-
     /// Number of threads: by default, one for each processor.
     pub fn threads(&mut self, name: &str) -> Result<usize, Failure> {
         let all = std::thread::available_parallelism().map_or(1, usize::from);
@@ -107,15 +107,6 @@ impl Arguments {
             Err(word) => Err(usage(format!("{word:?}: no text"))),
         });
         rest.collect()
-    }
-
-    /// Exactly one word beside the options: a folder.
-    pub fn folder(&mut self) -> Result<PathBuf, Failure> {
-        match self.rest()?.as_slice() {
-            [folder] => Ok(folder.into()),
-            [] => Err(usage("no folder to write to")),
-            [_, second, ..] => Err(usage(format!("a second folder, {second}"))),
-        }
     }
 
     /// Nothing beside the options.

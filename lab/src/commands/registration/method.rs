@@ -3,25 +3,19 @@
 use std::time::Instant;
 
 use sim3align::options::Options;
-use sim3align::register::options::{Icp, RegisterOptions};
+use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
-use sim3align_lab::baselines::{Baseline, register_pair};
-use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
+use sim3align_lab::bench::imported::imported;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::clouds::cloud_file::flat;
 use sim3align_lab::clouds::pair::Pair;
 use sim3align_lab::prelude::*;
 
-/// Default inlier distance for imported correspondences, in voxels of the pair.
-const INLIER_VOXELS: f64 = 1.5;
-
 /// A registration method. To add one: a variant, its name in [`Method::from_name`], its call in [`Method::run`].
 pub enum Method {
     /// `register`, with the scale fixed at 1 by default.
     Register { options: Box<RegisterOptions>, assignments: Vec<String> },
-    /// Another method of this crate, with the voxel size of the pair.
-    Baseline(Baseline),
     /// Transforms of another program, with a name for the tables.
     Import { name: String, folder: PathBuf },
 }
@@ -33,7 +27,7 @@ pub struct Answer {
 }
 
 impl Method {
-    /// `register`, a baseline's name, `import:DIR` or `NAME=import:DIR`.
+    /// `register`, `import:DIR` or `NAME=import:DIR`.
     pub fn from_name(text: &str, assignments: &[String]) -> Result<Self, String> {
         if let Some((before, folder)) = text.split_once("import:") {
             let folder = PathBuf::from(folder);
@@ -42,9 +36,7 @@ impl Method {
             return Ok(Self::Import { name, folder });
         }
         if text != "register" {
-            let names = Baseline::names().join(", ");
-            let unknown = |_| format!("--method {text}: expected register, {names}, or NAME=import:DIR");
-            return Baseline::from_name(text).map(Self::Baseline).map_err(unknown);
+            return Err(format!("--method {text}: expected register, or NAME=import:DIR"));
         }
         let mut options = RegisterOptions { scale: ScaleOption::Fixed(1.0), ..RegisterOptions::default() };
         for assignment in assignments {
@@ -60,7 +52,6 @@ impl Method {
     pub fn name(&self) -> &str {
         match self {
             Self::Register { .. } => "register",
-            Self::Baseline(baseline) => baseline.as_str(),
             Self::Import { name, .. } => name,
         }
     }
@@ -91,35 +82,13 @@ impl Method {
                 let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
                 Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
             }
-            Self::Baseline(baseline) => {
-                let [source, target] = [source, target].map(|points| Cloud::from_points(points.to_vec()));
-                let begun = Instant::now();
-                // Refines the pose of RANSAC, as in common tutorials.
-                let settings = PaperOptions { icp: Icp::PointToPlane, ..PaperOptions::default() };
-                let pose = register_pair(&source, &target, *baseline, pair.voxel_size_m, &settings);
-                let seconds = begun.elapsed().as_secs_f64();
-                Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
-            }
-            Self::Import { folder, .. } => imported(pair, folder),
+            Self::Import { folder, .. } => answered(pair, folder),
         }
     }
 }
 
 /// The result of another program.
-fn imported(pair: &Pair, folder: &Path) -> Answer {
-    let (outcome, seconds) = match answer_in(folder, &pair.id, &CLOUDS) {
-        Ok(answer) => (Ok(answer.outcome), answer.seconds),
-        Err(error) => (Err(error), None),
-    };
-    let pose = outcome.and_then(|outcome| match outcome {
-        Outcome::Pose(pose) => Ok(pose),
-        Outcome::Failure(message) => Err(format!("the method's own error: {message}")),
-        Outcome::Pairs(pairs) => {
-            let distance = pairs.inlier_distance_m.unwrap_or(INLIER_VOXELS * pair.voxel_size_m);
-            let found = pairs.estimate(ScaleOption::Fixed(1.0), distance);
-            let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
-            pose.map_err(|error| error.to_string())
-        }
-    });
-    Answer { target_from_source: pose, seconds: seconds.unwrap_or(f64::NAN) }
+fn answered(pair: &Pair, folder: &Path) -> Answer {
+    let (target_from_source, seconds) = imported(&pair.id, folder);
+    Answer { target_from_source, seconds: seconds.unwrap_or(f64::NAN) }
 }

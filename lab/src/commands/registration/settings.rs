@@ -6,21 +6,19 @@ use super::super::{Arguments, Failure, usage};
 use super::method::Method;
 
 pub const USAGE: &str = "\
-Usage: sim3align-lab registration write rooms|lidar|objects OUT [--seed S] [--scenes N]
+Usage: sim3align-lab registration write rooms|lidar OUT [--seed S] [--scenes N]
        sim3align-lab registration run --data PATH [options]
 
-write: pairs of decreasing overlap with a known transform: rooms in 3DMatch's layout, streets in KITTI's,
-       objects and cluttered scenes that contain them in 3DMatch's, in decimetres
+write: pairs of decreasing overlap with a known transform: rooms in 3DMatch's layout, streets in KITTI's
   --seed S           default 0
-  --scenes N         rooms, drives or cluttered scenes, default 4
+  --scenes N         rooms or drives, default 4
 
 run: registers pairs and prints a Markdown table of recall and errors
   --data PATH        3DMatch: <scene>/cloud_bin_<i>.ply with <scene>-evaluation/gt.log, <scene>/gt.log or
                      benchmarks/<name>/<scene>/gt.log; KITTI: sequences/<SS>/velodyne, calib.txt and poses/<SS>.txt
   --protocol P       3dmatch, kitti or auto (default)
   --benchmark NAME   which of benchmarks/<name>: 3DMatch or 3DLoMatch; needed where there are several
-  --method M         register (default), fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser, quatro, or
-                     NAME=import:DIR: DIR/<id>.json from another program; may be repeated
+  --method M         register (default), or NAME=import:DIR: DIR/<id>.json from another program; may be repeated
   --option K=V       an option of register() by its JavaScript name; may be repeated
   --only TEXT        only pairs whose id contains this
   --every N          of these, the first and every N-th after it; default 1
