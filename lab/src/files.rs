@@ -34,24 +34,17 @@ pub(crate) fn entries(folder: &Path) -> Vec<PathBuf> {
 
 /// The error for a path that cannot be read.
 pub(crate) fn unreadable(path: &Path, error: std::io::Error) -> Error {
-    Error::new(
-        ErrorCode::InvalidArgument,
-        path.display().to_string(),
-        format!("the file system error: {error}"),
-        "a file or a folder that can be read",
-        "Check the layout of the folder.",
-    )
+    failed(path, error, "a file or a folder that can be read", "Check the layout of the folder.")
 }
 
 /// The error for a path that cannot be written.
 pub(crate) fn unwritable(path: &Path, error: std::io::Error) -> Error {
-    Error::new(
-        ErrorCode::InvalidArgument,
-        path.display().to_string(),
-        format!("the file system error: {error}"),
-        "a writable folder",
-        "Name a folder that exists or can be created, on a disk that is not full.",
-    )
+    failed(path, error, "a writable folder", "Name a folder that can be created, on a disk that is not full.")
+}
+
+fn failed(path: &Path, error: std::io::Error, expected: &'static str, remedy: &'static str) -> Error {
+    let (argument, found) = (path.display().to_string(), format!("the file system error: {error}"));
+    Error::new(ErrorCode::InvalidArgument, argument, found, expected, remedy)
 }
 
 /// The error for an inconsistent file.

@@ -9,21 +9,10 @@ use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::report::{Alignment, AnyAlignment, Warning};
 
-/// Maximum errors of a right pose.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerance {
-    /// |s / s_true − 1|.
-    pub scale: f64,
-    /// Degrees.
-    pub rotation_deg: f64,
-    /// Fraction of the diameter.
-    pub translation: f64,
-}
-
-/// Scale within 5 %, rotation within 10°, translation within 5 % of the diameter.
-pub const STRICT: Tolerance = Tolerance { scale: 0.05, rotation_deg: 10.0, translation: 0.05 };
+/// Maximum errors of a right pose: scale within 5 %, rotation within 10°, place within 5 % of the diameter.
+const STRICT: Errors = [0.05, 10.0, 0.05];
 /// Twice the errors of [`STRICT`].
-pub const LOOSE: Tolerance = Tolerance { scale: 0.1, rotation_deg: 20.0, translation: 0.1 };
+const LOOSE: Errors = [0.1, 20.0, 0.1];
 
 /// Errors of scale (a share), rotation (degrees, up to symmetry) and place (of the diameter). With depth of a depth model,
 /// those of the apparent size, and of the place in the image relative to the apparent diameter.
@@ -44,9 +33,9 @@ pub struct ResultRow {
     pub tier: String,
     /// The group of the object.
     pub class: String,
-    /// Whether the errors are within [`STRICT`]; `None` if the true pose is unknown. No pose is not right.
+    /// Whether the errors are within 5 %, 10° and 5 % of the diameter; `None` if the true pose is unknown. No pose is not right.
     pub strict: Option<bool>,
-    /// Whether the errors are within [`LOOSE`].
+    /// Whether the errors are within twice that.
     pub loose: Option<bool>,
     /// See [`Errors`].
     pub errors: Option<Errors>,
@@ -93,11 +82,8 @@ pub struct Features {
 impl ResultRow {
     /// The row with the errors of its pose.
     pub fn with_errors(mut self, errors: Option<Errors>) -> Self {
-        let holds = |tolerance: &Tolerance| {
-            let limits = [tolerance.scale, tolerance.rotation_deg, tolerance.translation];
-            errors.is_some_and(|errors| errors.iter().zip(limits).all(|(error, limit)| *error <= limit))
-        };
-        (self.strict, self.loose, self.errors) = (Some(holds(&STRICT)), Some(holds(&LOOSE)), errors);
+        let holds = |limits: Errors| errors.is_some_and(|found| found.iter().zip(limits).all(|(e, most)| *e <= most));
+        (self.strict, self.loose, self.errors) = (Some(holds(STRICT)), Some(holds(LOOSE)), errors);
         self
     }
 

@@ -4,7 +4,7 @@ use super::edges::edges;
 use super::noise::{Noise, disc};
 use crate::objects::mesh::face;
 use crate::prelude::*;
-use crate::sets::conditions::{Conditions, DepthChoice, DepthFault, Tier};
+use crate::sets::conditions::{Conditions, DepthFault, Tier};
 use crate::world::Placed;
 use crate::world::view::Sight;
 use sim3align_geometry::components::{Component, components};
@@ -57,19 +57,11 @@ pub fn read(
 ) -> Result<Readings> {
     let Conditions { tier, class } = conditions;
     let view = &sight.view;
-    let source = match class.depth {
-        DepthChoice::Exact => {
-            let depth = DepthMap::from_metres(view.width, view.height, sight.depth.clone())?;
-            return Ok(Readings { depth, bias: 1.0, tags: vec!["exact"], drifts: vec![0.0; things.len()] });
-        }
-        DepthChoice::Only(source) => source,
-        DepthChoice::Any if chance(random, 0.68) => DepthSource::Predicted,
-        DepthChoice::Any | DepthChoice::Sensor => match random.uniform() {
-            drawn if drawn < 0.5 => DepthSource::ActiveStereo,
-            drawn if drawn < 0.75 => DepthSource::StructuredLight,
-            _ => DepthSource::TimeOfFlight,
-        },
-    };
+    if class.depth.is_empty() {
+        let depth = DepthMap::from_metres(view.width, view.height, sight.depth.clone())?;
+        return Ok(Readings { depth, bias: 1.0, tags: vec!["exact"], drifts: vec![0.0; things.len()] });
+    }
+    let source = class.depth[random.below(class.depth.len())];
     let is_wide = class.depth_fault == DepthFault::WideShadow;
     let source = if is_wide { DepthSource::StructuredLight } else { source };
     let mut depth = edges(source, sight, tier, if is_wide { WIDE } else { 1.0 }, random);

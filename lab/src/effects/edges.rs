@@ -19,96 +19,97 @@ const PROJECTOR_BASE: f64 = 43.0;
 /// Widest shadow, pixels of an image 640 wide.
 const WIDEST: f64 = 15.0;
 
-/// Magnitudes at the edges, pixels of an image 640 wide.
-#[derive(Default)]
-struct Strength {
-    /// Mean offset, and how much it changes along the edge.
-    offset: f64,
-    wobble: f64,
-    /// Size of the places where it changes.
+/// Magnitudes at the edges by tier, pixels of an image 640 wide.
+struct EdgeErrors {
+    /// Mean of the offset, and its deviation from map to map.
+    offset: [[f64; 2]; 3],
+    /// How much the offset changes along the edge, and the size of the places where it does.
+    wobble: [f64; 3],
     place: f64,
-    /// Half the width of the ramp from one depth to the other.
-    ramp: f64,
-    /// Share of the ramp without readings.
+    /// Half the width of the ramp from one depth to the other, and its share without readings.
+    ramp: [f64; 3],
     lost_ramp: f64,
     /// Width without readings outside of the moved edge, and inside of the true edge where it is eroded.
-    gap: f64,
+    gap: [f64; 3],
     /// Focal length times baseline of what casts a shadow, and the share of the shadow that is not filled in.
     shadow: (f64, f64),
-    /// Length of the shift.
-    shift: f64,
+    /// Shift of the whole map relative to photo and mask.
+    shift: [f64; 3],
 }
 
-impl DepthSource {
-    fn strength(self, tier: Tier, random: &mut Random) -> Strength {
-        let much = between(random, 0.6, 1.0);
-        let shift = much * tier.pick(0.7, 1.5, 3.0);
-        let none = Strength::default();
-        match self {
-            Self::ActiveStereo => Strength {
-                offset: tier.pick(0.8, 1.4, 2.2) * normal(random),
-                wobble: much * tier.pick(2.5, 4.0, 6.0),
-                place: 7.0,
-                ramp: between(random, 0.0, 0.5),
-                gap: 0.5,
-                shadow: (STEREO_BASE, 0.7),
-                shift,
-                ..none
-            },
-            Self::StructuredLight => Strength {
-                offset: -much * tier.pick(1.0, 2.0, 3.5),
-                wobble: much * tier.pick(2.0, 3.0, 4.5),
-                place: 5.0,
-                gap: much * tier.pick(1.5, 2.5, 3.5),
-                shadow: (PROJECTOR_BASE, 1.0),
-                shift,
-                ..none
-            },
-            Self::TimeOfFlight => Strength {
-                offset: 0.4 * normal(random),
-                wobble: 0.8,
-                place: 5.0,
-                ramp: much * tier.pick(0.8, 1.4, 2.0),
-                lost_ramp: between(random, 0.2, 0.6),
-                shift,
-                ..none
-            },
-            Self::Predicted => Strength {
-                offset: tier.pick(0.1, 0.3, 0.5) + tier.pick(0.3, 0.6, 1.0) * normal(random),
-                wobble: much * tier.pick(1.0, 2.0, 3.5),
-                place: 8.0,
-                ramp: much * tier.pick(0.8, 1.5, 3.0),
-                // It is made from the photo: no shift.
-                ..none
-            },
-        }
-    }
-}
+const ACTIVE_STEREO: EdgeErrors = EdgeErrors {
+    offset: [[0.0, 0.8], [0.0, 1.4], [0.0, 2.2]],
+    wobble: [2.5, 4.0, 6.0],
+    place: 7.0,
+    ramp: [0.3, 0.3, 0.3],
+    lost_ramp: 0.0,
+    gap: [0.5, 0.5, 0.5],
+    shadow: (STEREO_BASE, 0.7),
+    shift: [0.7, 1.5, 3.0],
+};
+const STRUCTURED_LIGHT: EdgeErrors = EdgeErrors {
+    offset: [[-0.8, 0.1], [-1.6, 0.2], [-2.8, 0.4]],
+    wobble: [2.0, 3.0, 4.5],
+    place: 5.0,
+    ramp: [0.0, 0.0, 0.0],
+    gap: [1.5, 2.5, 3.5],
+    shadow: (PROJECTOR_BASE, 1.0),
+    ..ACTIVE_STEREO
+};
+const TIME_OF_FLIGHT: EdgeErrors = EdgeErrors {
+    offset: [[0.0, 0.4], [0.0, 0.4], [0.0, 0.4]],
+    wobble: [0.8, 0.8, 0.8],
+    place: 5.0,
+    ramp: [0.8, 1.4, 2.0],
+    lost_ramp: 0.4,
+    gap: [0.0, 0.0, 0.0],
+    shadow: (0.0, 0.0),
+    ..ACTIVE_STEREO
+};
+/// Made from the photo: no shift.
+const PREDICTED: EdgeErrors = EdgeErrors {
+    offset: [[0.1, 0.3], [0.3, 0.6], [0.5, 1.0]],
+    wobble: [1.0, 2.0, 3.5],
+    place: 8.0,
+    ramp: [0.8, 1.5, 3.0],
+    lost_ramp: 0.0,
+    shift: [0.0, 0.0, 0.0],
+    ..TIME_OF_FLIGHT
+};
 
 /// The scene's depth, metres, with the edges of a source but without noise; 0 for no reading. `wide` multiplies the
 /// distance between camera and projector.
 pub fn edges(source: DepthSource, sight: &Sight, tier: Tier, wide: f64, random: &mut Random) -> Vec<f32> {
     let width = sight.view.width;
     let resolution = sight.view.resolution();
-    let strength = source.strength(tier, random);
-    let wobble = Noise::new(&sight.view, strength.place * resolution, random);
+    let errors = match source {
+        DepthSource::ActiveStereo => ACTIVE_STEREO,
+        DepthSource::StructuredLight => STRUCTURED_LIGHT,
+        DepthSource::TimeOfFlight => TIME_OF_FLIGHT,
+        DepthSource::Predicted => PREDICTED,
+    };
+    let much = resolution * between(random, 0.6, 1.0);
+    let of_tier = |values: [f64; 3]| much * values[tier as usize];
+    let [mean, deviation] = errors.offset[tier as usize];
+    let mean = resolution * (mean + deviation * normal(random));
+    let wobble = Noise::new(&sight.view, errors.place * resolution, random);
     let filling = Noise::new(&sight.view, 6.0 * resolution, random);
     let near = Beside::all(sight, REACH * resolution);
     let mut depth = sight.depth.clone();
-    let ramp = strength.ramp * resolution;
+    let (ramp, gap, reach) = (of_tier(errors.ramp), of_tier(errors.gap), REACH * resolution);
+    let wobbling = of_tier(errors.wobble);
     for (i, beside) in near.iter().enumerate() {
         let Some(beside) = beside else { continue };
-        let offset = resolution * (strength.offset + strength.wobble * wobble.at(i)).clamp(-REACH, REACH);
+        let offset = (mean + wobbling * wobble.at(i)).clamp(-reach, reach);
         // Pixels outwards from the moved edge.
         let outwards = beside.signed - offset;
-        let gap = strength.gap * resolution;
         // An eroded edge leaves no reading on the object, or the background's.
         let is_eroded = beside.signed < 0.0 && outwards >= 0.0 && (gap > 0.6 * resolution || filling.at(i) > 0.0);
         let is_beside = outwards >= 0.0 && outwards < gap;
         depth[i] = if outwards.abs() < ramp {
             let share = (0.5 * (outwards / ramp + 1.0)) as f32;
             let mixed = if beside.far > 0.0 { beside.near * (1.0 - share) + beside.far * share } else { 0.0 };
-            if chance(random, strength.lost_ramp) { 0.0 } else { mixed }
+            if chance(random, errors.lost_ramp) { 0.0 } else { mixed }
         } else if is_eroded || is_beside {
             0.0
         } else if outwards < 0.0 {
@@ -120,13 +121,13 @@ pub fn edges(source: DepthSource, sight: &Sight, tier: Tier, wide: f64, random: 
         };
     }
     let side = sign(random);
-    let (base, share) = strength.shadow;
+    let (base, share) = errors.shadow;
     if base > 0.0 {
         let dark = |i: usize| 0.5 * (filling.at(i) + 1.0) < 0.2 + 0.8 * share;
         let widest = WIDEST * resolution * wide;
         cast_shadow(sight, [base * wide * resolution, widest], side, &mut depth, &dark);
     }
-    let shift = crate::world::unit(TAU * random.uniform()) * (strength.shift * resolution);
+    let shift = crate::world::unit(TAU * random.uniform()) * of_tier(errors.shift);
     shifted(&depth, width, shift.to_array())
 }
 

@@ -43,7 +43,6 @@ named! {
 /// A generated mesh in the world frame, and its simulated errors.
 #[derive(Debug)]
 pub struct Generated {
-    /// The mesh.
     pub mesh: Mesh,
     /// The symmetry that the mesh has.
     pub symmetry: Vec<Axis>,
@@ -85,8 +84,6 @@ struct Strength {
     /// By what share of its own thickness the unseen part is too deep or too flat.
     depth: f64,
     smoothing_passes: usize,
-    /// How far vertices slide along the surface, as a share of the edges.
-    slide: f64,
     /// Cells of the decimation, share of the box diagonal; 0 is none.
     cell: f64,
 }
@@ -103,10 +100,9 @@ impl Strength {
         let bulge = guess * of(random) * tier.pick(0.004, 0.012, 0.022);
         let depth = guess * of(random) * sign(random) * tier.pick(0.06, 0.18, 0.32);
         let smoothing_passes = tier.pick(0, random.below(3), 1 + random.below(4));
-        let slide = of(random) * tier.pick(0.0, 0.2, 0.33);
         let decimated = chance(random, tier.pick(0.0, 0.3, 0.5)) && !thin;
         let cell = between(random, 0.007, tier.pick(0.007, 0.009, 0.013)) * f64::from(u8::from(decimated));
-        Self { stretch, warp, bend, bulge, depth, smoothing_passes, slide, cell }
+        Self { stretch, warp, bend, bulge, depth, smoothing_passes, cell }
     }
 }
 
@@ -115,7 +111,7 @@ pub fn generate(placed: &Placed, sight: &Sight, conditions: Conditions, random: 
     let (Conditions { tier, class }, object, original) = (conditions, &placed.object, &placed.mesh);
     let is_symmetric = !placed.symmetry.is_empty();
     // Decimation would tear a thin object.
-    let is_thin = matches!(object.family, "spoon" | "scissors" | "wrench");
+    let is_thin = matches!(object.family, "spoon" | "scissors");
     let warped = class.mesh_fault == MeshFault::Warped;
     let strength = Strength::draw(random, tier, warped, is_symmetric, is_thin);
     let diagonal = object.diagonal();
@@ -127,7 +123,6 @@ pub fn generate(placed: &Placed, sight: &Sight, conditions: Conditions, random: 
     }
     let mut positions = fitted(&positions, &vertices, original)?;
     invent(&mut positions, original, &around, sight, &strength, diagonal, random);
-    slide(&mut positions, &around, strength.slide, random);
 
     let mut tags = Vec::new();
     let mut triangles = original.triangles().to_vec();
@@ -236,16 +231,6 @@ fn invent(
         let away = (*p - eye).normalize_or_zero();
         *p += away * (share * wavy * strength.depth * behind) + normals[i] * (share * wavy * strength.bulge * diagonal);
     }
-}
-
-/// Vertices slide along the surface towards neighbours: triangles of all shapes, the same surface.
-fn slide(positions: &mut Vec<DVec3>, around: &[Vec<u32>], share: f64, random: &mut Random) {
-    let slid = (0..positions.len()).map(|i| {
-        let p = positions[i];
-        let (weight, at) = (share * random.uniform(), random.below(around[i].len()));
-        around[i].get(at).map_or(p, |&n| p.lerp(positions[n as usize], weight))
-    });
-    *positions = slid.collect();
 }
 
 /// The triangles without those around a vertex far from the middle.

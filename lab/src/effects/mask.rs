@@ -2,7 +2,7 @@
 
 use super::noise::{Noise, convolved, disc, gaussian};
 use crate::prelude::*;
-use crate::sets::conditions::{Conditions, Framing, MaskChoice, Tier};
+use crate::sets::conditions::{Conditions, Framing, Tier};
 use crate::world::view::{Sight, View};
 
 /// Share of the masks that networks make; annotators make the others.
@@ -15,7 +15,8 @@ const LOGISTIC: f64 = 1.702;
 const MOST: f64 = 2.5;
 
 /// A source of masks: its errors by tier, in pixels of an image 640 wide.
-struct MaskSource {
+#[derive(Debug)]
+pub struct MaskSource {
     name: &'static str,
     /// Deviation of the blur, which rounds corners and loses thin parts.
     blur: [f64; 3],
@@ -29,7 +30,7 @@ struct MaskSource {
 }
 
 /// Logits of 256 cells on the longer side, blurred and enlarged to the photo.
-const NETWORK: MaskSource = MaskSource {
+pub const NETWORK: MaskSource = MaskSource {
     name: "network-mask",
     blur: [1.8, 1.8, 1.8],
     offset: [[0.0, 0.3], [0.3, 0.5], [0.4, 0.8]],
@@ -38,7 +39,7 @@ const NETWORK: MaskSource = MaskSource {
     crop: 0.4,
 };
 /// Polygons whose corners are right within about a pixel, as dense as patience allows.
-const ANNOTATOR: MaskSource = MaskSource {
+pub const ANNOTATOR: MaskSource = MaskSource {
     name: "annotated-mask",
     blur: [0.8, 1.1, 1.4],
     offset: [[0.0, 0.2], [0.0, 0.3], [0.0, 0.4]],
@@ -54,17 +55,8 @@ pub fn mask_of(sight: &Sight, conditions: Conditions, random: &mut Random) -> Re
     if sight.visible_px() == 0 {
         return Ok((Mask::filled(view.width, view.height, 0), Vec::new()));
     }
-    let source = match class.mask {
-        MaskChoice::Network => &NETWORK,
-        MaskChoice::Annotator => &ANNOTATOR,
-        MaskChoice::Any => {
-            if chance(random, NETWORKS) {
-                &NETWORK
-            } else {
-                &ANNOTATOR
-            }
-        }
-    };
+    let is_network = chance(random, NETWORKS);
+    let source = class.mask.unwrap_or(if is_network { &NETWORK } else { &ANNOTATOR });
     let is_tiny = class.framing == Framing::Tiny;
     let resolution = if is_tiny { source.crop } else { view.resolution() };
     let mut data = source.outline(sight, tier, resolution, random);

@@ -36,7 +36,6 @@ enum FocalFault {
 /// A kind of depth model: the statement of the kind of its maps, and their errors. Shares have a random sign.
 #[derive(Debug)]
 pub struct DepthModel {
-    /// Its name.
     pub name: &'static str,
     kind: DepthKind,
     /// Share by which the map is too far; `None` for an unknown unit.

@@ -15,18 +15,15 @@ const MEAN_SAMPLES: usize = 2000;
 /// How a model colours the side it did not see.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Back {
-    /// The truth.
     True,
     /// The mean of the side that it saw.
     Mean,
-    /// Another print.
     Other,
 }
 
 /// What a model makes of the colours of an object.
 struct Painter<'a> {
     print: &'a Print,
-    /// The invented print.
     other: &'a Print,
     back: Back,
     /// The colour of the unseen side for [`Back::Mean`].

@@ -18,7 +18,6 @@ struct Look {
     light: DVec3,
     ambient: f64,
     highlight: f64,
-    /// Exposure and white balance.
     gain: DVec3,
     /// A shadow over a part of the image: direction, start and depth.
     shadow: (DVec3, f64, f64),

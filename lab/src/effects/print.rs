@@ -23,7 +23,6 @@ pub enum PrintKind {
     Label,
     /// Two colours, divided by a plane.
     TwoTone,
-    /// One colour.
     Uniform,
 }
 

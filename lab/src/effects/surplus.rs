@@ -1,6 +1,6 @@
-//! Parts that generators add to the mesh of an object: floaters, an inner shell, a plate of ground below.
+//! Parts that generators add to the mesh of an object: floaters, a plate of ground below.
 
-use crate::objects::mesh::{box_of, joined, neighbors, normals};
+use crate::objects::mesh::{box_of, joined};
 use crate::objects::solid::Solid;
 use crate::prelude::*;
 
@@ -9,8 +9,6 @@ named! {
     pub enum Surplus: "surplus" {
         /// Two to four blobs beside the object.
         Floaters = "floaters",
-        /// A second surface within it.
-        Shell = "shell",
         /// A plate below it, a part of its own.
         Plate = "plate",
         /// A plate below it that hangs together with it.
@@ -18,10 +16,9 @@ named! {
     }
 }
 
-/// Radii and distances of floaters, and the depth of the inner shell, relative to the diagonal.
+/// Radii and distances of floaters, relative to the diagonal.
 const RADII: [f64; 2] = [0.02, 0.05];
 const DISTANCES: [f64; 2] = [0.15, 0.6];
-const WALL: f64 = 0.02;
 /// Extents of a plate relative to those of the object, and its thickness relative to the larger one.
 const PLATES: [f64; 2] = [1.35, 1.9];
 const THICKNESSES: [f64; 2] = [0.008, 0.03];
@@ -41,7 +38,6 @@ impl Surplus {
                     solid.at(DAffine3::from_translation(center + towards * away)).ellipsoid(radii);
                 }
             }
-            Self::Shell => return with_shell(mesh),
             Self::Plate | Self::FusedPlate => {
                 let larger = DVec2::new(between(random, PLATES[0], PLATES[1]), between(random, PLATES[0], PLATES[1]));
                 let half = (high - low).truncate() * 0.5 * larger;
@@ -61,19 +57,4 @@ impl Surplus {
         let [a, b, _] = joined.triangles()[mesh.triangles().len()];
         Mesh::new(joined.positions().to_vec(), [joined.triangles(), &[[lowest, a, b]]].concat())
     }
-}
-
-/// The mesh with a copy of its surface inside, which faces inwards.
-fn with_shell(mesh: &Mesh) -> Result<Mesh> {
-    let (low, high) = box_of(mesh);
-    let depth = WALL * (high - low).length();
-    let around = neighbors(mesh);
-    let mut inwards = normals(mesh);
-    // Smoothed, so that edges do not fold over.
-    inwards = (0..inwards.len())
-        .map(|i| around[i].iter().fold(inwards[i], |sum, n| sum + inwards[*n as usize]).normalize_or_zero())
-        .collect();
-    let inside = mesh.positions().iter().zip(inwards).map(|(p, normal)| (p.as_dvec3() - normal * depth).as_vec3());
-    let triangles = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]);
-    joined(&[mesh, &Mesh::new(inside.collect(), triangles.collect())?])
 }

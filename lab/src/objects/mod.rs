@@ -16,7 +16,6 @@ pub type Axis = (DVec3, Option<u32>);
 /// An object under construction by a family.
 #[derive(Debug, Default)]
 pub struct Draft {
-    /// The parts.
     pub solid: Solid,
     /// The symmetry of the object.
     pub symmetry: Vec<Axis>,
@@ -29,17 +28,12 @@ pub struct Draft {
 /// An object.
 #[derive(Debug, Clone)]
 pub struct Object {
-    /// Name of the family.
     pub family: &'static str,
-    /// The surface.
     pub mesh: Mesh,
     /// The part of each triangle.
     pub parts: Vec<usize>,
-    /// See [`Draft::symmetry`].
     pub symmetry: Vec<Axis>,
-    /// See [`Draft::keys`].
     pub keys: Vec<usize>,
-    /// See [`Draft::losable`].
     pub losable: Vec<usize>,
 }
 
@@ -48,11 +42,8 @@ pub struct Object {
 pub enum Pool {
     /// Those whose shape determines the orientation.
     Common,
-    /// Those, and thin ones.
     Detailed,
-    /// All but symmetric ones.
     All,
-    /// Spoon, scissors, wrench.
     Thin,
     /// Objects that look almost the same after a half turn: phone, toy car, banana.
     Ambiguous,
@@ -86,10 +77,8 @@ const FAMILIES: &[Family] = &[
     Family("hammer", tools::hammer, Kind::Common),
     Family("drill", tools::drill, Kind::Common),
     Family("scissors", tools::scissors, Kind::Thin),
-    Family("wrench", tools::wrench, Kind::Thin),
     Family("box", tools::carton, Kind::Common),
     Family("phone", tools::phone, Kind::Ambiguous),
-    Family("camera", tools::camera, Kind::Common),
     Family("chair", figures::chair, Kind::Furniture),
     Family("shoe", figures::shoe, Kind::Common),
     Family("animal", figures::animal, Kind::Common),

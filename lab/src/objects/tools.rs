@@ -76,24 +76,6 @@ pub fn scissors(draft: &mut Draft, r: &mut Random) {
     }
 }
 
-pub fn wrench(draft: &mut Draft, r: &mut Random) {
-    let (length, half_width) = (between(r, 0.13, 0.24), between(r, 0.006, 0.009));
-    let thick = between(r, 0.0026, 0.004);
-    draft.solid.at(to(0.0, 0.0, 0.006));
-    draft.solid.cuboid(DVec3::new(0.5 * length, half_width, thick), 0.0012);
-    draft.solid.part();
-    let radius = between(r, 0.011, 0.014);
-    let mut path = arc(DVec3::X * (0.5 * length + radius), DVec3::X * radius, DVec3::Y * radius, 0.0, TAU, 40);
-    path.pop();
-    draft.solid.ring(&path, DVec3::Z, [0.0055, 0.0045], 12);
-    draft.solid.part();
-    let jaw = between(r, 0.015, 0.019);
-    let centre = DVec3::X * (-0.5 * length - 0.8 * jaw);
-    let path = arc(centre, DVec3::X * jaw, DVec3::Y * jaw, -0.72 * PI, 0.72 * PI, 36);
-    draft.solid.tube(&path, DVec3::Z, |_| [0.0045, 0.0065], 12);
-    draft.symmetry = vec![(DVec3::X, Some(2))];
-}
-
 /// A box, no two of whose sides are alike.
 pub fn carton(draft: &mut Draft, r: &mut Random) {
     let thin = between(r, 0.02, 0.045);
@@ -129,21 +111,4 @@ pub fn phone(draft: &mut Draft, r: &mut Random) {
         let lens = corner + DVec3::new(0.45 * bump.x * i, 0.45 * bump.y * j, bump.z - 0.001);
         draft.solid.at(DAffine3::from_translation(lens)).cylinder([0.0048, 0.0045], 0.0025);
     }
-}
-
-pub fn camera(draft: &mut Draft, r: &mut Random) {
-    let half = DVec3::new(between(r, 0.055, 0.07), between(r, 0.018, 0.025), between(r, 0.035, 0.045));
-    draft.solid.at(to(0.0, 0.0, half.z)).cuboid(half, 0.006);
-    let lens = draft.solid.part();
-    let (offset, radius) = (between(r, 0.0, 0.012), between(r, 0.022, 0.03));
-    draft.solid.at(to(offset, 0.0, 0.95 * half.z) * along_y());
-    draft.solid.cylinder([radius, radius * 0.92], half.y + between(r, 0.025, 0.06));
-    let hump = draft.solid.part();
-    draft.solid.at(to(offset, -0.002, 2.0 * half.z + 0.004)).cuboid(DVec3::new(0.022, 0.016, 0.013), 0.004);
-    draft.solid.part();
-    draft
-        .solid
-        .at(to(-half.x + 0.006, 0.3 * half.y, half.z))
-        .cuboid(DVec3::new(0.014, 1.15 * half.y, 0.9 * half.z), 0.008);
-    draft.losable = vec![hump, lens];
 }

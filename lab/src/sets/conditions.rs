@@ -1,6 +1,7 @@
 //! The conditions of a case: tiers of difficulty, and classes, each of which changes something of the typical case.
 
 use crate::effects::depth::DepthSource;
+use crate::effects::mask::{ANNOTATOR, MaskSource, NETWORK};
 use crate::effects::print::PrintKind;
 use crate::effects::surplus::Surplus;
 use crate::objects::Pool;
@@ -48,7 +49,6 @@ impl Tier {
 pub enum Framing {
     /// All of it, or most.
     Free,
-    /// A few hundred pixels.
     Tiny,
     /// A part: the border of the image cuts it.
     BorderCut,
@@ -58,23 +58,9 @@ pub enum Framing {
     Split,
 }
 
-/// The source of depth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DepthChoice {
-    /// A sensor or a depth model.
-    Any,
-    /// A sensor.
-    Sensor,
-    /// This source.
-    Only(DepthSource),
-    /// An ideal camera.
-    Exact,
-}
-
 /// Readings that a sensor loses or coarsens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DepthFault {
-    /// Typical ones.
     None,
     /// Many readings are missing here and there.
     Sparse,
@@ -90,21 +76,9 @@ pub enum DepthFault {
     Quantised,
 }
 
-/// The source of a mask.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MaskChoice {
-    /// A network or an annotator.
-    Any,
-    /// A segmentation network.
-    Network,
-    /// An annotator, who draws a polygon.
-    Annotator,
-}
-
 /// Faults of a generated mesh beyond those of its tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshFault {
-    /// None.
     None,
     /// Stretched, bent and warped more than usual.
     Warped,
@@ -117,23 +91,19 @@ pub enum MeshFault {
 }
 
 /// A class of cases: what it changes of the typical case of its tier.
-#[derive(Debug, PartialEq)]
+#[derive(Debug)]
 pub struct Class {
-    /// Its name.
     pub name: &'static str,
     /// Where its objects come from; `None` for the pool of the tier.
     pub pool: Option<Pool>,
-    /// See [`Framing`].
     pub framing: Framing,
-    /// See [`DepthChoice`].
-    pub depth: DepthChoice,
-    /// See [`DepthFault`].
+    /// Sources of depth, each of which is as likely; none for an ideal camera.
+    pub depth: &'static [DepthSource],
     pub depth_fault: DepthFault,
-    /// See [`MaskChoice`].
-    pub mask: MaskChoice,
+    /// The source of its masks; `None` for any.
+    pub mask: Option<&'static MaskSource>,
     /// Whether the mask has holes, islands, lost and foreign regions.
     pub is_ragged: bool,
-    /// See [`MeshFault`].
     pub mesh_fault: MeshFault,
     /// The print of the object, which then has a photo.
     pub print: Option<PrintKind>,
@@ -145,14 +115,33 @@ pub struct Class {
     pub is_grey: bool,
 }
 
+/// Two thirds of the maps are those of depth models.
+const ANY_SOURCE: &[DepthSource] = &[
+    DepthSource::Predicted,
+    DepthSource::Predicted,
+    DepthSource::Predicted,
+    DepthSource::Predicted,
+    DepthSource::ActiveStereo,
+    DepthSource::Predicted,
+    DepthSource::Predicted,
+    DepthSource::StructuredLight,
+    DepthSource::Predicted,
+    DepthSource::Predicted,
+    DepthSource::ActiveStereo,
+    DepthSource::TimeOfFlight,
+];
+/// Half of the sensors are stereo cameras.
+pub const SENSOR: &[DepthSource] =
+    &[DepthSource::ActiveStereo, DepthSource::StructuredLight, DepthSource::ActiveStereo, DepthSource::TimeOfFlight];
+
 /// The typical case.
 pub const PLAIN: Class = Class {
     name: "plain",
     pool: None,
     framing: Framing::Free,
-    depth: DepthChoice::Any,
+    depth: ANY_SOURCE,
     depth_fault: DepthFault::None,
-    mask: MaskChoice::Any,
+    mask: None,
     is_ragged: false,
     mesh_fault: MeshFault::None,
     print: None,
@@ -176,7 +165,7 @@ pub const WARPED: Class = Class { name: "warped", mesh_fault: MeshFault::Warped,
 pub const RAGGED_MASK: Class = Class { name: "ragged-mask", is_ragged: true, ..PLAIN };
 /// Also the conditions of videos and of several views.
 pub const SPARSE_SENSOR: Class =
-    Class { name: "sparse-sensor", depth: DepthChoice::Sensor, depth_fault: DepthFault::Sparse, ..PLAIN };
+    Class { name: "sparse-sensor", depth: SENSOR, depth_fault: DepthFault::Sparse, ..PLAIN };
 /// A symmetric shape whose print alone determines its turn.
 pub const PRINTED: Class = Class {
     name: "printed",
@@ -186,12 +175,12 @@ pub const PRINTED: Class = Class {
     ..PLAIN
 };
 
-const fn sensor(name: &'static str, source: DepthSource) -> Class {
-    Class { name, depth: DepthChoice::Only(source), ..PLAIN }
+const fn sensor(name: &'static str, depth: &'static [DepthSource]) -> Class {
+    Class { name, depth, ..PLAIN }
 }
 
 const fn faulty(name: &'static str, depth_fault: DepthFault) -> Class {
-    Class { name, depth: DepthChoice::Sensor, depth_fault, ..PLAIN }
+    Class { name, depth: SENSOR, depth_fault, ..PLAIN }
 }
 
 const fn surplus(name: &'static str, kind: Surplus) -> Class {
@@ -224,12 +213,12 @@ pub const SENSORS: &[Class] = &[
     faulty("mask-of-readings", DepthFault::HolesOfMask),
     Class { framing: Framing::Split, ..faulty("split-mask", DepthFault::LostPart) },
     faulty("quantised", DepthFault::Quantised),
-    sensor("active-stereo", DepthSource::ActiveStereo),
-    sensor("structured-light", DepthSource::StructuredLight),
-    sensor("time-of-flight", DepthSource::TimeOfFlight),
-    sensor("predicted-depth", DepthSource::Predicted),
-    Class { name: "network-mask", mask: MaskChoice::Network, ..PLAIN },
-    Class { name: "annotated-mask", mask: MaskChoice::Annotator, ..PLAIN },
+    sensor("active-stereo", &[DepthSource::ActiveStereo]),
+    sensor("structured-light", &[DepthSource::StructuredLight]),
+    sensor("time-of-flight", &[DepthSource::TimeOfFlight]),
+    sensor("predicted-depth", &[DepthSource::Predicted]),
+    Class { name: "network-mask", mask: Some(&NETWORK), ..PLAIN },
+    Class { name: "annotated-mask", mask: Some(&ANNOTATOR), ..PLAIN },
 ];
 /// Coloured objects and their photos, of every tier.
 pub const COLORS: &[Class] = &[
@@ -245,12 +234,11 @@ pub const COLORS: &[Class] = &[
 /// Parts that generators add, of every tier.
 pub const SURPLUS: &[Class] = &[
     surplus("floaters", Surplus::Floaters),
-    surplus("shell", Surplus::Shell),
     surplus("plate", Surplus::Plate),
     surplus("fused-plate", Surplus::FusedPlate),
 ];
 const fn exact(class: Class) -> Class {
-    Class { depth: DepthChoice::Exact, ..class }
+    Class { depth: &[], ..class }
 }
 /// Exact depth, from which the rows of the monocular set make that of depth models.
 pub const MONOCULAR: &[Class] = &[
@@ -268,9 +256,7 @@ pub const MONOCULAR: &[Class] = &[
 /// A tier and a class.
 #[derive(Debug, Clone, Copy)]
 pub struct Conditions {
-    /// The tier.
     pub tier: Tier,
-    /// The class.
     pub class: &'static Class,
 }
 

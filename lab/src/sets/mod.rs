@@ -1,6 +1,6 @@
 //! The generated sets: a case follows from set, seed and index alone.
 
-pub mod conditions;
+pub(crate) mod conditions;
 mod images;
 mod scenes;
 mod sequences;
@@ -125,7 +125,7 @@ impl Set {
     }
 
     /// The class of a case with one object: tiers take turns, then the classes of the tier.
-    pub fn class(self, index: usize) -> &'static Class {
+    fn class(self, index: usize) -> &'static Class {
         let classes = match self {
             Self::Sensors => SENSORS,
             Self::Colors => COLORS,

@@ -1,6 +1,6 @@
 //! Several images of one object on a table: cameras around it, and videos.
 
-use super::conditions::{Class, Conditions, DepthChoice, DepthFault, PRINTED, SPARSE_SENSOR, Tier};
+use super::conditions::{Class, Conditions, DepthFault, PRINTED, SENSOR, SPARSE_SENSOR, Tier};
 use super::images::{MESH_STREAM, OBJECT_STREAM, SCENE_STREAM, image, object};
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::effects::generator::generate;
@@ -22,7 +22,7 @@ const MIN_VISIBLE: f64 = 0.6;
 /// Errors of noisy camera poses: degrees and metres.
 const NOISE: [f64; 2] = [0.5, 0.003];
 /// The conditions of objects whose print alone determines their turn.
-const PRINTED_SENSOR: Class = Class { depth: DepthChoice::Sensor, depth_fault: DepthFault::Sparse, ..PRINTED };
+const PRINTED_SENSOR: Class = Class { depth: SENSOR, depth_fault: DepthFault::Sparse, ..PRINTED };
 
 named! {
     /// Kinds of video.
@@ -37,7 +37,6 @@ named! {
         Leaving = "leaving",
         /// Hand-held and fast: frames in which most of the depth is missing.
         Blur = "motion blur",
-        /// Hand-held, with frames dropped.
         Dropped = "dropped frames",
     }
 }

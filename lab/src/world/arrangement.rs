@@ -6,24 +6,15 @@ use crate::objects::mesh::{box_of, mapped, random_rotation, turned_axes};
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
-use sim3align::geometry::surface::SurfaceMoments;
+use crate::sets::conditions::Tier;
 
 /// Directions in which footprints are measured.
 const DIRECTIONS: usize = 64;
 /// How far a thing moves outwards at a time to find room, and when it gives up, metres.
 const STEP_M: f64 = 0.004;
 const FARTHEST_M: f64 = 3.0;
-/// Share of the objects that are put down on any side.
-const TUMBLED: f64 = 0.25;
 /// Share of the objects that are put behind or before another one.
 const IN_A_LINE: f64 = 0.7;
-/// Families that nobody leaves lying on their side.
-const UPRIGHT: &[&str] = &["teapot"];
-/// Steps of the descent to the resting pose, the angle of the first step in radians, and the ratio of successive steps:
-/// half a turn in total, down to 10⁻⁵ rad.
-const STEPS: usize = 400;
-const FIRST_STEP: f64 = 0.03;
-const SHORTER: f64 = 0.98;
 /// Scenes whose depth map shows nothing but the objects.
 const BARE: f64 = 0.1;
 /// Largest distance between the table and where the depth map shows it, metres.
@@ -130,7 +121,7 @@ impl World {
         let is_bare = is_arranged && chance(random, BARE);
         let mut objects: Vec<Placed> = Vec::new();
         for k in 0..count {
-            let placed = put_down(random)?;
+            let placed = Placed::put_down(Object::draw(Pool::Desk, random)?, Tier::Easy, random)?;
             let stance = match (k, is_bare) {
                 (_, true) => Stance::Hangs,
                 (0, _) => Stance::Stands,
@@ -163,23 +154,6 @@ fn shifted(mesh: &Mesh, by: DVec3) -> Result<Mesh> {
     mapped(mesh, |p| (p.as_dvec3() + by).as_vec3())
 }
 
-/// An object at rest above the origin: mostly as it is made to stand, some on any side that they come to lie on.
-fn put_down(random: &mut Random) -> Result<Placed> {
-    let object = Object::draw(Pool::Desk, random)?;
-    let (tumbled, drawn) = (chance(random, TUMBLED), random_rotation(random));
-    let heading = TAU * random.uniform();
-    let down = if UPRIGHT.contains(&object.family) {
-        DVec3::NEG_Z
-    } else {
-        let drawn = DVec3::from_array((drawn * Vector3::z()).into());
-        resting(&object.mesh, if tumbled { drawn } else { DVec3::NEG_Z })
-    };
-    let upside_down = || Rotation3::from_axis_angle(&Vector3::x_axis(), PI);
-    let lain = Rotation3::rotation_between(&Vector3::from(down.to_array()), &-Vector3::z());
-    let heading = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);
-    Placed::turned(object, (heading * lain.unwrap_or_else(upside_down)).matrix())
-}
-
 /// An object that is tilted, or turned and lifted.
 fn held(stance: Stance, placed: Placed, random: &mut Random) -> Result<Placed> {
     let (turn, lift) = if stance == Stance::Hangs {
@@ -193,21 +167,4 @@ fn held(stance: Stance, placed: Placed, random: &mut Random) -> Result<Placed> {
     let mesh = shifted(&turned, DVec3::Z * (lift - box_of(&turned).0.z))?;
     let symmetry = turned_axes(turn.matrix(), &placed.symmetry);
     Ok(Placed { mesh, symmetry, stance, ..placed })
-}
-
-/// The direction, in the object's frame, that points down once the object, put on a plane with `down` downwards, has
-/// rolled to rest: there its centroid is as low as it gets by small turns.
-fn resting(mesh: &Mesh, down: DVec3) -> DVec3 {
-    let centroid = SurfaceMoments::of(mesh).centroid;
-    let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3() - centroid).collect();
-    let mut down = down.normalize_or(DVec3::NEG_Z);
-    let mut step = FIRST_STEP;
-    for _ in 0..STEPS {
-        let lowest = points.iter().copied().max_by(|a, b| a.dot(down).total_cmp(&b.dot(down)));
-        // Towards the lowest point the centroid stands higher: it rolls the other way.
-        let Some(uphill) = lowest.map(|p| p - down * p.dot(down)).and_then(DVec3::try_normalize) else { break };
-        down = (down - uphill * step).normalize_or(down);
-        step *= SHORTER;
-    }
-    down
 }

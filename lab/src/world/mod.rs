@@ -37,16 +37,13 @@ pub struct Placed {
     pub symmetry: Vec<Axis>,
     /// Its print, if it is coloured.
     pub print: Option<Print>,
-    /// How it is held.
     pub stance: Stance,
 }
 
 /// A scene before a camera sees it: metres, z up, the table at z = 0.
 #[derive(Debug)]
 pub struct World {
-    /// The objects with masks.
     pub objects: Vec<Placed>,
-    /// All other things.
     pub others: Vec<Mesh>,
     /// At which height the depth map shows the table, metres; `None` if it shows nothing but objects and things.
     pub table: Option<f64>,

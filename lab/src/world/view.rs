@@ -8,20 +8,15 @@ use sim3align::geometry::surface::SurfaceMoments;
 /// A camera at its place.
 #[derive(Debug, Clone, Copy)]
 pub struct View {
-    /// Width, in pixels.
     pub width: usize,
-    /// Height, in pixels.
     pub height: usize,
-    /// Intrinsics.
     pub camera: Pinhole,
-    /// World to camera.
     pub camera_from_world: Similarity,
 }
 
 /// What an ideal camera sees of one object among others.
 #[derive(Debug, Clone)]
 pub struct Sight {
-    /// The camera.
     pub view: View,
     /// The object alone: z-depth, 0 elsewhere.
     pub object_depth: Vec<f32>,
@@ -35,7 +30,6 @@ pub struct Sight {
     pub silhouette_px: usize,
     /// Fractions of these pixels that are outside the image, and that are occluded.
     pub cut: f64,
-    /// See `cut`.
     pub hidden: f64,
 }
 
