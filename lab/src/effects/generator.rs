@@ -31,7 +31,8 @@ named! {
         /// As SAM 3D Objects: detailed and right where seen up to a slight warp, the rest invented, some small part lost or
         /// added. Fitted back to the object by area.
         Detailed = "detailed",
-        /// As TripoSR, whose volume is coarse: details melt, thin parts thicken, and the mesh is flattened along the line of sight to 0.6 to 0.85 of its depth.
+        /// As TripoSR, whose volume is coarse: details melt, thin parts thicken, and the mesh is flattened along the line of
+        /// sight to 0.6 to 0.85 of its depth.
         ///
         /// No similarity undoes a flattening. The truth is the one that brings the flattened side that was *seen* back to
         /// where it was: turn and place by the least squared distance over its pixels, size by that across the line of

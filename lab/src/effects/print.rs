@@ -11,9 +11,9 @@ use sim3align_geometry::surface_colors::Rgb;
 /// Sides of a label: those of a box, or one that goes round.
 const SIDES: usize = 6;
 
-/// Smallest mean difference of sRGB-encoded colours at which a turned surface is told apart.
+/// Smallest mean difference of sRGB-encoded colours at which a turned surface is distinguishable.
 const TELLING: f64 = 0.06;
-/// Number of turns about an axis of revolution that are told apart.
+/// Number of turns about an axis of revolution that are compared.
 const ROLLS: u32 = 12;
 
 /// Kinds of print.
@@ -129,7 +129,7 @@ impl Print {
     }
 
     /// Whether the print shows, at the visible part of the object, which of the turns that its shape allows is right.
-    pub fn tells(&self, placed: &Placed, sight: &Sight) -> bool {
+    pub fn determines_turn(&self, placed: &Placed, sight: &Sight) -> bool {
         let world_from_camera = sight.view.camera_from_world.inverse();
         let center = SurfaceMoments::of(&placed.mesh).centroid;
         let shown: Vec<(DVec3, DVec3)> = sight

@@ -108,7 +108,7 @@ pub struct Class {
     /// The print of the object, which then has a photo.
     pub print: Option<PrintKind>,
     /// Whether colour alone determines which turn of a symmetric shape is right.
-    pub is_told_by_color: bool,
+    pub needs_color: bool,
     /// Whether the mesh has the colours of another object.
     pub has_wrong_colors: bool,
     /// Whether the photo is grey.
@@ -145,7 +145,7 @@ pub const PLAIN: Class = Class {
     is_ragged: false,
     mesh_fault: MeshFault::None,
     print: None,
-    is_told_by_color: false,
+    needs_color: false,
     has_wrong_colors: false,
     is_grey: false,
 };
@@ -167,13 +167,8 @@ pub const RAGGED_MASK: Class = Class { name: "ragged-mask", is_ragged: true, ..P
 pub const SPARSE_SENSOR: Class =
     Class { name: "sparse-sensor", depth: SENSOR, depth_fault: DepthFault::Sparse, ..PLAIN };
 /// A symmetric shape whose print alone determines its turn.
-pub const PRINTED: Class = Class {
-    name: "printed",
-    pool: Some(Pool::Symmetric),
-    print: Some(PrintKind::Label),
-    is_told_by_color: true,
-    ..PLAIN
-};
+pub const PRINTED: Class =
+    Class { name: "printed", pool: Some(Pool::Symmetric), print: Some(PrintKind::Label), needs_color: true, ..PLAIN };
 
 const fn sensor(name: &'static str, depth: &'static [DepthSource]) -> Class {
     Class { name, depth, ..PLAIN }
@@ -226,10 +221,10 @@ pub const COLORS: &[Class] = &[
     Class { name: "printed-shape", print: Some(PrintKind::Label), ..PLAIN },
     Class { name: "two-tone", print: Some(PrintKind::TwoTone), ..PRINTED },
     PRINTED,
-    Class { name: "one-color", print: Some(PrintKind::Uniform), is_told_by_color: false, ..PRINTED },
+    Class { name: "one-color", print: Some(PrintKind::Uniform), needs_color: false, ..PRINTED },
     Class { name: "grey-photo", is_grey: true, ..PRINTED },
     PRINTED,
-    Class { name: "wrong-colors", has_wrong_colors: true, is_told_by_color: false, ..PRINTED },
+    Class { name: "wrong-colors", has_wrong_colors: true, needs_color: false, ..PRINTED },
 ];
 /// Parts that generators add, of every tier.
 pub const SURPLUS: &[Class] = &[

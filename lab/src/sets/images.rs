@@ -107,8 +107,8 @@ pub fn object(
     let eye = sight.view.eye();
     let colors =
         placed.print.as_ref().map(|print| paint(&mesh, &world_from_mesh, (placed, print), eye, conditions, random));
-    let is_told = conditions.class.is_told_by_color;
-    let symmetry = if is_told { Symmetry::None } else { declared(&generated.symmetry, &world_from_mesh) };
+    let needs_color = conditions.class.needs_color;
+    let symmetry = if needs_color { Symmetry::None } else { declared(&generated.symmetry, &world_from_mesh) };
     let colors = colors.transpose()?;
     Ok((CaseObject { name, class, mesh, surplus, colors, symmetry, initial: None }, world_from_mesh))
 }

@@ -106,7 +106,7 @@ fn shown_enough(world: &World, sights: &[Sight], most_cut: f64, random: &mut Ran
         sight.visible_px() >= MIN_MASK_PX
             && sight.visible_share() >= LEAST_VISIBLE
             && sight.cut <= most_cut + 1e-9
-            && sight.is_telling(placed, Tier::Hard)
+            && sight.shows_shape(placed, Tier::Hard)
             // A mug whose handle is out of sight: no case to count on, though one that occurs.
             && (sight.shows_key(placed) || chance(random, 0.15))
     };

@@ -88,9 +88,9 @@ impl Stage {
     }
 
     /// Whether the print, if there is one, shows which turn is right.
-    fn tells(&self, sight: &Sight) -> bool {
+    fn determines_turn(&self, sight: &Sight) -> bool {
         let placed = &self.world.objects[0];
-        placed.print.as_ref().is_none_or(|print| print.tells(placed, sight))
+        placed.print.as_ref().is_none_or(|print| print.determines_turn(placed, sight))
     }
 
     /// The object with the mesh that a generator makes from one image.
@@ -151,7 +151,7 @@ pub fn views(index: usize, seed: u64, is_printed: bool) -> Result<Option<Case>> 
         }
         sights.push(seen);
     }
-    if !sights.iter().any(|(sight, _)| stage.tells(sight)) {
+    if !sights.iter().any(|(sight, _)| stage.determines_turn(sight)) {
         return Ok(None);
     }
     let kind = match (wrong, is_noisy) {
@@ -233,7 +233,7 @@ pub fn video(index: usize, seed: u64, frames: usize, is_printed: bool) -> Result
         }
         let seen = stage.see(&view);
         if k == 0 {
-            if seen.0.visible_px() < VIDEO_PX || seen.0.hidden > 0.1 || !stage.tells(&seen.0) {
+            if seen.0.visible_px() < VIDEO_PX || seen.0.hidden > 0.1 || !stage.determines_turn(&seen.0) {
                 return Ok(None);
             }
             made = Some(stage.object(&seen.0, motion.as_str().into(), seed)?);

@@ -34,8 +34,8 @@ pub fn draw(index: usize, seed: u64, conditions: Conditions) -> Result<Option<Ca
     if !shows_enough(sight, placed, conditions) {
         return Ok(None);
     }
-    let is_told = placed.print.as_ref().is_none_or(|print| print.tells(placed, sight));
-    if class.is_told_by_color && !is_told {
+    let is_determined = placed.print.as_ref().is_none_or(|print| print.determines_turn(placed, sight));
+    if class.needs_color && !is_determined {
         return Ok(None);
     }
     let made = image("frame_00".into(), &world, (&sights, &together), (conditions, &[conditions]), seed)?;
@@ -77,7 +77,7 @@ fn shows_enough(sight: &Sight, placed: &Placed, Conditions { tier, class }: Cond
         && shows_key
         && sight.visible_px() >= MIN_MASK_PX
         && sight.visible_share() >= least
-        && sight.is_telling(placed, tier)
+        && sight.shows_shape(placed, tier)
         && sight.object_depth.iter().all(|z| *z <= FARTHEST_M)
 }
 

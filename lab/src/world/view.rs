@@ -197,8 +197,8 @@ impl Sight {
         object.keys.is_empty() || key_px >= (self.visible_px() / 50).max(25)
     }
 
-    /// Whether a flat object is not seen on edge, nor a long one from its end: nobody takes such a photo to be measured.
-    pub fn is_telling(&self, placed: &Placed, tier: Tier) -> bool {
+    /// Whether a flat object is not seen on edge, nor a long one from its end: such photos are not taken to be measured.
+    pub fn shows_shape(&self, placed: &Placed, tier: Tier) -> bool {
         let moments = SurfaceMoments::of(&placed.mesh);
         let axes = moments.principal_axes();
         let [thin, middle, long] = axes.values.map(|variance| variance.max(0.0).sqrt());
