@@ -84,7 +84,7 @@ pub fn read(folder: &Path) -> Result<Case> {
         name,
         tier: meta.tier.unwrap_or_else(|| "given".into()),
         tags: meta.tags,
-        objects: objects.iter().map(|path| object(path, &class)).collect::<Result<_>>()?,
+        objects: objects.iter().map(|path| object(path, frames.first(), &class)).collect::<Result<_>>()?,
         frames: frames.iter().map(read_frame).collect::<Result<_>>()?,
         plane: json(folder, "plane.json")?.and_then(|PlaneFile { normal, d }| Plane::new(normal.into(), d)),
     })
@@ -135,7 +135,7 @@ fn frame(folder: &Path, owners: &[PathBuf]) -> Result<CaseFrame> {
     })
 }
 
-fn object(folder: &Path, class: &str) -> Result<CaseObject> {
+fn object(folder: &Path, frame: Option<&PathBuf>, class: &str) -> Result<CaseObject> {
     let (path, bytes) = required(folder, MESH_FILES)?;
     let resources = |uri: &str| read_beside(folder, uri);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
@@ -144,6 +144,10 @@ fn object(folder: &Path, class: &str) -> Result<CaseObject> {
     if let Some(problem) = &read.problem {
         eprintln!("\n{}: without colours: {problem}", path.display());
     }
+    let truth = match (truth_file(folder)?, frame) {
+        (None, Some(frame)) => truth_file(frame)?,
+        (truth, _) => truth,
+    };
     let placement = PLACEMENT_FILES.iter().find_map(|name| json::<PoseFile>(folder, name).transpose());
     Ok(CaseObject {
         name: last_name(folder),
@@ -151,7 +155,7 @@ fn object(folder: &Path, class: &str) -> Result<CaseObject> {
         mesh: read.mesh,
         surplus: None,
         colors: read.colors,
-        symmetry: truth_file(folder)?.map_or(Symmetry::Auto, |file| file.symmetry()),
+        symmetry: truth.map_or(Symmetry::Auto, |file| file.symmetry()),
         initial: placement.transpose()?.map(|pose| pose.similarity("placement")).transpose()?,
     })
 }

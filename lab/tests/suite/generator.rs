@@ -25,9 +25,9 @@ fn fingerprint(case: &Case) -> u64 {
 fn a_case_follows_from_set_seed_and_index_alone() {
     for set in Set::ALL {
         let made = |seed, index| fingerprint(&set.case(seed, index, 2).unwrap());
-        assert_eq!(made(1, 4), made(1, 4), "{set:?}");
-        assert_ne!(made(1, 4), made(2, 4), "{set:?}");
-        assert_ne!(made(1, 4), made(1, 7), "{set:?}");
+        assert_eq!(made(1, 1), made(1, 1), "{set:?}");
+        assert_ne!(made(1, 1), made(2, 1), "{set:?}");
+        assert_ne!(made(1, 1), made(1, 3), "{set:?}");
     }
 }
 
