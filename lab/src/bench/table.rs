@@ -14,18 +14,14 @@ pub fn report(rows: &[(String, Vec<ResultRow>)], failures: usize) -> String {
         "| cases | row | n | strict % | loose % | scale % | rotation ° | place % | ≥ .9: right of | IoU, truth's | ms |\n|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let all = || rows.iter().flat_map(|(_, results)| results);
-    let mut groups: Vec<(String, Box<dyn Fn(&&ResultRow) -> bool>)> = vec![("all".into(), Box::new(|_| true))];
-    for tier in distinct(all().map(|result| &result.tier)) {
-        groups.push((tier.clone(), Box::new(move |result| result.tier == tier)));
-    }
-    for class in distinct(all().map(|result| &result.class)) {
-        groups.push((class.clone(), Box::new(move |result| result.class == class)));
-    }
-    for (group, is_in) in &groups {
-        for (name, results) in rows {
-            let of: Vec<&ResultRow> = results.iter().filter(|result| is_in(result)).collect();
-            if !of.is_empty() {
-                let _ = writeln!(out, "| {group} | {name} | {} |", cells(&of).join(" | "));
+    let keys: [fn(&ResultRow) -> &str; 3] = [|_| "all", |result| &result.tier, |result| &result.class];
+    for key in keys {
+        for group in distinct(all().map(key)) {
+            for (name, results) in rows {
+                let of: Vec<&ResultRow> = results.iter().filter(|result| key(result) == group).collect();
+                if !of.is_empty() {
+                    let _ = writeln!(out, "| {group} | {name} | {} |", cells(&of).join(" | "));
+                }
             }
         }
     }
@@ -39,11 +35,11 @@ pub fn report(rows: &[(String, Vec<ResultRow>)], failures: usize) -> String {
     out
 }
 
-fn distinct<'a>(values: impl Iterator<Item = &'a String>) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
+fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut found = Vec::new();
     for value in values {
-        if !found.contains(value) {
-            found.push(value.clone());
+        if !found.contains(&value) {
+            found.push(value);
         }
     }
     found
@@ -80,9 +76,9 @@ fn cells(results: &[&ResultRow]) -> Vec<String> {
 /// How often a warning comes with a wrong pose: it is worth its place if poses with it are wrong far more often.
 fn warnings(out: &mut String, name: &str, results: &[ResultRow]) {
     let known: Vec<&ResultRow> = results.iter().filter(|r| r.strict.is_some() && r.error.is_none()).collect();
-    for code in distinct(known.iter().flat_map(|r| &r.warnings)) {
+    for code in distinct(known.iter().flat_map(|r| &r.warnings).map(String::as_str)) {
         let (with, without): (Vec<&ResultRow>, Vec<&ResultRow>) =
-            known.iter().partition(|result| result.warnings.contains(&code));
+            known.iter().partition(|result| result.warnings.iter().any(|other| other == code));
         let wrong = |of: &[&ResultRow]| of.iter().filter(|r| r.strict == Some(false)).count();
         let percent = 100.0 * wrong(&without) as f64 / without.len().max(1) as f64;
         let _ = writeln!(

@@ -35,7 +35,6 @@ pub struct PoseFile {
 #[serde(untagged)]
 enum RotationFile {
     Rows([[f64; 3]; 3]),
-    Flat([f64; 9]),
     /// Quaternion x, y, z, w.
     Quaternion([f64; 4]),
 }
@@ -122,7 +121,6 @@ impl PoseFile {
         };
         let rotation = match rotation {
             RotationFile::Rows(rows) => Matrix3::from_row_slice(rows.as_flattened()),
-            RotationFile::Flat(numbers) => Matrix3::from_row_slice(numbers),
             RotationFile::Quaternion(xyzw) => Similarity::rotation_from_xyzw(xyzw)?,
         };
         Similarity::from_parts(scale, rotation, Vector3::from(translation))

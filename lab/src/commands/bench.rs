@@ -20,7 +20,7 @@ use super::{Failure, print_progress, thread_count, usage};
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A generated set: general, sensors, colors, surplus, misfits, monocular, scenes, arranged, clutter, clutter-smooth,
-    /// placements, views, printed-views, videos or printed-videos
+    /// placements, views or videos
     #[arg(long)]
     set: Option<Set>,
     /// Number of generated cases

@@ -5,7 +5,7 @@ use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
 use sim3align::precise::drawn::counts::{self, Counts};
 use sim3align::progress::{Host, Stage};
-use sim3align_lab::bench::option_text;
+use sim3align_lab::bench::options::Row;
 use sim3align_lab::case_folder::read::read;
 use sim3align_lab::cpu_time::CpuTimer;
 use sim3align_lab::prelude::*;
@@ -17,8 +17,8 @@ use super::{Failure, usage};
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A quality of `align`; all other options have their defaults
-    #[arg(long)]
-    quality: Option<String>,
+    #[arg(long, default_value = "auto")]
+    quality: String,
     /// How many times each case is aligned
     runs: usize,
     /// Case folders
@@ -82,10 +82,10 @@ fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json
 
 /// Runs the command.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let options = option_text::with_quality(arguments.quality.clone()).map_err(usage)?;
+    let row = Row::parse(&format!("profile: quality={}", arguments.quality)).map_err(usage)?;
     let mut all = Map::new();
     for folder in &arguments.cases {
-        let values = results(folder, arguments.runs, &options)
+        let values = results(folder, arguments.runs, &row.precise)
             .map_err(|error| Failure::Failed(format!("{folder}: {} {error}", error.code.as_str())))?;
         all.insert(folder.clone(), values.into());
     }

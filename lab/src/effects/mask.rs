@@ -3,7 +3,7 @@
 use super::noise::{Noise, convolved, disc, gaussian};
 use crate::prelude::*;
 use crate::sets::conditions::{Conditions, Framing, Tier};
-use crate::world::view::{Sight, View};
+use crate::world::view::Sight;
 
 /// Share of the masks that networks make; annotators make the others.
 const NETWORKS: f64 = 0.63;
@@ -99,7 +99,9 @@ fn spoil(
     let view = &sight.view;
     let probability = if is_ragged { tier.pick(0.0, 0.5, 0.8) } else { tier.pick(0.0, 0.08, 0.25) };
     let inner: Vec<usize> = (0..data.len()).filter(|&i| sight.visible[i]).collect();
-    let rim: Vec<usize> = inner.iter().copied().filter(|&i| is_rim(&sight.visible, view, i)).collect();
+    let is_rim =
+        |i: &usize| [-1, 1].iter().any(|by| i.checked_add_signed(*by).is_some_and(|k| data.get(k) != Some(&1)));
+    let rim: Vec<usize> = inner.iter().copied().filter(is_rim).collect();
     let area = inner.len() as f64;
     let mut spot = |random: &mut Random, of: &[usize], tag| {
         let at = of.get(random.below(of.len())).copied();
@@ -127,11 +129,4 @@ fn spoil(
         let radius = (resolution * between(random, 2.0, 6.0)).min(0.15 * area.sqrt());
         disc(view, row * view.width + column, radius, |i| data[i] = 1);
     }
-}
-
-/// Whether a pixel of a region is beside one that is not.
-fn is_rim(region: &[bool], view: &View, i: usize) -> bool {
-    let [u, v] = view.place(i);
-    let is_border = u == 0 || v == 0 || u + 1 == view.width || v + 1 == view.height;
-    is_border || [i - 1, i + 1, i - view.width, i + view.width].iter().any(|beside| !region[*beside])
 }

@@ -131,7 +131,7 @@ const ANY_SOURCE: &[DepthSource] = &[
     DepthSource::TimeOfFlight,
 ];
 /// Half of the sensors are stereo cameras.
-pub const SENSOR: &[DepthSource] =
+const SENSOR: &[DepthSource] =
     &[DepthSource::ActiveStereo, DepthSource::StructuredLight, DepthSource::ActiveStereo, DepthSource::TimeOfFlight];
 
 /// The typical case.
@@ -167,7 +167,7 @@ pub const RAGGED_MASK: Class = Class { name: "ragged-mask", is_ragged: true, ..P
 pub const SPARSE_SENSOR: Class =
     Class { name: "sparse-sensor", depth: SENSOR, depth_fault: DepthFault::Sparse, ..PLAIN };
 /// A symmetric shape whose print alone determines its turn.
-pub const PRINTED: Class =
+const PRINTED: Class =
     Class { name: "printed", pool: Some(Pool::Symmetric), print: Some(PrintKind::Label), needs_color: true, ..PLAIN };
 
 const fn sensor(name: &'static str, depth: &'static [DepthSource]) -> Class {

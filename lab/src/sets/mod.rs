@@ -41,12 +41,8 @@ named! {
         Placements = "placements",
         /// Two to eight cameras around an object.
         Views = "views",
-        /// The same with objects whose print alone determines their turn.
-        PrintedViews = "printed-views",
         /// Videos of an object on a table.
         Videos = "videos",
-        /// The same with objects whose print alone determines their turn.
-        PrintedVideos = "printed-videos",
     }
 }
 
@@ -79,12 +75,12 @@ impl Set {
                 "alignScene: call=scene",
                 "alignScene, initial: call=scene initial=true",
             ],
-            Self::Views | Self::PrintedViews => &[
+            Self::Views => &[
                 "one view: call=views views=1",
                 "known cameras: call=views",
                 "unknown cameras: call=views cameras=false",
             ],
-            Self::Videos | Self::PrintedVideos => &["all masks: call=track", "first mask: call=track masks=1"],
+            Self::Videos => &["all masks: call=track", "first mask: call=track masks=1"],
             _ => &["align:"],
         }
     }
@@ -115,10 +111,8 @@ impl Set {
                 Self::Arranged => scenes::draw(index, seed, true, Prior::Detailed),
                 Self::ClutterSmooth => scenes::draw(index, seed, false, Prior::Smooth),
                 Self::Placements => scenes::placed(index, seed),
-                Self::Views | Self::PrintedViews => sequences::views(index, seed, self == Self::PrintedViews),
-                Self::Videos | Self::PrintedVideos => {
-                    sequences::video(index, seed, frames, self == Self::PrintedVideos)
-                }
+                Self::Views => sequences::views(index, seed),
+                Self::Videos => sequences::video(index, seed, frames),
                 _ => single::draw(index, seed, Conditions { tier, class: self.class(index) }),
             }
         })

@@ -1,6 +1,6 @@
 //! Several images of one object on a table: cameras around it, and videos.
 
-use super::conditions::{Class, Conditions, DepthFault, PRINTED, SENSOR, SPARSE_SENSOR, Tier};
+use super::conditions::{Conditions, SPARSE_SENSOR, Tier};
 use super::images::{MESH_STREAM, OBJECT_STREAM, SCENE_STREAM, image, object};
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::effects::generator::generate;
@@ -21,8 +21,6 @@ const VIDEO_PX: usize = 2500;
 const MIN_VISIBLE: f64 = 0.6;
 /// Errors of noisy camera poses: degrees and metres.
 const NOISE: [f64; 2] = [0.5, 0.003];
-/// The conditions of objects whose print alone determines their turn.
-const PRINTED_SENSOR: Class = Class { depth: SENSOR, depth_fault: DepthFault::Sparse, ..PRINTED };
 
 named! {
     /// Kinds of video.
@@ -51,10 +49,8 @@ struct Stage {
 }
 
 impl Stage {
-    fn draw(tier: Tier, is_printed: bool, random: &mut Random) -> Result<Self> {
-        let class = if is_printed { &PRINTED_SENSOR } else { &SPARSE_SENSOR };
-        let drawn = Object::draw(if is_printed { Pool::Symmetric } else { Pool::Desk }, random)?;
-        let placed = Placed::put_down(drawn, tier, random)?.printed(class.print, random);
+    fn draw(tier: Tier, random: &mut Random) -> Result<Self> {
+        let placed = Placed::put_down(Object::draw(Pool::Desk, random)?, tier, random)?;
         let [width, height] = SIZE.map(|side| side as f64);
         let focal = between(random, 0.8, 1.1) * width;
         let camera = Pinhole::new(focal, focal, 0.5 * width - 0.5, 0.5 * height - 0.5)?;
@@ -68,7 +64,7 @@ impl Stage {
         }
         let others = if solid.is_empty() { Vec::new() } else { vec![solid.finish()?.0] };
         let world = World::new(vec![placed], others, 0.0, WALL_M);
-        Ok(Self { world, camera, distance, conditions: Conditions { tier, class } })
+        Ok(Self { world, camera, distance, conditions: Conditions { tier, class: &SPARSE_SENSOR } })
     }
 
     fn diagonal(&self) -> f64 {
@@ -85,12 +81,6 @@ impl Stage {
     fn see(&self, view: &View) -> (Sight, Sight) {
         let (mut sights, together) = view.see(&self.world);
         (sights.remove(0), together)
-    }
-
-    /// Whether the print, if there is one, shows which turn is right.
-    fn determines_turn(&self, sight: &Sight) -> bool {
-        let placed = &self.world.objects[0];
-        placed.print.as_ref().is_none_or(|print| print.determines_turn(placed, sight))
     }
 
     /// The object with the mesh that a generator makes from one image.
@@ -129,8 +119,8 @@ impl Stage {
 
 /// Two to eight cameras around an object. A third of the cases has noisy camera poses, and a sixth (of those with three
 /// views and more) one wrong view.
-pub fn views(index: usize, seed: u64, is_printed: bool) -> Result<Option<Case>> {
-    let stage = Stage::draw(Tier::of(index), is_printed, &mut Random::new(seed, OBJECT_STREAM))?;
+pub fn views(index: usize, seed: u64) -> Result<Option<Case>> {
+    let stage = Stage::draw(Tier::of(index), &mut Random::new(seed, OBJECT_STREAM))?;
     let random = &mut Random::new(seed, SCENE_STREAM);
     let count = 2 + random.below(7);
     // Between neighbouring cameras.
@@ -150,9 +140,6 @@ pub fn views(index: usize, seed: u64, is_printed: bool) -> Result<Option<Case>> 
             return Ok(None);
         }
         sights.push(seen);
-    }
-    if !sights.iter().any(|(sight, _)| stage.determines_turn(sight)) {
-        return Ok(None);
     }
     let kind = match (wrong, is_noisy) {
         (Some(_), _) => "wrong view",
@@ -197,10 +184,10 @@ impl Path {
 }
 
 /// A video at 30 frames a second. Kinds of motion take turns.
-pub fn video(index: usize, seed: u64, frames: usize, is_printed: bool) -> Result<Option<Case>> {
+pub fn video(index: usize, seed: u64, frames: usize) -> Result<Option<Case>> {
     let motion = Motion::ALL[index % Motion::ALL.len()];
     let tier = if (index / Motion::ALL.len()).is_multiple_of(2) { Tier::Easy } else { Tier::Medium };
-    let mut stage = Stage::draw(tier, is_printed, &mut Random::new(seed, OBJECT_STREAM))?;
+    let mut stage = Stage::draw(tier, &mut Random::new(seed, OBJECT_STREAM))?;
     let random = &mut Random::new(seed, SCENE_STREAM);
     let (heading, elevation) = (between(random, 0.0, 360.0), between(random, 25.0, 45.0));
     let turn = sign(random) * between(random, 20.0, 60.0);
@@ -233,7 +220,7 @@ pub fn video(index: usize, seed: u64, frames: usize, is_printed: bool) -> Result
         }
         let seen = stage.see(&view);
         if k == 0 {
-            if seen.0.visible_px() < VIDEO_PX || seen.0.hidden > 0.1 || !stage.determines_turn(&seen.0) {
+            if seen.0.visible_px() < VIDEO_PX || seen.0.hidden > 0.1 {
                 return Ok(None);
             }
             made = Some(stage.object(&seen.0, motion.as_str().into(), seed)?);
