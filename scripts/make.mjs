@@ -20,7 +20,7 @@ const makers = {
   /** The committed files that follow from the sources: declarations of the options, the API report, the notices. */
   async update() {
     await rustToolchain();
-    const declarations = ["test", "--quiet", "--package", "sim3align-lab", "typescript"];
+    const declarations = ["test", "--quiet", "--workspace", "--test", "lab", "typescript"];
     await step("TypeScript declarations", () => run("cargo", declarations, { env: { UPDATE: "1" } }));
     await buildPackage();
     await step("API report", writeApiReport);

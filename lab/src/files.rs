@@ -5,9 +5,6 @@ use std::fs;
 use crate::prelude::*;
 use sim3align_geometry::error::Text;
 
-/// The name of a file in a folder, and its content.
-pub type NamedFile = (&'static str, Vec<u8>);
-
 /// Reads a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).map_err(|error| unreadable(path, error))
@@ -17,16 +14,6 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(path, bytes));
     written.map_err(|error| unwritable(path, error))
-}
-
-/// Writes files to a folder, and creates it if necessary.
-pub(crate) fn write_files(folder: &Path, files: &[NamedFile]) -> Result<()> {
-    fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
-    for (name, bytes) in files {
-        let path = folder.join(name);
-        fs::write(&path, bytes).map_err(|error| unwritable(&path, error))?;
-    }
-    Ok(())
 }
 
 /// Paths of the entries of a folder, sorted by name.
@@ -47,24 +34,17 @@ pub(crate) fn entries(folder: &Path) -> Vec<PathBuf> {
 
 /// The error for a path that cannot be read.
 pub(crate) fn unreadable(path: &Path, error: std::io::Error) -> Error {
-    Error::new(
-        ErrorCode::InvalidArgument,
-        path.display().to_string(),
-        format!("the file system error: {error}"),
-        "a file or a folder that can be read",
-        "Check the layout of the folder.",
-    )
+    failed(path, error, "a file or a folder that can be read", "Check the layout of the folder.")
 }
 
 /// The error for a path that cannot be written.
 pub(crate) fn unwritable(path: &Path, error: std::io::Error) -> Error {
-    Error::new(
-        ErrorCode::InvalidArgument,
-        path.display().to_string(),
-        format!("the file system error: {error}"),
-        "a writable folder",
-        "Name a folder that exists or can be created, on a disk that is not full.",
-    )
+    failed(path, error, "a writable folder", "Name a folder that can be created, on a disk that is not full.")
+}
+
+fn failed(path: &Path, error: std::io::Error, expected: &'static str, remedy: &'static str) -> Error {
+    let (argument, found) = (path.display().to_string(), format!("the file system error: {error}"));
+    Error::new(ErrorCode::InvalidArgument, argument, found, expected, remedy)
 }
 
 /// The error for an inconsistent file.

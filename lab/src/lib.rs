@@ -1,19 +1,17 @@
-//! Generated cases with a known true pose, readers of case folders, and other methods for comparison. Not part of the
-//! published package.
+//! Generated cases with known true poses, readers and writers of case folders, and benchmarks. Not part of the published
+//! package.
 
-pub mod baselines;
 pub mod bench;
+pub mod case;
 pub mod case_folder;
-pub mod cases;
 pub mod clouds;
 pub mod cpu_time;
 mod draws;
+mod effects;
 pub mod files;
-pub mod monocular;
 pub mod names;
-pub mod outlines;
+mod objects;
 pub mod parallel;
 pub mod prelude;
-pub mod samples;
-pub mod scenes;
-pub mod sequences;
+pub mod sets;
+mod world;

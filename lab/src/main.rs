@@ -1,44 +1,45 @@
-//! `sim3align-lab`: writes generated cases, and runs methods over cases and over pairs of clouds.
+//! `sim3align-lab`: benchmarks over generated cases and case folders.
 
 mod commands;
 
 use std::process::ExitCode;
 
-use commands::{Arguments, COMMANDS, Failure};
+use clap::{Parser, Subcommand};
+use commands::{Failure, bench, profile, registration};
 
-fn usage() -> String {
-    let commands = COMMANDS.iter().map(|command| format!("  {:14}{}\n", command.name, command.about));
-    format!(
-        "Usage: sim3align-lab COMMAND [arguments]\n\n{}\n`sim3align-lab COMMAND --help` lists the command's arguments.",
-        commands.collect::<String>()
-    )
+/// Benchmarks of sim3align over generated cases and case folders.
+#[derive(Parser)]
+#[command(name = "sim3align-lab")]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Aligns cases with a known truth, and prints tables
+    Bench(bench::Arguments),
+    /// Aligns case folders, and prints CPU times and counts of renders as JSON
+    Profile(profile::Arguments),
+    /// Writes pairs of clouds, and registers them
+    #[command(subcommand)]
+    Registration(registration::Arguments),
 }
 
 fn main() -> ExitCode {
-    let mut arguments = std::env::args_os().skip(1);
-    let name = arguments.next().unwrap_or_default();
-    if name == "--help" || name == "-h" {
-        println!("{}", usage());
-        return ExitCode::SUCCESS;
-    }
-    let Some(command) = COMMANDS.iter().find(|command| name == *command.name) else {
-        eprintln!("sim3align-lab: no such command: {name:?}\n\n{}", usage());
-        return ExitCode::from(2);
+    let outcome = match Program::parse().command {
+        Command::Bench(arguments) => bench::run(&arguments),
+        Command::Profile(arguments) => profile::run(&arguments),
+        Command::Registration(arguments) => registration::run(&arguments),
     };
-    let mut arguments = Arguments::new(arguments);
-    let outcome = if arguments.ask_for_help() { Err(Failure::Help) } else { (command.run)(&mut arguments) };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Help) => {
-            println!("{}", command.usage);
-            ExitCode::SUCCESS
-        }
         Err(Failure::Usage(error)) => {
-            eprintln!("sim3align-lab {}: {error}\n\n{}", command.name, command.usage);
+            eprintln!("sim3align-lab: {error}");
             ExitCode::from(2)
         }
         Err(Failure::Failed(message)) => {
-            eprintln!("sim3align-lab {}: {message}", command.name);
+            eprintln!("sim3align-lab: {message}");
             ExitCode::FAILURE
         }
     }

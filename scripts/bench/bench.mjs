@@ -1,24 +1,23 @@
 /**
- * `npm run bench [-- --quick]`: the whole benchmark: generated scenes (or case folders), every method and ablation, other
- * libraries beside them, general registration; tables and figures of it all. An interrupted run is resumed.
+ * `npm run bench [-- --quick]`: the paper's tables: generated scenes (or case folders), our presets and their ablations,
+ * other libraries beside them, general registration. An interrupted run is resumed.
  */
-import { mkdirSync, readdirSync } from "node:fs";
-import { join, resolve } from "node:path";
+import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { basename, join, resolve } from "node:path";
 import { digest } from "../lib/cache.mjs";
 import { buildLab, runLab } from "../lib/lab.mjs";
 import { at } from "../lib/paths.mjs";
 import { pythonWith } from "../lib/python.mjs";
-import { duration, step } from "../lib/step.mjs";
+import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { datasets, generalJobs, generalTable, importJob, ownJob, peersJob } from "./jobs.mjs";
-import { report } from "./paper/report.mjs";
-import { tableSpecs } from "./paper/rows.mjs";
-import { meshMethods, versionsOf } from "./peers.mjs";
-import { environment, openResults } from "./results.mjs";
+import { notes, ownRows, tableMarkdown, tables } from "./paper.mjs";
+import { meshMethods, pairMethods, runPeers, versionsOf } from "./peers.mjs";
+import { environment, openResults, readResults } from "./results.mjs";
 
 /**
  * @typedef {object} BenchmarkOptions
  * @property {boolean} quick
+ * @property {boolean} smallest
  * @property {number} [scenes]
  * @property {number} setSeed
  * @property {string} [cases]
@@ -36,82 +35,67 @@ const collect = (/** @type {string} */ value, /** @type {string[]} */ all) => [.
 
 await command("bench", (program) =>
   program
-    .description("Runs the benchmark and writes its tables and figures. An interrupted run is resumed.")
+    .description("Runs the benchmark of the paper, and writes its tables. An interrupted run is resumed.")
     .option("--quick", "a subset that takes about five minutes", false)
+    .option("--smallest", "one scene, without other libraries and pairs of clouds", false)
     .option("--scenes <n>", "generated scenes: 100 make 338 pairs of object and mesh (12 where --quick)", count)
     .option("--set-seed <s>", "seed of the generated scenes", Number, 0)
     .option("--cases <dir>", "case folders in place of the generated scenes")
     .option("--import <name=dir>", "answers of another program, a JSON file a case; may be repeated", collect, [])
     .option("--data <dir>", "3DMatch, 3DLoMatch or KITTI for general registration; may be repeated", collect, [])
     .option("--no-peers", "leave out the other libraries, and the Python that they need")
-    .option(
-      "--python <program>",
-      "the Python (3.11 or 3.12) that the other libraries get an environment from",
-      "python3",
-    )
+    .option("--python <program>", "the Python (3.11 or 3.12) that installs the other libraries", "python3")
     .option("--out <dir>", "where results are kept; benches/results/… by default")
     .option("--fresh", "forget what an earlier run has left there", false)
-    .option("--snapshot", "write tables and figures to docs/benchmark/ too", false)
+    .option("--snapshot", "write the tables to docs/benchmark/ too", false)
     .option("--threads <n>", "all by default", count)
     .action(benchmark),
 );
 
 /** @param {BenchmarkOptions} options */
 async function benchmark(options) {
-  const started = performance.now();
-  const scenes = options.scenes ?? (options.quick ? 12 : 100);
+  const scenes = options.scenes ?? (options.smallest ? 1 : options.quick ? 12 : 100);
   const name = options.cases === undefined ? `scenes-${scenes}-seed-${options.setSeed}` : "cases";
   const out = resolve(options.out ?? at("benches", "results", name));
+  const hasPeers = options.peers && !options.smallest;
   await step("Programs", buildLab);
-  if (options.peers) await pythonWith("peers", options.python);
-  /** @type {Record<string, string>} */
+  if (hasPeers) await pythonWith("peers", options.python);
+  const code = digest(["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock"].map((path) => at(path)));
+  const clouds = options.smallest ? [] : await datasets(options);
+  openResults(out, { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null, clouds }, options.fresh);
   const folders = options.cases === undefined ? await writeScenes(scenes, options.setSeed) : { given: options.cases };
-  const clouds = await datasets(options);
 
-  const code = digest([at("src"), at("geometry"), at("formats"), at("lab"), at("Cargo.toml"), at("Cargo.lock")]);
-  const identity = { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null, clouds };
-  openResults(out, identity, options.fresh);
-
-  const [prior = "", folder = ""] = Object.entries(folders)[0] ?? [];
-  const answers = join(out, "answers", prior);
-  const methods = options.peers ? meshMethods(options.quick) : {};
-  /** @type {[string, string][]} */
-  const imports = [
-    ...Object.keys(methods).map((method) => /** @type {[string, string]} */ ([method, join(answers, method)])),
-    ...options.import.map(namedFolder),
-  ];
-  const names = imports.map(([importName]) => importName);
-  const specs = tableSpecs(names, Object.keys(folders));
-  const jobs = Object.entries(folders).map(([each, cases]) => ownJob(specs, each, cases, out, options.threads));
-  if (options.peers) jobs.push(peersJob(methods, folder, answers, options.python));
-  if (imports.length > 0) jobs.push(importJob(imports, folder, prior, out));
-  for (const set of clouds) jobs.push(...(await generalJobs(set, out, options.peers ? options.python : null)));
-  await runAll(jobs);
-
-  const software = options.peers ? versionsOf(answers) : {};
-  const run = { ...(await environment()), software, setSeed: options.setSeed, scenes };
-  const general = clouds.map((set) => generalTable(set, out));
-  const markdown = await report({ specs, out, run, folders, general, snapshot: options.snapshot });
-  console.log(`\n${markdown}\nTables and figures are in ${out}; all took ${duration(performance.now() - started)}.`);
-}
-
-/** Runs jobs beneath one bar with the time that is left. @param {readonly import("./jobs.mjs").Job[]} jobs */
-async function runAll(jobs) {
-  const { SingleBar, Presets } = (await import("cli-progress")).default;
-  const format = "{bar} {percentage}% | {eta_formatted} left | {task}";
-  const options = { format, noTTYOutput: true, notTTYSchedule: 30_000, hideCursor: true, linewrap: false };
-  const bar = new SingleBar(options, Presets.shades_classic);
-  bar.start(
-    jobs.reduce((sum, { work }) => sum + work, 0),
-    0,
-    { task: "" },
-  );
-  const advance = (/** @type {number} */ seconds, task = "") => bar.increment(seconds, { task });
-  try {
-    for (const job of jobs) await job.run({ advance });
-  } finally {
-    bar.stop();
+  const [[prior, folder] = ["", ""]] = Object.entries(folders);
+  const answers = join(out, "answers");
+  const methods = hasPeers ? meshMethods(options.quick) : [];
+  if (hasPeers) {
+    await step("Other libraries", () => runPeers({ cases: [folder], out: answers, methods, python: options.python }));
   }
+  const imports = [...methods.map((method) => `${method}=${join(answers, method)}`), ...options.import];
+  const threads = options.threads === undefined ? [] : ["--threads", `${options.threads}`];
+  const file = (/** @type {string} */ of) => join(out, `${of}.jsonl`);
+  for (const [each, cases] of Object.entries(folders)) {
+    const args = ownRows(each === prior).flatMap((row) => ["--row", row]);
+    if (each === prior) args.push(...imports.flatMap((one) => ["--import", one]));
+    await step(`Rows on ${each} meshes`, () =>
+      runLab(["bench", "--cases", cases, ...args, "--json", file(each), ...threads]),
+    );
+  }
+  const results = new Map(Object.keys(folders).map((each) => [each, readResults(file(each))]));
+  const names = imports.map((one) => one.split("=")[0] ?? "");
+  const sections = tables(names, Object.keys(folders)).map(
+    (table) => `## ${table.title}\n\n${tableMarkdown(table, (each) => results.get(each) ?? [])}`,
+  );
+  for (const set of clouds) sections.push(await registration(set, out, hasPeers ? options.python : null));
+
+  const { commit, date, machine, system, node, rustc } = await environment();
+  const libraries = hasPeers ? Object.entries(versionsOf(answers)).map((library) => library.join(" ")) : [];
+  const versions = [rustc, `Node ${node}`, ...libraries].join(", ");
+  const run = `Commit ${commit}, ${date.slice(0, 10)}, ${machine}, ${system}; ${versions}. Set seed ${options.setSeed}, ${scenes} scenes.`;
+  const markdown = `# Benchmark\n\n${run}\n\n${notes}\n\n${sections.join("\n\n")}\n`;
+  writeFileSync(join(out, "tables.md"), markdown);
+  if (options.snapshot) writeFileSync(at("docs", "benchmark", "README.md"), markdown);
+  console.log(`\n${markdown}\nThe tables are in ${out}.`);
 }
 
 /**
@@ -121,18 +105,70 @@ async function runAll(jobs) {
  */
 async function writeScenes(scenes, seed) {
   const folder = at("target", "bench", `scenes-${scenes}-seed-${seed}`);
-  await step("Scenes", async (say) => {
-    mkdirSync(folder, { recursive: true });
-    const args = ["scenes", folder, "--scenes", `${scenes}`, "--set-seed", `${seed}`, "--prior", "both"];
-    await runLab(args);
-    say(`${readdirSync(join(folder, "detailed")).length} pairs`);
+  const folders = { detailed: join(folder, "detailed"), smooth: join(folder, "smooth") };
+  await step("Scenes", async () => {
+    for (const [set, path] of [
+      ["clutter", folders.detailed],
+      ["clutter-smooth", folders.smooth],
+    ]) {
+      const done = `${path}.done`;
+      if (existsSync(done)) continue;
+      await runLab(["bench", "--set", `${set}`, "--count", `${scenes}`, "--seed", `${seed}`, "--write", `${path}`]);
+      writeFileSync(done, "");
+    }
   });
-  return { detailed: join(folder, "detailed"), smooth: join(folder, "smooth") };
+  return folders;
 }
 
-/** @param {string} text NAME=DIR @returns {[string, string]} */
-function namedFolder(text) {
-  const [, name, folder] = /^([^=]+)=(.+)$/.exec(text) ?? [];
-  if (name === undefined || folder === undefined) throw new Error(`--import: found ${text}, expected NAME=DIR`);
-  return [name, resolve(folder)];
+/** @typedef {{ id: string, title: string, data: string, every: number }} Dataset every n-th pair is taken */
+
+/**
+ * The pairs of clouds of a run: rooms and streets of its seed, and folders of the caller's.
+ * @param {{ quick: boolean, setSeed: number, data: readonly string[] }} options
+ * @returns {Promise<Dataset[]>}
+ */
+async function datasets({ quick, setSeed, data }) {
+  const scenes = quick ? 1 : 2;
+  /** @type {Dataset[]} */
+  const made = [];
+  for (const [kind, title] of [
+    ["rooms", "rooms in 3DMatch's layout"],
+    ["lidar", "streets in KITTI's layout"],
+  ]) {
+    const folder = at("target", "bench", `${kind}-${scenes}-seed-${setSeed}`);
+    if (!existsSync(`${folder}.done`)) {
+      await runLab(["registration", "write", `${kind}`, folder, "--seed", `${setSeed}`, "--scenes", `${scenes}`]);
+      writeFileSync(`${folder}.done`, "");
+    }
+    made.push({ id: `${kind}`, title: `generated ${title}`, data: folder, every: quick ? 3 : 1 });
+  }
+  return [
+    ...made,
+    ...data.map((path) => ({ id: basename(path), title: basename(path), data: resolve(path), every: 1 })),
+  ];
+}
+
+/**
+ * The table of general registration.
+ * @param {Dataset} set
+ * @param {string} out
+ * @param {string | null} python the Python of the other libraries, or none of them
+ */
+async function registration({ id, title, data, every }, out, python) {
+  const folder = join(out, "registration", id);
+  mkdirSync(folder, { recursive: true });
+  const args = ["registration", "run", "--data", data, "--every", `${every}`];
+  const methods = ["--method", "register"];
+  if (python !== null) {
+    const [pairs, answers] = [join(folder, "pairs.json"), join(folder, "answers")];
+    await runLab([...args, "--pairs-json", pairs]);
+    await step(`Other libraries, ${title}`, () => runPeers({ pairs, out: answers, methods: pairMethods, python }));
+    methods.push(...pairMethods.flatMap((name) => ["--method", `${name}=import:${join(answers, name)}`]));
+  }
+  const table = join(folder, "table.md");
+  await step(`General registration, ${title}`, async () => {
+    const records = ["--records", join(folder, "records.jsonl")];
+    writeFileSync(table, await runLab([...args, "--measure-overlap", ...methods, ...records]));
+  });
+  return `## General registration, ${title}\n\n${readFileSync(table, "utf8").trim()}`;
 }

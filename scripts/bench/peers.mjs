@@ -22,26 +22,14 @@ import { caseFolders, readTypedCase } from "../speed/inputs.mjs";
  * @property {(answered: Answered) => void} [onAnswer]
  */
 
-/** Seconds that one answer is expected to take. @type {Record<string, number>} */
-const quick = {
-  "open3d-fgr": 0.15,
-  "open3d-gicp": 0.2,
-  "open3d-icp-point-to-plane": 0.3,
-  "open3d-icp-point-to-point": 0.3,
-  "open3d-ransac": 0.5,
-  "open3d-ransac-scale": 0.5,
-  "small-gicp": 0.15,
-  "kiss-matcher": 0.1,
-};
+const quick = ["open3d-fgr", "open3d-gicp", "open3d-icp-point-to-plane", "open3d-icp-point-to-point"];
+quick.push("open3d-ransac", "open3d-ransac-scale", "small-gicp", "kiss-matcher");
 
-/**
- * Methods that align a mesh in the benchmark.
- * @param {boolean} isQuick
- */
-export const meshMethods = (isQuick) => (isQuick ? quick : { ...quick, "probreg-cpd": 4 });
+/** Methods that align a mesh in the benchmark. @param {boolean} isQuick */
+export const meshMethods = (isQuick) => (isQuick ? quick : [...quick, "probreg-cpd"]);
 
-/** Methods that align two clouds. @type {Record<string, number>} */
-export const pairMethods = { "open3d-ransac": 2, "open3d-fgr": 1, "kiss-matcher": 0.5 };
+/** Methods that align two clouds. */
+export const pairMethods = ["open3d-ransac", "open3d-fgr", "kiss-matcher"];
 
 /**
  * Runs the methods; installs them first where that has not been done.
@@ -60,12 +48,6 @@ export async function runPeers({ cases, pairs, out, methods, python, onAnswer, .
   await runPython("peers", args, python, (line) => onAnswer?.(JSON.parse(line)));
   rmSync(inputs, { recursive: true, force: true });
 }
-
-/**
- * Fails where a method does not recover motions that are known.
- * @param {string} [python]
- */
-export const testPeers = (python) => runPython("peers", ["--self-test"], python, console.log);
 
 /**
  * Writes cases as the files of bare numbers that the Python package reads.

@@ -1,8 +1,42 @@
-/** The folder of a benchmark's results, from which an interrupted run is resumed. */
+/** Results of `sim3align-lab bench`, and the folder of a benchmark, from which an interrupted run is resumed. */
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { cpus, platform, release, totalmem } from "node:os";
 import { join } from "node:path";
 import { attempt } from "../lib/run.mjs";
+
+/** @typedef {Record<string, number | null>} Metrics by name, as `src/metrics/mod.rs` has them */
+/**
+ * A result: `ResultRow` of `lab/src/bench/result.rs`, with the name of its row.
+ * @typedef {object} ResultRow
+ * @property {string} row
+ * @property {string} name of the case, unique in its row
+ * @property {string} [class]
+ * @property {boolean | null} strict null where the truth is unknown
+ * @property {boolean | null} loose
+ * @property {readonly [scale: number, rotationDeg: number, place: number | null] | null} errors
+ * @property {number | null} [confidence]
+ * @property {number | null} [ms]
+ * @property {number | null} [renders]
+ * @property {Metrics | null} [metrics]
+ * @property {Metrics | null} [truthMetrics]
+ * @property {boolean} [collapsed]
+ * @property {boolean} [clamped]
+ * @property {Features | null} [features]
+ * @property {string | null} [error]
+ */
+/** @typedef {{ score: number, terms: number[], alternatives: number[], uncertainty: [number, number] | null }} Features */
+
+/**
+ * The results in a file, in the order of the cases' names: threads end in any order.
+ * @param {string} file
+ * @returns {ResultRow[]}
+ */
+export function readResults(file) {
+  if (!existsSync(file)) return [];
+  const lines = readFileSync(file, "utf8").split("\n");
+  const results = lines.filter((line) => line !== "").map((line) => JSON.parse(line));
+  return results.sort((a, b) => (a.name < b.name ? -1 : a.name > b.name ? 1 : 0));
+}
 
 /**
  * Opens the folder of a run. `identity`, its inputs and the digest of the code, distinguishes it from other runs.
@@ -12,7 +46,7 @@ import { attempt } from "../lib/run.mjs";
  */
 export function openResults(folder, identity, fresh) {
   if (fresh) rmSync(folder, { recursive: true, force: true });
-  mkdirSync(join(folder, "records"), { recursive: true });
+  mkdirSync(folder, { recursive: true });
   const file = join(folder, "identity.json");
   const text = `${JSON.stringify(identity, null, 2)}\n`;
   if (existsSync(file) && readFileSync(file, "utf8") !== text) {
@@ -21,9 +55,6 @@ export function openResults(folder, identity, fresh) {
   }
   writeFileSync(file, text);
 }
-
-/** The file of the records of a kind of mesh. @param {string} folder @param {string} prior */
-export const recordsFile = (folder, prior) => join(folder, "records", `${prior}.jsonl`);
 
 /** Machine and versions, for people who compare figures. */
 export async function environment() {

@@ -1,6 +1,5 @@
-/** What a new record has lost against an older one on the same cases: accuracy beyond chance, work, size. */
+/** The losses of a new record against an older one on the same cases: accuracy beyond chance, work, size. */
 import { mean, median } from "../bench/table.mjs";
-import { signedRankTest, signTest } from "./paired.mjs";
 
 /** A loss counts if chance alone would show it in fewer than one of twenty comparisons… */
 const SIGNIFICANT = 0.05;
@@ -11,13 +10,25 @@ const WORK = 0.05;
 const SIZE = 0.01;
 
 const errorNames = ["scale", "rotation", "place"];
+const kinds = /** @type {const} */ (["strict", "loose"]);
 
+/**
+ * A result as the quick record keeps it.
+ * @typedef {object} Line
+ * @property {string} row
+ * @property {string} case
+ * @property {boolean} strict
+ * @property {boolean} loose
+ * @property {readonly (number | null)[] | null} errors
+ * @property {number | null} [work] renders of the search
+ */
 /**
  * @typedef {object} QuickRecord
  * @property {string} version
  * @property {Readonly<Record<string, number>>} sizes bytes of the modules, gzipped
- * @property {readonly { set: string, lines: readonly import("./sets.mjs").Line[] }[]} sets
+ * @property {readonly { set: string, lines: readonly Line[] }[]} sets
  */
+/** @typedef {readonly (readonly [before: Line, after: Line])[]} Pairs */
 
 /**
  * The losses, in words; none if the new record is as good.
@@ -38,14 +49,19 @@ export function losses(before, after) {
     if (pairs.length < lines.length)
       found.push(`${set}: ${lines.length - pairs.length} of ${lines.length} cases are missing`);
     for (const row of new Set(lines.map((line) => line.row))) {
-      const of = pairs.filter(([line]) => line.row === row);
-      found.push(...lossesOf(`${set}, ${row}`, of));
+      found.push(
+        ...lossesOf(
+          `${set}, ${row}`,
+          pairs.filter(([line]) => line.row === row),
+        ),
+      );
     }
     for (const name of new Set(lines.map((line) => line.case))) {
       cases.push(pairs.filter(([line]) => line.case === name));
     }
   }
-  // Too few of one set show a loss of some per cent; together they do. Rows of a case go together, so that each case counts once.
+  // Too few of one set show a loss of some per cent; together they do. Rows of a case go together, so that each case counts
+  // once.
   for (const kind of kinds) {
     const changes = cases.map((pairs) => Math.sign(pairs.reduce((sum, pair) => sum + changeOf(pair, kind), 0)));
     found.push(...lostCases("all sets", kind, changes));
@@ -57,17 +73,17 @@ export function losses(before, after) {
   return found;
 }
 
-const key = (/** @type {import("./sets.mjs").Line} */ line) => `${line.row}\n${line.case}`;
-
-/** @typedef {readonly (readonly [before: import("./sets.mjs").Line, after: import("./sets.mjs").Line])[]} Pairs */
+const key = (/** @type {Line} */ line) => `${line.row}\n${line.case}`;
 
 /** @param {string} name @param {Pairs} pairs @returns {string[]} */
 function lossesOf(name, pairs) {
-  const found = [];
-  for (const kind of kinds) {
-    const changes = pairs.map((pair) => changeOf(pair, kind));
-    found.push(...lostCases(name, kind, changes));
-  }
+  const found = kinds.flatMap((kind) =>
+    lostCases(
+      name,
+      kind,
+      pairs.map((pair) => changeOf(pair, kind)),
+    ),
+  );
   for (const [i, error] of errorNames.entries()) {
     const ratios = pairs.flatMap(([before, after]) =>
       before.errors && after.errors ? [Math.log((after.errors[i] || 1e-9) / (before.errors[i] || 1e-9))] : [],
@@ -85,8 +101,6 @@ function lossesOf(name, pairs) {
   return found;
 }
 
-const kinds = /** @type {const} */ (["strict", "loose"]);
-
 /** 1 for a loss, -1 for a gain. @param {Pairs[number]} pair @param {typeof kinds[number]} kind */
 const changeOf = ([before, after], kind) => Number(before[kind]) - Number(after[kind]);
 
@@ -103,3 +117,52 @@ function lostCases(name, kind, changes) {
 }
 
 const odds = (/** @type {number} */ chance) => `, by chance in ${(100 * chance).toFixed(2)} % of comparisons`;
+
+/**
+ * Probability of at least `losses` among so many changes, if gains and losses are equally likely.
+ * @param {number} lost
+ * @param {number} won
+ */
+export function signTest(lost, won) {
+  const all = lost + won;
+  // Logarithms, because the coefficients of many cases overflow.
+  let term = -all * Math.LN2;
+  let sum = 0;
+  for (let k = 0; k <= all; k++) {
+    if (k >= lost) sum += Math.exp(term);
+    term += Math.log(all - k) - Math.log(k + 1);
+  }
+  return Math.min(1, sum);
+}
+
+/**
+ * Probability that differences whose signs were random would have at least this rank sum of the positive ones (Wilcoxon's
+ * signed ranks, by the normal approximation, without the cases that did not change).
+ * @param {readonly number[]} differences
+ */
+export function signedRankTest(differences) {
+  const changed = differences.filter((d) => d !== 0).sort((a, b) => Math.abs(a) - Math.abs(b));
+  const n = changed.length;
+  if (n === 0) return 1;
+  let positive = 0;
+  let variance = 0;
+  for (let i = 0; i < n; ) {
+    let end = i;
+    while (end < n && Math.abs(changed[end] ?? 0) === Math.abs(changed[i] ?? 0)) end++;
+    // Equal differences share the mean of their ranks.
+    const rank = (i + 1 + end) / 2;
+    for (; i < end; i++) {
+      positive += (changed[i] ?? 0) > 0 ? rank : 0;
+      variance += rank * rank;
+    }
+  }
+  return normalTail((positive - (n * (n + 1)) / 4 - 0.5) / Math.sqrt(variance / 4));
+}
+
+/** Probability above z of the normal distribution (Abramowitz and Stegun, 26.2.17; error below 1e-7). @param {number} z @returns {number} */
+function normalTail(z) {
+  if (z < 0) return 1 - normalTail(-z);
+  const t = 1 / (1 + 0.2316419 * z);
+  const poly = [0.31938153, -0.356563782, 1.781477937, -1.821255978, 1.330274429].reduceRight((s, c) => (s + c) * t, 0);
+  return (poly * Math.exp((-z * z) / 2)) / Math.sqrt(2 * Math.PI);
+}

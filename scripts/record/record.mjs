@@ -1,7 +1,7 @@
 /**
- * `npm run record`: what this version is worth, as one file: every set of `sets.mjs`, each case with its errors, confidence
- * and time. An interrupted run is resumed. `--quick` takes a part of each set, of which the repository keeps the last one;
- * `--check` compares with that, and fails if anything has become worse.
+ * `npm run record`: the accuracy of this version on every set of `sets.mjs`, as one file: each case with its errors,
+ * confidence and time. An interrupted run is resumed. `--quick` takes a part of each set, of which the repository keeps the
+ * last one; `--check` compares with that, and fails if anything has become worse.
  */
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
@@ -13,12 +13,10 @@ import { packageVersion } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
 import { sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
-import { cellsOf, head } from "./columns.mjs";
 import { losses } from "./guard.mjs";
 import { extendHistory } from "./history.mjs";
-import { measureMemory, peerVersions } from "./inputs.mjs";
-import { argsOf, givenSet, linesOf, sets } from "./sets.mjs";
-import { summaries } from "./summary.mjs";
+import { givenSet, resultsOf, sets } from "./sets.mjs";
+import { cellsOf, head, reliability, rounded, summaries } from "./summary.mjs";
 
 /** The quick record that changes are compared with. */
 const quickFile = at("docs", "record", "quick.json");
@@ -31,7 +29,7 @@ const quickFile = at("docs", "record", "quick.json");
  * @property {string} [out]
  * @property {boolean} [fresh]
  * @property {readonly string[]} [only] sets, for a look at them
- * @property {boolean} [tested]
+ * @property {boolean} [tested] by the program that the tests of the lab run, which has the same bits
  * @property {number} [threads]
  */
 
@@ -40,10 +38,8 @@ export async function record({ quick = false, check, save, out, fresh = false, o
   if (only !== undefined && (save || check)) {
     throw new Error("Found --only with --save or --check. Remedy: leave it out; a record is whole.");
   }
-  const version = packageVersion();
   const given = quick ? undefined : process.env.SIM3ALIGN_CASES;
   const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock", "scripts/record/sets.mjs"];
-  sources.push("scripts/bench/peers");
   const code = digest(
     sources.map((name) => at(name)),
     given === undefined ? [] : [given],
@@ -52,77 +48,46 @@ export async function record({ quick = false, check, save, out, fresh = false, o
   const folder = resolve(out ?? at("target", "bench", "record"), `${quick ? "quick" : "whole"}-${code.slice(0, 12)}`);
   if (fresh) rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  const all = given === undefined ? sets : [...sets, givenSet(given)];
   const found = [];
-  for (const set of all.filter(({ name, cases }) => (!quick || cases[1] > 0) && (only?.includes(name) ?? true))) {
-    const file = join(folder, `${set.name}.json`);
+  for (const set of given === undefined ? sets : [...sets, givenSet(given)]) {
+    const count = set.cases[quick ? 1 : 0];
+    if (count === 0 || !(only?.includes(set.name) ?? true)) continue;
+    const file = join(folder, `${set.name}.jsonl`);
     await step(set.title, async (say) => {
-      if (existsSync(file)) return say("done before");
+      if (existsSync(`${file}.done`)) return say("done before");
       const prepared = await set.prepare?.(join(folder, set.name));
-      if (typeof prepared === "string") return say(`left out: ${prepared}`);
-      const args = [...argsOf(set, quick), ...(prepared ?? []), "--json", file];
+      const keep = set.name === "registration" ? "--records" : "--json";
+      const args = [...set.args(count), ...(prepared ?? []), keep, file];
       if (threads !== undefined) args.push("--threads", `${threads}`);
-      await (tested ? runTestedLab : runLab)(args, { echo: "errors" });
+      await (tested ? runTestedLab : runLab)(args);
+      writeFileSync(`${file}.done`, "");
     });
-    if (existsSync(file)) found.push({ set: set.name, lines: linesOf(set, file) });
+    if (existsSync(file)) found.push({ set: set.name, results: resultsOf(set, file) });
   }
-  const rows = found.flatMap(({ set, lines }) => summaries(set, lines));
-  console.log(`\n${tableOf(rows)}\n`);
-  const measured = Object.fromEntries(
-    wasmModules
-      .filter((module) => existsSync(wasmFile(module)))
-      .map((module) => [module.name, sizes(wasmFile(module)).gzip]),
-  );
-  const peers = peerVersions(join(folder, "peers"));
-  const whole = {
-    version,
-    ...(await environment()),
-    peers,
-    memory: await memoryIn(folder, quick || only !== undefined),
-    sizes: measured,
-    sets: found,
-  };
-  writeFileSync(join(folder, "record.json"), JSON.stringify(whole));
-  console.log(`The record is ${join(folder, "record.json")}.`);
-  if (save) keep(quick, whole, rows);
-  return check ? losses(JSON.parse(readFileSync(quickFile, "utf8")), whole) : [];
+  const rows = found.flatMap(({ set, results }) => summaries(set, results));
+  console.log(`\n${markdownTable(head, rows.map(cellsOf))}\n`);
+  console.log(`${markdownTable(["confidence", "poses", "right %"], reliability(rows))}\n`);
+  const version = packageVersion();
+  const modules = wasmModules.filter((module) => existsSync(wasmFile(module)));
+  const measured = Object.fromEntries(modules.map((module) => [module.name, sizes(wasmFile(module)).gzip]));
+  const now = { version, sizes: measured, sets: found.map(({ set, results }) => ({ set, lines: linesOf(results) })) };
+  if (save && quick) {
+    mkdirSync(at("docs", "record"), { recursive: true });
+    writeFileSync(quickFile, `${JSON.stringify(now).replaceAll('},{"row"', '},\n{"row"')}\n`);
+  } else if (save) {
+    extendHistory({ version, ...(await environment()), sizes: measured }, rows);
+  }
+  return check ? losses(JSON.parse(readFileSync(quickFile, "utf8")), now) : [];
 }
 
 /**
- * The peaks of memory, measured once; none for a part of a record.
- * @param {string} folder
- * @param {boolean} isPart
- * @returns {Promise<NonNullable<import("./history.mjs").Run["memory"]>>}
+ * Results as the quick record keeps them: without times, which differ from run to run, and with four digits.
+ * @param {readonly import("../bench/results.mjs").ResultRow[]} results
+ * @returns {import("./guard.mjs").Line[]}
  */
-async function memoryIn(folder, isPart) {
-  if (isPart) return [];
-  const file = join(folder, "memory.json");
-  await step("memory in WebAssembly", async (say) => {
-    if (existsSync(file)) return say("done before");
-    const reason = await measureMemory(file);
-    say(reason || "within its limits");
-  });
-  return existsSync(file) ? JSON.parse(readFileSync(file, "utf8")) : [];
-}
-
-/**
- * Writes what the repository keeps: the quick record case by case, of the whole one a line for each row.
- * @param {boolean} quick
- * @param {import("./guard.mjs").QuickRecord & import("./history.mjs").Run} whole
- * @param {readonly import("./summary.mjs").Summary[]} rows
- */
-function keep(quick, { sizes: measured, sets: found, ...run }, rows) {
-  mkdirSync(at("docs", "record"), { recursive: true });
-  if (!quick) return extendHistory(run, measured, rows, found);
-  // Times differ from run to run; everything else is the same bits.
-  const timeless = found.map(({ set, lines }) => ({ set, lines: lines.map(({ ms: _, ...line }) => line) }));
-  const text = JSON.stringify({ version: run.version, sizes: measured, sets: timeless });
-  writeFileSync(quickFile, `${text.replaceAll('},{"row"', '},\n{"row"')}\n`);
-}
-
-/** @param {readonly import("./summary.mjs").Summary[]} rows */
-const tableOf = (rows) =>
-  markdownTable(
-    ["set", ...head],
-    rows.map((row) => [row.set, ...cellsOf(row)]),
-  );
+const linesOf = (results) =>
+  results.map(({ row, name, strict, loose, errors, renders }) => ({
+    ...{ row, case: name, strict: strict === true, loose: loose === true },
+    errors: errors?.map((error) => (error === null ? null : rounded(error))) ?? null,
+    work: renders ?? null,
+  }));

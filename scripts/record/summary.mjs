@@ -1,10 +1,7 @@
-/** The summary of a set: a line for each of its rows, small enough for a history of all versions. */
-import { mean, median, share } from "../bench/table.mjs";
-import { rounded } from "./sets.mjs";
+/** The summary of a set: a line for each of its rows, small enough for a history of all versions; and its columns. */
+import { fixed, mean, median, percent, share } from "../bench/table.mjs";
 
-/** Number of bins of the reliability diagram. */
-export const BINS = 10;
-
+/** @typedef {import("../bench/results.mjs").ResultRow} ResultRow */
 /**
  * @typedef {object} Summary
  * @property {string} set
@@ -20,66 +17,86 @@ export const BINS = 10;
  * @property {number | null} truthIou mean
  */
 
-/**
- * @param {string} set
- * @param {readonly import("./sets.mjs").Line[]} lines
- * @returns {Summary[]}
- */
-export const summaries = (set, lines) =>
-  [...new Set(lines.map(({ row }) => row))].map((row) =>
-    summary(
-      set,
-      row,
-      lines.filter((line) => line.row === row),
-    ),
-  );
+/** Number of bins of the confidence. */
+export const BINS = 10;
+
+/** Four digits, which are more than any set can tell. @param {number} value */
+export const rounded = (value) => Number(value.toPrecision(4));
 
 /**
  * @param {string} set
- * @param {string} row
- * @param {readonly import("./sets.mjs").Line[]} lines
- * @returns {Summary}
+ * @param {readonly ResultRow[]} results
+ * @returns {Summary[]}
  */
-function summary(set, row, lines) {
-  const known = (/** @type {(line: import("./sets.mjs").Line) => number | null | undefined} */ of) =>
-    lines.map(of).filter((value) => value !== null && value !== undefined);
-  const orNull = (/** @type {readonly number[]} */ values, /** @type {(of: readonly number[]) => number} */ reduce) =>
-    values.length === 0 ? null : rounded(reduce(values));
+export const summaries = (set, results) =>
+  [...new Set(results.map(({ row }) => row))].map((row) => {
+    const of = results.filter((result) => result.row === row);
+    const reduced = (
+      /** @type {(values: readonly number[]) => number} */ reduce,
+      /** @type {(result: ResultRow) => number | null | undefined} */ value,
+    ) => {
+      const known = of.map(value).filter((x) => x !== null && x !== undefined);
+      return known.length === 0 ? null : rounded(reduce(known));
+    };
+    return {
+      ...{ set, row, n: of.length },
+      strict: rounded(share(of.map(({ strict }) => strict === true))),
+      loose: rounded(share(of.map(({ loose }) => loose === true))),
+      medians: [0, 1, 2].map((i) => reduced(median, ({ errors }) => errors?.[i])),
+      bins: binsOf(of),
+      ms: reduced(median, ({ ms }) => ms),
+      work: reduced(mean, ({ renders }) => renders),
+      iou: reduced(mean, ({ metrics }) => metrics?.iou),
+      truthIou: reduced(mean, ({ truthMetrics }) => truthMetrics?.iou),
+    };
+  });
+
+/** Poses, and right ones, by tenths of the confidence; none without confidences. @param {readonly ResultRow[]} results */
+function binsOf(results) {
   const bins = Array.from({ length: BINS }, () => /** @type {[number, number]} */ ([0, 0]));
-  for (const { confidence, strict } of lines) {
-    const bin = confidence === null ? undefined : bins[Math.min(BINS - 1, Math.floor(confidence * BINS))];
+  for (const { confidence, strict } of results) {
+    const bin = confidence == null ? undefined : bins[Math.min(BINS - 1, Math.floor(confidence * BINS))];
     if (bin === undefined) continue;
     bin[0] += 1;
     bin[1] += strict ? 1 : 0;
   }
-  return {
-    set,
-    row,
-    n: lines.length,
-    strict: rounded(share(lines.map((line) => line.strict))),
-    loose: rounded(share(lines.map((line) => line.loose))),
-    medians: [0, 1, 2].map((i) =>
-      orNull(
-        known(({ errors }) => errors?.[i]),
-        median,
-      ),
-    ),
-    bins: bins.some(([n]) => n > 0) ? bins : [],
-    ms: orNull(
-      known(({ ms }) => ms),
-      median,
-    ),
-    work: orNull(
-      known(({ work }) => work),
-      mean,
-    ),
-    iou: orNull(
-      known(({ iou }) => iou),
-      mean,
-    ),
-    truthIou: orNull(
-      known(({ truthIou }) => truthIou),
-      mean,
-    ),
-  };
+  return bins.some(([n]) => n > 0) ? bins : [];
+}
+
+/** A share in per cent with two digits. @param {number | null | undefined} value */
+const two = (value) => fixed(value == null ? value : 100 * value, 2);
+
+/** @type {readonly (readonly [head: string, cell: (row: Summary) => string | number])[]} */
+const columns = [
+  ["set", ({ set }) => set],
+  ["row", ({ row }) => row],
+  ["n", ({ n }) => n],
+  ["strict %", ({ strict }) => percent(strict)],
+  ["loose %", ({ loose }) => percent(loose)],
+  ["scale %", ({ medians }) => two(medians[0])],
+  ["rotation °", ({ medians }) => fixed(medians[1], 2)],
+  ["place %", ({ medians }) => two(medians[2])],
+  ["≥ .9: right of", ({ bins }) => (bins.length === 0 ? "–" : `${bins.at(-1)?.[1]} of ${bins.at(-1)?.[0]}`)],
+  ["IoU, truth's", ({ iou, truthIou }) => (iou === null ? "–" : `${fixed(iou, 3)}, ${fixed(truthIou, 3)}`)],
+  ["ms", ({ ms }) => fixed(ms)],
+];
+
+export const head = columns.map(([title]) => title);
+
+/** @param {Summary} row */
+export const cellsOf = (row) => columns.map(([, cell]) => cell(row));
+
+/**
+ * How far a confidence can be trusted: poses by confidence, in all rows of some sets.
+ * @param {readonly Summary[]} rows
+ * @returns {(string | number)[][]} cells: confidence, poses, right ones in per cent
+ */
+export function reliability(rows) {
+  const sum = (/** @type {number} */ bin, /** @type {0 | 1} */ which) =>
+    rows.reduce((all, { bins }) => all + (bins[bin]?.[which] ?? 0), 0);
+  return Array.from({ length: BINS }, (_, bin) => [
+    `${(bin / BINS).toFixed(1)} to ${((bin + 1) / BINS).toFixed(1)}`,
+    sum(bin, 0),
+    percent(sum(bin, 1) / sum(bin, 0)),
+  ]);
 }

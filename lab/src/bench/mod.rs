@@ -1,13 +1,10 @@
-//! The benchmark: runs methods over cases, keeps records of the results, and imports results of other programs.
+//! The benchmark: rows of calls over cases, and one form of result for all of them.
 
-pub mod benchmark;
-pub mod case_line;
-pub mod generators;
+pub mod calls;
 pub mod imported;
 pub mod option_text;
-pub mod overlay;
-pub mod proportions;
+pub mod options;
 pub mod records;
-pub mod scene_bench;
+pub mod result;
 pub mod statistics;
-pub mod warning_tally;
+pub mod table;

@@ -16,16 +16,6 @@ pub fn assign<T: Options>(options: &mut T, name: &str, text: &str) -> Option<Res
     Some(field.check(name).map_err(|error| error.to_string()))
 }
 
-/// The options of `align` with a quality; the defaults without one.
-///
-/// # Errors
-/// In words, for any other quality.
-pub fn with_quality(quality: Option<String>) -> Result<AlignOptions, String> {
-    let mut options = AlignOptions::default();
-    quality.and_then(|quality| assign(&mut options, "quality", &quality)).transpose()?;
-    Ok(options)
-}
-
 fn set(field: &mut Field<'_>, text: &str) -> Option<()> {
     match field {
         Field::Count(value, _) => **value = text.parse().ok()?,

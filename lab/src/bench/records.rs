@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::files::{corrupt, unwritable};
 use crate::prelude::*;
 
 /// The unique key of a record: the row, its options as written, and the case.
@@ -26,15 +27,15 @@ pub struct RecordKey {
 struct Line<T> {
     #[serde(flatten)]
     key: RecordKey,
+    #[serde(flatten)]
     record: T,
 }
 
-/// A file of records, open for appending. `T` is the content kept of existing records; [`serde::de::IgnoredAny`] if
-/// only their existence matters.
+/// A file of records, open for appending. Of several records of one key, the last is kept.
 #[derive(Debug)]
 pub struct RecordFile<T> {
     file: Mutex<File>,
-    path: String,
+    path: PathBuf,
     done: BTreeMap<RecordKey, T>,
 }
 
@@ -45,8 +46,7 @@ impl<T: DeserializeOwned> RecordFile<T> {
     /// [`ErrorCode::InvalidArgument`] where the file can't be read or written; [`ErrorCode::CorruptFile`] for a whole
     /// line that is no record.
     pub fn open(path: &Path) -> Result<Self> {
-        let name = path.display().to_string();
-        let failed = |error| unusable(&name, &error);
+        let failed = |error| unwritable(path, error);
         let mut options = OpenOptions::new();
         let mut file = options.read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
         let mut done = BTreeMap::new();
@@ -55,9 +55,7 @@ impl<T: DeserializeOwned> RecordFile<T> {
         let mut line = Vec::new();
         while reader.read_until(b'\n', &mut line).map_err(failed)? > 0 && line.ends_with(b"\n") {
             let Line { key, record } = serde_json::from_slice(&line).map_err(|_| {
-                let found = format!("another line after {} records", done.len());
-                let remedy = "Name another file, or remove this one.";
-                Error::new(ErrorCode::CorruptFile, name.clone(), found, "one record a line", remedy)
+                corrupt(path, format!("another line after {} records", done.len()), "one record a line")
             })?;
             done.insert(key, record);
             whole += line.len() as u64;
@@ -65,7 +63,7 @@ impl<T: DeserializeOwned> RecordFile<T> {
         }
         file.set_len(whole).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
-        Ok(Self { file: Mutex::new(file), path: name, done })
+        Ok(Self { file: Mutex::new(file), path: path.to_owned(), done })
     }
 
     /// Whether a record was there when the file was opened.
@@ -83,20 +81,22 @@ impl<T: DeserializeOwned> RecordFile<T> {
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] where it can't be written.
     pub fn add(&self, key: &RecordKey, record: &impl Serialize) -> Result<()> {
-        let line = serde_json::to_string(&Line { key: key.clone(), record }).map_err(|error| unencodable(&error))?;
-        let line = format!("{line}\n");
-        // A thread that panicked wrote all of its line or, at the end of the file, part of one.
-        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        file.write_all(line.as_bytes()).map_err(|error| unusable(&self.path, &error))
+        self.add_all(key, core::slice::from_ref(record))
     }
-}
 
-fn unusable(name: &str, error: &std::io::Error) -> Error {
-    let remedy = "Name a file in a folder that exists, on a disk that is not full.";
-    let found = format!("a file system that says: {error}");
-    Error::new(ErrorCode::InvalidArgument, name.to_owned(), found, "a file to read and write", remedy)
-}
-
-fn unencodable(error: &serde_json::Error) -> Error {
-    Error::new(ErrorCode::Internal, "record", error.to_string(), "what JSON can hold", "Please report it.")
+    /// Appends the records of one key.
+    ///
+    /// # Errors
+    /// As [`RecordFile::add`].
+    pub fn add_all(&self, key: &RecordKey, records: &[impl Serialize]) -> Result<()> {
+        let line = |record| serde_json::to_string(&Line { key: key.clone(), record }).map(|line| format!("{line}\n"));
+        let lines: String = records
+            .iter()
+            .map(line)
+            .collect::<Result<_, _>>()
+            .map_err(|error: serde_json::Error| unwritable(&self.path, error.into()))?;
+        // A thread that panicked wrote all of its lines or, at the end of the file, a part of them.
+        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        file.write_all(lines.as_bytes()).map_err(|error| unwritable(&self.path, error))
+    }
 }

@@ -1,8 +1,7 @@
-//! Case folders: one observation, one mesh and optionally the true pose.
+//! Case folders: images of objects, meshes and, optionally, the true poses, as the package's command line reads them too.
 
-pub mod camera;
-pub mod case;
-pub(crate) mod contents;
-pub mod json;
-pub mod pose;
+mod files;
+pub mod read;
 pub mod write;
+
+pub use files::{PoseFile, parsed};

@@ -102,8 +102,7 @@ fn write_drive(root: &Path, number: u32, seed: u64) -> Result<Vec<Listed>> {
     let random = &mut Random::new(seed, SENSOR_STREAM);
     // Camera 0 looks ahead, a little below and before the lidar.
     let lidar_from_camera = looking(DVec3::ZERO, 0.0, 0.0)?;
-    let camera_from_lidar =
-        Similarity { translation: Vector3::new(0.0, -0.08, -0.27), ..lidar_from_camera.inverse() };
+    let camera_from_lidar = Similarity { translation: Vector3::new(0.0, -0.08, -0.27), ..lidar_from_camera.inverse() };
     let folder = root.join("sequences").join(&name);
     write(&folder.join("calib.txt"), format!("Tr: {}\n", line(&camera_from_lidar)).as_bytes())?;
     let (mut poses, mut voxels, mut lines): (Vec<Similarity>, Vec<Vec<Vec3>>, String) = Default::default();

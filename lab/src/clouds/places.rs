@@ -1,6 +1,6 @@
 //! Places to scan, as meshes: a furnished room and a street. Metres, z up, the floor at z = 0.
 
-use crate::cases::solid::Solid;
+use crate::objects::solid::Solid;
 use crate::prelude::*;
 
 /// Random stream of what stands in a place.

@@ -5,24 +5,26 @@ use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
 use sim3align::precise::drawn::counts::{self, Counts};
 use sim3align::progress::{Host, Stage};
-use sim3align_lab::bench::option_text;
-use sim3align_lab::case_folder::case::read_case;
+use sim3align_lab::bench::options::Row;
+use sim3align_lab::case_folder::read::read;
 use sim3align_lab::cpu_time::CpuTimer;
 use sim3align_lab::prelude::*;
 
-use super::{Arguments, Command, Failure, usage};
+use super::{Failure, usage};
 
-pub const COMMAND: Command = Command {
-    name: "profile",
-    about: "aligns case folders natively, and prints CPU times and what was drawn as JSON",
-    usage: "\
-Usage: sim3align-lab profile [--quality QUALITY] RUNS CASE...
-
-Aligns each case folder RUNS times and prints JSON: { \"<folder>\": [result, …] }. QUALITY is one of `align`;
-it and all other options have its defaults. Times are those of the CPU. `drawn` of a result has, by stage, the
-numbers of poses, vertices, triangles, filled triangles, visited cells and cells of the renders.",
-    run,
-};
+/// Aligns each case folder, and prints JSON: { "<folder>": [result, …] }. Times are those of the CPU. `drawn` of a result
+/// has, by stage, the numbers of poses, vertices, triangles, filled triangles, visited cells and cells of the renders.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// A quality of `align`; all other options have their defaults
+    #[arg(long, default_value = "auto")]
+    quality: String,
+    /// How many times each case is aligned
+    runs: usize,
+    /// Case folders
+    #[arg(required = true)]
+    cases: Vec<String>,
+}
 
 /// A host whose clock is the CPU time, and that counts what each stage draws.
 struct Profiler {
@@ -63,14 +65,14 @@ impl Host for Profiler {
     }
 }
 
-fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json>, Error> {
-    let case = read_case(folder.as_ref())?;
+fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json>> {
+    let case = read(folder.as_ref())?;
+    let (observation, mesh) = (case.frames[0].observation(0, true)?, &case.objects[0]);
     (0..runs)
         .map(|_| {
-            let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
             let request = Request::new(options.clone())?;
             let mut profiler = Profiler::start();
-            let alignment = align_prepared(&case.observation, &mesh, request, &mut profiler)?;
+            let alignment = align_prepared(&observation, &mesh.prepared(true), request, &mut profiler)?;
             let mut result = serde_json::to_value(alignment).unwrap_or_default();
             result["drawn"] = profiler.drawn();
             Ok(result)
@@ -78,14 +80,12 @@ fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json
         .collect()
 }
 
-fn run(arguments: &mut Arguments) -> Result<(), Failure> {
-    let options = option_text::with_quality(arguments.optional("quality")?).map_err(usage)?;
-    let words = arguments.rest()?;
-    let (runs, folders) = words.split_first().ok_or_else(|| usage("no number of runs"))?;
-    let runs = runs.parse().map_err(|error| usage(format!("{runs:?}: {error}")))?;
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let row = Row::parse(&format!("profile: quality={}", arguments.quality)).map_err(usage)?;
     let mut all = Map::new();
-    for folder in folders {
-        let values = results(folder, runs, &options)
+    for folder in &arguments.cases {
+        let values = results(folder, arguments.runs, &row.precise)
             .map_err(|error| Failure::Failed(format!("{folder}: {} {error}", error.code.as_str())))?;
         all.insert(folder.clone(), values.into());
     }

@@ -50,7 +50,6 @@ def main() -> int:
     what.add_argument(
         "--pairs", type=Path, metavar="FILE", help='pairs of clouds: [{"id", "source", "target", "voxelSizeM"}]'
     )
-    what.add_argument("--self-test", action="store_true", help="recover known motions by every method")
     parser.add_argument("--methods", metavar="A,B,…", help=f"of {', '.join(METHODS)}; by default all that apply")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where the answers go; those that are there are kept")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes, each on one core, default 1")
@@ -64,10 +63,6 @@ def main() -> int:
         parser.error(f"--methods: found {', '.join(unknown)}, expected some of {', '.join(known)}")
     if arguments.jobs < 1:
         parser.error(f"--jobs: found {arguments.jobs}, expected a number from 1")
-    if arguments.self_test:
-        from .self_test import self_test
-
-        return self_test(names)
     if arguments.out is None:
         parser.error("--out DIR is needed")
     methods = importable(names)

@@ -5,15 +5,12 @@ use std::time::Instant;
 use sim3align::options::Options;
 use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
-use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
+use sim3align_lab::bench::imported::imported;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::clouds::cloud_file::flat;
 use sim3align_lab::clouds::pair::Pair;
 use sim3align_lab::prelude::*;
-
-/// Default inlier distance for imported correspondences, in voxels of the pair.
-const INLIER_VOXELS: f64 = 1.5;
 
 /// A registration method.
 pub enum Method {
@@ -76,26 +73,10 @@ impl Method {
                 let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
                 Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
             }
-            Self::Import { folder, .. } => imported(pair, folder),
+            Self::Import { folder, .. } => {
+                let (target_from_source, seconds) = imported(&pair.id, folder);
+                Answer { target_from_source, seconds }
+            }
         }
     }
-}
-
-/// The result of another program.
-fn imported(pair: &Pair, folder: &Path) -> Answer {
-    let (outcome, seconds) = match answer_in(folder, &pair.id, &CLOUDS) {
-        Ok(answer) => (Ok(answer.outcome), answer.seconds),
-        Err(error) => (Err(error), None),
-    };
-    let pose = outcome.and_then(|outcome| match outcome {
-        Outcome::Pose(pose) => Ok(pose),
-        Outcome::Failure(message) => Err(format!("the method's own error: {message}")),
-        Outcome::Pairs(pairs) => {
-            let distance = pairs.inlier_distance_m.unwrap_or(INLIER_VOXELS * pair.voxel_size_m);
-            let found = pairs.estimate(ScaleOption::Fixed(1.0), distance);
-            let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
-            pose.map_err(|error| error.to_string())
-        }
-    });
-    Answer { target_from_source: pose, seconds }
 }

@@ -2,34 +2,43 @@
 
 mod method;
 mod run;
-mod settings;
 mod table;
 
 use sim3align_lab::clouds::generated::write_pairs;
 use sim3align_lab::prelude::*;
 
-use super::{Arguments, Command, Failure, usage};
-use settings::{Settings, USAGE};
+use super::Failure;
 
-pub const COMMAND: Command = Command {
-    name: "registration",
-    about: "writes pairs of clouds, and registers them",
-    usage: USAGE,
-    run: |arguments| match arguments.word().as_deref() {
-        Some("write") => write(arguments),
-        Some("run") => run::run(&Settings::parse(arguments)?),
-        Some(other) => Err(usage(format!("unexpected argument {other:?}"))),
-        None => Err(Failure::Help),
+/// Writes pairs of clouds, and registers them.
+#[derive(clap::Subcommand)]
+pub enum Arguments {
+    /// Writes pairs of decreasing overlap: rooms in 3DMatch's layout, drives in KITTI's
+    Write {
+        kind: Kind,
+        folder: PathBuf,
+        #[arg(long, default_value_t = 0)]
+        seed: u64,
+        /// Number of rooms or drives
+        #[arg(long, default_value_t = 4)]
+        scenes: u32,
     },
-};
+    /// Registers pairs and prints a Markdown table of recall and errors
+    Run(run::Arguments),
+}
 
-fn write(arguments: &mut Arguments) -> Result<(), Failure> {
-    let (seed, scenes) = (arguments.value("seed", 0)?, arguments.value("scenes", 4)?);
-    let words = arguments.rest()?;
-    match words.as_slice() {
-        [kind, out] if kind == "rooms" || kind == "lidar" => {
-            Ok(write_pairs(out.as_ref(), kind == "lidar", seed, scenes)?)
+/// A kind of generated pairs.
+#[derive(Clone, Copy, PartialEq, clap::ValueEnum)]
+pub enum Kind {
+    Rooms,
+    Lidar,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match arguments {
+        Arguments::Write { kind, folder, seed, scenes } => {
+            Ok(write_pairs(folder, *kind == Kind::Lidar, *seed, *scenes)?)
         }
-        _ => Err(usage("write needs rooms or lidar, and a folder")),
+        Arguments::Run(arguments) => run::run(arguments),
     }
 }

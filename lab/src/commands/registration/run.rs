@@ -11,18 +11,60 @@ use sim3align_lab::clouds::pair::Pair;
 use sim3align_lab::clouds::{kitti, three_d_match};
 use sim3align_lab::parallel::parallel_map;
 
-use super::super::{Failure, print_progress, write_file};
+use super::super::{Failure, print_progress, thread_count, usage, write_file};
 use super::method::Method;
-use super::settings::Settings;
 use super::table::{self, Record};
 use sim3align_lab::prelude::*;
 
-pub fn run(settings: &Settings) -> Result<(), Failure> {
-    let pairs: Vec<Pair> = pairs(settings)?.into_iter().step_by(settings.every).collect();
+/// Registers the pairs of a data set.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// 3DMatch: <scene>/cloud_bin_<i>.ply with <scene>-evaluation/gt.log, <scene>/gt.log or
+    /// benchmarks/<name>/<scene>/gt.log; KITTI: sequences/<SS>/velodyne, calib.txt and poses/<SS>.txt
+    #[arg(long)]
+    data: PathBuf,
+    /// Which of benchmarks/<name>: 3DMatch or 3DLoMatch; needed where there are several
+    #[arg(long)]
+    benchmark: Option<String>,
+    /// `register` (default), or NAME=import:DIR: DIR/<id>.json from another program
+    #[arg(long = "method")]
+    methods: Vec<String>,
+    /// An option of register() by its JavaScript name, NAME=VALUE
+    #[arg(long = "option")]
+    options: Vec<String>,
+    /// Takes the first pair and every N-th after it
+    #[arg(long, default_value_t = 1)]
+    every: usize,
+    /// Measures the overlap where it is not listed, for the table's bins
+    #[arg(long)]
+    measure_overlap: bool,
+    /// One JSON line for each pair and method; those that are there are not run again
+    #[arg(long)]
+    records: Option<PathBuf>,
+    /// Everything about every pair
+    #[arg(long)]
+    json: Option<PathBuf>,
+    /// Writes [{ id, source, target, voxelSizeM }] for other programs, and runs nothing
+    #[arg(long)]
+    pairs_json: Option<PathBuf>,
+    /// All by default
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// Runs the command.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let is_kitti = kitti::is_layout(&arguments.data);
+    let all = if is_kitti {
+        kitti::pairs(&arguments.data)?
+    } else {
+        three_d_match::pairs(&arguments.data, arguments.benchmark.as_deref())?
+    };
+    let pairs: Vec<Pair> = all.into_iter().step_by(arguments.every.max(1)).collect();
     if pairs.is_empty() {
         return Err("no pair left to run".into());
     }
-    if let Some(path) = &settings.pairs_json {
+    if let Some(path) = &arguments.pairs_json {
         let list = pairs.iter().map(|pair| {
             let (source, target) = (absolute(&pair.source)?, absolute(&pair.target)?);
             Ok(json!({ "id": pair.id, "source": source, "target": target, "voxelSizeM": pair.voxel_size_m }))
@@ -30,36 +72,37 @@ pub fn run(settings: &Settings) -> Result<(), Failure> {
         let list: Vec<_> = list.collect::<Result<_, Failure>>()?;
         return write_file(path, json!(list).to_string());
     }
-    let records = settings.records.as_deref().map(RecordFile::open).transpose()?;
-    let work = |pair: &Pair| run_pair(pair, settings, records.as_ref());
-    let made = parallel_map(settings.threads, &pairs, work, |done| print_progress(done, pairs.len()))?;
+    let names = if arguments.methods.is_empty() { vec!["register".into()] } else { arguments.methods.clone() };
+    let methods = names.iter().map(|name| Method::from_name(name, &arguments.options));
+    let methods: Vec<Method> = methods.collect::<Result<_, _>>().map_err(usage)?;
+    let records = arguments.records.as_deref().map(RecordFile::open).transpose()?;
+    let work = |pair: &Pair| run_pair(pair, &methods, arguments.measure_overlap, records.as_ref());
+    let threads = thread_count(arguments.threads);
+    let made = parallel_map(threads, &pairs, work, |done| print_progress(done, pairs.len()))?;
     let all: Vec<Record> = made.into_iter().flatten().collect();
-    let methods: Vec<&str> = settings.methods.iter().map(Method::name).collect();
-    print!("{}", table::report(&all, &methods));
-    if let Some(path) = &settings.json {
+    let names: Vec<&str> = methods.iter().map(Method::name).collect();
+    print!("{}", table::report(&all, &names));
+    if let Some(path) = &arguments.json {
         write_file(path, format!("{}\n", json!(all)))?;
     }
     Ok(())
 }
 
-fn pairs(settings: &Settings) -> Result<Vec<Pair>> {
-    if settings.is_kitti.unwrap_or_else(|| kitti::is_layout(&settings.data)) {
-        kitti::pairs(&settings.data)
-    } else {
-        three_d_match::pairs(&settings.data, settings.benchmark.as_deref())
-    }
-}
-
-fn run_pair(pair: &Pair, settings: &Settings, records: Option<&RecordFile<Record>>) -> Result<Vec<Record>> {
+fn run_pair(
+    pair: &Pair,
+    methods: &[Method],
+    measures_overlap: bool,
+    records: Option<&RecordFile<Record>>,
+) -> Result<Vec<Record>> {
     let known = |method: &Method| records?.get(&method.key(pair)?).cloned();
     let (source, target) = (read_cloud(&pair.source)?, read_cloud(&pair.target)?);
     let measured = |size: f32| {
         let voxels = |points: &[Vec3]| voxel_downsample(&Cloud::from_points(points.to_vec()), 0.5 * size).points;
         overlap(&voxels(&source), &voxels(&target), &pair.target_from_source, 0.75 * size)
     };
-    let share = pair.overlap.or_else(|| settings.measure_overlap.then(|| measured(pair.voxel_size_m as f32)));
+    let share = pair.overlap.or_else(|| measures_overlap.then(|| measured(pair.voxel_size_m as f32)));
     let mut made = Vec::new();
-    for method in &settings.methods {
+    for method in methods {
         if let Some(record) = known(method) {
             made.push(record);
             continue;

@@ -1,0 +1,277 @@
+//! The calls of the benchmark, and the errors of their poses.
+
+use super::imported::imported;
+use super::options::{Call, Row};
+use super::result::{ResultRow, by_name, codes, three};
+use crate::case::{Case, CaseFrame, CaseObject};
+use crate::cpu_time::CpuTimer;
+use crate::effects::monocular::DepthModel;
+use crate::prelude::*;
+use sim3align::align::evaluate::{EvaluateOptions, evaluate};
+use sim3align::align::method::Method;
+use sim3align::align::search::Request;
+use sim3align::align::{align_paper, align_prepared};
+use sim3align::calibrate::{Calibrated, Object, calibrate};
+use sim3align::geometry::surface::SurfaceMoments;
+use sim3align::metrics::pose_error::pose_errors;
+use sim3align::pauses::{Pauses, finished};
+use sim3align::report::{AnyAlignment, Sim3};
+use sim3align::scene::support::SupportChoice;
+use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
+use sim3align::track::options::TrackOptions;
+use sim3align::track::tracker::Tracker;
+use sim3align::views::align_views;
+use sim3align::views::options::ViewsOptions;
+
+/// The angle by which the up direction of `up=true` is off, degrees: a generator's objects stand about so.
+const UP_ERROR_DEG: f64 = 5.0;
+/// Fraction of the object that a frame of a video must show for it to count.
+const SHOWN: f64 = 0.4;
+/// Name of the class of cases without a right pose.
+const MISFIT: &str = "misfit";
+
+/// The results of a row for a case.
+pub fn run(case: &Case, row: &Row) -> Vec<ResultRow> {
+    let outcome = match (&row.import, row.call) {
+        (None, Call::Scene) => scene(case, row),
+        (None, Call::Views) => views(case, row),
+        (None, Call::Track) => track(case, row),
+        _ => (0..case.objects.len()).map(|k| alone(case, k, row)).collect(),
+    };
+    outcome.unwrap_or_else(|error| (0..case.objects.len()).map(|k| blank(case, 0, k).with_error(&error)).collect())
+}
+
+/// The result of a failure.
+fn blank(case: &Case, frame: usize, k: usize) -> ResultRow {
+    let mut name = case.name.clone();
+    if case.objects.len() > 1 {
+        name = format!("{name}-{}", case.objects[k].name);
+    }
+    if case.frames.len() > 1 {
+        name = format!("{name}/{}", case.frames[frame].name);
+    }
+    let is_known = case.frames[frame].truths[k].is_some();
+    let class = case.objects[k].class.clone();
+    let row = ResultRow { name, tier: case.tier.clone(), class, tags: case.tags.clone(), ..ResultRow::default() };
+    if is_known { row.with_errors(None) } else { row }
+}
+
+/// The result with the errors of a pose.
+fn judged(result: ResultRow, object: &CaseObject, frame: &CaseFrame, k: usize, pose: &Similarity) -> ResultRow {
+    let Some(truth) = &frame.truths[k] else { return result };
+    if object.class == MISFIT {
+        return result;
+    }
+    let errors = pose_errors(&object.mesh, pose, truth, &object.symmetry);
+    result.with_errors(errors.ok().as_ref().map(three))
+}
+
+fn similarity(pose: &Sim3) -> Result<Similarity> {
+    Similarity::from_column_major(&pose.matrix)
+}
+
+/// The options of a row for an object.
+fn options_of(case: &Case, k: usize, row: &Row) -> AlignOptions {
+    let object = &case.objects[k];
+    let mut options = row.precise.clone();
+    if row.initial {
+        options.initial = object.initial;
+    }
+    if let (true, Some(plane), Some(truth)) = (row.up, case.plane, &case.frames[0].truths[k]) {
+        let off = Rotation3::from_scaled_axis(Vector3::x() * UP_ERROR_DEG.to_radians());
+        let up = off * (truth.rotation.inverse() * Vector3::from(plane.normal.to_array()));
+        (options.camera_up, options.mesh_up) = (Some(plane.normal.to_array()), Some(up.into()));
+    }
+    options
+}
+
+/// Each object alone.
+fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
+    let (frame, object, result) = (&case.frames[0], &case.objects[k], blank(case, 0, k));
+    if let Some(model) = row.model {
+        return Ok(modelled(case, k, row, model).unwrap_or_else(|error| result.with_error(&error)));
+    }
+    let observation = frame.observation(k, row.color)?;
+    let evaluated = |pose: &Similarity| evaluate(&observation, &object.mesh, pose, &EvaluateOptions::default()).ok();
+    let truth = frame.truths[k].as_ref().and_then(evaluated);
+    let result = ResultRow { truth_metrics: truth.map(|found| by_name(&found.metrics)), ..result };
+    let given = match (&row.import, row.call) {
+        (Some(folder), _) => {
+            let (pose, seconds) = imported(&result.name, folder);
+            Some((pose, seconds.map(|seconds| 1000.0 * seconds)))
+        }
+        (None, Call::Placement) => object.initial.map(|pose| (Ok(pose), None)),
+        _ => None,
+    };
+    if let Some((pose, ms)) = given {
+        let result = ResultRow { ms, ..result };
+        return Ok(match pose {
+            Ok(pose) => {
+                let found = evaluated(&pose);
+                let metrics = found.as_ref().map(|found| by_name(&found.metrics));
+                let collapsed = found.is_some_and(|found| found.diagnostics.collapsed);
+                judged(ResultRow { metrics, collapsed, ..result }, object, frame, k, &pose)
+            }
+            Err(error) => ResultRow { error: Some(error), ..result },
+        });
+    }
+    let timer = CpuTimer::start();
+    let outcome: Result<AnyAlignment> = match row.method() {
+        Method::Precise(_) => {
+            let request = Request::new(options_of(case, k, row))?;
+            align_prepared(&observation, &object.prepared(row.color), request, &mut Silent).map(Into::into)
+        }
+        Method::Paper(options) => {
+            let mesh = object.surplus.as_ref().unwrap_or(&object.mesh);
+            align_paper(&observation, mesh, &options, &mut Silent).map(Into::into)
+        }
+    };
+    let result = ResultRow { ms: Some(1000.0 * timer.seconds()), ..result };
+    Ok(match outcome {
+        Ok(alignment) => {
+            let pose = similarity(alignment.camera_from_mesh())?;
+            judged(result.with_alignment(&alignment), object, frame, k, &pose)
+        }
+        Err(error) => result.with_error(&error),
+    })
+}
+
+/// An object in depth as a depth model gives it, calibrated first.
+fn modelled(case: &Case, k: usize, row: &Row, model: &DepthModel) -> Result<ResultRow> {
+    let (frame, object, result) = (&case.frames[0], &case.objects[k], blank(case, 0, k));
+    let masks: Vec<&Mask> = frame.masks.iter().flatten().collect();
+    let view = model.predict(&case.name, &frame.depth, &masks, frame.camera)?;
+    let (mesh, options) = (object.prepared(row.color), options_of(case, k, row));
+    let mask = frame.observation(k, false)?.mask().clone();
+    let called = Object { mask: &mask, others: frame.others(k), mesh: &mesh, options: &options };
+    let timer = CpuTimer::start();
+    let Calibrated { depth, calibration, .. } = finished(calibrate(&view, &[called], &mut Silent, &Pauses::none()))?;
+    let mut observation =
+        Observation::new(depth, mask, calibration.camera)?.with_relief_deviation(calibration.uncertainty.relief());
+    if let Some(photo) = frame.photo.as_ref().filter(|_| row.color) {
+        observation = observation.with_photo(photo.as_ref().clone())?;
+    }
+    let alignment = align_prepared(&observation, &mesh, Request::new(options.clone())?, &mut Silent)?;
+    let result = ResultRow { ms: Some(1000.0 * timer.seconds()), ..result };
+    let pose = similarity(&alignment.camera_from_mesh)?;
+    let result = result.with_alignment(&alignment.into());
+    let Some(truth) = &frame.truths[k] else { return Ok(result) };
+    let errors = apparent_errors(object, (truth, &frame.camera), (&pose, &calibration.camera))?;
+    Ok(result.with_errors(Some(errors)))
+}
+
+/// Errors of what shows in the image, whatever the unit: of the apparent size (focal length · scale / distance), of the
+/// rotation, and of the place relative to the apparent diameter.
+fn apparent_errors(
+    object: &CaseObject,
+    (truth, true_camera): (&Similarity, &Pinhole),
+    (found, camera): (&Similarity, &Pinhole),
+) -> Result<[f64; 3]> {
+    let mesh = &object.mesh;
+    // Among the equivalent true poses, that with the nearest rotation.
+    let relative = UnitQuaternion::from_rotation_matrix(&(truth.rotation.inverse() * found.rotation));
+    let rotation = object.symmetry.group(mesh)?.nearest(&relative);
+    let center = Vector3::from(SurfaceMoments::of(mesh).centroid.to_array());
+    let turned =
+        Similarity { scale: 1.0, rotation: rotation.to_rotation_matrix(), translation: center - rotation * center };
+    let truth = truth.compose(&turned);
+    let center = Bounds::of(mesh.positions()).map_or_else(Vector3::zeros, |b| vector3(b.center()));
+    let seen = |pose: &Similarity, camera: &Pinhole| {
+        let p = pose.apply(center);
+        let pixel = DVec2::new(camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
+        // Of both axes, as pixels may not be square.
+        (pixel, (camera.fx * camera.fy).sqrt() * pose.scale / p.z)
+    };
+    let ((pixel, size), (true_pixel, true_size)) = (seen(found, camera), seen(&truth, true_camera));
+    let moved = pixel.distance(true_pixel) / (true_size * mesh.diagonal());
+    Ok([(size / true_size - 1.0).abs(), truth.rotation_angle_to(found).to_degrees(), moved])
+}
+
+/// All objects of an image together.
+fn scene(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
+    let frame = &case.frames[0];
+    let object = |k: usize| -> Result<SceneObject<'_>> {
+        let mask = frame.observation(k, false)?.mask().clone();
+        Ok(SceneObject { mask, mesh: case.objects[k].prepared(row.color), options: options_of(case, k, row) })
+    };
+    let scene = Scene {
+        depth: frame.depth.clone(),
+        camera: frame.camera,
+        relief_deviation: 0.0,
+        objects: (0..case.objects.len()).map(object).collect::<Result<_>>()?,
+        occluders: Vec::new(),
+        support: SupportChoice::Auto,
+        snap: false,
+    };
+    let timer = CpuTimer::start();
+    let aligned = align_scene(&scene, &mut Silent)?;
+    let ms = Some(1000.0 * timer.seconds() / case.objects.len() as f64);
+    let result = |(k, placed): (usize, Result<PlacedObject>)| {
+        let result = ResultRow { ms, ..blank(case, 0, k) };
+        let placed = match placed {
+            Ok(placed) => placed,
+            Err(error) => return Ok(result.with_error(&error)),
+        };
+        let pose = similarity(&placed.alignment.camera_from_mesh)?;
+        Ok(judged(result.with_alignment(&placed.alignment.into()), &case.objects[k], frame, k, &pose))
+    };
+    aligned.objects.into_iter().enumerate().map(result).collect()
+}
+
+/// One object in several images.
+fn views(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
+    let object = &case.objects[0];
+    let frames = &case.frames[..row.views.unwrap_or(usize::MAX).min(case.frames.len())];
+    let mut views: Vec<_> = frames.iter().map(|frame| frame.view(row.color)).collect();
+    let is_known = row.cameras && views.iter().all(|view| view.world_from_camera.is_some());
+    if !is_known {
+        views.iter_mut().for_each(|view| view.world_from_camera = None);
+    }
+    let AlignOptions { quality, seed, .. } = row.precise;
+    let symmetry = object.symmetry.clone();
+    let options = ViewsOptions { metrics: false, symmetry, quality, seed, ..ViewsOptions::default() };
+    let timer = CpuTimer::start();
+    let found = align_views(views, &object.prepared(row.color), &options, &mut Silent)?;
+    let ms = Some(1000.0 * timer.seconds());
+    let mut results = Vec::new();
+    for (k, (view, frame)) in found.views.iter().zip(frames).enumerate() {
+        // With known cameras, the pose in a wrong view follows from the wrong pose of its camera.
+        if frame.is_wrong && is_known {
+            continue;
+        }
+        let warnings = codes(&found.warnings);
+        let result = ResultRow { confidence: Some(view.confidence), ms, warnings, ..blank(case, k, 0) };
+        results.push(judged(result, object, frame, 0, &similarity(&view.camera_from_mesh)?));
+    }
+    Ok(results)
+}
+
+/// One object through a video.
+fn track(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
+    let object = &case.objects[0];
+    let mesh = object.prepared(row.color);
+    let AlignOptions { quality, seed, .. } = row.precise;
+    let mut tracker = Tracker::new(&mesh, TrackOptions { quality, seed, ..TrackOptions::default() })?;
+    let mut results = Vec::new();
+    for (k, frame) in case.frames.iter().enumerate() {
+        let mut seen = frame.view(row.color).frame;
+        if row.masks.is_some_and(|masks| k >= masks) {
+            seen.mask = None;
+        }
+        let timer = CpuTimer::start();
+        let found = tracker.next(&seen, &mut Silent);
+        let result = ResultRow { ms: Some(1000.0 * timer.seconds()), ..blank(case, k, 0) };
+        let found = match found {
+            Ok(found) => found,
+            Err(error) => {
+                results.push(result.with_error(&error));
+                break;
+            }
+        };
+        if frame.visible >= SHOWN {
+            let result = ResultRow { confidence: Some(found.confidence), ..result };
+            results.push(judged(result, object, frame, 0, &similarity(&found.camera_from_mesh)?));
+        }
+    }
+    Ok(results)
+}

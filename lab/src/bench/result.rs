@@ -1,0 +1,144 @@
+//! One benchmark result row: a pose of one object, and how right it is.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::prelude::*;
+use sim3align::metrics::Metrics;
+use sim3align::metrics::pose_error::PoseErrors;
+use sim3align::report::{Alignment, AnyAlignment, Warning};
+
+/// Maximum errors of a right pose: scale within 5 %, rotation within 10°, place within 5 % of the diameter.
+const STRICT: Errors = [0.05, 10.0, 0.05];
+/// Twice the errors of [`STRICT`].
+const LOOSE: Errors = [0.1, 20.0, 0.1];
+
+/// Errors of scale (a share), rotation (degrees, up to symmetry) and place (of the diameter). With depth of a depth model,
+/// those of the apparent size, and of the place in the image relative to the apparent diameter.
+pub type Errors = [f64; 3];
+
+/// Metrics by their names in the package.
+pub type MetricsByName = BTreeMap<String, Option<f64>>;
+
+/// The result of a row of the benchmark for one object in one image.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub struct ResultRow {
+    /// The set, or `given` for folders.
+    pub set: String,
+    /// The object in its image: unique in its row.
+    pub name: String,
+    /// Difficulty.
+    pub tier: String,
+    /// The group of the object.
+    pub class: String,
+    /// Whether the errors are within 5 %, 10° and 5 % of the diameter; `None` if the true pose is unknown. No pose is not right.
+    pub strict: Option<bool>,
+    /// Whether the errors are within twice that.
+    pub loose: Option<bool>,
+    /// See [`Errors`].
+    pub errors: Option<Errors>,
+    /// Probability that the pose is right, as the call reports it.
+    pub confidence: Option<f64>,
+    /// Probability that the turn of a symmetric shape is right.
+    pub turn_confidence: Option<f64>,
+    /// CPU time of the call, which a busy machine changes little, milliseconds.
+    pub ms: Option<f64>,
+    /// Images that the search drew.
+    pub renders: Option<usize>,
+    /// Agreement of the pose with the image.
+    pub metrics: Option<MetricsByName>,
+    /// That of the true pose.
+    pub truth_metrics: Option<MetricsByName>,
+    /// Codes of the warnings.
+    pub warnings: Vec<String>,
+    /// Whether the scale collapsed, and whether it was held at a bound.
+    pub collapsed: bool,
+    /// See `collapsed`.
+    pub clamped: bool,
+    /// The evidence from which the confidence follows.
+    pub features: Option<Features>,
+    /// Why there is no pose.
+    pub error: Option<String>,
+    /// Names of the simulated errors.
+    pub tags: Vec<String>,
+}
+
+/// The evidence from which the confidence follows.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Features {
+    /// The score of the pose.
+    pub score: f64,
+    /// Its terms: overlap, depth, outline.
+    pub terms: [f64; 3],
+    /// The scores of the alternatives.
+    pub alternatives: Vec<f64>,
+    /// Standard deviations of scale and rotation (degrees), if they are known.
+    pub uncertainty: Option<[f64; 2]>,
+}
+
+impl ResultRow {
+    /// The row with the errors of its pose.
+    pub fn with_errors(mut self, errors: Option<Errors>) -> Self {
+        let holds = |limits: Errors| errors.is_some_and(|found| found.iter().zip(limits).all(|(e, most)| *e <= most));
+        (self.strict, self.loose, self.errors) = (Some(holds(STRICT)), Some(holds(LOOSE)), errors);
+        self
+    }
+
+    /// The row with the report of a call.
+    pub fn with_alignment(self, alignment: &AnyAlignment) -> Self {
+        let common = alignment.diagnostics();
+        let row = Self {
+            metrics: alignment.metrics().map(|metrics| by_name(&metrics)),
+            warnings: codes(alignment.warnings()),
+            collapsed: common.collapsed,
+            clamped: common.clamped,
+            ..self
+        };
+        match alignment {
+            AnyAlignment::Precise(precise) => row.with_confidence(precise),
+            AnyAlignment::Paper(_) => row,
+        }
+    }
+
+    fn with_confidence(self, alignment: &Alignment) -> Self {
+        let Alignment { confidence, turn_confidence, alternatives, uncertainty, diagnostics, .. } = alignment;
+        let terms = &diagnostics.terms;
+        Self {
+            confidence: Some(*confidence),
+            turn_confidence: *turn_confidence,
+            renders: Some(diagnostics.counts.renders),
+            features: Some(Features {
+                score: diagnostics.score,
+                terms: [terms.overlap, terms.depth, terms.outline],
+                alternatives: alternatives.iter().map(|other| other.score).collect(),
+                uncertainty: uncertainty.as_ref().map(|found| [found.scale, found.rotation_deg]),
+            }),
+            ..self
+        }
+    }
+
+    /// The row of a failure.
+    pub fn with_error(self, error: &Error) -> Self {
+        Self { error: Some(format!("{}: {error}", error.code.as_str())), ..self }
+    }
+}
+
+/// The three errors of a pose.
+pub fn three(errors: &PoseErrors) -> Errors {
+    [errors.scale_error, errors.rotation_error_deg, errors.translation_error_relative]
+}
+
+/// Metrics by name.
+pub fn by_name(metrics: &Metrics) -> MetricsByName {
+    let value = serde_json::to_value(metrics).ok();
+    value.and_then(|value| serde_json::from_value(value).ok()).unwrap_or_default()
+}
+
+/// The codes of warnings.
+pub fn codes(warnings: &[Warning]) -> Vec<String> {
+    let code = |warning: &Warning| serde_json::to_value(warning.code).ok()?.as_str().map(str::to_owned);
+    warnings.iter().filter_map(code).collect()
+}

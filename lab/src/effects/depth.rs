@@ -1,0 +1,287 @@
+//! Depth maps with the errors of sensors and of depth models.
+
+use super::edges::edges;
+use super::noise::{Noise, disc};
+use crate::objects::mesh::face;
+use crate::prelude::*;
+use crate::sets::conditions::{Conditions, DepthFault, Tier};
+use crate::world::Placed;
+use crate::world::view::Sight;
+use sim3align_geometry::components::{Component, components};
+use sim3align_geometry::order::{median, quantile};
+
+/// Farthest reading of a sensor, metres.
+const FARTHEST_M: f64 = 12.0;
+/// Ratio of a wide shadow's distance between camera and projector to the usual one.
+const WIDE: f64 = 4.0;
+/// Largest step of quantised depth at the object, as a share of its diagonal.
+const LARGEST_STEP: f64 = 0.06;
+/// Minimum share of the visible pixels that counts as a part, and minimum share of the two largest parts together.
+const LEAST_PART: f64 = 0.12;
+const LEAST_BOTH: f64 = 0.97;
+
+named! {
+    /// What measures or predicts depth.
+    pub enum DepthSource: "source" {
+        /// Stereo matching of blocks, with a projected texture.
+        ActiveStereo = "active-stereo",
+        /// A projected pattern, matched to a reference.
+        StructuredLight = "structured-light",
+        /// The time that light takes.
+        TimeOfFlight = "time-of-flight",
+        /// A model, from one photo.
+        Predicted = "predicted-depth",
+    }
+}
+
+/// A depth map with simulated errors.
+#[derive(Debug)]
+pub struct Readings {
+    /// Depth in metres, including the scale error.
+    pub depth: DepthMap,
+    /// Ratio of measured to true metres.
+    pub bias: f64,
+    /// Names of the simulated errors.
+    pub tags: Vec<&'static str>,
+    /// By what share a depth model's warp moves each object along its rays; its true pose follows.
+    pub drifts: Vec<f64>,
+}
+
+/// Reads a scene, in which `sight` shows all objects as one, and `things` the pixels of each. Their diagonal is in metres.
+pub fn read(
+    sight: &Sight,
+    things: &[&[bool]],
+    diagonal: f64,
+    conditions: Conditions,
+    random: &mut Random,
+) -> Result<Readings> {
+    let Conditions { tier, class } = conditions;
+    let view = &sight.view;
+    if class.depth.is_empty() {
+        let depth = DepthMap::from_metres(view.width, view.height, sight.depth.clone())?;
+        return Ok(Readings { depth, bias: 1.0, tags: vec!["exact"], drifts: vec![0.0; things.len()] });
+    }
+    let source = class.depth[random.below(class.depth.len())];
+    let is_wide = class.depth_fault == DepthFault::WideShadow;
+    let source = if is_wide { DepthSource::StructuredLight } else { source };
+    let mut depth = edges(source, sight, tier, if is_wide { WIDE } else { 1.0 }, random);
+    let (drifts, bias) = if source == DepthSource::Predicted {
+        let drifts = warp(&mut depth, sight, things, diagonal, tier, random);
+        (drifts, libm::exp(between(random, libm::log(0.8), libm::log(1.25))))
+    } else {
+        roughen(&mut depth, sight, source, diagonal, tier, random);
+        lose_spots(&mut depth, sight, diagonal, conditions, random);
+        (vec![0.0; things.len()], 1.0)
+    };
+    depth.iter_mut().for_each(|z| *z *= bias as f32);
+    let depth = DepthMap::from_metres(view.width, view.height, depth)?;
+    Ok(Readings { depth, bias, tags: vec![source.as_str()], drifts })
+}
+
+impl Readings {
+    /// Fraction of the pixels without a reading.
+    pub fn missing(&self, pixels: &[bool]) -> f64 {
+        let shown = || self.depth.data().iter().zip(pixels).filter(|(_, shown)| **shown);
+        shown().filter(|(z, _)| **z == 0.0).count() as f64 / shown().count().max(1) as f64
+    }
+
+    /// Applies the fault of a class to the readings of one object, and to its mask.
+    pub fn afflict(
+        &mut self,
+        mask: &mut Mask,
+        sight: &Sight,
+        placed: &Placed,
+        conditions: Conditions,
+        random: &mut Random,
+    ) {
+        let depth = self.depth.data_mut();
+        match conditions.class.depth_fault {
+            DepthFault::Holes | DepthFault::HolesOfMask => {
+                holes_on(sight, placed, conditions.tier, &mut self.tags, random)
+                    .into_iter()
+                    .for_each(|i| depth[i] = 0.0);
+                if conditions.class.depth_fault == DepthFault::HolesOfMask {
+                    mask.data_mut().iter_mut().zip(depth).filter(|(_, z)| **z == 0.0).for_each(|(m, _)| *m = 0);
+                }
+            }
+            DepthFault::LostPart => {
+                let set: Vec<bool> = mask.data().iter().map(|m| *m != 0).collect();
+                let lost = usize::from(chance(random, 0.7));
+                if chance(random, 0.5)
+                    && let Some(part) = parts(&set, sight.view.width).get(lost)
+                {
+                    part.pixels().for_each(|i| depth[i] = 0.0);
+                    self.tags.push("part-without-depth");
+                }
+            }
+            DepthFault::Quantised => {
+                let Some(distance) = median(sight.object_depth.iter().copied().filter(|z| *z > 0.0)) else { return };
+                let tier = conditions.tier;
+                let step = between(random, tier.pick(0.001, 0.002, 0.004), tier.pick(0.003, 0.006, 0.01));
+                // z = k / disparity, whose step is k/disparity² = z²/k.
+                let k = f64::from(distance).powi(2) / step.min(LARGEST_STEP * placed.object.diagonal());
+                for z in depth.iter_mut().filter(|z| **z > 0.0) {
+                    *z = (k / (k / f64::from(*z)).round().max(1.0)) as f32;
+                }
+            }
+            DepthFault::None | DepthFault::Sparse | DepthFault::WideShadow => {}
+        }
+    }
+}
+
+/// A depth model's smooth errors: waves no shorter than the objects, because models get the parts of an object right
+/// relative to each other; and hardly any noise. The warp has no part that moves all objects: that is the bias. Returns by
+/// what share it moves each object.
+fn warp(
+    depth: &mut [f32],
+    sight: &Sight,
+    things: &[&[bool]],
+    diagonal: f64,
+    tier: Tier,
+    random: &mut Random,
+) -> Vec<f64> {
+    let view = &sight.view;
+    let amplitude = between(random, 0.3, 1.0) * tier.pick(0.003, 0.012, 0.025) * diagonal;
+    let noise = between(random, 0.3, 1.0) * tier.pick(0.0007, 0.0015, 0.003) * diagonal;
+    let z_mean = mean(sight.object_depth.iter().filter(|z| **z > 0.0).map(|z| f64::from(*z)));
+    let span = view.camera.fx * diagonal / z_mean;
+    // cos(a + b) from tables along rows and columns: a wave costs two products a pixel.
+    let tables: Vec<_> = (0..3)
+        .map(|_| {
+            let direction = crate::world::unit(TAU * random.uniform()) * (TAU * between(random, 0.25, 0.8) / span);
+            let along = |n: usize, k: f64, phase: f64| -> Vec<(f64, f64)> {
+                (0..n).map(|i| libm::sincos(k * i as f64 + phase)).collect()
+            };
+            (along(view.width, direction.x, TAU * random.uniform()), along(view.height, direction.y, 0.0))
+        })
+        .collect();
+    let wave = |i: usize| {
+        let [u, v] = view.place(i);
+        let sum: f64 = tables.iter().map(|(a, b)| a[u].1 * b[v].1 - a[u].0 * b[v].0).sum();
+        sum * amplitude / (1.5f64.sqrt() * z_mean)
+    };
+    let over = |shown: &[bool]| mean((0..shown.len()).filter(|i| shown[*i]).map(wave));
+    let offset = over(&sight.visible);
+    for (i, z) in depth.iter_mut().enumerate() {
+        let grain = (random.uniform() + random.uniform() - 1.0) * noise;
+        *z = (f64::from(*z) * (1.0 + wave(i) - offset) + if *z > 0.0 { grain } else { 0.0 }) as f32;
+    }
+    things.iter().map(|shown| over(shown) - offset).collect()
+}
+
+/// Noise and steps of a sensor: as published for RealSense D400, PrimeSense and Kinect 2, and smooth noise as measured on
+/// real cases (the design history has the table).
+fn roughen(depth: &mut [f32], sight: &Sight, source: DepthSource, diagonal: f64, tier: Tier, random: &mut Random) {
+    // By z²: white noise, smooth noise, and steps; of time of flight, the noise hardly grows.
+    let [white, smooth, step] = match source {
+        DepthSource::ActiveStereo => [0.0008, 0.014, 0.0005],
+        DepthSource::StructuredLight => [0.0008, 0.004, 0.0028],
+        DepthSource::TimeOfFlight | DepthSource::Predicted => [0.001, 0.001, 0.0],
+    };
+    let share = between(random, 0.6, 1.0);
+    let bumps = Noise::new(&sight.view, 6.0 * sight.view.resolution(), random);
+    // A sensor that drowns the object in noise is the wrong one: the user would step closer.
+    let at_most = |x: f64, most: f64| x.min(most * diagonal);
+    for (i, value) in depth.iter_mut().enumerate() {
+        let grain = normal(random);
+        let z = f64::from(*value);
+        if z == 0.0 || z > FARTHEST_M {
+            *value = 0.0;
+            continue;
+        }
+        let squared = if source == DepthSource::TimeOfFlight { z } else { z * z };
+        let noise = at_most(white * squared, tier.pick(0.003, 0.006, 0.01)) * grain
+            + at_most(smooth * squared, tier.pick(0.01, 0.02, 0.03)) * bumps.at(i);
+        let step = at_most(step * squared, tier.pick(0.004, 0.008, 0.016)).max(1e-6);
+        *value = (((z + share * noise) / step).round() * step) as f32;
+    }
+}
+
+/// Loses readings here and there, on the object and elsewhere.
+fn lose_spots(depth: &mut [f32], sight: &Sight, diagonal: f64, conditions: Conditions, random: &mut Random) {
+    let Conditions { tier, class } = conditions;
+    let wanted = if class.depth_fault == DepthFault::Sparse {
+        between(random, tier.pick(0.05, 0.1, 0.18), tier.pick(0.05, 0.18, 0.3))
+    } else {
+        between(random, 0.0, tier.pick(0.02, 0.08, 0.15))
+    };
+    let object: Vec<usize> = (0..depth.len()).filter(|&i| sight.visible[i]).collect();
+    let span = sight.view.camera.fx * diagonal / f64::from(object.first().map_or(1.0, |&i| sight.depth[i]));
+    let missing =
+        |depth: &[f32]| object.iter().filter(|&&i| depth[i] == 0.0).count() as f64 / object.len().max(1) as f64;
+    for hole in 0..300 {
+        let on_object = !object.is_empty() && missing(depth) < wanted;
+        if !on_object && hole >= 20 {
+            break;
+        }
+        let at = if on_object { object[random.below(object.len())] } else { random.below(depth.len()) };
+        let radius = (span * between(random, 0.008, 0.05)).max(1.0);
+        disc(&sight.view, at, radius, |i| depth[i] = 0.0);
+    }
+}
+
+/// Holes that cover a share of the visible object: on a dark part, on highlights, at grazing angles.
+fn holes_on(
+    sight: &Sight,
+    placed: &Placed,
+    tier: Tier,
+    tags: &mut Vec<&'static str>,
+    random: &mut Random,
+) -> Vec<usize> {
+    let wanted = between(random, tier.pick(0.05, 0.15, 0.25), tier.pick(0.12, 0.3, 0.45));
+    let object: Vec<(usize, usize)> = sight.object_pixels().collect();
+    let pixels: Vec<usize> = object.iter().map(|(i, _)| *i).collect();
+    let kinds = [chance(random, 0.6), chance(random, 0.5), chance(random, 0.5)];
+    let kinds = if kinds == [false; 3] { [true, false, false] } else { kinds };
+    let each = wanted / kinds.iter().filter(|kind| **kind).count() as f64;
+    let (world_from_camera, eye) = (sight.view.camera_from_world.inverse(), sight.view.eye());
+    let normal_at = |k: usize| face(&placed.mesh, object[k].1).normalize_or(DVec3::Z);
+    let to_eye = |k: usize| {
+        let point = sight.view.world_point(&world_from_camera, object[k].0, sight.object_depth[object[k].0]);
+        (eye - point).normalize_or(DVec3::Z)
+    };
+    let mut lost = Vec::new();
+    if kinds[0] {
+        tags.push("dark");
+        let span = (object.len() as f64).sqrt();
+        let noise = Noise::new(&sight.view, (span * between(random, 0.15, 0.35)).max(3.0), random);
+        lost.extend(highest(&pixels, |k| noise.at(pixels[k]), each));
+    }
+    if kinds[1] {
+        tags.push("shiny");
+        let lamp = DVec3::new(normal(random), normal(random), between(random, 0.3, 2.0)).normalize_or(DVec3::Z);
+        lost.extend(highest(&pixels, |k| normal_at(k).dot((to_eye(k) + lamp).normalize_or(DVec3::Z)).abs(), each));
+    }
+    if kinds[2] {
+        tags.push("grazing");
+        lost.extend(highest(&pixels, |k| -normal_at(k).dot(to_eye(k)).abs(), each));
+    }
+    lost
+}
+
+/// The pixels with the highest scores; `score` takes the index in `pixels`.
+fn highest(pixels: &[usize], score: impl Fn(usize) -> f64, share: f64) -> Vec<usize> {
+    let scores: Vec<f32> = (0..pixels.len()).map(|k| score(k) as f32).collect();
+    let least = quantile(scores.iter().copied(), 1.0 - share).unwrap_or(f32::INFINITY);
+    pixels.iter().zip(scores).filter(|(_, score)| *score > least).map(|(&i, _)| i).collect()
+}
+
+/// The parts of a region, the largest first.
+fn parts(region: &[bool], width: usize) -> Vec<Component> {
+    let mut parts = components(region, width, region.len() / width);
+    parts.sort_by_key(|part| core::cmp::Reverse(part.count()));
+    parts
+}
+
+/// Whether a region consists of two large parts, apart from a few pixels.
+pub fn in_two(region: &[bool], width: usize) -> bool {
+    let parts = parts(region, width);
+    let total = parts.iter().map(|part| part.count()).sum::<usize>() as f64;
+    let [first, second] = [0, 1].map(|k| parts.get(k).map_or(0.0, |part| part.count() as f64));
+    second >= LEAST_PART * total && first + second >= LEAST_BOTH * total
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
+}

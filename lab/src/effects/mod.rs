@@ -1,0 +1,13 @@
+//! What measurement and models do to images and meshes: the errors of sensors, depth models, segmentation, photos and mesh
+//! generators.
+
+pub mod depth;
+pub mod edges;
+pub mod generator;
+pub mod mask;
+pub mod monocular;
+pub mod noise;
+pub mod painter;
+pub mod photo;
+pub mod print;
+pub mod surplus;

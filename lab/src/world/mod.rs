@@ -1,0 +1,121 @@
+//! Scenes: objects and what stands around them, and cameras that see them.
+
+pub mod arrangement;
+pub mod things;
+pub mod view;
+
+use std::sync::Arc;
+
+use crate::effects::print::{Print, PrintKind};
+use crate::objects::mesh::{box_of, mapped, random_rotation, turned_axes};
+use crate::objects::{Axis, Object};
+use crate::prelude::*;
+use crate::sets::conditions::Tier;
+
+named! {
+    /// How an object is held.
+    pub enum Stance: "stance" {
+        /// It stands on the desk.
+        Stands = "stands",
+        /// It touches the desk, tilted, and leans on something that is not seen.
+        Leans = "leans",
+        /// It hangs over the desk.
+        Hangs = "hangs",
+        /// It stands on another object.
+        OnTop = "on top",
+    }
+}
+
+/// An object at its place.
+#[derive(Debug, Clone)]
+pub struct Placed {
+    /// The object in its own frame.
+    pub object: Arc<Object>,
+    /// Its surface in the world's frame.
+    pub mesh: Mesh,
+    /// Its axes of symmetry there.
+    pub symmetry: Vec<Axis>,
+    /// Its print, if it is coloured.
+    pub print: Option<Print>,
+    pub stance: Stance,
+}
+
+/// A scene before a camera sees it: metres, z up, the table at z = 0.
+#[derive(Debug)]
+pub struct World {
+    pub objects: Vec<Placed>,
+    pub others: Vec<Mesh>,
+    /// At which height the depth map shows the table, metres; `None` if it shows nothing but objects and things.
+    pub table: Option<f64>,
+    /// The wall: what it faces, and how far behind the origin it is.
+    pub wall: (Vector3<f64>, f64),
+    /// The middle of the box of the objects.
+    pub center: DVec3,
+    /// Their farthest distance from there.
+    pub reach: f64,
+    /// The angle about z from which cameras look.
+    pub front: f64,
+}
+
+impl Placed {
+    /// A rotated object on z = 0, above the origin.
+    pub fn turned(object: Object, rotation: &Matrix3<f64>) -> Result<Self> {
+        let turned = mapped(&object.mesh, |p| vec3(&(rotation * vector3(*p))))?;
+        let (low, high) = box_of(&turned);
+        let down = ((low + high) * 0.5).with_z(low.z);
+        let mesh = mapped(&turned, |p| (p.as_dvec3() - down).as_vec3())?;
+        let symmetry = turned_axes(rotation, &object.symmetry);
+        Ok(Self { object: Arc::new(object), mesh, symmetry, print: None, stance: Stance::Stands })
+    }
+
+    /// An object on z = 0: mostly upright, else on a side or as it fell.
+    pub fn put_down(object: Object, tier: Tier, random: &mut Random) -> Result<Self> {
+        let about = |axis, angle| Rotation3::from_axis_angle(&axis, angle);
+        let heading = about(Vector3::z_axis(), TAU * random.uniform());
+        let rotation = if random.uniform() < tier.pick(0.9, 0.75, 0.6) {
+            heading
+        } else if chance(random, 0.6) {
+            heading * about(Vector3::x_axis(), 0.25 * TAU * random.below(4) as f64)
+        } else {
+            random_rotation(random).to_rotation_matrix()
+        };
+        Self::turned(object, rotation.matrix())
+    }
+
+    /// The object with a print.
+    pub fn printed(self, kind: Option<PrintKind>, random: &mut Random) -> Self {
+        let print = kind.map(|kind| Print::draw(&self.mesh, &self.symmetry, kind, random));
+        Self { print, ..self }
+    }
+
+    /// Moves it.
+    pub fn shift(&mut self, by: DVec3) -> Result<()> {
+        self.mesh = mapped(&self.mesh, |p| (p.as_dvec3() + by).as_vec3())?;
+        Ok(())
+    }
+}
+
+impl World {
+    /// A world of objects. `front` is the angle about z from which cameras look, and `behind` how far the wall is behind
+    /// objects and things.
+    pub fn new(objects: Vec<Placed>, others: Vec<Mesh>, front: f64, behind: f64) -> Self {
+        let (low, high) = objects
+            .iter()
+            .map(|placed| box_of(&placed.mesh))
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
+        let center = (low + high) * 0.5;
+        let points = || objects.iter().flat_map(|placed| placed.mesh.positions()).map(|p| p.as_dvec3());
+        let reach = points().fold(0.0f64, |far, p| far.max(p.distance(center)));
+        let faces = unit(front).extend(0.0);
+        let all = points().chain(others.iter().flat_map(|mesh| mesh.positions()).map(|p| p.as_dvec3()));
+        let depth = all.fold(0.0f64, |far, p| far.max(-p.dot(faces)));
+        let wall = (Vector3::from(faces.to_array()), depth + behind);
+        Self { objects, others, table: Some(0.0), wall, center, reach, front }
+    }
+}
+
+/// A direction on the plane.
+pub fn unit(angle: f64) -> DVec2 {
+    let (sine, cosine) = libm::sincos(angle);
+    DVec2::new(cosine, sine)
+}

@@ -1,0 +1,223 @@
+/**
+ * `npm run fit`: fits the regression behind `confidence` to generated cases, prints its constants as
+ * `src/precise/judged/confidence.rs` declares them, and how reliable they are on other cases, real ones among them where their
+ * folders are given: nothing is fitted to these.
+ */
+import { mkdirSync, readFileSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { command, count } from "./bench/command.mjs";
+import { readResults } from "./bench/results.mjs";
+import { fixed, markdownTable, mean } from "./bench/table.mjs";
+import { runLab } from "./lib/lab.mjs";
+import { at } from "./lib/paths.mjs";
+import { reliability, summaries } from "./record/summary.mjs";
+
+/** @typedef {import("./bench/results.mjs").ResultRow} ResultRow */
+/** @typedef {{ intercept: number, slopes: readonly number[] }} Line in the space of the features */
+/** @typedef {[low: number, high: number]} Limits */
+/** @typedef {Line & { noise: number, scale: Limits, rotationDeg: Limits }} Model */
+/** @typedef {{ result: ResultRow, features: number[], isRight: boolean }} Sample */
+/** @typedef {{ cases: number, seed: number, testCases: number, testSeed: number, real?: string[], threads?: number, keep: string }} FitOptions */
+
+/** Weight of the penalty on slopes, which keeps them finite where the features separate right from wrong. */
+const PENALTY = 1e-3;
+const MAX_STEPS = 100;
+/** Both searches of the default quality: the confidence of the first decides whether there is a second. */
+const ROWS = ["--row", "fast: quality=fast color=false", "--row", "best: quality=best color=false"];
+/** General cases, those with the mesh of another object, where no pose is right, and those with effects of sensors: shares. */
+const SETS = { general: 1 / 2, misfits: 1 / 6, sensors: 1 / 3 };
+
+/** The constants of the sources, which are declared there alone. @returns {Model} */
+function currentModel() {
+  const read = (/** @type {string} */ file) => readFileSync(at("src", "precise", file), "utf8");
+  const numbers = (/** @type {string} */ source, /** @type {string} */ name) => {
+    const value = new RegExp(`const ${name}: [^=]+= \\[?([^\\];]+)`).exec(source)?.[1];
+    if (value === undefined) throw new Error(`src/precise declares no ${name}. Remedy: correct scripts/fit.mjs.`);
+    return value.split(",").map(Number);
+  };
+  const [confidence, score] = [read("judged/confidence.rs"), read("scored/score.rs")];
+  const limits = (/** @type {string} */ name) => /** @type {Limits} */ (numbers(confidence, name));
+  return {
+    intercept: numbers(confidence, "INTERCEPT")[0] ?? Number.NaN,
+    slopes: numbers(confidence, "SLOPES"),
+    // A 32-bit number there.
+    noise: Math.fround(numbers(score, "NOISE")[0] ?? Number.NaN),
+    scale: limits("SCALE"),
+    rotationDeg: limits("ROTATION_DEG"),
+  };
+}
+
+/**
+ * The features of a pose; null where there is none that the regression applies to.
+ * @param {ResultRow} result
+ * @param {Model} model
+ */
+function featuresOf({ features }, { noise, scale, rotationDeg }) {
+  if (!features?.uncertainty) return null;
+  const { score, terms, alternatives, uncertainty } = features;
+  const margin = Math.min(noise, ...alternatives.map((other) => score - other));
+  const log = (/** @type {number} */ x, /** @type {Limits} */ [low, high]) =>
+    Math.log(Math.min(Math.max(x, low), high));
+  return [...terms, Math.max(margin, 0) / noise, log(uncertainty[0], scale), log(uncertainty[1], rotationDeg)];
+}
+
+/** @param {readonly number[]} a @param {readonly number[]} b */
+const dot = (a, b) => a.reduce((sum, x, i) => sum + x * (b[i] ?? 0), 0);
+
+/** @param {readonly number[]} features @param {Line} line */
+const probability = (features, { intercept, slopes }) => 1 / (1 + Math.exp(-dot(features, slopes) - intercept));
+
+/**
+ * Logistic regression by Newton's method, on features of mean 0 and variance 1. The same rows give the same line.
+ * @param {readonly Sample[]} samples
+ * @returns {Line}
+ */
+function fitLogistic(samples) {
+  const rows = samples.map(({ features }) => features);
+  const columns = (rows[0] ?? []).map((_, j) => rows.map((row) => row[j] ?? Number.NaN));
+  const means = columns.map((column) => mean(column));
+  const deviations = columns.map((column, j) => Math.sqrt(mean(column.map((x) => (x - (means[j] ?? 0)) ** 2))) || 1);
+  const standard = rows.map((row) => [1, ...row.map((x, j) => (x - (means[j] ?? 0)) / (deviations[j] ?? 1))]);
+  let weights = new Array(columns.length + 1).fill(0);
+  for (let step = 0; step < MAX_STEPS; step++) {
+    const change = newtonStep(
+      standard,
+      samples.map(({ isRight }) => isRight),
+      weights,
+    );
+    weights = weights.map((weight, j) => weight + (change[j] ?? 0));
+    if (Math.max(...change.map(Math.abs)) < 1e-12) break;
+  }
+  const slopes = weights.slice(1).map((weight, j) => weight / (deviations[j] ?? 1));
+  return { intercept: weights[0] - dot(means, slopes), slopes };
+}
+
+/**
+ * @param {readonly (readonly number[])[]} rows
+ * @param {readonly boolean[]} labels
+ * @param {readonly number[]} weights
+ */
+function newtonStep(rows, labels, weights) {
+  const size = weights.length;
+  const penalty = (/** @type {number} */ j) => (j === 0 ? 0 : PENALTY);
+  const system = weights.map((weight, j) =>
+    Array.from({ length: size + 1 }, (_, k) => (k === size ? -penalty(j) * weight : j === k ? penalty(j) : 0)),
+  );
+  for (const [i, row] of rows.entries()) {
+    const p = 1 / (1 + Math.exp(-dot(row, weights)));
+    for (const [j, equation] of system.entries()) {
+      const x = row[j] ?? 0;
+      for (let k = 0; k < size; k++) equation[k] = (equation[k] ?? 0) + p * (1 - p) * x * (row[k] ?? 0);
+      equation[size] = (equation[size] ?? 0) + (Number(labels[i]) - p) * x;
+    }
+  }
+  return solve(system);
+}
+
+/** Solves equations whose last column is the right-hand side; they are positive definite. @param {number[][]} system */
+function solve(system) {
+  const size = system.length;
+  for (const [i, pivot] of system.entries()) {
+    for (const equation of system.slice(i + 1)) {
+      const factor = (equation[i] ?? 0) / (pivot[i] ?? 1);
+      for (let k = i; k <= size; k++) equation[k] = (equation[k] ?? 0) - factor * (pivot[k] ?? 0);
+    }
+  }
+  /** @type {number[]} */
+  const solution = new Array(size).fill(0);
+  for (let i = size - 1; i >= 0; i--) {
+    const equation = system[i] ?? [];
+    const known = dot(equation.slice(i + 1, size), solution.slice(i + 1));
+    solution[i] = ((equation[size] ?? 0) - known) / (equation[i] ?? 1);
+  }
+  return solution;
+}
+
+/**
+ * The poses of cases to which the regression applies.
+ * @param {string} name
+ * @param {readonly string[]} cases arguments of the lab
+ * @param {FitOptions} options
+ * @returns {Promise<Sample[]>}
+ */
+async function samplesOf(name, cases, { threads, keep }) {
+  mkdirSync(keep, { recursive: true });
+  const json = join(resolve(keep), `${name}.jsonl`);
+  const more = threads === undefined ? [] : ["--threads", `${threads}`];
+  await runLab(["bench", ...cases, ...ROWS, "--json", json, ...more]);
+  const model = currentModel();
+  return readResults(json).flatMap((result) => {
+    const features = featuresOf(result, model);
+    if (features === null || (result.strict === null && result.class !== "misfit")) return [];
+    // The features here and those of the core are the same: they give the same confidence.
+    const [expected, found] = [result.confidence ?? Number.NaN, probability(features, model)];
+    if (!(Math.abs(found - expected) < 1e-9)) {
+      const remedy = `Remedy: remove ${keep}, or make featuresOf() agree with src/precise/judged/confidence.rs.`;
+      throw new Error(`${result.name}: confidence ${expected}, but ${found} by the constants of the code. ${remedy}`);
+    }
+    return [{ result, features, isRight: result.strict === true && result.class !== "misfit" }];
+  });
+}
+
+/** @param {string} name @param {number} cases @param {number} seed @param {FitOptions} options */
+async function generated(name, cases, seed, options) {
+  const all = [];
+  for (const [set, part] of Object.entries(SETS)) {
+    const count = ["--count", `${Math.ceil(cases * part)}`, "--seed", `${seed}`];
+    all.push(...(await samplesOf(`${name}-${set}`, ["--set", set, ...count], options)));
+  }
+  return all;
+}
+
+/** The Brier score and the logarithmic loss of a line: lower is better. @param {readonly Sample[]} all @param {Line} line */
+function losses(all, line) {
+  const confidences = all.map(({ features }) => Math.min(Math.max(probability(features, line), 1e-12), 1 - 1e-12));
+  const brier = mean(confidences.map((p, i) => (p - Number(all[i]?.isRight)) ** 2));
+  const logarithmic = mean(confidences.map((p, i) => -Math.log(all[i]?.isRight ? p : 1 - p)));
+  return [fixed(brier, 4), fixed(logarithmic, 4)];
+}
+
+/** Poses by the confidence of a line. @param {readonly Sample[]} all @param {Line} line */
+function reliabilityTable(all, line) {
+  const results = all.map(({ result, features, isRight }) => ({
+    ...{ ...result, row: "all", strict: isRight },
+    confidence: probability(features, line),
+  }));
+  return markdownTable(["confidence", "poses", "right %"], reliability(summaries("", results)));
+}
+
+/** @param {FitOptions} options */
+async function fit(options) {
+  const training = await generated("training", options.cases, options.seed, options);
+  const test = await generated("test", options.testCases, options.testSeed, options);
+  const real = options.real ? await samplesOf("real", ["--cases", ...options.real], options) : [];
+  const line = fitLogistic(training);
+  // As many digits as the code has: what is measured is what can be copied.
+  const digits = (/** @type {number} */ x) => x.toFixed(3);
+  const fitted = { intercept: Number(digits(line.intercept)), slopes: line.slopes.map((x) => Number(digits(x))) };
+  console.log(`
+const INTERCEPT: f64 = ${digits(fitted.intercept)};
+const SLOPES: [f64; ${fitted.slopes.length}] = [${fitted.slopes.map(digits).join(", ")}];
+`);
+  const lines = { fitted, "in the code": currentModel() };
+  const table = Object.entries(lines).map(([name, each]) => [name, ...losses(training, each), ...losses(test, each)]);
+  const head = ["constants", "training: Brier", "log loss", "test: Brier", "log loss"];
+  console.log(`${markdownTable(head, table)}\n\n${training.length} poses for training, ${test.length} for the test.`);
+  for (const [name, each] of Object.entries(lines)) {
+    console.log(`\nTest cases, constants ${name}\n\n${reliabilityTable(test, each)}`);
+  }
+  if (real.length > 0) console.log(`\nReal cases, constants fitted\n\n${reliabilityTable(real, fitted)}`);
+}
+
+await command("fit", (program) =>
+  program
+    .description("Fits the regression behind `confidence` to generated cases, and tests it on others.")
+    .option("--cases <n>", "generated cases to fit to", count, 600)
+    .option("--seed <s>", "their seed", Number, 5)
+    .option("--test-cases <n>", "generated cases of the test", count, 240)
+    .option("--test-seed <s>", "their seed", Number, 1)
+    .option("--real <folders...>", "case folders with a truth, or folders of them, to test on as well")
+    .option("--threads <n>", "all by default", count)
+    .option("--keep <folder>", "keep all results here; cases that are there are not run again", "target/bench/fit")
+    .action(fit),
+);
