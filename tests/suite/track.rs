@@ -15,7 +15,7 @@ pub fn place(k: usize) -> Similarity {
     Similarity { translation: pose.translation + drift, ..pose }
 }
 
-pub fn frame(k: usize) -> Frame {
+fn frame(k: usize) -> Frame {
     frame_of(&observe(&body(), &place(k)))
 }
 
