@@ -104,8 +104,10 @@ impl Set {
         }
         let drawn_as = if matches!(self, Self::Clutter | Self::ClutterSmooth) { Self::Scenes } else { self };
         let tier = Tier::of(index);
+        // Other sets leave the cases of this one as they are.
+        let stream = u64::from(crc32fast::hash(drawn_as.as_str().as_bytes()));
         first_fit(&format!("case {index} of {}", self.as_str()), DRAWS, |draw| {
-            let seed = mixed([seed, drawn_as as u64, index as u64, draw]);
+            let seed = mixed([seed, stream, index as u64, draw]);
             match self {
                 Self::Scenes | Self::Clutter => scenes::draw(index, seed, false, Prior::Detailed),
                 Self::Arranged => scenes::draw(index, seed, true, Prior::Detailed),
