@@ -1,7 +1,7 @@
 /** `align` as its callers see it: the form of a result, repeatability, progress, the life of an aligner. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ALIGN_DEFAULTS, type Alignment, createAligner, PAPER_DEFAULTS, type Progress } from "sim3align";
+import { ALIGN_DEFAULTS, createAligner, PAPER_DEFAULTS } from "sim3align";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { assertForms, withoutTimes } from "../support/results.js";
 import { brick, input } from "../support/scene.js";
@@ -109,24 +109,6 @@ test("the same call gives the same bits, after other calls and errors and in ano
     assert.deepEqual(withoutTimes(await other.align(input, { seed: 3 })), reference);
   }
   assert.deepEqual([depth, mask, mesh.positions, mesh.indices], before);
-});
-
-test("progress names the stages in order, never falls, and ends with the pose of the result", async () => {
-  const seen: Progress[] = [];
-  const { matrix, diagnostics }: Alignment = await aligner.align(input, {
-    quality: "best",
-    onProgress: (report) => seen.push(report),
-  });
-  assert.deepEqual([seen[0]?.stage, seen[0]?.fraction, seen[0]?.best], ["observe", 0, undefined]);
-  const last = seen.at(-1);
-  assert.deepEqual(
-    [last?.fraction, Array.from(last?.best?.matrix ?? []), last?.best?.score],
-    [1, matrix, diagnostics.score],
-  );
-  const stages = [...new Set(seen.map(({ stage }) => stage))];
-  assert.deepEqual(stages.slice(0, 2), ["observe", "sample"]);
-  assert.ok(stages.indexOf("search") > 0 && stages.indexOf("search") < stages.indexOf("refine"), `${stages}`);
-  for (const [i, { fraction }] of seen.entries()) assert.ok(fraction >= (seen[i - 1]?.fraction ?? 0), `${fraction}`);
 });
 
 test("a disposed aligner says so, and others go on", async () => {

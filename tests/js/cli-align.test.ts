@@ -168,16 +168,6 @@ test("flags reach the core, before those of --options", () => {
   }
 });
 
-test("an initial pose that can't be used fails the case, not the others", () => {
-  const initial = (file: string, ...flags: string[]) => {
-    const { status } = run("align blob --initial", file, ...flags, "--json", "initial.json", ...quick);
-    return [status, results("initial.json").blob.error?.code, results("initial.json").blob.error?.argument];
-  };
-  assert.deepEqual(initial("missing.json"), [1, "FILE_NOT_FOUND", "initial"]);
-  assert.deepEqual(initial("blob/camera.json"), [1, "INVALID_TRANSFORM", "initial"]);
-  assert.deepEqual(initial("blob/gt.json", "--scale", "1"), [1, "INVALID_OPTION", "options.initial"]);
-});
-
 test("evaluate scores the truth, a file, and what align wrote, and reports what it can't do", () => {
   const { stdout } = succeeds("evaluate blob --json truth.json");
   assert.match(stdout, /silhouette IoU.*Errors \(compared with gt\.json\).*rotation +0\.00°/s);

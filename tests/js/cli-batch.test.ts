@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, renameSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
-import { hostname } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
 import {
@@ -236,19 +235,6 @@ test("one process at a time writes a record; the lock of one that was killed doe
   writeCase("held", incomplete);
   assert.match(run(...args).stderr, /resumed: 1 of 2/);
   assert.ok(!existsSync(inFolder("two.jsonl.lock")), "the lock ends with the program");
-  writeFileSync(inFolder("race.jsonl.lock"), JSON.stringify({ pid: 2 ** 22 + 1, host: hostname(), since: "before" }));
-  const race = ["align", "cases/**", "--jsonl", "race.jsonl", "--resume", "--workers", "1"];
-  const statuses = await Promise.all(
-    Array.from({ length: 4 }, () => {
-      const child = spawn(process.execPath, [commandLine, ...race], { cwd: folder });
-      return new Promise<number | null>((resolve) => child.on("close", resolve));
-    }),
-  );
-  assert.ok(statuses.includes(1) && statuses.every((status) => status === 1 || status === 2), `${statuses}`);
-  assert.deepEqual(
-    entriesOf("race.jsonl").map((entry) => entry.case),
-    ["a1", "a2", "b1", "c1"],
-  );
   const foreign = JSON.stringify({ pid: 1, host: "elsewhere", since: "2030-01-01" });
   for (const [content, words] of [
     [foreign, /process 1 on elsewhere/],

@@ -3,11 +3,11 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { files, folder, read, results, run, succeeds, writeCase } from "../support/command-line.js";
+import { files, folder, read, results, succeeds, writeCase } from "../support/command-line.js";
 import { greyJpeg, tiff } from "../support/exif.js";
-import { type Files, glb, npy, viewFiles } from "../support/files.js";
+import { npy } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
-import { frameAt, turnBetween } from "../support/rig.js";
+import { turnBetween } from "../support/rig.js";
 import { mesh, poseJson, truth, type View, view } from "../support/scene.js";
 import { poses, tableFiles, tableView } from "../support/table.js";
 import { deflated, zip } from "../support/zip.js";
@@ -37,7 +37,6 @@ const extentM = Math.max(
   }),
 );
 
-writeCase("metric", { ...files, "gt.json": gt });
 writeCase("taken", { ...uncalibrated, "rgb.jpg": photoOf(65) });
 writeFileSync(join(folder, "d.npz"), zip([deflated("depth.npy", files["depth.npy"] as Uint8Array)]));
 writeCase("alone", uncalibrated);
@@ -127,34 +126,6 @@ test("a batch of relative depth: columns of metres are empty, pictures are in it
   hasNoMetres(again.stdout);
 });
 
-/** Writes frames at these angles, with a mask in the first ones. */
-function writeFrames(name: string, angles: readonly number[], masks: number): void {
-  const written: Files = { "mesh.glb": glb(mesh) };
-  for (const [k, angle] of angles.entries()) {
-    const { frame } = frameAt(angle);
-    const { "mask.png": mask, ...own } = { ...viewFiles(frame), "depth.npy": disparity(frame) };
-    for (const [file, content] of Object.entries(own)) written[`frame_${k}/${file}`] = content;
-    if (k < masks) written[`frame_${k}/mask.png`] = mask;
-  }
-  writeCase(name, written);
-}
-
-test("several views and a video of relative depth", () => {
-  writeFrames("views", [0, 25], 2);
-  const views = succeeds(`align views --json views.json --csv views.csv ${relative}`).stdout;
-  hasNoMetres(views);
-  assert.equal(views.match(/depth: affine-invariant-disparity/g)?.length, 2);
-  assert.equal(results("views.json").views.frames.frame_1.depthCalibration.isMetric, false);
-  assert.match(read("views.csv"), /\nviews,,[\d.]+,\d+,false,/);
-  writeFrames("video", [0, 3], 1);
-  const video = succeeds(`track video --json video.json ${relative}`).stdout;
-  hasNoMetres(video);
-  assert.match(video, /frame_1 +tracking.*\n +depth unit +none.*\n +depth +affine-invariant-disparity, z = /);
-  const { frame_1 } = results("video.json").video.frames;
-  assert.deepEqual([frame_1.state, frame_1.depthCalibration.isMetric], ["tracking", false]);
-  assert.ok(turnBetween(frame_1.quaternion, frameAt(3).pose.rotation) < 8);
-});
-
 test("a scene of relative depth without a camera file", async () => {
   const { "camera.json": _, ...scene } = tableFiles();
   writeCase("table", { ...scene, "depth.npy": disparity(tableView), "rgb.jpg": photoOf(37) });
@@ -169,15 +140,4 @@ test("a scene of relative depth without a camera file", async () => {
   }
   assert.equal(read("s.csv").match(/,false,/g)?.length, 3);
   await assertValid(new Uint8Array(readFileSync(join(folder, "s.glb"))));
-});
-
-test("evaluate takes depth without an unknown shift", () => {
-  const { status, stdout } = run(`evaluate relative --depth-kind affine-invariant-disparity`);
-  assert.equal(status, 1);
-  assert.match(stdout, /INVALID_ARGUMENT: depthKind: .*unknown shift/);
-  const scaled = succeeds("evaluate metric --depth-kind scale-invariant --json e.json --csv e.csv");
-  hasNoMetres(scaled.stdout);
-  assert.match(scaled.stdout, /Chamfer +0\.\d+ units/);
-  assert.equal(results("e.json").metric.isMetric, false);
-  assert.match(read("e.csv"), /\nmetric,,,,false,/);
 });

@@ -1,7 +1,7 @@
 /** `evaluate` on poses whose score is known. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createAligner, EVALUATE_DEFAULTS, type EvaluateOptions, type Metrics, type Sim3Like } from "sim3align";
+import { createAligner, EVALUATE_DEFAULTS, type Metrics, type Sim3Like } from "sim3align";
 import { codesOf } from "../support/errors.js";
 import { columnMajor, input, product, rotationRows, truth } from "../support/scene.js";
 
@@ -78,16 +78,6 @@ test("all forms of a transform are the same transform, also what align returned"
   }
   const alignment = await aligner.align(input, { quality: "fast" });
   assertSame((await aligner.evaluate(input, alignment)).metrics, alignment.metrics);
-});
-
-test("declared symmetries are no errors", async () => {
-  const errorOf = async (options: EvaluateOptions) =>
-    (await aligner.evaluate(input, turned(180), { truth, layout: false, ...options })).errors?.rotationErrorDeg ?? -1;
-  for (const symmetry of [undefined, "none", "auto"] as const) {
-    assert.ok(Math.abs((await errorOf({ symmetry })) - 180) < 1e-3, "the blob has none of its own");
-  }
-  for (const fold of [2, undefined]) assert.ok((await errorOf({ symmetry: [{ axis: [0, 0, 3], fold }] })) < 1e-3);
-  assert.ok((await errorOf({ symmetry: [{ axis: [0, 0, 1], fold: 3 }] })) > 50);
 });
 
 test("where nothing overlaps there is null and no flattering number; a collapsed scale is called so", async () => {

@@ -2,9 +2,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type AlignInput, type CameraFileInput, createAligner, type Evaluation, type MeshArrays } from "sim3align";
-import { readImage, readMesh } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
-import { cocoRle, fixture, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
+import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 
@@ -224,29 +223,6 @@ test("photo and mesh colours: every form of arrays and files gives the same agre
   for (const one of [{ image: rgb }, { mesh: { ...mesh, colors } }]) {
     assert.deepEqual(await evaluated(one), reference, "neither counts without the other");
   }
-});
-
-test("photo: JPEG and PNG are decoded, turned as their EXIF data say, and averaged where they are large", async () => {
-  const { data, ...decoded } = await readImage(fixture("photo.png"));
-  assert.deepEqual([decoded.width, decoded.height, data.length], [48, 32, 3 * 48 * 32]);
-  assert.deepEqual([...data.subarray(0, 3), ...data.subarray(-3)], [200, 40, 30, 220, 200, 40]);
-  const turned = await readImage(fixture("photo-exif-6.jpg"));
-  assert.deepEqual([turned.width, turned.height], [48, 32]);
-  const [w, h] = [3001, 1401];
-  const grey = Uint8Array.from({ length: w * h }, (_, i) => ((i % w) * 13 + Math.floor(i / w) * 7) % 256);
-  const large = await readImage(png(grey, w, h));
-  assert.deepEqual([large.width, large.height], [1500, 700]);
-});
-
-test("mesh colours of files are samples, which can be passed on", async () => {
-  const read = await readMesh(fixture("mesh-textured.glb"));
-  assert.deepEqual([read.warnings, read.samples?.colors.length, read.samples?.positions.length], [[], 98304, 98304]);
-  assert.equal((await readMesh(fixture("mesh-textured.glb"), { colors: false })).samples, undefined);
-  assert.equal((await readMesh(glb(mesh))).samples, undefined);
-  const [ply, ofGlb] = await Promise.all(["ply", "glb"].map((name) => readMesh(fixture(`mesh-colors.${name}`))));
-  assert.deepEqual(ply?.samples?.positions, ofGlb?.samples?.positions);
-  const box = { ...plain, image: rgb, mesh: read };
-  assert.notEqual((await aligner.evaluate(box, truth)).metrics.colorAgreement, undefined);
 });
 
 test("a mesh with a texture that can't be read is aligned by its shape, with a warning where there is a photo", async () => {

@@ -1,7 +1,6 @@
 /** The mask tool of the page: its solver, its paths and its regions, against slow implementations and on made scenes. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { glbOf } from "../support/files.js";
 import { pageModule } from "../support/page-module.js";
 import { forSeeds } from "../support/random.js";
 
@@ -31,13 +30,6 @@ const { distances } = await pageModule<{
 const { regionOf } = await pageModule<{ regionOf(view: View, strokes: readonly Stroke[]): Uint8Array }>(
   "masking/region",
 );
-const { painted } = await pageModule<{
-  painted(marks: readonly object[], region: Uint8Array | null, before: Uint8Array | null, size: Size): Uint8Array;
-}>("masking/strokes");
-const { declaredTriangles } = await pageModule<{
-  declaredTriangles(file: object): Promise<number | null>;
-}>("load/mesh-header");
-
 /** Pairs of neighbours with their weights. */
 function pairs({ width, height }: Size, weights: readonly Float64Array[]): [number, number, number][] {
   const found: [number, number, number][] = [];
@@ -164,52 +156,4 @@ test("strokes are obeyed: what they cover is, or is not, in the region", () => {
   }
   assert.ok(found.reduce((sum, one) => sum + one, 0) < truth.length / 2);
   assert.ok(!regionOf(view, []).includes(1));
-});
-
-test("any image, whatever its depth, gives a region with the click in it", () => {
-  forSeeds(12, (random, seed) => {
-    const [width, height] = [random.whole(1, 40), random.whole(1, 40)];
-    const rgba = Uint8ClampedArray.from(random.list(4 * width * height, 0, 256));
-    const odd = [0, Number.NaN, Number.POSITIVE_INFINITY, -1, 1e-30, 1e30, 0.5, 0.7, 0.9, 1.1];
-    const depth = Float32Array.from({ length: width * height }, () => odd[random.whole(0, 9)] ?? 0);
-    const [x, y] = [random.whole(0, width - 1), random.whole(0, height - 1)];
-    const strokes = [{ points: [[x, y] as const], radius: 1, adds: true }];
-    const found = regionOf({ width, height, rgba, depth: width % 2 === 0 ? depth : null }, strokes);
-    assert.deepEqual([found.length, found[y * width + x]], [width * height, 1], seed);
-  });
-});
-
-test("brushes paint on a region, in order, at least the pixel that they are on", () => {
-  const size = { width: 9, height: 7 };
-  const mark = (radius: number, adds: boolean) => ({ points: [[4, 3]], radius, adds, followsEdges: false });
-  const mask = painted([mark(2, false), mark(0, true)], new Uint8Array(63).fill(1), null, size);
-  for (const [i, value] of mask.entries()) {
-    const away = Math.hypot((i % 9) - 4, Math.floor(i / 9) - 3);
-    assert.equal(value, away <= 2 && away > 0 ? 0 : 1, `${i}`);
-  }
-});
-
-test("triangles are counted by the headers of GLB, PLY and STL", async () => {
-  const declared = (path: string, content: Uint8Array, size = content.length) => {
-    const head = async (length: number) => content.subarray(0, length);
-    return declaredTriangles({ path, size, head, bytes: () => assert.fail("read as a whole") });
-  };
-  const ply =
-    "ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty float x\nelement face 17000000\nend_header\n";
-  assert.equal(await declared("a.ply", Buffer.from(ply)), 17_000_000);
-  const stl = Buffer.alloc(4096);
-  stl.writeUInt32LE(17_000_000, 80);
-  assert.equal(await declared("a.stl", stl, 84 + 50 * 17_000_000), 17_000_000);
-  assert.equal(await declared("a.stl", stl), null);
-  const attributes = { POSITION: 1 };
-  const primitives = [
-    { indices: 0, attributes: {} },
-    { attributes, mode: 5 },
-    { attributes, mode: 1 },
-  ];
-  const nodes = [{ mesh: 0 }, { mesh: 0 }, {}];
-  const glb = glbOf({ accessors: [{ count: 300 }, { count: 12 }], meshes: [{ primitives }], nodes }, new Uint8Array());
-  assert.equal(await declared("a.glb", glb), 2 * (100 + 10));
-  assert.equal(await declared("a.glb", glb.subarray(0, 40)), null);
-  assert.equal(await declared("a.obj", Buffer.from("v 0 0 0\n")), null);
 });

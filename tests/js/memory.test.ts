@@ -97,16 +97,6 @@ test("calls of several aligners wait in their order; one that waits ends at its 
   assert.deepEqual(order.slice(-2), ["first", "evaluated"]);
 });
 
-test("scenes wait for one another, and their objects do not", async () => {
-  const { mask, ...view } = frame;
-  const scene = { ...view, objects: [{ mask, mesh }] };
-  const [first, second] = await Promise.all(
-    [1, 2].map(async () => (await aligner.alignScene(scene, quick)).objects[0]),
-  );
-  assert.ok(first?.error === undefined && second?.error === undefined && first !== undefined);
-  assert.deepEqual(second?.matrix, first.matrix);
-});
-
 test("a heap that has grown is let go when no call waits for it; a prepared mesh keeps its bits", async () => {
   using prepared = await aligner.prepareMesh(mesh);
   const align = async () => withoutTimes(await aligner.align({ ...input, mesh: prepared }, quick));

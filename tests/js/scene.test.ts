@@ -76,34 +76,6 @@ test("an object without a mesh hides what is behind it", async () => {
   assert.deepEqual(poseOf(await here.alignScene(scene, quick)), poseOf(again));
 });
 
-test("one object without support is align", async () => {
-  const object = { mask: masks[0] as Uint8Array, mesh: standingMesh };
-  const { depthUnit, ...alone } = withoutTimes(await here.align({ ...tableView, ...object }, quick));
-  const result = await here.alignScene({ ...tableView, objects: [object], support: null }, quick);
-  const { contact, ...rest } = withoutTimes(placed(result)[0] as SceneAlignment);
-  assert.deepEqual([rest, result.support, result.depthUnit], [alone, null, depthUnit]);
-  assert.deepEqual(contact, { restsOn: null, gapM: null, sharedVolume: 0, snappedM: 0 });
-});
-
-test("snap puts objects onto the support, their proportions with them, and the pose says so", async () => {
-  const fitted = async (snap: boolean) => here.alignScene(tableScene, { ...quick, snap, proportions: "axes" });
-  const [before, snapped] = [await fitted(false), await fitted(true)];
-  assert.deepEqual(poseOf(before), poseOf(found));
-  const normal = snapped.support?.normal ?? [0, 0, 0];
-  for (const [i, object] of placed(snapped).entries()) {
-    const own = placed(before)[i] as SceneAlignment;
-    const [stretched, moved] = [own.proportions, object.proportions];
-    assert.ok(stretched !== undefined && moved !== undefined);
-    assert.deepEqual([moved.stretch, object.matrix.slice(12, 15)], [stretched.stretch, object.translation]);
-    for (const k of [0, 1, 2] as const) {
-      const by = object.translation[k] - own.translation[k];
-      assert.ok(Math.abs(by - (normal[k] ?? 0) * object.contact.snappedM) < 1e-9, `${i}: ${by}`);
-      assert.ok(Math.abs(moved.translation[k] - stretched.translation[k] - by) < 1e-9, `${i}`);
-    }
-    if (object.contact.restsOn !== null) assert.ok(Math.abs(object.contact.gapM ?? 1) < 1e-9);
-  }
-});
-
 test("a plane that is passed is used, and what is known of an object goes before the options", async () => {
   const scale = (poses[0]?.scale ?? 1) * 1.02;
   const [first, ...others] = tableScene.objects;

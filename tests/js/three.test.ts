@@ -252,25 +252,6 @@ test("textures are sampled on the surface, by their wrapping, channel and the co
   );
 });
 
-test("parts with and without texture, mirrored and moved, keep their own colours and face outwards", () => {
-  const textured = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ map: textureOf() }));
-  textured.position.set(-2, 0, 0);
-  textured.scale.set(-1, 1, 1);
-  const blue = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ color: new Color().setRGB(0, 0, 1) }));
-  const again = new Mesh(textured.geometry, textured.material);
-  again.position.set(2, 0, 0);
-  const { samples } = meshInputFromThree(new Group().add(textured, blue, again));
-  assert.ok(samples);
-  assert.deepEqual(colorNear(samples, [-1.75, -0.25, 0.5]), texels[0]);
-  assert.deepEqual(colorNear(samples, [0.25, -0.25, 0.5]), [0, 0, 255]);
-  assert.deepEqual(colorNear(samples, [1.75, -0.25, 0.5]), texels[0]);
-  for (let i = 0; i < samples.normals.length; i += 3) {
-    const [at, normal] = [samples.positions, samples.normals].map((of) => new Vector3().fromArray(of, i));
-    at?.setX(at.x - (at.x < -1 ? -2 : at.x > 1 ? 2 : 0));
-    assert.ok((at?.dot(normal as Vector3) ?? 0) > 0.4, `${at?.toArray()}`);
-  }
-});
-
 test("images of browsers are drawn, and what cannot be read leaves the mesh without colours", () => {
   const of = (material: Material | Material[], box = new BoxGeometry()) => meshInputFromThree(new Mesh(box, material));
   const image = { naturalWidth: 2, naturalHeight: 2 };

@@ -37,19 +37,6 @@ test("known cameras: one pose in the world, and in each view; a view may lack a 
   assert.ok(unmasked.views.every((view) => !("metrics" in view)));
 });
 
-test("known cameras show the proportions of a mesh together, which leave the pose as it is", async () => {
-  const narrow = { ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 0.95 * x : x)) };
-  const input = { ...known, mesh: narrow };
-  const { proportions, matrix } = await here.alignViews(input, { proportions: "axes", metrics: false });
-  assert.ok(proportions !== undefined);
-  for (const [k, expected] of [truth.scale / 0.95, truth.scale, truth.scale].entries()) {
-    const length = (proportions.stretch[k as 0]?.[k as 0] ?? 0) * proportions.scale;
-    assert.ok(Math.abs(length / expected - 1) < 0.02, `${length} for ${expected}`);
-  }
-  const plain = await here.alignViews(input, { metrics: false });
-  assert.deepEqual([plain.matrix, plain.proportions], [matrix, undefined]);
-});
-
 test("unknown cameras: one size, and camera poses that follow", async () => {
   const found = await here.alignViews({ mesh, views: rig.map(({ frame }) => frame) });
   assert.equal(found.world, "camera");
