@@ -93,7 +93,7 @@ test("depth maps that numpy, OpenCV, OpenEXR and tifffile write now: values, mas
   const folder = mkdtempSync(join(tmpdir(), "sim3align-depth-"));
   execFileSync(python, [join(repository, "tests", "fixtures", "make_depth_files.py"), folder]);
   const all = JSON.parse(readFileSync(join(folder, "expected.json"), "utf8")) as Record<string, Expected>;
-  assert.ok(Object.keys(all).length > 40);
+  assert.ok(Object.keys(all).length > 25);
   for (const [name, expected] of Object.entries(all)) {
     const reading = readDepth(new Uint8Array(readFileSync(join(folder, name))), expected.options);
     if (expected.error !== undefined) {
