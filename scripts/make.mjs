@@ -1,19 +1,15 @@
-/**
- * `npm run build`, `build:www`, `docs`, `api-report`, `notices`, `samples` and `format`: each writes one thing. Those that are
- * committed are checked by `npm test`.
- */
+/** `npm run build`, `build:www`, `docs`, `update` and `format`: each writes one thing. `npm test` checks those that are committed. */
 import { writeApiDocs } from "./lib/api-docs.mjs";
 import { writeApiReport } from "./lib/api-report.mjs";
 import { writeNotice } from "./lib/notices.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { nodeProgram, run } from "./lib/run.mjs";
-import { generateSamples, pageSamplesDir } from "./lib/sample.mjs";
 import { npmPackages, rustToolchain } from "./lib/setup.mjs";
 import { buildSite } from "./lib/site.mjs";
 import { script, step } from "./lib/step.mjs";
 import { buildWasm } from "./lib/wasm.mjs";
 
-/** What can be made, each after what it needs. @type {Record<string, () => Promise<unknown>>} */
+/** @type {Record<string, () => Promise<unknown>>} */
 const makers = {
   /** The publishable package, in pkg/. */
   build: buildPackage,
@@ -21,12 +17,15 @@ const makers = {
   "build:www": buildSite,
   /** The API reference, in target/docs. */
   docs: () => buildWasm().then(() => step("API reference", writeApiDocs)),
-  /** The report of the package's API; to be committed. */
-  "api-report": () => buildPackage().then(() => step("API report", writeApiReport)),
-  /** The licences of the code in the package; to be committed. */
-  notices: () => rustToolchain().then(() => step("third-party notices", writeNotice)),
-  /** The page's samples; to be committed. */
-  samples: () => rustToolchain().then(() => step("samples", () => generateSamples(pageSamplesDir))),
+  /** The committed files that follow from the sources: declarations of the options, the API report, the notices. */
+  async update() {
+    await rustToolchain();
+    const declarations = ["test", "--quiet", "--package", "sim3align-lab", "typescript"];
+    await step("TypeScript declarations", () => run("cargo", declarations, { env: { UPDATE: "1" } }));
+    await buildPackage();
+    await step("API report", writeApiReport);
+    await step("third-party notices", writeNotice);
+  },
   /** Everything, formatted, with the linter's safe corrections. */
   async format() {
     await Promise.all([npmPackages(), rustToolchain()]);

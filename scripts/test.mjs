@@ -9,12 +9,12 @@ import { noTests, sum } from "./lib/counts.mjs";
 import { collect, print } from "./lib/output.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { duration, explain, runChecks, script } from "./lib/step.mjs";
+import { commands } from "./suites/commands.mjs";
 import { bundlers, runtimes } from "./suites/hosts.mjs";
 import { browser, examples, javaScript } from "./suites/installed.mjs";
-import { lint, types } from "./suites/lint.mjs";
-import { checkPackage, checkSizes } from "./suites/package.mjs";
-import { guard } from "./suites/record.mjs";
-import { native, samples, wasm } from "./suites/rust.mjs";
+import { lint } from "./suites/lint.mjs";
+import { checkPackage } from "./suites/package.mjs";
+import { native, wasm } from "./suites/rust.mjs";
 
 /**
  * @typedef {object} Suite
@@ -30,15 +30,12 @@ const suites = {
   js: { title: "JavaScript tests on the installed package", run: javaScript, after: "build" },
   wasm: { title: "Rust tests, WebAssembly in Node", run: wasm },
   browser: { title: "Browser tests", run: browser, after: "build" },
-  lint: { title: "Formatters and linters", run: lint },
-  record: { title: "Accuracy against the last record", run: guard, after: "build" },
-  samples: { title: "Reproduction of the samples", run: samples },
+  lint: { title: "Formatters, linters and types", run: lint, after: "build" },
+  commands: { title: "Commands in their smallest form", run: commands, after: "build" },
   bundlers: { title: "The package in bundlers' apps", run: bundlers, after: "build" },
   examples: { title: "Examples", run: examples, after: "build" },
   runtimes: { title: "The package in other runtimes", run: runtimes, after: "build" },
   package: { title: "Package checks", run: checkPackage, after: "build" },
-  types: { title: "Type checks", run: types, after: "build" },
-  size: { title: "Size budgets", run: checkSizes, after: "build" },
 };
 
 const LANES = 2;

@@ -9,7 +9,6 @@ pub mod clouds;
 pub mod cpu_time;
 mod draws;
 pub mod files;
-pub mod fuzz;
 pub mod monocular;
 pub mod names;
 pub mod outlines;

@@ -5,11 +5,6 @@ mod commands;
 use std::process::ExitCode;
 
 use commands::{Arguments, COMMANDS, Failure};
-use sim3align_lab::fuzz::memory::CountingAllocator;
-
-/// For the memory of `fuzz`.
-#[global_allocator]
-static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 fn usage() -> String {
     let commands = COMMANDS.iter().map(|command| format!("  {:14}{}\n", command.name, command.about));

@@ -5,7 +5,7 @@ import { basename, join, resolve } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { runPython } from "../lib/python.mjs";
-import { foldersWith, readTypedCase } from "./inputs.mjs";
+import { caseFolders, readTypedCase } from "../speed/inputs.mjs";
 
 /** @typedef {{ method: string, case: string, seconds: number | null, error?: string }} Answered */
 
@@ -42,9 +42,6 @@ export const meshMethods = (isQuick) => (isQuick ? quick : { ...quick, "probreg-
 
 /** Methods that align two clouds. @type {Record<string, number>} */
 export const pairMethods = { "open3d-ransac": 2, "open3d-fgr": 1, "kiss-matcher": 0.5 };
-
-/** Folders of cases stand for the cases in them. @param {readonly string[]} folders */
-export const caseFolders = (folders) => foldersWith("camera.json", folders);
 
 /**
  * Runs the methods; installs them first where that has not been done.

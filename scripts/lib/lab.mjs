@@ -1,13 +1,19 @@
-/** The lab's program: generated cases, baselines and measurements, native. */
+/** The lab's program: generated cases and measurements, native. */
+import { join } from "node:path";
 import { once } from "./cache.mjs";
 import { at } from "./paths.mjs";
 import { run } from "./run.mjs";
 import { rustToolchain } from "./setup.mjs";
 
-/** Builds the program, optimised as the WebAssembly is. */
-export const buildLab = once(async () => {
+/**
+ * `native` is as optimised as the WebAssembly. Tests take `dev`, in which they are compiled anyway; the bits are the same, and
+ * overflow is checked.
+ */
+const profile = process.env.SIM3ALIGN_LAB_PROFILE ?? "native";
+
+const buildLab = once(async () => {
   await rustToolchain();
-  await run("cargo", ["build", "--quiet", "--profile", "native", "--package", "sim3align-lab"]);
+  await run("cargo", ["build", "--quiet", "--profile", profile, "--package", "sim3align-lab"]);
 });
 
 /**
@@ -16,23 +22,5 @@ export const buildLab = once(async () => {
  */
 export async function runLab(args, options) {
   await buildLab();
-  return run(at("target", "native", "sim3align-lab"), args, options);
-}
-
-/**
- * The same in the profile of the tests: optimised, and with checks of overflow. It is the program that the tests of the lab run:
- * to build it by itself would compile everything again, with other features of the dependencies.
- */
-const buildTestedLab = once(async () => {
-  await rustToolchain();
-  await run("cargo", ["test", "--quiet", "--workspace", "--tests", "--no-run"]);
-});
-
-/**
- * @param {readonly string[]} args
- * @param {import("./run.mjs").RunOptions} [options]
- */
-export async function runTestedLab(args, options) {
-  await buildTestedLab();
-  return run(at("target", "debug", "sim3align-lab"), args, options);
+  return run(join(at("target"), profile === "dev" ? "debug" : profile, "sim3align-lab"), args, options);
 }

@@ -4,9 +4,9 @@ import { dirname, join } from "node:path";
 import { filesBelow } from "../lib/cache.mjs";
 import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
-import { setUp, wasmTarget } from "../lib/setup.mjs";
+import { setUp } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
-import { wasmModules } from "../lib/wasm.mjs";
+import { checkCodes, checkDocuments } from "./documents.mjs";
 
 /** Crates of the workspace besides the aligner. */
 const crates = [
@@ -16,15 +16,19 @@ const crates = [
 
 export async function lint() {
   await setUp();
-  const clippy = (/** @type {readonly string[]} */ args) => () =>
-    run("cargo", ["clippy", "--quiet", ...args, "--", "-D", "warnings"], { remedy: "correct what clippy names" });
-  const packages = wasmModules.flatMap(({ crate }) => ["--package", crate]);
+  const clippy = ["clippy", "--quiet", "--workspace", "--all-targets"];
   const [node, biome] = nodeProgram("@biomejs/biome", "biome");
+  const [, tsc] = nodeProgram("typescript", "tsc");
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
-    ["clippy, native", clippy(["--workspace", "--all-targets"])],
-    ["clippy, WebAssembly modules", clippy(["--lib", "--target", wasmTarget, ...packages])],
+    ["clippy", () => run("cargo", [...clippy, "--", "-D", "warnings"], { remedy: "correct what clippy names" })],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
+    ...["pkg-config", "tests", "www", "scripts"].map(
+      (folder) =>
+        /** @type {const} */ ([`types of ${folder}/`, () => run(node, [tsc, "--noEmit", "--project", folder])]),
+    ),
+    ["links and commands of the documents", checkDocuments],
+    ["codes of the guide on errors", checkCodes],
     ["commands start before any package is installed", checkCommands],
     ["all Rust tests are in test programs", checkTests],
   ]);
@@ -58,15 +62,4 @@ function checkTests() {
     throw new Error(
       `${found.join(", ")}: never run. Remedy: move the tests to tests/suite, of the repository or of the crate.`,
     );
-}
-
-/** Type checks of what the build does not compile; they need the built package's declarations. */
-export function types() {
-  const [node, tsc] = nodeProgram("typescript", "tsc");
-  return runChecks(
-    ["pkg-config", "tests", "www", "scripts"].map((folder) => [
-      `types of ${folder}/`,
-      () => run(node, [tsc, "--noEmit", "--project", folder]),
-    ]),
-  );
 }

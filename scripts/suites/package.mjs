@@ -60,6 +60,9 @@ export async function checkPackage() {
     ["the notice names what the modules hold, under licences that are allowed", checkNotice],
     ["the API reference, without a warning", writeApiDocs],
     ["size of the tarball", (say) => holdSize("The tarball", size, limits.tarball, say)],
+    ...moduleChecks(),
+    ["size of the page's script, gzipped, without the 3D library", checkPage],
+    ["size of the element's script, gzipped, without the 3D library", checkElement],
   ]);
 }
 
@@ -85,22 +88,21 @@ function checkNamedFiles() {
   if (missing.length > 0) throw new Error(`pkg/ lacks ${missing.join(", ")}, which its package.json names.`);
 }
 
-export function checkSizes() {
+/** @returns {[title: string, check: (say: (note: string) => void) => unknown][]} */
+function moduleChecks() {
   const modules = wasmModules.map((module) => ({ ...module, file: wasmFile(module, join(packageDir, "wasm")) }));
-  return runChecks([
+  return [
     ...modules.map(
       ({ name, budget, file }) =>
-        /** @type {const} */ ([
+        /** @type {[string, (say: (note: string) => void) => unknown]} */ ([
           `size of the ${name} module, gzipped`,
-          (/** @type {(note: string) => void} */ say) => holdSize(name, sizes(file).gzip, budget, say),
+          (say) => holdSize(name, sizes(file).gzip, budget, say),
         ]),
     ),
-    ["size of the page's script, gzipped, without the 3D library", checkPage],
-    ["size of the element's script, gzipped, without the 3D library", checkElement],
     ["the modules export different functions", () => checkSeparation(modules.map(({ file }) => file))],
     ["the modules hold no path of the machine that built them", () => checkPaths(modules.map(({ file }) => file))],
     ["the modules have no instruction that browsers lack, or whose result differs", () => checkFeatures(modules)],
-  ]);
+  ];
 }
 
 /**

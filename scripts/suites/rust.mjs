@@ -1,14 +1,8 @@
-/** The Rust tests, natively and as WebAssembly in Node, and the samples that the crates' generator makes. */
-import { readFileSync } from "node:fs";
-import { relative } from "node:path";
-import { cached, digest, filesBelow } from "../lib/cache.mjs";
+/** The Rust tests, natively and as WebAssembly in Node. */
 import { rustCounts, sum, withStatus } from "../lib/counts.mjs";
 import { print } from "../lib/output.mjs";
-import { at } from "../lib/paths.mjs";
 import { attempt, run } from "../lib/run.mjs";
-import { generateSamples, pageSamplesDir } from "../lib/sample.mjs";
 import { rustToolchain, wasmBindgen, wasmBindgenProgram, wasmTarget } from "../lib/setup.mjs";
-import { runChecks } from "../lib/step.mjs";
 
 /**
  * Runs tests; once more if they hang, because Node itself may: its end can deadlock (nodejs/node#54918).
@@ -57,32 +51,4 @@ export async function wasm() {
     onLine,
   });
   return { ...counts, times };
-}
-
-/** The generator writes the committed samples, byte by byte. */
-export const samples = () =>
-  runChecks([
-    [
-      "www/samples",
-      async (say) => {
-        const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock", "scripts/lib"].map((path) =>
-          at(path),
-        );
-        const stamp = at("target", "samples", "reproduced-from");
-        const isNew = await cached(stamp, digest([...sources, pageSamplesDir]), [], reproduceSamples);
-        say(`${filesBelow([pageSamplesDir]).length} files${isNew ? "" : ", up to date"}`);
-      },
-    ],
-  ]);
-
-async function reproduceSamples() {
-  const folder = at("target", "samples", "page");
-  await generateSamples(folder);
-  const [made = new Map(), committed = new Map()] = [folder, pageSamplesDir].map(
-    (root) => new Map(filesBelow([root]).map((file) => [relative(root, file), readFileSync(file, "base64")])),
-  );
-  const other = [...new Set([...made.keys(), ...committed.keys()])].filter(
-    (name) => made.get(name) !== committed.get(name),
-  );
-  if (other.length > 0) throw new Error(`Not reproduced: ${other.join(", ")}. Remedy: npm run samples.`);
 }

@@ -5,8 +5,7 @@ import { zipSync } from "fflate";
 import type { Page } from "playwright-core";
 import { createAligner } from "sim3align";
 import { browserFor, WEBGL } from "../support/browser.js";
-import { crossOriginHost, elementFolder, servedFolder } from "../support/element-host.js";
-import { obj } from "../support/files.js";
+import { elementFolder, servedFolder } from "../support/element-host.js";
 import { type Files, files, HEIGHT, inFolder, jsonFile, pinhole, seen, WIDTH } from "../support/page-files.js";
 import { mesh, truth } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
@@ -100,41 +99,6 @@ async function serveFiles(page: Page, path: string, served: Files): Promise<void
   });
 }
 
-test("relative depth without a camera is aligned in no unit, and a session holds its calibration", async () => {
-  const { page, errors } = await host(`<sim3-align id="a"></sim3-align><sim3-align id="b" manual></sim3-align>`);
-  await page.evaluate(() => {
-    const { camera: _, depth, ...given } = window.arrays as { camera: object; depth: Float32Array };
-    const disparity = Float32Array.from(depth, (z) => 2 / z + 0.3);
-    window.arrays = { ...given, depth: disparity, depthKind: "affine-invariant-disparity" };
-  });
-  await give(page, "a");
-  const { objects } = await told<{ objects: Element["results"] }>(page, "a", "align");
-  const [result] = objects;
-  assert.equal(result?.isMetric, false);
-  assert.ok((result?.metrics?.iou ?? 0) > 0.9, `${result?.metrics?.iou}`);
-  assert.match(
-    await page.evaluate(
-      () => document.querySelector("#a")?.shadowRoot?.querySelector("#dimensions")?.textContent ?? "",
-    ),
-    /relative/,
-  );
-  const { matrix } = result?.pose ?? { matrix: [] };
-  await page.evaluate(() => {
-    const [a, b] = ["#a", "#b"].map((id) => document.querySelector(id) as Element);
-    if (a !== undefined && b !== undefined) Object.assign(b, { session: a.session, scene: window.arrays });
-  });
-  await told(page, "b", "ready");
-  const restored = await page.waitForFunction(() => {
-    const [one] = (document.querySelector("#b") as Element).results;
-    return one?.pose && one.metrics ? one : null;
-  }, PATIENCE);
-  const one = (await restored.jsonValue()) as Element["results"][number];
-  assert.deepEqual(one.pose?.matrix, matrix);
-  assert.ok(Math.abs((one.metrics?.iou ?? 0) - (result?.metrics?.iou ?? 1)) < 1e-9, "in another depth or camera");
-  assert.deepEqual(errors, []);
-  await page.close();
-});
-
 test("an element aligns what it is given to the same bits as Node, and says so", async () => {
   const { page, errors } = await host(`<sim3-align id="a"></sim3-align>`);
   const input = { ...seen, camera: pinhole, mesh };
@@ -157,39 +121,6 @@ test("an element aligns what it is given to the same bits as Node, and says so",
   await page.evaluate(() => document.querySelector("#a")?.remove());
   assert.deepEqual(errors, []);
   await page.close();
-});
-
-test("one script tag loads the element from another origin, with its workers and its readers", async () => {
-  const host = await crossOriginHost();
-  const { page, errors } = await browser.open(host.path);
-  try {
-    await giveArrays(page);
-    await page.evaluate(() => {
-      window.told = [];
-      document
-        .querySelector("sim3-align")
-        ?.addEventListener("align", (event) =>
-          window.told.push({ of: "a", type: "align", detail: (event as CustomEvent).detail }),
-        );
-    });
-    // Files of more than a megabyte are read in a worker.
-    const comment = Buffer.from(`# ${"a".repeat(1 << 20)}\n`);
-    await serveFiles(page, "files", { "mesh.obj": Buffer.concat([comment, obj(mesh)]) });
-    await page.evaluate(async () => {
-      const [object] = (window.arrays as { objects: object[] }).objects;
-      const mesh = await (await fetch("/files/mesh.obj")).blob();
-      window.arrays = { ...window.arrays, objects: [{ ...object, mesh }] };
-    });
-    await give(page, "a");
-    const { objects } = await told<{ objects: Element["results"] }>(page, "a", "align");
-    assert.ok((objects[0]?.metrics?.iou ?? 0) > 0.9, `${objects[0]?.metrics?.iou}`);
-    const workers = page.workers().map((worker) => new URL(worker.url()).protocol);
-    assert.ok(workers.length > 0 && workers.every((protocol) => protocol === "blob:"), `${workers}`);
-    assert.deepEqual(errors, []);
-  } finally {
-    await page.close();
-    await host.close();
-  }
 });
 
 test("instances on one page are independent: scene, pose, undo, options, decision", async () => {
@@ -230,20 +161,6 @@ test("instances on one page are independent: scene, pose, undo, options, decisio
     ["aligned", "start"],
   );
   assert.deepEqual(errors, []);
-  await page.close();
-});
-
-test("properties that were set before the script was loaded become those of the element", async () => {
-  const { page } = await browser.open(`${elementFolder}/frame.html`);
-  // A page of the same origin that has not loaded the script.
-  const body = `<!doctype html><sim3-align id="a" manual></sim3-align>`;
-  await page.route("**/blank.html", (route) => route.fulfill({ contentType: "text/html", body }));
-  await page.goto(new URL("blank.html", page.url()).href);
-  await giveArrays(page);
-  await give(page, "a", { selected: "none" });
-  await page.evaluate(`import("/${elementFolder}/sim3-align.js")`);
-  await page.locator('#a .embedded[data-scene="Blob"]').waitFor(PATIENCE);
-  assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).selected), "blob");
   await page.close();
 });
 

@@ -74,37 +74,6 @@ const controlsInSight = `[...document.querySelectorAll("a[href], button, input, 
 
 const laptop = { viewport: { width: 1440, height: 900 } };
 
-for (const [name, context, most] of [
-  ["a laptop", laptop, 29],
-  ["a phone", phone, 29],
-] as const) {
-  test(
-    `few controls are in sight while objects are judged and corrected, on ${name}`,
-    {
-      address: "",
-      ...context,
-    },
-    async (opened, page) => {
-      const hasFew = async (most: number) => {
-        const found = (await page.evaluate(controlsInSight)) as [string, number][];
-        const names = found.map(([name]) => name);
-        assert.ok(names.length <= most, `${names.length}: ${names.join(", ")}`);
-        for (const needed of ["accept", "fix", "refine", "undo", "Move", "JSON", "Project"])
-          assert.ok(names.includes(needed), `${needed} is not among ${names.join(", ")}`);
-      };
-      await opened.has3d("webgl");
-      // Three objects are three of them.
-      await hasFew(most);
-      await page.click("#fix");
-      await hasFew(most);
-      await drop(opened, files);
-      await page.locator(".start[data-own=true]").waitFor(PATIENCE);
-      await opened.aligned();
-      await hasFew(most - 3);
-    },
-  );
-}
-
 for (const [name, context, least] of [
   ["a laptop", laptop, 24],
   ["a phone", phone, 44],
@@ -142,27 +111,6 @@ test("nothing is cut on any screen, nor are lengths above a metre", { address: "
   }
 });
 
-test("explanations open by keyboard, and all metrics are explained", async ({ page }) => {
-  await page.locator(".details > summary").focus();
-  await page.keyboard.press("Enter");
-  await page.locator(".meanings > summary").focus();
-  await page.keyboard.press("Enter");
-  const meanings = page.locator(".meanings dl");
-  await meanings.waitFor(PATIENCE);
-  for (const title of [...(await page.locator(".metrics dt").allTextContents()), "Confidence", "Alternatives"])
-    assert.ok((await meanings.locator("dt").allTextContents()).includes(title), title);
-  await page.locator(".options-panel > summary").focus();
-  await page.keyboard.press("Enter");
-  await page.getByRole("button", { name: "About symmetry" }).focus();
-  await page.keyboard.press("Enter");
-  const box = page.locator(".tip-box:popover-open");
-  assert.match((await box.textContent()) ?? "", /alternatives/);
-  const [place, window] = [await box.boundingBox(), page.viewportSize()];
-  assert.ok(place !== null && window !== null && place.x >= 0 && place.x + place.width <= window.width);
-  await page.keyboard.press("Escape");
-  await box.waitFor({ state: "detached", ...PATIENCE });
-});
-
 test("keys open the help, which lists them, and Escape closes it", async ({ page }) => {
   await page.keyboard.press("?");
   await page.locator("dialog.help").waitFor(PATIENCE);
@@ -181,19 +129,6 @@ test("keys open the help, which lists them, and Escape closes it", async ({ page
   for (const [title, isThere, first] of guides) assert.ok(isThere && first === `# ${title}`, `${title}: ${first}`);
   await page.keyboard.press("Escape");
   await page.locator("dialog.help").waitFor({ state: "hidden", ...PATIENCE });
-});
-
-test("the theme follows the switch, and is remembered", { colorScheme: "light" }, async (opened, page) => {
-  const paper = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
-  const light = await paper();
-  await page.keyboard.press("?");
-  await page.selectOption("#theme", "dark");
-  await page.keyboard.press("Escape");
-  const dark = await paper();
-  assert.notEqual(dark, light);
-  await page.reload();
-  await opened.aligned();
-  assert.equal(await paper(), dark);
 });
 
 const first = { address: "", isLoading: true };

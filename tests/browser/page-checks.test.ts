@@ -1,9 +1,8 @@
 /** Wrong inputs: each says at its own field what is wrong and what helps, and nothing runs meanwhile. */
 import assert from "node:assert/strict";
 import { png } from "../support/files.js";
-import { hugeMesh, otherCamera } from "../support/page-cases.js";
+import { otherCamera } from "../support/page-cases.js";
 import {
-  cameraFile,
   choose,
   depthNpy,
   drop,
@@ -65,53 +64,19 @@ test("a rejected file leaves the scene, its files and its name as they were", as
 });
 
 const wrong: readonly (readonly [title: string, changed: Files, field: string, says: RegExp])[] = [
-  ["an 8-bit depth map of one value", { "depth.npy": new Uint8Array(), "depth.png": eightBit }, "depth", /no relief/],
   ["no reading at all", { "depth.npy": depthNpy(new Float32Array(pixels)) }, "depth", /no reading/],
-  [
-    "millimetres for metres",
-    {
-      "depth.npy": depthNpy(seen.depth.map((z) => 1000 * z)),
-    },
-    "depth",
-    /millimetres/,
-  ],
   ["an empty mask", { "mask.png": maskPng(new Uint8Array(pixels)) }, "mask", /empty/],
-  ["a mask of everything", { "mask.png": maskPng(new Uint8Array(pixels).fill(1)) }, "mask", /whole image/],
-  [
-    "a mask of another size",
-    { "mask.png": png(new Uint8Array(64).fill(255), 8, 8) },
-    "mask",
-    /8 × 8 pixels; expected 160 × 120/,
-  ],
-  [
-    "a mask without depth",
-    {
-      "mask.png": maskPng(seen.mask),
-      "depth.npy": depthNpy(seen.depth.map((z, i) => (seen.mask[i] === 0 ? z || 1 : 0))),
-    },
-    "mask",
-    /No pixel of the mask has a depth/,
-  ],
-  ["a focal length of 0", { "camera.json": jsonFile({ ...pinhole, fx: 0 }) }, "camera", /fx/],
-  ["a matrix with a row missing", { "camera.json": jsonFile({ K: [300, 0, 80, 0, 300, 60] }) }, "camera", /3 × 3/],
   [
     "intrinsics of another image",
     { "camera.json": jsonFile({ ...pinhole, width: 640, height: 480 }) },
     "camera",
     /160 × 120/,
   ],
-  ["a field of view of 500°", { "camera.json": jsonFile({ fovYDeg: 500 }) }, "camera", /field of view|fov/i],
   [
     "a damaged mesh",
     { "mesh.obj": new Uint8Array(), "mesh.glb": Uint8Array.of(103, 108, 84, 70, 1) },
     "mesh",
     /expected/,
-  ],
-  [
-    "a square photo",
-    { "photo.png": png(new Uint8Array(400).fill(90), 20, 20) },
-    "photo",
-    /20 × 20, the depth map 160 × 120/,
   ],
   ["a damaged photo", { "photo.jpg": Uint8Array.of(1, 2, 3) }, "photo", /cannot decode/],
 ];
@@ -174,53 +139,4 @@ test("a camera of a resized image is scaled, that of another image is not", asyn
   await opened.click("#edit-files");
   await opened.sheet();
   assert.equal(await page.inputValue("#camera-cx"), `${pinhole.cx}`);
-});
-
-test("a mesh with too many triangles is refused by its header, and the scene stays", async (opened, page) => {
-  await drop(opened, files);
-  await opened.shows("Own files");
-  await drop(opened, hugeMesh());
-  assert.match(
-    (await problems(opened)).mesh ?? "",
-    /scan\.glb: Found 17 000 000 triangles; expected at most 4 194 304/,
-  );
-  assert.ok(await page.isDisabled("#intake-open"));
-  await page.keyboard.press("Escape");
-  assert.match((await page.textContent("#inputs")) ?? "", /depth\.npy/);
-  assert.ok((await opened.metric("iou")) > 0.9);
-});
-
-test("files that cannot be used are told by their names", async (opened, page) => {
-  await drop(opened, { ...files, "rgb.tiff": Buffer.from("II*\0photo"), "mask.exr": Buffer.from("v/1\x01") });
-  assert.match((await problems(opened)).files ?? "", /rgb\.tiff, mask\.exr: not used|mask\.exr, rgb\.tiff: not used/);
-  await page.getByRole("button", { name: "Leave out", exact: true }).first().click();
-  await opened.shows("Own files");
-  const { "depth.npy": _, ...rest } = files;
-  await drop(opened, { ...rest, "scene.npz": Buffer.from("no zip") });
-  assert.match((await problems(opened)).depth ?? "", /scene\.npz: Found/);
-});
-
-test("a damaged archive and unknown files say so, at no other field", async (opened, page) => {
-  await drop(opened, { "scene.zip": Buffer.from("PK no archive") });
-  assert.match((await problems(opened)).files ?? "", /Found scene\.zip, without a directory at its end/);
-  await page.keyboard.press("Escape");
-  await drop(opened, { "notes.txt": Buffer.from("hello") });
-  assert.match((await problems(opened)).files ?? "", /None of the files is an input \(notes\.txt\)/);
-});
-
-test("numbers out of range are errors of the camera", async (opened, page) => {
-  await drop(opened, files);
-  await opened.shows("Own files");
-  await opened.click("#edit-files");
-  await opened.sheet();
-  await page.fill("#camera-fov", "500");
-  await page.press("#camera-fov", "Enter");
-  assert.match((await problems(opened)).camera ?? "", /between 1° and 170°/);
-  await page.fill("#camera-fx", "-3");
-  await page.press("#camera-fx", "Enter");
-  assert.match((await problems(opened)).camera ?? "", /Enter|greater than 0/);
-  assert.deepEqual(Object.keys(await problems(opened)), ["camera"]);
-  await choose(opened, "camera", "camera.json", cameraFile);
-  await opened.sheet();
-  assert.ok(await page.isEnabled("#intake-open"));
 });

@@ -1,6 +1,6 @@
 /** The decision about results: accept, fix, next; what helps when unsure; the objects of a scene. */
 import assert from "node:assert/strict";
-import { choose, drop, files } from "../support/page-files.js";
+import { choose, files } from "../support/page-files.js";
 import { PATIENCE, pageTests } from "../support/site.js";
 
 const test = pageTests();
@@ -28,12 +28,6 @@ test(
     assert.equal(await chosen(), seen[0]);
   },
 );
-
-test("Fix shows the handles, with the focus on them", async ({ page }) => {
-  await page.click("#fix");
-  // Without a 3D view, there are no handles.
-  assert.equal(await page.evaluate(() => document.activeElement?.id), "refine");
-});
 
 const hammer = "#sample=hammer&quality=fast";
 test("a wrong mesh is named, and a known size is tried at once", hammer, async (opened, page) => {
@@ -120,11 +114,4 @@ test("what an object stands on is said, and the scene is saved as one GLB", "", 
       nodes.some((node) => node.name === object),
       object,
     );
-});
-
-test("a stranger goes from a dropped folder to a GLB with one click", "", async (opened) => {
-  await drop(opened, files);
-  await opened.shows("Own files");
-  const { bytes } = await opened.saved("GLB");
-  assert.equal(bytes.subarray(0, 4).toString(), "glTF");
 });

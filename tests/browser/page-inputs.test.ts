@@ -1,12 +1,9 @@
 /** The user's own files: one drop is one scene, and only becomes it when everything fits. */
 import assert from "node:assert/strict";
-import { existsSync, readdirSync, readFileSync } from "node:fs";
-import { join } from "node:path";
 import { otherPose } from "../support/case-folder.js";
 import { cocoRle, obj, png } from "../support/files.js";
 import {
   cameraFile,
-  choose,
   depthNpy,
   drop,
   dropFolder,
@@ -71,29 +68,6 @@ test("two masks and one mesh are a question, which a click answers", async (open
   await sheet.getByRole("button", { name: "They do" }).click();
   await opened.shows("Own files");
   assert.equal(await page.locator(".objects").count(), 0);
-});
-
-test("meshes are paired anew by selecting and by dragging", async (opened, page) => {
-  const { "mask.png": mask, "mesh.obj": _, ...rest } = files;
-  await drop(opened, {
-    ...rest,
-    ...{ "mask-a.png": mask as Uint8Array, "mask-b.png": maskPng(other.mask) },
-    ...{ "first.obj": meshFile, "second.obj": meshFile },
-  });
-  const sheet = await opened.sheet();
-  assert.match((await sheet.textContent()) ?? "", /Do mask-a.png and first.obj belong together\?/);
-  const shown = () =>
-    page.locator(".pair select").evaluateAll((all) => all.map((one) => (one as HTMLSelectElement).value));
-  assert.deepEqual(await shown(), ["0", "1"]);
-  await page.selectOption('[data-object="a"] select', "1");
-  await opened.sheet();
-  assert.deepEqual(await shown(), ["1", "0"]);
-  await page.dragAndDrop('[data-object="b"] .draggable', '[data-object="a"] .pair-mask >> nth=0');
-  await opened.sheet();
-  assert.deepEqual(await shown(), ["0", "1"]);
-  await page.click("#intake-open");
-  await opened.shows("Own files");
-  assert.deepEqual(await namesOf(opened), ["a", "b"]);
 });
 
 test("a label map and COCO annotations hold several masks", async (opened, page) => {
@@ -175,21 +149,6 @@ test("case folders of one image are one scene, those of others are others", asyn
   assert.deepEqual(await namesOf(opened), ["a", "b"]);
 });
 
-test("missing files are asked for, and can be added one by one", async (opened, page) => {
-  await drop(opened, { "mask.png": files["mask.png"] as Uint8Array });
-  const sheet = await opened.sheet();
-  assert.match((await sheet.textContent()) ?? "", /Depth map missing.*Mesh missing/);
-  await sheet.locator(".pair canvas").waitFor(PATIENCE);
-  // The sample's files do not fill the gaps.
-  for (const name of ["fx", "fy", "cx", "cy"]) assert.equal(await page.inputValue(`#camera-${name}`), "");
-  await drop(opened, { "mesh.obj": files["mesh.obj"] as Uint8Array, "depth.npy": files["depth.npy"] as Uint8Array });
-  await opened.sheet();
-  await choose(opened, "mask", "mask.png", files["mask.png"] as Uint8Array);
-  await opened.sheet();
-  await choose(opened, "camera", "camera.json", cameraFile);
-  await opened.shows("Own files");
-});
-
 test("mask and mesh dropped on an own scene replace what they name, if that is wanted", async (opened, page) => {
   await drop(opened, files);
   await opened.shows("Own files");
@@ -234,34 +193,4 @@ test("intrinsics can be entered, or assumed with a warning", async (opened, page
   await opened.aligned();
   assert.doesNotMatch((await page.locator(".warnings").allTextContents()).join(), /assumed/);
   assert.notDeepEqual(await opened.dimensions(), assumed);
-});
-
-const root = process.env.SIM3ALIGN_CASES ?? "";
-const skip = existsSync(root) ? false : "SIM3ALIGN_CASES is not set";
-test("real cases are dropped, shown and aligned", { skip }, async (opened) => {
-  const isCase = (name: string) => existsSync(join(root, name, "camera.json"));
-  for (const name of readdirSync(root).filter(isCase).slice(0, 3)) {
-    const own = readdirSync(join(root, name)).filter((file) => file.includes("."));
-    const read = own.map((file) => [`${name}/${file}`, readFileSync(join(root, name, file))]);
-    await dropFolder(opened, Object.fromEntries(read));
-    await opened.shows(name);
-    assert.ok((await opened.metric("iou")) > 0.5, name);
-  }
-});
-
-test("a large file is read in a worker: the sheet tells how far, and the page stays usable", async (opened, page) => {
-  // While the gate is closed, nothing that a worker has read arrives.
-  await opened.closeWorkerGate();
-  const padding = Buffer.from("# a comment that fills the file\n".repeat(1 << 16));
-  await drop(opened, { ...files, "mesh.obj": Buffer.concat([padding, Buffer.from(files["mesh.obj"] as Uint8Array)]) });
-  const status = page.locator(".intake footer [role=status]");
-  await status.filter({ hasText: /Reading … [1-9]\d* of \d+/ }).waitFor(PATIENCE);
-  // What the worker has read is held back: the mesh is not read in the thread of the page.
-  await page.waitForFunction(() => workerGate.isHolding(), undefined, PATIENCE);
-  assert.equal(await page.locator('main[data-scene="Own files"]').count(), 0);
-  assert.match((await status.textContent()) ?? "", /Reading/);
-  await page.locator(".intake .file-roles summary").click();
-  assert.ok((await page.locator(".intake .file-roles").getAttribute("open")) !== null);
-  await opened.openWorkerGate();
-  await opened.shows("Own files");
 });

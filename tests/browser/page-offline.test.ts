@@ -31,17 +31,6 @@ test("after the first visit, the page and all samples work without a connection"
   await opened.aligned();
 });
 
-test("a connection that is lost after loading is said, and nothing hangs", async (opened, page) => {
-  // Nothing that loads later is there.
-  await page.route("**/assets/**", (route) => route.abort());
-  await page.context().setOffline(true);
-  await page.keyboard.press("?");
-  await drop(opened, files);
-  await opened.says(/^(?!Reading)/);
-  // The browser logs the requests that failed.
-  opened.errors.length = 0;
-});
-
 test("a new version is shown at the next load, and the one before is forgotten", visit, async (_, page) => {
   cpSync(siteDir, folder, { recursive: true });
   const server = await serve(folder);

@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
 import { tiff, withExif } from "../support/exif.js";
 import { ACROSS, DOWN, jpegOf, photoPng } from "../support/page-cases.js";
-import { depthNpy, drop, type Files, files, HEIGHT, maskPng, seen, WIDTH } from "../support/page-files.js";
-import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
+import { drop, files, maskPng, seen } from "../support/page-files.js";
+import { PATIENCE, pageTests } from "../support/site.js";
 
 const test = pageTests();
 
@@ -14,25 +14,6 @@ async function jpeg(page: Page, image: Uint8Array, hasExif = false): Promise<Uin
   return hasExif
     ? withExif(bytes, tiff({ make: "Maker" }, { focal35: 65, pixelX: ACROSS, pixelY: DOWN }, true))
     : bytes;
-}
-
-/** The middle of the object, in shares of the image. */
-function middle(): [number, number] {
-  let [x, y, count] = [0, 0, 0];
-  seen.mask.forEach((inside, i) => {
-    if (inside === 0) return;
-    [x, y, count] = [x + (i % WIDTH), y + Math.floor(i / WIDTH), count + 1];
-  });
-  return [(x / count + 0.5) / WIDTH, (y / count + 0.5) / HEIGHT];
-}
-
-/** Clicks the photo in the mask tool, and waits for the region. */
-async function mark({ page }: SitePage, [u, v]: readonly [number, number]): Promise<void> {
-  const canvas = page.locator(".mask-editor canvas");
-  const box = await canvas.boundingBox();
-  assert.ok(box !== null);
-  await canvas.click({ position: { x: u * box.width, y: v * box.height } });
-  await settled(page);
 }
 
 const settled = (page: Page) =>
@@ -68,26 +49,6 @@ test("a photo alone is shown with its focal length, and the rest is named with i
   assert.match((await sheet.locator(".pair").textContent()) ?? "", /mask\.jpg/);
 });
 
-test("an object is marked on a photo, and aligned when depth and mesh come", async (opened, page) => {
-  await drop(opened, { "photo.jpg": await jpeg(page, photoPng, true) });
-  await opened.sheet();
-  await page.click("#mark-mask");
-  await page.locator(".mask-editor").waitFor(PATIENCE);
-  assert.ok(await page.isDisabled("#mask-done"));
-  await mark(opened, middle());
-  assert.ok(Math.abs((await share(page)) - trueShare) < 1.5, `${await share(page)} of ${trueShare} %`);
-  assert.deepEqual(await opened.violations(), []);
-  await page.click("#mask-done");
-  await page.locator(".mask-editor").waitFor({ state: "detached", ...PATIENCE });
-  await page.locator(".pair canvas").first().waitFor(PATIENCE);
-  await drop(opened, { "mesh.obj": files["mesh.obj"] as Uint8Array, "depth.npy": depthNpy(seen.depth) });
-  await opened.shows("Own files");
-  assert.ok((await opened.metric("iou")) > 0.85);
-  // A link holds no files.
-  await opened.press("Copy link");
-  await opened.says(/own files cannot be linked/);
-});
-
 test("the mask of a scene with depth is marked by keyboard, corrected and taken back", async (opened, page) => {
   const { "mask.png": _, ...rest } = files;
   await drop(opened, rest);
@@ -113,43 +74,6 @@ test("the mask of a scene with depth is marked by keyboard, corrected and taken 
   await page.click("#mask-done");
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.85);
-});
-
-test("models of the host see depth and mask in the photo", async (opened, page) => {
-  const requests: string[] = [];
-  page.on("request", (request) => requests.push(new URL(request.url()).protocol));
-  const tensors = { depth: Array.from(seen.depth, (z) => 1 / z - 0.5), mask: Array.from(seen.mask) };
-  await page.evaluate(
-    ({ depth, mask, width, height }) => {
-      globalThis.sim3alignPhotoModel = {
-        title: "recorded tensors",
-        see: async (photo: Blob, place: readonly number[]) => {
-          if (photo.type === undefined || place.some((share) => !(share > 0 && share < 1))) throw new Error("no place");
-          return {
-            predicted_depth: { data: Float32Array.from(depth), dims: [height, width] },
-            depthKind: "affine-invariant-disparity",
-            masks: { data: Uint8Array.from(mask), dims: [1, 1, height, width] },
-            iou_scores: { data: Float32Array.of(0.9), dims: [1, 1, 1] },
-          };
-        },
-      };
-    },
-    { ...tensors, width: WIDTH, height: HEIGHT },
-  );
-  const dropped: Files = { "photo.jpg": await jpeg(page, photoPng, true), "mesh.obj": files["mesh.obj"] as Uint8Array };
-  await drop(opened, dropped);
-  await opened.sheet();
-  await page.getByRole("button", { name: "Mark", exact: true }).click();
-  await page.locator(".mask-editor").waitFor(PATIENCE);
-  await mark(opened, middle());
-  await page.getByRole("button", { name: "Use recorded tensors" }).click();
-  await page.locator(".mask-editor").waitFor({ state: "detached", ...PATIENCE });
-  await opened.shows("Own files");
-  assert.ok((await opened.metric("iou")) > 0.85);
-  assert.ok(
-    requests.every((protocol) => protocol !== "https:"),
-    "the page asked the network",
-  );
 });
 
 declare global {

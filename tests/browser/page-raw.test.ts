@@ -1,25 +1,10 @@
 /** Depth that a model guessed, and cameras that nobody has given: sizes without a unit, until one of them is known. */
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import type { Page } from "playwright-core";
-import { otherPose } from "../support/case-folder.js";
-import { repository } from "../support/environment.js";
 import { tiff, withExif } from "../support/exif.js";
 import { png } from "../support/files.js";
-import {
-  cameraFile,
-  depthNpy,
-  drop,
-  type Files,
-  files,
-  HEIGHT,
-  maskPng,
-  pinhole,
-  seen,
-  WIDTH,
-} from "../support/page-files.js";
-import { mesh, render, truth } from "../support/scene.js";
+import { drop, type Files, files, HEIGHT, maskPng, seen, WIDTH } from "../support/page-files.js";
+import { mesh, truth } from "../support/scene.js";
 import { pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
@@ -106,62 +91,6 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   await opened.aligned();
   assert.ok(Math.abs(Math.max(...(await opened.dimensions())) - longest) < 0.1);
   assert.deepEqual(await opened.violations(), []);
-});
-
-/** Files as depth cameras and models write them, and what the sheet says of each. */
-const written: readonly (readonly [file: string, unit: RegExp, camera: RegExp])[] = [
-  ["depth-depth-pro.npz", /^Unit: /, /From the depth file/],
-  ["depth-opencv.exr", /^Unit: metres/, /Estimated/],
-  ["depth-uint16.tiff", /^Unit: 0\.001 m/, /Estimated/],
-  ["depth-opencv.pfm", /^Unit: metres/, /Estimated/],
-];
-
-test("files of depth models are read, and their units and cameras shown", async (opened, page) => {
-  for (const [file, unit, camera] of written) {
-    const bytes = Uint8Array.from(readFileSync(join(repository, "tests", "fixtures", file)));
-    await drop(opened, { [file]: bytes });
-    const sheet = await opened.sheet();
-    assert.match((await sheet.locator('[data-field="depth"]').textContent()) ?? "", /\d+ × \d+/, file);
-    assert.match((await page.textContent("#depth-unit")) ?? "", unit, file);
-    assert.match((await sheet.locator('[data-field="camera"]').textContent()) ?? "", camera, file);
-    await page.click("#intake-cancel");
-  }
-});
-
-test("several objects calibrate a scene together, and one known size makes all of them metric", async (opened, page) => {
-  const other = render(mesh, otherPose(2), pinhole, WIDTH, HEIGHT);
-  // The nearer surface of both.
-  const depth = seen.depth.map((z, i) => Math.min(z, other.depth[i] ?? z));
-  const isNearer = (own: Float32Array) => (inside: number, i: number) => (own[i] === depth[i] ? inside : 0);
-  await drop(opened, {
-    "disparity.npy": depthNpy(depth.map((z) => 3 / z - 1.5)),
-    "camera.json": cameraFile,
-    "mask-a.png": maskPng(seen.mask.map(isNearer(seen.depth))),
-    "mask-b.png": maskPng(other.mask.map(isNearer(other.depth))),
-    "mesh-a.obj": files["mesh.obj"] as Uint8Array,
-    "mesh-b.obj": files["mesh.obj"] as Uint8Array,
-  });
-  await opened.sheet();
-  await page.click("#intake-open");
-  await opened.shows("Own files");
-  const sizes = await page.locator(".objects .state").allTextContents();
-  assert.doesNotMatch(sizes.join(), UNIT);
-  const longest = (text: string) => Math.max(...Array.from(text.matchAll(/[\d.]+/g), Number));
-  assert.equal(longest(sizes[0] ?? ""), 1);
-  const ratio = otherPose(2).scale / truth.scale;
-  assert.ok(Math.abs(longest(sizes[1] ?? "") / ratio - 1) < 0.1, `${sizes}, true ratio is ${ratio}`);
-  // The size of the second one tells that of the first one.
-  await page.locator(".objects .select").nth(1).click();
-  await opened.enter("#known-size", (100 * ratio * Math.max(...trueSides())).toFixed(2));
-  await page.locator(".objects .select").nth(0).click();
-  const first = Math.max(...(await opened.dimensions())) / 100;
-  assert.ok(Math.abs(first / Math.max(...trueSides()) - 1) < 0.1, `${first} m`);
-  const iou = await opened.metric("iou");
-  assert.ok(iou > 0.9, `${iou}`);
-  // Refining goes on in the calibrated depth.
-  await page.click("#refine");
-  await opened.isNow("refined");
-  assert.ok((await opened.metric("iou")) > iou - 0.02);
 });
 
 /** The sides of the box around the blob at its true size along its own axes, metres. */

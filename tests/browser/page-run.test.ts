@@ -20,47 +20,6 @@ test("an alignment can be cancelled, by button and by key, and started again", "
   await opened.aligned();
 });
 
-const best = "#sample=mug&quality=best";
-test("the page responds during an alignment, and shows its progress", best, async (opened, page) => {
-  await page.evaluate(() => {
-    const seen: number[] = [];
-    Object.assign(globalThis, { seen });
-    const progress = document.querySelector("#progress") as HTMLProgressElement;
-    new MutationObserver(() => {
-      if (document.querySelector("#cancel") !== null) seen.push(progress.value);
-    }).observe(progress, { attributes: true });
-  });
-  await opened.closeWorkerGate();
-  await page.click("#align");
-  await page.locator("#cancel").waitFor(PATIENCE);
-  await page.keyboard.press("d");
-  await page.locator("#layer-difference:checked").waitFor({ state: "attached", ...PATIENCE });
-  assert.ok(await page.isVisible("#cancel"));
-  await opened.openWorkerGate();
-  await opened.aligned();
-  const values = (await page.evaluate("seen")) as number[];
-  assert.ok(new Set(values).size > 2, `progress: ${[...new Set(values)]}`);
-  assert.deepEqual(
-    values,
-    [...values].sort((a, b) => a - b),
-  );
-});
-
-test("several objects of one scene are aligned, each with its own result", "#sample=desk", async (opened, page) => {
-  const rows = page.locator(".objects .select");
-  assert.equal(await rows.count(), 3);
-  const seen = new Set<string>();
-  for (let i = 0; i < 3; i++) {
-    await rows.nth(i).click();
-    assert.equal(await rows.nth(i).getAttribute("aria-pressed"), "true");
-    seen.add((await opened.dimensions()).join());
-    assert.match((await rows.nth(i).textContent()) ?? "", /\d %$/);
-  }
-  assert.equal(seen.size, 3);
-  await page.click("#align-all");
-  await opened.says(/^Aligned 3 objects/);
-});
-
 const turned = "#sample=desk&symmetry=none";
 test(
   "alternatives are pictures of poses that can be chosen, and the result can be restored",

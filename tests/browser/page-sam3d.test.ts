@@ -40,9 +40,3 @@ test("an output opens as a scene without a question, and is aligned without unit
   );
   assert.ok((await opened.metric("iou")) > 0.95);
 });
-
-test("what is missing in an output is said", async (opened) => {
-  const { "0.png": _, ...rest } = output;
-  await dropFolder(opened, inFolder("desk", rest));
-  await opened.says(/no mask of 0/);
-});

@@ -1,6 +1,6 @@
 /** What the page says is so: sizes along an object's own sides, and why mask and mesh differ. */
 import assert from "node:assert/strict";
-import { bareWall, depthInUnits, relativeDepth, SIDES_M, tiltedBox } from "../support/page-cases.js";
+import { depthInUnits, SIDES_M, tiltedBox } from "../support/page-cases.js";
 import { drop } from "../support/page-files.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
@@ -57,20 +57,6 @@ test("only what stands in front of an object explains a low overlap", "#sample=o
   assert.equal(await page.textContent(".badge"), "Moved by hand");
   await opened.press("Back to the result");
   await opened.isNow("aligned");
-});
-
-test("a mask that shows a bare surface is named", async (opened, page) => {
-  await drop(opened, bareWall());
-  await page.locator('main[data-scene="Own files"]').waitFor(PATIENCE);
-  assert.match(await advice(opened), /^mask: .*flat surface/);
-});
-
-test("relative depth that is passed as metres is named", async (opened, page) => {
-  await drop(opened, relativeDepth());
-  await page.locator('.advice[data-cause="relative"]').waitFor(PATIENCE);
-  await page.locator(".advice button").click();
-  await opened.sheet();
-  await page.click("#intake-cancel");
 });
 
 test("a unit that was assumed is asked about, where the object would be as large as furniture", async (opened, page) => {

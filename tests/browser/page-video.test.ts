@@ -75,18 +75,6 @@ test("a correction in the middle is carried to the other frames, and all poses a
   assert.equal(await page.locator(".time").count(), 0);
 });
 
-test("images without names of frames are scenes of their own, unless a click makes them one video", async (opened, page) => {
-  const named = Object.entries(frames(true)).map(([path, bytes]) => [path.replace(/frame_0(\d)/, "view-$1"), bytes]);
-  await dropFolder(opened, Object.fromEntries(named));
-  await opened.sheet();
-  assert.equal(await page.locator("#scene-choice option").count(), COUNT);
-  assert.equal(await page.isChecked("#as-video"), false);
-  await page.check("#as-video");
-  await opened.sheet();
-  await page.click("#intake-open");
-  await opened.says(/^Tracked/);
-});
-
 test("frames of known cameras are aligned together, as views of an object that has not moved", async (opened, page) => {
   const views = frames(true);
   // The object moves in the camera as the camera moves the other way.
@@ -104,12 +92,4 @@ test("frames of known cameras are aligned together, as views of an object that h
   const last = await centreX(opened);
   // One pose in the world: the views differ exactly as their cameras do.
   assert.ok(Math.abs(last - first - step * (COUNT - 1)) < 0.0011, `from ${first} to ${last}, steps of ${step}`);
-});
-
-test("tracking can be stopped", async (opened, page) => {
-  await opened.closeWorkerGate();
-  await dropFolder(opened, frames(true));
-  await page.locator("#stop-tracking").click(PATIENCE);
-  await opened.openWorkerGate();
-  await page.locator("#track").waitFor(PATIENCE);
 });

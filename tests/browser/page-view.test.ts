@@ -34,9 +34,6 @@ function faultOf(box: [number, number, number, number]): string | null {
   return isAside ? `aside: ${text}` : null;
 }
 
-/** Without animations. */
-const still = { reducedMotion: "reduce" } as const;
-
 test("objects of every size and distance are framed, before and after an alignment", {
   reducedMotion: "reduce",
 }, async (opened) => {
@@ -59,21 +56,6 @@ test("objects of every size and distance are framed, before and after an alignme
       await until(fault, (found) => found === null);
     }
   }
-});
-
-test("the 3D view is orbited by keys, and shows the poses before", still, async (opened, page) => {
-  await opened.has3d("webgl");
-  await opened.press("Three-quarter");
-  await page.locator(".space canvas").focus();
-  const picture = async () => (await page.locator(".space .view-host").screenshot()).toString("base64");
-  const first = await picture();
-  await page.keyboard.press("ArrowRight");
-  await page.keyboard.press("+");
-  const turned = await until(picture, (shown) => shown !== first);
-  await opened.press("Before");
-  await until(picture, (shown) => shown !== turned);
-  assert.equal(await opened.source(), "aligned");
-  await opened.press("Before");
 });
 
 test("two clicks measure a distance", async (opened, page) => {
@@ -106,105 +88,4 @@ test("the pose is entered in numbers, as steps that can be undone", async (opene
   await page.click("#undo");
   await opened.isNow("aligned");
   assert.equal(Number(await page.inputValue("#centre-x")), at);
-});
-
-test(
-  "the wheel zooms the image at the pointer, and a drag moves it without selecting",
-  "#sample=desk",
-  async (opened, page) => {
-    const picture = page.locator(".picture");
-    const zoom = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--zoom")));
-    const x = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--x")));
-    await opened.showInImage("zoom", false);
-    assert.equal(await zoom(), 1);
-    const host = (await page.locator(".image .view-host").boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
-    const [u, v] = [host.x + host.width / 2, host.y + host.height / 2];
-    await page.mouse.move(u, v);
-    await page.mouse.wheel(0, -800);
-    await page.waitForFunction(
-      () => Number(getComputedStyle(document.querySelector(".picture") as Element).getPropertyValue("--zoom")) > 2,
-    );
-    const before = await x();
-    const chosen = await page.textContent(".objects [aria-pressed=true] .name");
-    await page.mouse.down();
-    await page.mouse.move(u - 60, v, { steps: 4 });
-    await page.mouse.up();
-    assert.ok((await x()) > before, `${await x()}, was ${before}`);
-    assert.equal(await page.textContent(".objects [aria-pressed=true] .name"), chosen);
-    await opened.showInImage("zoom", true);
-  },
-);
-
-/** The number of pixels of the 3D view that differ from before once something is done. */
-async function changedBy({ page }: SitePage, act: () => Promise<unknown>): Promise<number> {
-  const still = async () => {
-    // Until two pictures in a row are the same.
-    let last = await spacePixels(page);
-    for (;;) {
-      const next = await spacePixels(page);
-      if (last.data.equals(next.data)) return next;
-      last = next;
-    }
-  };
-  const before = await still();
-  await act();
-  const after = await still();
-  let count = 0;
-  for (let i = 0; i < after.data.length; i += 4) {
-    if ([0, 1, 2].some((k) => Math.abs((after.data[i + k] ?? 0) - (before.data[i + k] ?? 0)) > 8)) count++;
-  }
-  return count;
-}
-
-test("what is nearer hides a mesh in the view from the camera", still, async (opened, page) => {
-  await opened.has3d("webgl");
-  await opened.press("Camera");
-  await opened.show3d("Sizes", false);
-  const meshPixels = async () => {
-    const count = await changedBy(opened, () => page.keyboard.press("m"));
-    await page.keyboard.press("m");
-    return count;
-  };
-  await page.click(".hand-panel .more summary");
-  const read = async (id: string) => Number(await page.inputValue(id));
-  const move = async (id: string, toCm: number) => {
-    await page.fill(id, `${toCm}`);
-    await page.press(id, "Enter");
-    await page.locator("h1").click();
-  };
-  // Beside its mask, where the table and the wall are the scene.
-  const [x, y, z] = [await read("#centre-x"), await read("#centre-y"), await read("#centre-z")];
-  await move("#centre-x", x + 7);
-  const beside = await meshPixels();
-  assert.ok(beside > 500, `${beside} pixels of the mesh`);
-  // At the same place in the image, three metres farther away.
-  await move("#centre-x", ((x + 7) * (z + 300)) / z);
-  await move("#centre-y", (y * (z + 300)) / z);
-  await move("#centre-z", z + 300);
-  const behind = await meshPixels();
-  assert.ok(behind < beside / 50, `${behind} pixels of a mesh behind the wall, ${beside} in front of it`);
-});
-
-test("labels leave the handles free", still, async (opened, page) => {
-  await opened.has3d("webgl");
-  await opened.press("Camera");
-  // Without the pointer, which would mark what it hovers over.
-  const box = page.locator(".space").getByLabel("Sizes", { exact: true });
-  const toggle = () => box.evaluate((one) => (one as HTMLElement).click());
-  assert.ok((await changedBy(opened, toggle)) > 100);
-  await toggle();
-  await page.keyboard.press("g");
-  assert.equal(await changedBy(opened, toggle), 0);
-});
-
-test("the wipe shows at each end what is written there", async (opened, page) => {
-  const picture = async () => (await opened.imagePixels()).data;
-  const after = await picture();
-  assert.equal(await page.inputValue("#wipe"), "1");
-  await page.fill("#wipe", "0");
-  const before = await picture();
-  assert.ok(!before.equals(after));
-  await page.keyboard.press("b");
-  assert.equal(await page.inputValue("#wipe"), "1");
-  assert.ok((await picture()).equals(after));
 });

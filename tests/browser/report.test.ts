@@ -1,6 +1,5 @@
 /** The page of `align --report`, opened from disk: table, details, 3D, accessibility, and a thousand rows. */
 import assert from "node:assert/strict";
-import { appendFileSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { before, test } from "node:test";
 import { pathToFileURL } from "node:url";
@@ -79,19 +78,6 @@ test("details: pictures with layers, numbers, 3D", async () => {
   assert.deepEqual(errors, []);
 });
 
-test("without a unit, the page shows no metres", async () => {
-  run("align alpha --quality fast --depth-kind scale-invariant --report relative");
-  const { page, errors } = await browser.open(pathToFileURL(join(folder, "relative", "index.html")).href);
-  await page.waitForSelector("#detail dl");
-  const shown = (await page.textContent("#detail")) ?? "";
-  assert.match(shown, /mesh 0\.\d+ units nearer.*units per mesh unit/s);
-  assert.doesNotMatch(shown, /\d m?m\b/);
-  const heads = await page.locator("#head th").allTextContents();
-  const cells = await page.locator("#rows tr:first-child").locator("th, td").allTextContents();
-  assert.equal(cells[heads.indexOf("Depth, mm")], "–");
-  assert.deepEqual(errors, []);
-});
-
 test("the keyboard goes through the rows, and axe finds nothing", async () => {
   const { page } = await browser.open(address);
   await page.locator("#scroller").focus();
@@ -99,46 +85,4 @@ test("the keyboard goes through the rows, and axe finds nothing", async () => {
   const selected = await page.locator('tr[aria-selected="true"] th').textContent();
   assert.equal(await page.locator("#detail h2").textContent(), selected);
   assert.deepEqual(await violations(page), []);
-});
-
-test("the arrow keys work after loading, after a click on a name, and not in controls or in 3D", async () => {
-  const { page, errors } = await browser.open(address);
-  const selected = () => page.locator('tr[aria-selected="true"] th').textContent();
-  const [first, second, third] = await names(page);
-  assert.equal(await selected(), first);
-  await page.keyboard.press("ArrowDown");
-  assert.equal(await selected(), second, "after loading");
-  await page.getByRole("button", { name: "alpha", exact: true }).click();
-  assert.equal(await selected(), "alpha");
-  await page.keyboard.press("ArrowUp");
-  const above = [first, second, third][[first, second, third].indexOf("alpha") - 1];
-  assert.equal(await selected(), above, "after a click");
-  await page.keyboard.press("PageDown");
-  assert.equal(await selected(), third);
-  await page.locator("#detail canvas").press("ArrowUp");
-  await page.getByRole("slider").press("ArrowUp");
-  await page.getByRole("searchbox").press("ArrowUp");
-  assert.equal(await selected(), third, "keys of controls and of the 3D view are theirs");
-  assert.deepEqual(errors, []);
-});
-
-test("of a thousand rows, only those in sight have elements", async () => {
-  const [first] = readFileSync(join(folder, "report", "rows.js"), "utf8")
-    .split("\n")
-    .filter((line) => line.includes('"alpha"'));
-  const row = JSON.parse((first ?? "").slice("sim3align.rows.push(".length, -2)) as object;
-  const more = Array.from(
-    { length: 1000 },
-    (_, i) => `sim3align.rows.push(${JSON.stringify({ ...row, name: `row ${i}`, confidence: i / 1000 })});\n`,
-  );
-  appendFileSync(join(folder, "report", "rows.js"), more.join(""));
-  const { page } = await browser.open(address);
-  assert.equal(await page.textContent("#count"), "1003 of 1003 cases");
-  assert.ok((await page.locator("#rows tr").count()) < 60);
-  await page.locator("#scroller").evaluate((scroller) => {
-    scroller.scrollTop = scroller.scrollHeight;
-  });
-  await page.getByRole("button", { name: "row 999", exact: true }).click();
-  assert.equal(await page.locator("#detail h2").textContent(), "row 999");
-  assert.ok((await page.locator("#rows tr").count()) < 60);
 });

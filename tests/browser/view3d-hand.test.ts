@@ -3,7 +3,6 @@ import { test } from "node:test";
 import type { Page } from "playwright-core";
 import {
   host,
-  isGreen,
   isNear,
   openCube,
   type Place,
@@ -12,7 +11,6 @@ import {
   pose,
   type ViewEvent,
   withoutWebGpu,
-  withWebGpu,
 } from "../support/view3d.js";
 
 const browser = withoutWebGpu();
@@ -93,91 +91,3 @@ test("clicks on meshes and points select objects, and hovering reports the pixel
   await page.waitForFunction(() => harness.viewEvents.some((one) => one.kind === "hover" && one.pixel === null));
   assert.deepEqual(errors, []);
 });
-
-for (const [name, graphics] of [
-  ["WebGPU", withWebGpu()],
-  ["WebGL", browser],
-] as const) {
-  test(`${name}: the object is seen from above, from the side and from the front, and dragged in each view`, async () => {
-    const { page, errors } = await openCube(graphics);
-    await page.evaluate(() => {
-      harness.view.select("cube");
-      harness.view.setDisplay({
-        cloud: true,
-        mesh: true,
-        wireframe: false,
-        pointSize: 1,
-        theme: "light",
-        planes: true,
-      });
-    });
-    const boxOf = async (plane: string) => {
-      const box = await page.locator(`[data-plane="${plane}"]`).boundingBox();
-      assert.ok(box);
-      return {
-        middle: [box.x + box.width / 2, box.y + box.height / 2] as Place,
-        side: Math.min(box.width, box.height),
-      };
-    };
-    /** The colour beside the middle, where no handle is. */
-    const colour = (plane: string) =>
-      page.evaluate((plane) => {
-        const canvas = document.querySelector(`[data-plane="${plane}"]`) as HTMLCanvasElement;
-        const context = canvas.getContext("2d") as CanvasRenderingContext2D;
-        return [...context.getImageData(canvas.width / 2 - 9, canvas.height / 2 + 9, 1, 1).data.slice(0, 3)];
-      }, plane);
-    const reset = async () => {
-      await page.evaluate((pose) => harness.view.setPose("cube", pose), pose(0, 0));
-      await page.evaluate(() => harness.colours([]));
-    };
-    const centreOf = (m: readonly number[] = []) =>
-      [0, 1, 2].map((k) => 3 * (m[k] ?? 0) + (m[12 + k] ?? 0) - (k === 2 ? 0.8 : 0));
-    // The cube's radius is .0866 m, and 1.3 of it are half the view.
-    const mPerPx = (side: number) => (2 * 1.3 * 0.05 * Math.sqrt(3)) / side;
-    for (const [plane, across, upwards] of [
-      ["top", [1, 0, 0], [0, 0, 1]],
-      ["side", [0, 0, 1], [0, -1, 0]],
-      ["front", [1, 0, 0], [0, -1, 0]],
-    ] as const) {
-      await reset();
-      const { middle, side } = await boxOf(plane);
-      assert.ok(isGreen(await colour(plane)), `${plane}: ${await colour(plane)}`);
-      const by = (k: number) => across.map((x, i) => k * (9 * x + 6 * (upwards[i] ?? 0)) * mPerPx(side));
-      const moves = await drag(page, [middle[0] - 8, middle[1] + 8], [9, -6]);
-      assert.ok(moves.length > 1 && moves.at(-1)?.phase === "end", `${plane}: no pose`);
-      isNear(centreOf(moves.at(-1)?.pose), by(1), 2e-4);
-      // The arrows move along one axis only.
-      await reset();
-      const along = await drag(page, [middle[0] + 18, middle[1]], [9, -6]);
-      isNear(
-        centreOf(along.at(-1)?.pose),
-        across.map((x) => 9 * x * mPerPx(side)),
-        2e-4,
-      );
-    }
-    await reset();
-    const { middle, side } = await boxOf("front");
-    const ring = (0.86 * side) / 2;
-    const turned = (await drag(page, [middle[0] + ring, middle[1]], [-ring, ring])).at(-1)?.pose ?? [];
-    // From three o'clock to six o'clock is clockwise, as x to y in the camera frame.
-    isNear(
-      [turned[0], turned[1], turned[2]].map((x) => (x ?? 0) / 0.1),
-      [0, 1, 0],
-      0.02,
-    );
-    isNear(centreOf(turned), [0, 0, 0], 1e-6);
-    await page.evaluate(() =>
-      harness.view.setDisplay({
-        cloud: true,
-        mesh: true,
-        wireframe: false,
-        pointSize: 1,
-        theme: "light",
-        planes: false,
-      }),
-    );
-    assert.equal(await page.locator("[data-plane]").count(), 0);
-    assert.deepEqual(errors, []);
-    await page.close();
-  });
-}

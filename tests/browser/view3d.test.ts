@@ -8,7 +8,6 @@ import {
   type Place,
   pixelOf,
   placeOf,
-  pose,
   withoutWebGpu,
   withWebGpu,
 } from "../support/view3d.js";
@@ -75,31 +74,6 @@ test("glTF node transforms are applied, and an invalid GLB leaves the view uncha
   assert.deepEqual(errors, []);
 });
 
-test("poses are animated, unless reduced motion is preferred; afterwards no frames are drawn", async () => {
-  const { page, errors, facts, colours } = await openCube(webGl);
-  const move = ([from, to]: number[][]) => harness.view.setPose("cube", to ?? [], { from, durationMs: 400 });
-  const seen = async () => {
-    const [there, before] = await colours([
-      placeOf(facts, ...pixelOf(facts, 0.2, 0, 0.75)),
-      placeOf(facts, ...pixelOf(facts, 0, 0, 0.75)),
-    ]);
-    return isGreen(there) && !isGreen(before);
-  };
-  await page.evaluate(move, [pose(0, 0), pose(0.2, 0)]);
-  assert.ok(await seen());
-  assert.equal(await page.evaluate(() => harness.idleFrames()), 0);
-  await page.emulateMedia({ reducedMotion: "reduce" });
-  await page.evaluate((pose) => harness.view.setPose("cube", pose), pose(0, 0));
-  await page.evaluate(
-    ([from, to]: number[][]) => {
-      void harness.view.setPose("cube", to ?? [], { from, durationMs: 1e9 });
-    },
-    [pose(0, 0), pose(0.2, 0)],
-  );
-  assert.ok(await seen(), "at once");
-  assert.deepEqual(errors, []);
-});
-
 test("the view follows the size of its host, and dispose removes everything", async () => {
   const { page, errors, facts } = await openCube(webGl);
   await page.evaluate(() => {
@@ -124,24 +98,6 @@ test("the view follows the size of its host, and dispose removes everything", as
   await page.evaluate(() => harness.view.dispose());
   assert.equal(await page.locator("#host *").count(), 0);
   assert.equal(await page.evaluate(() => harness.idleFrames()), 0);
-  assert.deepEqual(errors, []);
-});
-
-test("after two losses of the WebGPU device, WebGL 2 draws", async () => {
-  const { page, errors, facts, backend, colours } = await openCube(webGpu);
-  assert.equal(backend, "webgpu");
-  for (const expected of ["webgpu", "webgl"]) {
-    await page.evaluate(() => {
-      (document.querySelector("#host canvas") as HTMLElement).id = "old";
-      harness.loseWebGpu();
-    });
-    await page.waitForSelector("#host canvas:not(#old)");
-    await page.waitForSelector("#old", { state: "detached" });
-    assert.equal(await page.evaluate(() => harness.view.backend), expected);
-    const [cube, wall] = await colours([placeOf(facts, ...pixelOf(facts, 0, 0, 0.75)), placeOf(facts, 10, 10)]);
-    assert.ok(isGreen(cube), `${cube}`);
-    isNear(wall, facts.quarters[0] ?? []);
-  }
   assert.deepEqual(errors, []);
 });
 

@@ -10,7 +10,7 @@ import { createAligner } from "sim3align";
 import { readMask } from "sim3align/formats";
 import { PageTest, WEBGL } from "../support/browser.js";
 import { sampleDir } from "../support/environment.js";
-import { examplesDir, filesOf, program, samplePhoto } from "../support/examples.js";
+import { examplesDir, filesOf, program } from "../support/examples.js";
 
 const { skip } = program("CHROMIUM_PATH", "Chromium", "install it (Debian and Ubuntu: apt-get install chromium)");
 const started: { stop(): unknown }[] = [];
@@ -36,30 +36,6 @@ test("02-browser-esm aligns the sample to the same bits as Node", { skip }, asyn
   assert.deepEqual(shown.matrix, [...direct.matrix]);
   assert.equal(shown.confidence, direct.confidence);
   assert.equal(await page.$eval("#progress", (bar: HTMLProgressElement) => bar.value), 1);
-});
-
-test("06-transformersjs aligns a photo that is clicked, in a worker, to the same bits as Node", { skip }, async () => {
-  const browser = new PageTest(examplesDir);
-  started.push(browser);
-  const { page, errors } = await browser.open("06-transformersjs/?sample");
-  const photo = samplePhoto(640, 480);
-  const buffer = Buffer.from(photo);
-  await page.setInputFiles("#photo-file", { name: "photo.jpg", mimeType: "image/jpeg", buffer });
-  await page.setInputFiles("#mesh-file", join(sampleDir, "mesh.glb"));
-  await page.click("#photo");
-  await page.waitForSelector('#status:is([data-state="done"], [data-state="failed"])', { timeout: 120_000 });
-  assert.match((await page.textContent("#status")) ?? "", /in units of its own/);
-  const shown = JSON.parse((await page.textContent("#result")) ?? "");
-  const folder = join(examplesDir, "06-transformersjs");
-  const [{ alignTensors }, { loadSampleModels }] = await Promise.all(
-    ["align-tensors.mjs", "sample-models.mjs"].map((name) => import(join(folder, name))),
-  );
-  const see = await loadSampleModels(async (name: string) => readFileSync(join(sampleDir, name)));
-  const direct = await alignTensors(await createAligner(), await see(), photo, filesOf(sampleDir).mesh);
-  assert.deepEqual(shown.matrix, [...direct.matrix]);
-  assert.deepEqual(shown.depthCalibration, direct.depthCalibration);
-  assert.match(shown.cameraSource, /^EXIF: 32 mm/);
-  assert.deepEqual(errors, []);
 });
 
 const vite = join(examplesDir, "node_modules", "vite", "bin", "vite.js");

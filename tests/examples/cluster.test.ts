@@ -2,12 +2,12 @@
 import assert from "node:assert/strict";
 import { type ChildProcess, spawn } from "node:child_process";
 import { EventEmitter, once } from "node:events";
-import { readFileSync, renameSync, writeFileSync } from "node:fs";
+import { renameSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, test } from "node:test";
 import { createAligner } from "sim3align";
-import { otherPose, writeCase, writeScene, writeVideo } from "../support/case-folder.js";
+import { otherPose, writeCase } from "../support/case-folder.js";
 import { examplesDir, filesOf, newFolder, printedBy, program } from "../support/examples.js";
 import { RedisServer } from "../support/redis.js";
 
@@ -151,74 +151,4 @@ test("07: all results are there once, though a worker is killed in the middle of
   const ended = once(survivor.child, "exit");
   survivor.child.kill("SIGTERM");
   assert.deepEqual(await ended, [0, null], "a worker ends by itself when it is asked to");
-});
-
-test("07: cases, scenes and videos survive a Redis server that is killed, and the capacity is told", {
-  skip: redisProgram.skip,
-  timeout: 240_000,
-}, async () => {
-  const { redis, env } = await startedRedis();
-  const parent = newFolder();
-  const cases = [0, 1, 2, 3].map((i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
-  const [scene, video] = [writeScene(parent, "scene"), writeVideo(parent, "video", 3)];
-  const list = join(parent, "list.txt");
-  writeFileSync(list, `${[scene, video].join("\n")}\n`);
-  const ids = await produced([...cases, "--list", list], env);
-  assert.equal(new Set(ids).size, 6);
-
-  const worker = new WorkerProcess(env);
-  await worker.untilSaid("stored", ({ length }) => length === 1);
-  await redis.stop("SIGKILL");
-  assert.ok(worker.said("stored").length < ids.length, "Redis was killed in the middle");
-  // It begins without Redis, and waits.
-  const collecting = collected(env);
-  await redis.startAgain();
-
-  const { results, failures } = await collecting;
-  assert.deepEqual(failures, []);
-  assert.deepEqual(results.map(({ id }) => id).sort(), [...ids].sort());
-  assert.deepEqual(new Set(worker.said("stored")).size, worker.said("stored").length);
-  const kinds = Object.fromEntries(results.map((result) => [result.folder, result.kind]));
-  assert.deepEqual(
-    [cases[0], scene, video].map((folder) => kinds[folder ?? ""]),
-    ["case", "scene", "video"],
-  );
-
-  // The same bits as direct calls.
-  const read = (folder: string, file: string) => readFileSync(join(folder, file));
-  const view = (folder: string) => ({ depth: read(folder, "depth.npy"), cameraFile: read(folder, "camera.json") });
-  const aligner = await createAligner({ workers: 1 });
-  const of = (folder: string) => results.find((result) => result.folder === folder);
-  const objects = ["left", "right"].map((name) => {
-    const own = join(scene, "objects", name);
-    return { name, mask: read(own, "mask.png"), mesh: read(own, "mesh.obj") };
-  });
-  const together = await aligner.alignScene({ ...view(scene), objects });
-  const poses = together.objects.map((object) => object.error === undefined && [object.name, [...object.matrix]]);
-  assert.deepEqual(
-    of(scene)?.objects.map(({ name, matrix }) => [name, matrix]),
-    poses,
-  );
-  const tracker = await aligner.track(read(video, "mesh.obj"));
-  for (const [i, frame] of (of(video)?.frames ?? []).entries()) {
-    const own = join(video, `frame_${i}`);
-    const mask = i === 0 ? { mask: read(own, "mask.png") } : {};
-    const tracked = await tracker.next({ ...view(own), ...mask });
-    assert.deepEqual([frame.name, frame.state, frame.matrix], [`frame_${i}`, tracked.state, [...tracked.matrix]]);
-  }
-  assert.equal(of(video)?.frames.length, 3);
-  aligner.dispose();
-
-  const told = await ran("capacity.mjs", ["--jobs", "1000000", "--hours", "10", "--threads", "4", "--price", "2"], env);
-  const figure = (name: string) => {
-    const line = told.find((line) => line.startsWith(name)) ?? assert.fail(`no ${name} in ${told.join("; ")}`);
-    return Number(/^\d+(\.\d+)?/.exec(line.slice(36))?.[0]);
-  };
-  const hours = figure("machine hours");
-  assert.ok(hours > 0);
-  // Enough machines for ten hours; both threads and machines are rounded up, and the hours to a tenth.
-  const machines = figure("machines, ");
-  assert.ok(machines > hours / 10 - 0.01 && machines < hours / 10 + 1.26, `${machines} machines, ${hours} hours`);
-  assert.ok(Math.abs(figure("cost") - 2 * hours) < 0.2);
-  assert.ok(figure("memory of Redis") > 0);
 });

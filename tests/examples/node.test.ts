@@ -225,35 +225,3 @@ test("06-transformersjs aligns a photo without a camera, with the tensors of a r
   const direct = await aligner.align({ depth, depthKind, image: photo, mask: sample.mask, mesh: sample.mesh }, options);
   assert.deepEqual(metric.matrix, direct.matrix);
 });
-
-test("06-transformersjs loads the models that it is told to, and asks them for the place in the photo", async () => {
-  const { loadModels } = await import(join(examplesDir, "06-transformersjs", "models.mjs"));
-  const asked: unknown[] = [];
-  const picture = (width: number, height: number) => ({ width, height, resize: picture });
-  const transformers = {
-    RawImage: { fromBlob: async () => picture(4032, 3024) },
-    pipeline: async (task: string, name: string) => {
-      asked.push(task, name);
-      return async ({ width, height }: { width: number; height: number }) => ({ predicted_depth: [width, height] });
-    },
-    SamModel: { from_pretrained: async () => async () => ({ pred_masks: "masks", iou_scores: "scores" }) },
-    AutoProcessor: {
-      from_pretrained: async (name: string) => {
-        asked.push(name);
-        const process = async (_: unknown, { input_points }: { input_points: unknown }) => ({
-          ...{ original_sizes: input_points, reshaped_input_sizes: 0 },
-        });
-        return Object.assign(process, { post_process_masks: async (...all: unknown[]) => [all] });
-      },
-    },
-  };
-  const see = await loadModels(transformers, { depth: "metric-model", depthKind: "metric", mask: "sam" });
-  assert.deepEqual(asked, ["depth-estimation", "metric-model", "sam"]);
-  assert.deepEqual(await see(new Blob(), [0.5, 0.25]), {
-    ...{ predicted_depth: [1024, 768], depthKind: "metric", iou_scores: "scores" },
-    masks: ["masks", [[[512, 192]]], 0],
-  });
-  const { status, stderr } = await runExample("06-transformersjs/main.mjs", ["photo.jpg", "mug.glb", "0.5,0.5"]);
-  assert.equal(status, 1);
-  assert.match(stderr, /npm install @huggingface\/transformers/);
-});

@@ -4,7 +4,7 @@ use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 
 use super::overlap::mean_squared_error;
-use crate::files::{corrupt, read, write};
+use crate::files::{corrupt, read};
 use crate::prelude::*;
 
 /// Largest root mean squared error of a success on 3DMatch and 3DLoMatch, in metres.
@@ -100,15 +100,6 @@ pub struct Listed {
     pub target: u32,
     /// Overlap of both clouds, 0 to 1.
     pub overlap: f64,
-}
-
-/// Writes `scenes` scenes, of each of which `write_scene` lists the pairs, and the list, `pairs.json`.
-///
-/// # Errors
-/// [`InvalidArgument`](ErrorCode::InvalidArgument) if a file cannot be written.
-pub(super) fn write_set(root: &Path, scenes: u32, write_scene: impl FnMut(u32) -> Result<Vec<Listed>>) -> Result<()> {
-    let listed = (0..scenes).map(write_scene).collect::<Result<Vec<_>>>()?.concat();
-    write(&root.join("pairs.json"), serde_json::json!(listed).to_string().as_bytes())
 }
 
 /// Reads `pairs.json` of a folder; `None` if it does not exist.

@@ -3,7 +3,6 @@
 mod arguments;
 mod bench;
 mod cases;
-mod fuzz;
 mod generators;
 mod monocular;
 mod outlines;
@@ -39,7 +38,7 @@ pub struct Command {
 }
 
 /// All subcommands.
-pub const COMMANDS: [Command; 14] = [
+pub const COMMANDS: [Command; 13] = [
     cases::COMMAND,
     scenes::COMMAND,
     bench::COMMAND,
@@ -53,7 +52,6 @@ pub const COMMANDS: [Command; 14] = [
     trace::COMMAND,
     outlines::COMMAND,
     profile::COMMAND,
-    fuzz::COMMAND,
 ];
 
 /// Reason for which a command ended early.

@@ -8,7 +8,6 @@ mod bop_folder;
 mod colors;
 mod common;
 mod evaluation;
-mod fuzz;
 mod imported;
 mod monocular;
 mod outlines;

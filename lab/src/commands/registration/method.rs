@@ -3,9 +3,8 @@
 use std::time::Instant;
 
 use sim3align::options::Options;
-use sim3align::register::options::{Icp, RegisterOptions};
+use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
-use sim3align_lab::baselines::{Baseline, register_pair};
 use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
@@ -16,12 +15,10 @@ use sim3align_lab::prelude::*;
 /// Default inlier distance for imported correspondences, in voxels of the pair.
 const INLIER_VOXELS: f64 = 1.5;
 
-/// A registration method. To add one: a variant, its name in [`Method::from_name`], its call in [`Method::run`].
+/// A registration method.
 pub enum Method {
     /// `register`, with the scale fixed at 1 by default.
     Register { options: Box<RegisterOptions>, assignments: Vec<String> },
-    /// Another method of this crate, with the voxel size of the pair.
-    Baseline(Baseline),
     /// Transforms of another program, with a name for the tables.
     Import { name: String, folder: PathBuf },
 }
@@ -29,11 +26,11 @@ pub enum Method {
 /// A transform or an error, and the run time.
 pub struct Answer {
     pub target_from_source: Result<Similarity, String>,
-    pub seconds: f64,
+    pub seconds: Option<f64>,
 }
 
 impl Method {
-    /// `register`, a baseline's name, `import:DIR` or `NAME=import:DIR`.
+    /// `register`, `import:DIR` or `NAME=import:DIR`.
     pub fn from_name(text: &str, assignments: &[String]) -> Result<Self, String> {
         if let Some((before, folder)) = text.split_once("import:") {
             let folder = PathBuf::from(folder);
@@ -42,9 +39,7 @@ impl Method {
             return Ok(Self::Import { name, folder });
         }
         if text != "register" {
-            let names = Baseline::names().join(", ");
-            let unknown = |_| format!("--method {text}: expected register, {names}, or NAME=import:DIR");
-            return Baseline::from_name(text).map(Self::Baseline).map_err(unknown);
+            return Err(format!("--method {text}: expected register or NAME=import:DIR"));
         }
         let mut options = RegisterOptions { scale: ScaleOption::Fixed(1.0), ..RegisterOptions::default() };
         for assignment in assignments {
@@ -60,24 +55,14 @@ impl Method {
     pub fn name(&self) -> &str {
         match self {
             Self::Register { .. } => "register",
-            Self::Baseline(baseline) => baseline.as_str(),
             Self::Import { name, .. } => name,
         }
     }
 
-    /// The key of its record of a pair; `moved` and `scaled` are the seeds of the random transforms.
-    pub fn key(&self, pair: &Pair, moved: u64, scaled: u64) -> RecordKey {
-        let mut options = vec![format!("moved={moved}")];
-        options.extend((scaled != 0).then(|| format!("scaled={scaled}")));
-        if let Self::Register { assignments, .. } = self {
-            options.extend_from_slice(assignments);
-        }
-        RecordKey { row: self.name().into(), options: options.join(" "), case: pair.id.clone() }
-    }
-
-    /// Whether the method reads the clouds.
-    pub fn needs_clouds(&self) -> bool {
-        !matches!(self, Self::Import { .. })
+    /// The key of its record of a pair; `None` for imported answers, which are read again.
+    pub fn key(&self, pair: &Pair) -> Option<RecordKey> {
+        let Self::Register { assignments, .. } = self else { return None };
+        Some(RecordKey { row: self.name().into(), options: assignments.join(" "), case: pair.id.clone() })
     }
 
     /// Registers a pair.
@@ -87,17 +72,8 @@ impl Method {
                 let (source, target) = (flat(source), flat(target));
                 let begun = Instant::now();
                 let found = register(&source, &target, options, &mut Silent);
-                let seconds = begun.elapsed().as_secs_f64();
+                let seconds = Some(begun.elapsed().as_secs_f64());
                 let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
-                Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
-            }
-            Self::Baseline(baseline) => {
-                let [source, target] = [source, target].map(|points| Cloud::from_points(points.to_vec()));
-                let begun = Instant::now();
-                // Refines the pose of RANSAC, as in common tutorials.
-                let settings = PaperOptions { icp: Icp::PointToPlane, ..PaperOptions::default() };
-                let pose = register_pair(&source, &target, *baseline, pair.voxel_size_m, &settings);
-                let seconds = begun.elapsed().as_secs_f64();
                 Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
             }
             Self::Import { folder, .. } => imported(pair, folder),
@@ -121,5 +97,5 @@ fn imported(pair: &Pair, folder: &Path) -> Answer {
             pose.map_err(|error| error.to_string())
         }
     });
-    Answer { target_from_source: pose, seconds: seconds.unwrap_or(f64::NAN) }
+    Answer { target_from_source: pose, seconds }
 }

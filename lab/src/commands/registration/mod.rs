@@ -5,9 +5,7 @@ mod run;
 mod settings;
 mod table;
 
-use sim3align_lab::clouds::lidar_set::write_lidar;
-use sim3align_lab::clouds::object_set::write_objects;
-use sim3align_lab::clouds::room_set::write_rooms;
+use sim3align_lab::clouds::generated::write_pairs;
 use sim3align_lab::prelude::*;
 
 use super::{Arguments, Command, Failure, usage};
@@ -28,12 +26,10 @@ pub const COMMAND: Command = Command {
 fn write(arguments: &mut Arguments) -> Result<(), Failure> {
     let (seed, scenes) = (arguments.value("seed", 0)?, arguments.value("scenes", 4)?);
     let words = arguments.rest()?;
-    let [kind, out] = words.as_slice() else { return Err(usage("write needs rooms, lidar or objects, and a folder")) };
-    let write: fn(&Path, u64, u32) -> Result<()> = match kind.as_str() {
-        "rooms" => write_rooms,
-        "lidar" => write_lidar,
-        "objects" => write_objects,
-        _ => return Err(usage("write knows rooms, lidar and objects")),
-    };
-    Ok(write(out.as_ref(), seed, scenes)?)
+    match words.as_slice() {
+        [kind, out] if kind == "rooms" || kind == "lidar" => {
+            Ok(write_pairs(out.as_ref(), kind == "lidar", seed, scenes)?)
+        }
+        _ => Err(usage("write needs rooms or lidar, and a folder")),
+    }
 }

@@ -6,29 +6,22 @@ use super::super::{Arguments, Failure, usage};
 use super::method::Method;
 
 pub const USAGE: &str = "\
-Usage: sim3align-lab registration write rooms|lidar|objects OUT [--seed S] [--scenes N]
+Usage: sim3align-lab registration write rooms|lidar OUT [--seed S] [--scenes N]
        sim3align-lab registration run --data PATH [options]
 
-write: pairs of decreasing overlap with a known transform: rooms in 3DMatch's layout, streets in KITTI's,
-       objects and cluttered scenes that contain them in 3DMatch's, in decimetres
+write: pairs of decreasing overlap with a known transform: rooms in 3DMatch's layout, streets in KITTI's
   --seed S           default 0
-  --scenes N         rooms, drives or cluttered scenes, default 4
+  --scenes N         rooms or drives, default 4
 
 run: registers pairs and prints a Markdown table of recall and errors
   --data PATH        3DMatch: <scene>/cloud_bin_<i>.ply with <scene>-evaluation/gt.log, <scene>/gt.log or
                      benchmarks/<name>/<scene>/gt.log; KITTI: sequences/<SS>/velodyne, calib.txt and poses/<SS>.txt
   --protocol P       3dmatch, kitti or auto (default)
   --benchmark NAME   which of benchmarks/<name>: 3DMatch or 3DLoMatch; needed where there are several
-  --method M         register (default), fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser, quatro, or
-                     NAME=import:DIR: DIR/<id>.json from another program; may be repeated
+  --method M         register (default), or NAME=import:DIR: DIR/<id>.json from another program; may be repeated
   --option K=V       an option of register() by its JavaScript name; may be repeated
-  --only TEXT        only pairs whose id contains this
-  --every N          of these, the first and every N-th after it; default 1
+  --every N          the first and every N-th after it; default 1
   --measure-overlap  measures the overlap where it is not listed, for the table's bins
-  --moved SEED       moves each source by a random rigid transform first, each target by another, so that no method
-                     can use where the sensor stood; 0 (default) moves nothing
-  --scaled SEED      scales each source by a random factor from 0.1 to 10 first; needs --option scale=free for register.
-                     0 (default) scales nothing
   --records FILE     one JSON line for each pair and method; those that are there are not run again
   --json FILE        everything about every pair
   --pairs-json FILE  writes [{ id, source, target, voxelSizeM }] for other programs, and runs nothing
@@ -41,11 +34,8 @@ pub struct Settings {
     pub is_kitti: Option<bool>,
     pub benchmark: Option<String>,
     pub methods: Vec<Method>,
-    pub only: Option<String>,
     pub every: usize,
     pub measure_overlap: bool,
-    pub moved: u64,
-    pub scaled: u64,
     pub records: Option<PathBuf>,
     pub json: Option<PathBuf>,
     pub pairs_json: Option<PathBuf>,
@@ -72,11 +62,8 @@ impl Settings {
                 .map(|name| Method::from_name(name, &options))
                 .collect::<Result<_, _>>()
                 .map_err(usage)?,
-            only: arguments.optional("only")?,
             every: arguments.value("every", 1)?.max(1),
             measure_overlap: arguments.flag("measure-overlap"),
-            moved: arguments.value("moved", 0)?,
-            scaled: arguments.value("scaled", 0)?,
             records: arguments.optional("records")?,
             json: arguments.optional("json")?,
             pairs_json: arguments.optional("pairs-json")?,

@@ -1,0 +1,97 @@
+/** `npm run physics`: exports scenes for simulators and measures which bodies stay at rest there; see `--help`. */
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { basename, join, resolve } from "node:path";
+import { command } from "./bench/command.mjs";
+import { fixed, markdownTable, median } from "./bench/table.mjs";
+import { buildPackage } from "./lib/package.mjs";
+import { at, packageDir } from "./lib/paths.mjs";
+import { runPython } from "./lib/python.mjs";
+import { run } from "./lib/run.mjs";
+
+/** @typedef {{ name: string, fixed: boolean, movedM: number, turnedDeg: number, errorsMm?: [found: number, exported: number, after: number] }} Body */
+/** @typedef {{ folder: string, mujoco: { bodies: Body[] }, pybullet: { bodies: Body[] } }} Simulated */
+
+/** A body that has moved less has stayed. @param {Body} body */
+const stays = ({ movedM, turnedDeg }) => movedM <= 0.005 && turnedDeg <= 5;
+
+/** @param {string} folder */
+const isScene = (folder) => existsSync(join(folder, "objects"));
+
+/** Scene folders among folders and their subfolders. @param {readonly string[]} folders */
+const scenesIn = (folders) =>
+  folders
+    .map((folder) => resolve(folder))
+    .flatMap((folder) =>
+      isScene(folder)
+        ? folder
+        : readdirSync(folder)
+            .sort()
+            .map((name) => join(folder, name))
+            .filter(isScene),
+    );
+
+/**
+ * Aligns and exports a scene with the command line of the package.
+ * @param {string} scene
+ * @param {string} to
+ */
+async function exportScene(scene, to) {
+  mkdirSync(to, { recursive: true });
+  const json = join(to, "results.json");
+  const files = ["--mjcf", join(to, "mjcf"), "--urdf", join(to, "urdf"), "--usd", join(to, "scene.usda")];
+  await run(process.execPath, [join(packageDir, "cli", "main.js"), "scene", scene, "--json", json, ...files]);
+  const [found] = Object.values(JSON.parse(readFileSync(json, "utf8")));
+  const sim3 = (/** @type {any} */ { scale, rotation, translation }) => ({
+    scale,
+    rotation: rotation.flat(),
+    translation,
+  });
+  const truths = Object.entries(found.objects).flatMap(([name, aligned]) => {
+    const file = join(scene, "objects", name, "gt.json");
+    if (!existsSync(file) || aligned.error !== undefined) return [];
+    const truth = JSON.parse(readFileSync(file, "utf8"));
+    return [[name.replace(/[^A-Za-z0-9]+/g, "_"), { aligned: sim3(aligned), truth: sim3(truth) }]];
+  });
+  writeFileSync(join(to, "truth.json"), JSON.stringify(Object.fromEntries(truths)));
+  return to;
+}
+
+/** @param {string[]} folders @param {{ seconds: string, python: string }} options */
+async function measure(folders, { seconds, python }) {
+  await buildPackage();
+  const scenes = scenesIn(folders.length > 0 ? folders : [at("www", "samples", "table")]);
+  const root = at("target", "bench", "physics");
+  rmSync(root, { recursive: true, force: true });
+  const exported = [];
+  for (const [i, scene] of scenes.entries()) {
+    exported.push(await exportScene(scene, join(root, `${String(i).padStart(3, "0")}-${basename(scene)}`)));
+  }
+  /** @type {Simulated[]} */
+  const results = [];
+  await runPython("simulators", [seconds, ...exported], python, (line) => results.push(JSON.parse(line)));
+  const rows = /** @type {const} */ (["mujoco", "pybullet"]).map((simulator) => {
+    const free = results.flatMap((result) => result[simulator].bodies.filter((body) => !body.fixed));
+    const still = results.filter((result) => result[simulator].bodies.every(stays));
+    const moved = fixed(median(free.map(({ movedM }) => 1000 * movedM)), 2);
+    return [simulator, `${still.length} of ${results.length}`, `${free.filter(stays).length} of ${free.length}`, moved];
+  });
+  console.log(
+    `\n${markdownTable([`${seconds} s of physics`, "scenes at rest", "free bodies at rest", "moved, median mm"], rows)}`,
+  );
+  const errors = results.flatMap(({ folder, mujoco }) =>
+    mujoco.bodies.flatMap(({ name, errorsMm }) =>
+      errorsMm === undefined ? [] : [[`${basename(folder)}/${name}`, ...errorsMm.map((mm) => fixed(mm, 1))]],
+    ),
+  );
+  if (errors.length > 0)
+    console.log(`\n${markdownTable(["centre, mm from the true one", "found", "exported", "after"], errors)}`);
+}
+
+await command("physics", (program) =>
+  program
+    .description("Exports scenes for simulators, and measures which bodies stay within 5 mm and 5° under physics.")
+    .argument("[folder...]", "scene folders, or folders of them; true poses are compared; by default a sample")
+    .option("--seconds <n>", "of physics", "1")
+    .option("--python <program>", "the Python that makes the environment of the simulators", "python3")
+    .action(measure),
+);

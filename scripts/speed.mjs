@@ -1,0 +1,53 @@
+/** `npm run speed`: time and memory of this build; see `--help`. */
+import { readdirSync } from "node:fs";
+import { resolve } from "node:path";
+import { command, count } from "./bench/command.mjs";
+import { buildPackage } from "./lib/package.mjs";
+import { sampleDir } from "./lib/paths.mjs";
+import { copySample } from "./lib/sample.mjs";
+import { caseFolders } from "./speed/inputs.mjs";
+import { measurePeers } from "./speed/peers.mjs";
+import { measurePool } from "./speed/pool.mjs";
+import { measureSizes } from "./speed/sizes.mjs";
+import { measureStages } from "./speed/stages.mjs";
+import { measureVideo } from "./speed/video.mjs";
+
+/** What can be measured; the other libraries only on request, for they need Python. */
+const parts = ["stages", "sizes", "video", "pool", "peers"];
+
+/** @typedef {{ only: string[], runs: number, quality: string, quick: boolean, python: string }} Options */
+
+/** @param {string[]} paths @param {Options} options */
+async function measure(paths, options) {
+  await buildPackage();
+  await copySample();
+  const unknown = options.only.filter((part) => !parts.includes(part));
+  if (unknown.length > 0) throw new Error(`--only: found ${unknown.join(", ")}, expected some of ${parts.join(", ")}.`);
+  const isVideo = (/** @type {string} */ path) => readdirSync(path).some((name) => name.startsWith("frame_"));
+  const videos = paths.filter(isVideo).map((path) => resolve(path));
+  const found = caseFolders(paths.filter((path) => !isVideo(path)));
+  const cases = found.length > 0 ? found : [sampleDir];
+  const run = options.quick ? { ...options, runs: 1 } : options;
+  console.log(
+    `Node ${process.version}, WebAssembly, one thread unless workers are named, medians of ${run.runs} runs.`,
+  );
+  if (run.only.includes("stages")) await measureStages(cases, run);
+  if (run.only.includes("sizes")) await measureSizes(run);
+  if (run.only.includes("video")) await measureVideo(videos, run);
+  if (run.only.includes("pool")) await measurePool(found, run);
+  if (run.only.includes("peers")) await measurePeers(cases, run);
+}
+
+await command("speed", (program) =>
+  program
+    .description(
+      "Measures time and memory: stages of an alignment, sizes of inputs, a tracked frame, the pool, Open3D.",
+    )
+    .argument("[folder...]", "case folders, folders of case folders, and folders with frames; by default the sample")
+    .option("--only <part...>", `some of ${parts.join(", ")}`, parts.slice(0, -1))
+    .option("--runs <n>", "runs that count", count, 5)
+    .option("--quality <name>", "of the stages", "auto")
+    .option("--quick", "one run of the smallest inputs", false)
+    .option("--python <program>", "the Python, 3.11 or 3.12, that Open3D is installed for", "python3")
+    .action(measure),
+);

@@ -1,0 +1,70 @@
+/** References of the documents: links, commands, and the sections of the guide on errors. */
+import { existsSync, readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { filesBelow } from "../lib/cache.mjs";
+import { at, repository } from "../lib/paths.mjs";
+
+const rootDocuments = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"].map((name) => at(name));
+const isMade = (/** @type {string} */ path) => /node_modules|[\\/]dist[\\/]|examples[\\/]sample/.test(path);
+const documents = () =>
+  filesBelow([...rootDocuments, at("docs"), at("examples")])
+    .filter((path) => path.endsWith(".md") && !isMade(path))
+    .map((path) => ({ path, text: readFileSync(path, "utf8") }));
+
+/** The anchors of headings, as GitHub and npm make them. @param {string} text */
+const anchorsIn = (text) =>
+  Array.from(text.matchAll(/^#+ (.*)$/gm), ([, title = ""]) =>
+    title
+      .toLowerCase()
+      .replace(/[^\p{L}\p{N} _-]/gu, "")
+      .replaceAll(" ", "-"),
+  );
+
+/** @throws if a link leads nowhere or a command does not exist */
+export function checkDocuments() {
+  const { scripts } = JSON.parse(readFileSync(at("package.json"), "utf8"));
+  const faults = documents().flatMap(({ path, text }) => {
+    const links = Array.from(text.matchAll(/\]\(([^)\s]+)\)/g), ([, link = ""]) => link);
+    const broken = links.filter((link) => {
+      if (/^https?:/.test(link)) return false;
+      const [file = "", anchor] = link.split("#");
+      const target = file === "" ? path : join(dirname(path), file);
+      if (!existsSync(target)) return true;
+      return anchor !== undefined && !anchorsIn(readFileSync(target, "utf8")).includes(anchor);
+    });
+    // The examples have commands of their own.
+    const commands = path.includes("examples") ? [] : text.matchAll(/npm run ([a-z][\w:-]*)/g);
+    const unknown = Array.from(commands, ([, name = ""]) => name).filter((name) => !(name in scripts));
+    return [...broken, ...unknown.map((name) => `npm run ${name}`)].map(
+      (what) => `${path.slice(repository.length + 1)}: ${what}`,
+    );
+  });
+  if (faults.length > 0) throw new Error(`These lead nowhere:\n${faults.join("\n")}\nRemedy: correct or remove them.`);
+}
+
+/** @throws if the guide on errors lacks a code of an error or a warning, or has one that does not exist */
+export function checkCodes() {
+  const text = (/** @type {string} */ path) => readFileSync(at(...path.split("/")), "utf8");
+  const guide = text("docs/guides/troubleshooting.md");
+  const all = (/** @type {string} */ source, /** @type {RegExp} */ pattern) =>
+    Array.from(source.matchAll(pattern), ([, code = ""]) => code);
+  const [warnings = ""] = /export type WarningCode = .*/.exec(text("pkg-config/src/generated/types.ts")) ?? [];
+  const errors = [
+    ...all(text("geometry/src/error.rs"), /=> "([A-Z_0-9]+)"/g),
+    ...all(text("pkg-config/src/error.ts"), /^ {2}\| "([A-Z_0-9]+)"/gm),
+  ];
+  for (const [level, codes] of /** @type {const} */ ([
+    ["###", errors],
+    ["####", all(warnings, /"([A-Z_]+)"/g)],
+  ])) {
+    const titles = all(guide, new RegExp(`^${level} \`([A-Z_0-9]+)\`$`, "gm"));
+    const other = [
+      ...codes.filter((code) => !titles.includes(code)),
+      ...titles.filter((code) => !codes.includes(code)),
+    ];
+    if (codes.length === 0 || other.length > 0)
+      throw new Error(
+        `docs/guides/troubleshooting.md disagrees on ${other.join(", ") || level}. Remedy: correct its sections.`,
+      );
+  }
+}

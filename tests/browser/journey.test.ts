@@ -1,0 +1,106 @@
+/** The same journey in every browser: the package's bits, the element from another origin, the page with own files. */
+import assert from "node:assert/strict";
+import { after, before, describe, test } from "node:test";
+import type { Browser } from "puppeteer-core";
+import { createAligner } from "sim3align";
+import { work } from "../bundlers/work.js";
+import { browserNames, inNode, launch, skipped, Tab } from "../support/driver.js";
+import { crossOriginHost, servedFolder } from "../support/element-host.js";
+import { files } from "../support/page-files.js";
+import { input, mesh } from "../support/scene.js";
+import { PATIENCE } from "../support/site.js";
+import { type Server, serve } from "../support/static-server.js";
+
+for (const name of browserNames) {
+  describe(name, { skip: skipped(name) }, () => {
+    let browser: Browser;
+    let server: Server;
+    before(async () => {
+      browser = await launch(name);
+      server = await serve(servedFolder);
+    });
+    after(async () => {
+      await browser?.close();
+      await server?.close();
+    });
+
+    /** A tab in a context of its own. */
+    const open = async (path: string) => Tab.open(await browser.createBrowserContext(), new URL(path, server.url).href);
+
+    test("the package has the bits of Node, in both entries, with and without workers", async () => {
+      const expected = await work(createAligner);
+      const { page, errors } = await open("install-test/node_modules/sim3align/package.json");
+      for (const entry of ["index", "inline"]) {
+        const found = (await page.evaluate(`(async () => {
+          const { createAligner } = await import("/install-test/node_modules/sim3align/${entry}.js");
+          const { work } = await import("/install-test/tests/bundlers/work.js");
+          return JSON.stringify(await work(createAligner));
+        })()`)) as string;
+        assert.deepEqual(JSON.parse(found), expected, entry);
+      }
+      assert.deepEqual(errors, []);
+    });
+
+    test("one script tag loads the element from another origin; it aligns arrays to the bits of Node", async (t) => {
+      const host = await crossOriginHost();
+      t.after(host.close);
+      const { page, errors } = await open(host.path);
+      const given = {
+        ...{ depth: Array.from(input.depth), mask: Array.from(input.mask) },
+        ...{ width: input.width, height: input.height, camera: input.camera },
+        ...{ positions: Array.from(mesh.positions), indices: Array.from(mesh.indices) },
+      };
+      const found = await page.evaluate(({ depth, mask, positions, indices, ...view }) => {
+        const element = document.querySelector("sim3-align") as HTMLElement & { scene: unknown };
+        const aligned = new Promise((resolve) =>
+          element.addEventListener("align", (event) => resolve((event as CustomEvent).detail.objects[0].pose.matrix)),
+        );
+        const object = {
+          mask: Uint8Array.from(mask),
+          mesh: { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) },
+        };
+        element.scene = { ...view, depth: Float32Array.from(depth), objects: [object] };
+        return aligned;
+      }, given);
+      assert.deepEqual(found, [...(await inNode(input)).matrix]);
+      const area = await page.evaluate(() => {
+        const panel = document.querySelector("sim3-align")?.shadowRoot?.querySelector(".result");
+        return (panel?.clientWidth ?? 0) * (panel?.clientHeight ?? 0);
+      });
+      assert.ok(area > 20_000, "the sheets of the element apply");
+      assert.deepEqual(errors, []);
+    });
+
+    test("own files are aligned, moved, undone and accepted, kept over a reload, and taken over by a tab", async () => {
+      const tab = await open("www/index.html#sample=mug");
+      await tab.aligned();
+      await tab.drop(files);
+      await tab.has('main[data-scene="Own files"]');
+      assert.ok((await tab.aligned()) > 0.9);
+      const confidence = await tab.text(".badge");
+      await tab.press("Move left");
+      await tab.has(".badge", /^Moved by hand$/);
+      await tab.click("#undo");
+      await tab.has('.result[data-source="aligned"]');
+      assert.equal(await tab.text(".badge"), confidence);
+      await tab.press("Move right");
+      await tab.click("#accept");
+      const centre = await tab.text("#centre");
+      await tab.kept();
+      await tab.page.reload();
+      const isAsLeft = async (one: Tab) => {
+        await one.has('main[data-scene="Own files"]');
+        await one.has("#accept", /Accepted/);
+        assert.equal(await one.text("#centre"), centre);
+      };
+      await isAsLeft(tab);
+      // Firefox 140 does not tell Puppeteer that the page has changed its address.
+      const address = await tab.page.evaluate(() => location.href);
+      const other = await Tab.open(tab.page.browserContext(), address);
+      await other.press("Take over");
+      await isAsLeft(other);
+      await tab.page.waitForSelector("#other-tabs", PATIENCE);
+      assert.deepEqual([tab.errors, other.errors], [[], []]);
+    });
+  });
+}
