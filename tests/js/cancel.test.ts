@@ -4,8 +4,9 @@ import { getEventListeners } from "node:events";
 import { after, test } from "node:test";
 import { type Aligner, createAligner, type Progress } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
+import { withoutTimes } from "../support/results.js";
 import { input, truth } from "../support/scene.js";
-import { Gate, slowInput, Workers, withoutTimes } from "../support/workers.js";
+import { Gate, slowInput, Workers } from "../support/workers.js";
 
 const here = await createAligner();
 const pool = await createAligner({ workers: 2 });

@@ -4,10 +4,9 @@ import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync
 import { join } from "node:path";
 import { test } from "node:test";
 import { readMesh } from "sim3align/formats";
-import { height, resultsText, width, writeBop } from "../support/bop-dataset.js";
+import { bopResults, segmentation, writeBop } from "../support/bop.js";
 import { folder, read, results, run, succeeds } from "../support/command-line.js";
-import { repository } from "../support/environment.js";
-import { cocoRle } from "../support/files.js";
+import { fixture } from "../support/files.js";
 
 /** The errors of one pose against one true pose, in the names of the toolkit's fixture. */
 interface Errors {
@@ -23,8 +22,8 @@ type Evaluated = Omit<Errors, "place"> & { errors: Record<string, Errors> };
 
 // A dataset that the toolkit knows: 640 × 480 pixels, three objects, three scenes.
 const dataset = join("bop", "tudl");
-const masks = writeBop(join(folder, dataset));
-writeFileSync(join(folder, "test_tudl-test.csv"), resultsText());
+writeBop(join(folder, dataset));
+writeFileSync(join(folder, "test_tudl-test.csv"), bopResults);
 
 const bop = (words: string) => succeeds(`bop ${dataset} --split test ${words}`);
 const near = (found: unknown, expected: number, tolerance: number, what: string) =>
@@ -33,9 +32,9 @@ const near = (found: unknown, expected: number, tolerance: number, what: string)
 test("the errors and scores of a file are those of the official toolkit", () => {
   const { stdout } = bop("--evaluate test_tudl-test.csv --scores scores.json");
   const found = results("scores.json");
-  const fixture = JSON.parse(readFileSync(join(repository, "tests", "fixtures", "bop.json"), "utf8"));
+  const toolkit = JSON.parse(new TextDecoder().decode(fixture("bop/toolkit.json")));
   const idOf = (e: Evaluated | Errors, place: unknown) => [e.sceneId, e.imageId, e.objectId, e.score, place].join();
-  const official = new Map((fixture.errors as Errors[]).map((errors) => [idOf(errors, errors.place), errors]));
+  const official = new Map((toolkit.errors as Errors[]).map((errors) => [idOf(errors, errors.place), errors]));
   let compared = 0;
   for (const pose of found.poses as Evaluated[]) {
     for (const [place, own] of Object.entries(pose.errors)) {
@@ -47,7 +46,7 @@ test("the errors and scores of a file are those of the official toolkit", () => 
     }
   }
   assert.equal(compared, 13);
-  const { scores } = fixture;
+  const { scores } = toolkit;
   near(found.averageRecall, scores.bop19_average_recall, 1e-3, "AR");
   for (const name of ["vsd", "mssd", "mspd"]) near(found[name], scores[`bop19_average_recall_${name}`], 1e-3, name);
   near(found.secondsPerImage, scores.bop19_average_time_per_image, 1e-9, "time");
@@ -94,16 +93,16 @@ test("targets are aligned at their size; the results file is that of the leaderb
 });
 
 test("detections take the place of masks, and pictures show the poses", async () => {
-  const detection = (image: number, id: number, score: number, path: string) => ({
+  const detection = async (image: number, id: number, score: number, path: string) => ({
     ...{ scene_id: 1, image_id: image, category_id: id, score, time: 0.5 },
-    segmentation: cocoRle(masks.get(join("test", "000001", "mask_visib", path)) as Uint8Array, width, height),
+    segmentation: await segmentation(`000001/mask_visib/${path}`),
   });
-  const detections = [
+  const detections = await Promise.all([
     detection(7, 2, 0.3, "000007_000003.png"),
     detection(7, 2, 0.9, "000007_000000.png"),
     detection(7, 2, 0.8, "000007_000002.png"),
     detection(0, 1, 0.5, "000000_000000.png"),
-  ];
+  ]);
   writeFileSync(join(folder, "detections.json"), JSON.stringify(detections));
   const pictures = "--report pictures --overlay overlay --glb posed";
   const { stderr } = bop(`--masks detections.json --quality fast --csv cnos --json d.json ${pictures}`);

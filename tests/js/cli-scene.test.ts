@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { exportPly } from "sim3align/conventions";
 import { Quaternion, Vector3 } from "three";
-import { plyText } from "../support/bop-dataset.js";
 import { files, folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
 import { glb, png } from "../support/files.js";
 import { assertValid, verticesOf } from "../support/gltf-validator.js";
@@ -78,7 +78,7 @@ test("an image of BOP is a scene", () => {
   for (const [i, pose] of two.entries()) {
     writeCase(scene, { [`mask_visib/000003_00000${i}.png`]: png(masks[i] as Uint8Array, width, height) });
     const positions = standingMesh.positions.map((x) => 1000 * pose.scale * x);
-    writeCase("bop", { [`models/obj_00000${i + 1}.ply`]: plyText({ ...standingMesh, positions }) });
+    writeCase("bop", { [`models/obj_00000${i + 1}.ply`]: exportPly({ ...standingMesh, positions }) });
   }
   succeeds("scene", scene, "--quality", "fast", "--json", "b.json");
   const { objects } = results("b.json")["000007/000003"];

@@ -11,8 +11,8 @@ import { createAligner } from "sim3align";
 import * as inline from "sim3align/inline";
 import { installDir, repository } from "../support/environment.js";
 import { obj } from "../support/files.js";
+import { withoutTimes } from "../support/results.js";
 import { input, mesh } from "../support/scene.js";
-import { withoutTimes } from "../support/workers.js";
 
 const require = createRequire(import.meta.url);
 const coreWasm = require.resolve("sim3align/wasm/core_bg.wasm");

@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type Aligner, createAligner, Sim3AlignError } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
+import { withoutTimes } from "../support/results.js";
 import { input, mesh, render, truth } from "../support/scene.js";
-import { withoutTimes } from "../support/workers.js";
 
 /** The memory of the newest instance of each WebAssembly module, in the order in which the modules are loaded. */
 const heaps = new Map<WebAssembly.Module, WebAssembly.Memory>();

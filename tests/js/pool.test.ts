@@ -12,8 +12,9 @@ import {
 } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
+import { withoutTimes } from "../support/results.js";
 import { brick, input, mesh, transformed, truth } from "../support/scene.js";
-import { Gate, slowInput, Workers, withoutTimes } from "../support/workers.js";
+import { Gate, slowInput, Workers } from "../support/workers.js";
 
 const here = await createAligner();
 const pools = await Promise.all([1, 3].map((workers) => createAligner({ workers })));

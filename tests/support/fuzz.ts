@@ -1,9 +1,8 @@
 /**
  * Calls with random arguments, some of them odd, without workers and with one: each settles, with a result or a typed error,
- * and both outcomes are the same. `fuzz.js MINUTES SEED` runs for so long, and prints each finding with its seed.
+ * and both outcomes are the same.
  */
 import assert from "node:assert/strict";
-import { pathToFileURL } from "node:url";
 import { type Aligner, createAligner, OPTIONS, type OptionRow, Sim3AlignError } from "sim3align";
 import { readCamera, readCase, readDepth, readMask, readMesh, readPose, readSam3d } from "sim3align/formats";
 import { cocoRle, glb, maskPng, npy, obj } from "./files.js";
@@ -152,22 +151,4 @@ export async function fuzzer(): Promise<{ run(seed: number): Promise<void>; end(
       for (const aligner of aligners) aligner.dispose();
     },
   };
-}
-
-if (import.meta.url === pathToFileURL(process.argv[1] ?? "").href) {
-  const [minutes = 1, first = 0] = process.argv.slice(2).map(Number);
-  const { run, end } = await fuzzer();
-  const until = performance.now() + 60_000 * minutes;
-  let seed = first;
-  let findings = 0;
-  while (performance.now() < until && findings < 20) {
-    seed += 1;
-    await run(seed).catch((error: Error) => {
-      findings += 1;
-      console.log(error.message);
-    });
-  }
-  await end();
-  console.log(`${seed - first} calls, ${findings} findings; seeds from ${first + 1}`);
-  if (findings > 0) process.exitCode = 1;
 }

@@ -56,8 +56,6 @@ export class Gate {
   });
 }
 
-export { withoutTimes } from "./results.js";
-
 const mesh = blob(60, 90);
 
 /** An input that keeps `quality: "best"` busy long after its first report of progress. */
