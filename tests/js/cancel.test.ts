@@ -139,44 +139,6 @@ test("aborting ends the worker and its job, and the job that waits for it is not
   assert.deepEqual(withoutTimes(await waiting), expected);
 });
 
-test("a job that waits can be aborted, its arrays are not moved, and others go on", async () => {
-  using one = await createAligner({ workers: 1 });
-  const running = one.align(input, quick);
-  const controller = new AbortController();
-  const moved = structuredClone(input);
-  const waiting = one.align(moved, { ...quick, signal: controller.signal, transfer: true });
-  controller.abort(reason);
-  await assert.rejects(waiting, isReason);
-  assert.deepEqual(moved.depth, input.depth);
-  assert.deepEqual(withoutTimes(await running), expected);
-  await works(one);
-});
-
-test("an abort in the turn in which a worker is lost or an aligner disposed settles every call", async () => {
-  for (const ends of ["abort", "dispose", "both"]) {
-    const own = new Workers();
-    const one = await createAligner({ workers: 1, createWorker: own.create });
-    const controller = new AbortController();
-    const { signal } = controller;
-    const begun = new Gate();
-    const calls = [
-      one.align(slowInput, { ...slow, signal, onProgress: begun.open }),
-      one.align(input, { ...quick, signal }),
-    ];
-    await begun.opened;
-    own.made[0]?.terminate();
-    if (ends !== "dispose") controller.abort(reason);
-    if (ends !== "abort") one.dispose();
-    for (const call of await Promise.allSettled(calls)) {
-      const error = call.status === "rejected" ? call.reason : undefined;
-      assert.ok(error === reason || (ends !== "abort" && error?.code === "DISPOSED"), `${ends}: ${error}`);
-    }
-    if (ends === "abort") await works(one);
-    one.dispose();
-    for (const worker of own.made) await worker.ended();
-  }
-});
-
 test("many calls with one signal leave no listener behind", async () => {
   const { signal } = new AbortController();
   const warnings: Error[] = [];

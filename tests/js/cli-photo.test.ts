@@ -6,10 +6,8 @@ import { test } from "node:test";
 import { files, folder, read, results, succeeds, writeCase } from "../support/command-line.js";
 import { greyJpeg, tiff } from "../support/exif.js";
 import { npy } from "../support/files.js";
-import { assertValid } from "../support/gltf-validator.js";
 import { turnBetween } from "../support/rig.js";
 import { mesh, poseJson, truth, type View, view } from "../support/scene.js";
-import { poses, tableFiles, tableView } from "../support/table.js";
 import { deflated, zip } from "../support/zip.js";
 
 const { width, height, camera } = view;
@@ -124,20 +122,4 @@ test("a batch of relative depth: columns of metres are empty, pictures are in it
   const again = succeeds(`${batch} --resume`);
   assert.match(again.stderr, /resumed: 1 of 2/);
   hasNoMetres(again.stdout);
-});
-
-test("a scene of relative depth without a camera file", async () => {
-  const { "camera.json": _, ...scene } = tableFiles();
-  writeCase("table", { ...scene, "depth.npy": disparity(tableView), "rgb.jpg": photoOf(37) });
-  const { stdout } = succeeds(`scene table ${relative} --json s.json --csv s.csv --scene-glb s.glb`);
-  hasNoMetres(stdout);
-  assert.match(stdout, /focal length +\d+\.\d px ± .*EXIF: 37 mm/);
-  const { depthCalibration, cameraSource, objects } = results("s.json").table;
-  assert.ok(!depthCalibration.isMetric && /^EXIF/.test(cameraSource));
-  for (const [i, pose] of poses.entries()) {
-    const object = objects[`thing-${i}`];
-    assert.ok(turnBetween(object.quaternion, pose.rotation) < 8 && !("errors" in object), `object ${i}`);
-  }
-  assert.equal(read("s.csv").match(/,false,/g)?.length, 3);
-  await assertValid(new Uint8Array(readFileSync(join(folder, "s.glb"))));
 });

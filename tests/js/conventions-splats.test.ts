@@ -115,7 +115,7 @@ test("a splat is aligned where the mesh of the same object is, with and without 
   const aligner = await createAligner();
   using pool = await createAligner({ workers: 1 });
   const expected = await aligner.align(input, { quality: "fast" });
-  const gaussians = splatOf(mesh, 10_000, 1);
+  const gaussians = splatOf(mesh);
   const [ply, records] = [splatPly(gaussians), splatRecords(gaussians)];
   const forms = [
     [aligner, ply],

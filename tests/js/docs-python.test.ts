@@ -8,8 +8,7 @@ import { files, folder, read, writeCase } from "../support/command-line.js";
 import { commandLine, installDir, repository } from "../support/environment.js";
 
 const python = process.env.SIM3ALIGN_NOTEBOOKS ?? "";
-const skip =
-  python === "" && "No Python with the packages of scripts/bench/notebooks/requirements.txt; see CONTRIBUTING.md.";
+const skip = python === "" && "No Python with the packages of scripts/bench/notebooks/requirements.txt.";
 
 const guide = readFileSync(join(repository, "docs", "guides", "datasets.md"), "utf8");
 const blocks = [...guide.matchAll(/^```python\n([\s\S]*?)^```$/gm)].map(([, block = ""]) => block);
@@ -38,7 +37,7 @@ interface Notebook {
   cells: { outputs?: { text?: Text; data?: Record<string, Text> }[] }[];
 }
 
-/** Executes a notebook as `npm run notebook` does. */
+/** Executes a notebook. */
 function executed(source: object, at: string): Notebook {
   const [given, made] = [join(at, "given.ipynb"), join(at, "executed.ipynb")];
   writeFileSync(given, JSON.stringify(source));
@@ -83,12 +82,12 @@ test("docs/notebook.ipynb ends without an error, with the table and the pictures
   mkdirSync(home);
   const made = executed(stored, home);
   assert.ok(textsOf(made).some((text) => text.startsWith("| case | confidence |")));
-  assert.deepEqual(textsOf(made), textsOf(stored), "run `npm run notebook` where the results are meant to differ");
+  assert.deepEqual(textsOf(made), textsOf(stored), "execute it anew where the results are meant to differ");
   assert.equal(picturesOf(made).length, 3);
   assert.deepEqual(picturesOf(made), picturesOf(stored));
 });
 
-test("Rerun shows the record: camera, depth, mesh and pose", { skip }, () => {
+test("Rerun shows the record: camera, depth and mesh", { skip }, () => {
   writeFileSync(join(folder, "show.py"), blocks[1] ?? assert.fail("the guide has no second block of Python"));
   runIn(folder, python, "show.py");
   const rerun = join(dirname(python), "rerun");
@@ -98,25 +97,4 @@ test("Rerun shows the record: camera, depth, mesh and pose", { skip }, () => {
     assert.ok(printed.includes(entity), `${entity} is there`);
   }
   assert.ok(!printed.includes("/broken"), "what failed is left out");
-  const line =
-    read("results.jsonl")
-      .split("\n")
-      .find((line) => line.includes('"case":"blob"')) ?? "";
-  const { translation, matrix } = JSON.parse(line) as { translation: number[]; matrix: number[] };
-  // Rerun stores 32 bits, and matrices column by column, as the record has them. It prints the first numbers of a long list.
-  const text = printed.replace(/[\s│]+/g, "");
-  for (const numbers of [translation, [0, 1, 2, 4, 5, 6].map((i) => matrix[i] ?? 0)]) {
-    const shown = numbers.map(shortest).join();
-    assert.ok(text.includes(shown), `${shown} is in ${printed.slice(0, 4000)}`);
-  }
 });
-
-/** The shortest decimals that give the same 32-bit number. */
-function shortest(number: number): string {
-  const single = Math.fround(number);
-  for (let digits = 1; digits < 10; digits++) {
-    const text = `${Number(single.toPrecision(digits))}`;
-    if (Math.fround(Number(text)) === single) return text;
-  }
-  return `${single}`;
-}

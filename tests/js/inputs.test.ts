@@ -29,8 +29,6 @@ function assertClose(found: Evaluation, tolerance: number): void {
 
 const arrayBuffer = (bytes: Uint8Array) => Uint8Array.from(bytes).buffer;
 const blobOf = (bytes: Uint8Array) => new Blob([arrayBuffer(bytes)]);
-const room = new Float32Array(depth.length + 10);
-room.set(depth, 5);
 const shared = new Float32Array(new SharedArrayBuffer(depth.byteLength));
 shared.set(depth);
 const readings = [0, -1, Number.NaN, Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
@@ -49,12 +47,9 @@ const shrunk = { positions: mesh.positions.map((x) => x / 2), indices: mesh.indi
 /** Forms that lose nothing. */
 const forms: Record<string, object> = {
   "depth with its size beside it": { depth, ...size },
-  "depth: a part of a larger buffer": { depth: { data: room.subarray(5, 5 + depth.length), ...size } },
   "depth on shared memory": { depth: { data: shared, ...size } },
   "depth: bytes of a .npy file": { depth: depthFile },
-  "depth: an ArrayBuffer with a .npy file": { depth: arrayBuffer(depthFile) },
   "depth: a Blob with a .npy file": { depth: blobOf(depthFile) },
-  "depth: a file and its size": { depth: depthFile, ...size },
   "depth: floats in another unit": { depth: { data: depth.map((z) => z * 1024), ...size }, depthScale: 1 / 1024 },
   "depth: 0, negative, NaN and infinite values are no reading": {
     depth: { data: depth.map((z, i) => (mask[i] === 0 && i % 3 === 0 ? (readings[i % 5] ?? 0) : z)), ...size },
@@ -67,24 +62,18 @@ const forms: Record<string, object> = {
   "mask: a Blob with a PNG": { mask: blobOf(png(mask, width, height)) },
   "mask: bytes of a .npy file": { mask: npy(mask, height, width) },
   "mask: COCO RLE": { mask: rle },
-  "mask: bytes of JSON with COCO RLE": { mask: Buffer.from(JSON.stringify(rle)) },
   "mask of twice the size, resized": {
     ...{ mask: { data: twice, width: 2 * width, height: 2 * height }, resizeMask: "nearest" },
   },
   "camera with the image's size": { camera: { ...camera, ...size } },
   "camera: K": { camera: { K } },
-  "camera: K as a typed array": { camera: { K: Float64Array.from(K) } },
   "camera: K in rows": { camera: { K: [K.slice(0, 3), K.slice(3, 6), K.slice(6)] } },
-  "camera: what readCamera returned": { camera: { ...camera, ...size, warnings: [] } },
   "camera file: text": fileOf(json),
-  "camera file: bytes": fileOf(Buffer.from(json)),
   "camera file: a Blob": fileOf(new Blob([json])),
   "camera file: ROS CameraInfo": fileOf({ ...size, k: K, d: [0, 0, 0, 0, 0], distortion_model: "" }),
   "mesh: 16-bit indices": { mesh: { ...mesh, indices: Uint16Array.from(mesh.indices) } },
   "mesh: bytes of a GLB": { mesh: glb(mesh) },
-  "mesh: a Blob with a GLB": { mesh: blobOf(glb(mesh)) },
   "mesh: bytes of an OBJ, named": { mesh: { bytes: obj(mesh), format: "obj" } },
-  "mesh: bytes of an OBJ, recognised": { mesh: obj(mesh) },
   "mesh: a .gltf and its buffer": {
     mesh: {
       bytes: Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "mesh.bin" }))),
@@ -97,10 +86,6 @@ const forms: Record<string, object> = {
 for (const [name, changes] of Object.entries(forms)) {
   test(name, async () => assert.deepEqual(await evaluated(changes), reference));
 }
-
-test("the unit that was taken is returned", async () => {
-  assert.equal((await aligner.evaluate(plain, truth)).depthUnit, "metres (float values, assumed)");
-});
 
 test("depth: whole numbers, as an array, as PNG and as .npy, in a unit that is stated or millimetres", async () => {
   const tenths = Uint16Array.from(depth, (z) => Math.round(10_000 * z));
@@ -240,12 +225,9 @@ test("a mesh with a texture that can't be read is aligned by its shape, with a w
     gltfBuffer(mesh),
   );
   using pool = await createAligner({ workers: 1 });
-  const prepared = await pool.prepareMesh(webp);
   for (const [one, mesh] of [
     [aligner, webp],
-    [pool, webp],
-    [pool, prepared],
-    [pool, prepared],
+    [pool, await pool.prepareMesh(webp)],
   ] as const) {
     const { warnings, metrics } = await one.evaluate({ ...input, image: rgb, mesh }, truth);
     assert.deepEqual([codesOf(warnings), metrics], [["COLORS_NOT_READ"], reference.metrics]);

@@ -152,14 +152,6 @@ test("a failed load says what to do, and the next one tries again", () => {
   assert.equal(output, "done\n");
 });
 
-test("the source of one module is not taken for that of all", async () => {
-  const empty = Uint8Array.of(0, 0x61, 0x73, 0x6d, 1, 0, 0, 0);
-  const sources = [empty, new WebAssembly.Module(empty), new Response(empty), { formatsWasm: "x" }, 7, null];
-  for (const wasm of sources) {
-    await assert.rejects(createAligner({ wasm: wasm as never }), { code: "INVALID_ARGUMENT", argument: "wasm" });
-  }
-});
-
 test("inline: the same bits, with workers and without, and no file beside its own scripts", async () => {
   const quick = { quality: "fast" } as const;
   const expected = withoutTimes(await (await createAligner()).align(input, quick));

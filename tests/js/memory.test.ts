@@ -1,7 +1,7 @@
 /** Memory: calls wait for one another, heaps that have grown are let go, and what does not fit is refused. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Aligner, createAligner, Sim3AlignError } from "sim3align";
+import { type Aligner, createAligner } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh, render, truth } from "../support/scene.js";
@@ -71,30 +71,6 @@ test("prepared meshes, trackers and calls that fail leave nothing behind", async
   const before = names.map(bytesOf);
   for (let i = 0; i < 12; i++) await round();
   assert.deepEqual(names.map(bytesOf), before);
-});
-
-test("calls of several aligners wait in their order; one that waits ends at its abort, and with its aligner", async () => {
-  const other = await createAligner();
-  const order: string[] = [];
-  const named = (name: string, call: Promise<unknown>) =>
-    call.then(
-      () => order.push(name),
-      (error) => order.push(`${name}: ${error instanceof Sim3AlignError ? error.code : error}`),
-    );
-  const abort = new AbortController();
-  const calls = [
-    named("first", aligner.align({ ...large, mesh }, quick)),
-    named("second", other.align(input, quick)),
-    named("aborted", aligner.align(input, { ...quick, signal: abort.signal })),
-    named("evaluated", aligner.evaluate(input, truth)),
-  ];
-  await new Promise((resolve) => setTimeout(resolve));
-  abort.abort("enough");
-  other.dispose();
-  await Promise.all(calls);
-  assert.deepEqual([...order].sort(), ["aborted: enough", "evaluated", "first", "second: DISPOSED"]);
-  // The two did not wait for the first.
-  assert.deepEqual(order.slice(-2), ["first", "evaluated"]);
 });
 
 test("a heap that has grown is let go when no call waits for it; a prepared mesh keeps its bits", async () => {

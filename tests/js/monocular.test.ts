@@ -66,25 +66,6 @@ test("the pose and the metrics are those in the corrected map", async () => {
   await rejectsWith(() => here.evaluate(uncalibrated, truth), "INVALID_ARGUMENT camera", /focal/);
 });
 
-test("affine-invariant depth has the same pose, and depth of unknown scale the bits of a metric map", async () => {
-  assertLooksRight(await here.align(relative("affine-invariant"), quick));
-  const scaled = relative("scale-invariant");
-  const { depthCalibration, depthUnit, ...pose } = await here.align(scaled, quick);
-  const { depthUnit: _, ...metric } = await here.align({ ...scaled, depthKind: "metric" } as AlignInput, quick);
-  assert.deepEqual(withoutTimes(pose), withoutTimes(metric));
-  const { isMetric, scale, shift } = depthCalibration ?? {};
-  assert.deepEqual([depthUnit, isMetric, scale, shift], ["unknown (scale-invariant)", false, 1, 0]);
-});
-
-test("a known length makes relative depth metric", async () => {
-  for (const depthKind of ["scale-invariant", "affine-invariant-disparity"] as const) {
-    const known = await here.align(relative(depthKind), { ...quick, scale: truth.scale });
-    assert.equal(known.depthCalibration?.isMetric, true);
-    assert.ok(Math.abs(known.scale / truth.scale - 1) < 1e-6, `${known.scale}`);
-    assert.ok(Math.abs(known.translation[2] / truth.translation[2] - 1) < 0.05, `${known.translation}`);
-  }
-});
-
 test("a missing focal length is estimated from the object, with a warning, and a guess is corrected", async () => {
   const { depth } = view;
   for (const unknown of [undefined, { width, height }]) {

@@ -104,17 +104,6 @@ test("with transfer the arrays are moved, and handed back, with an error too", a
   assert.deepEqual([clouds[0].length, cloudsBack?.source], [0, mesh.positions]);
 });
 
-test("what can't be moved is copied: shared memory, and everything without workers; other arguments stay", async () => {
-  const depth = new Float32Array(new SharedArrayBuffer(input.depth.byteLength));
-  depth.set(input.depth);
-  const { input: back } = await pool.align({ ...structuredClone(input), depth }, { ...quick, transfer: true });
-  assert.deepEqual((back as typeof input).depth, input.depth);
-  assert.equal((await here.align(input, { ...quick, transfer: true })).input, input);
-  const before = structuredClone(input);
-  await works(pool);
-  assert.deepEqual(input, before);
-});
-
 test("arrays that were moved before, or while their call waits, are refused by name, and the worker goes on", async () => {
   using one = await createAligner({ workers: 1 });
   const moved = structuredClone(input);

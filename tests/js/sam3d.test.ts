@@ -1,7 +1,7 @@
 /** Outputs of SAM 3D Objects as scenes: names, frames, damage; and that its placement is no assumption. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createAligner, type SceneInput } from "sim3align";
+import type { SceneInput } from "sim3align";
 import { type CaseFiles, readCamera, readDepth, readSam3d, readScene } from "sim3align/formats";
 import { type Fault, rejectsWith } from "../support/errors.js";
 import { type Files, fixture, maskPng, obj } from "../support/files.js";
@@ -112,20 +112,7 @@ for (const [what, files, fault, words] of damaged) {
   test(`refused by name: ${what}`, () => rejectsWith(() => read(files), fault, words));
 }
 
-test("an absurd placement does not hurt, and a first pose of a scene folder is a candidate, too", async () => {
-  const aligner = await createAligner();
-  const absurd: Pose[] = [
-    { ...pose, rotation: [1, 0, 0, 0], scale: 10 * pose.scale },
-    { ...pose, translation: [3, -2, 40] },
-    { ...pose, scale: 1e-6 },
-  ];
-  for (const placed of absurd) {
-    const { input } = await read({ ...whole, "a/pose.json": layoutOf(placed) });
-    const [object] = (await aligner.alignScene(input, { quality: "fast" })).objects;
-    assert.ok(object !== undefined && object.error === undefined);
-    assertNear([object.scale / pose.scale], [1], `a placement with scale ${placed.scale}`, 0.05);
-    assertNear(object.translation, pose.translation, "place", 0.01);
-  }
+test("a first pose of a scene folder is a candidate", async () => {
   const own = { "mask.png": mask, "mesh.glb": glb, "initial.json": { matrix: columnMajor(pose) } };
   const objects = Object.entries(own).map(([name, content]) => [`objects/a/${name}`, content]);
   const { input } = await readScene(filesOf({ "depth.npy": points, ...Object.fromEntries(objects) }));

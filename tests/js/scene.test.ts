@@ -67,15 +67,6 @@ test("masks are images, RLEs or one label map", async () => {
   for (const scene of forms) assert.deepEqual(poseOf(await here.alignScene(scene, quick)), poseOf(found));
 });
 
-test("an object without a mesh hides what is behind it", async () => {
-  const [first, second, third] = tableScene.objects;
-  assert.ok(first && second && third);
-  const scene = { ...tableView, objects: [first, third], occluders: [second.mask] };
-  const labelled = [1, 3].map((label) => ({ label, mesh: standingMesh }));
-  const again = await here.alignScene({ ...tableView, labels, objects: labelled }, quick);
-  assert.deepEqual(poseOf(await here.alignScene(scene, quick)), poseOf(again));
-});
-
 test("a plane that is passed is used, and what is known of an object goes before the options", async () => {
   const scale = (poses[0]?.scale ?? 1) * 1.02;
   const [first, ...others] = tableScene.objects;

@@ -132,7 +132,7 @@ interface Rested {
 }
 
 const python = process.env.SIM3ALIGN_SIMULATORS;
-const skip = python === undefined ? "no Python with simulators: `npm run bench:physics` installs it" : false;
+const skip = python === undefined ? "no Python with simulators: `npm run physics` installs it" : false;
 
 function simulated(path: string): Simulated {
   const env = { ...process.env, PYTHONPATH: join(repository, "scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" };
