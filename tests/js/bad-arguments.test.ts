@@ -25,70 +25,46 @@ function changed<T extends { slice(): T; [index: number]: number }>(array: T, in
   return copy;
 }
 
+const K = { cam_K: [] };
 const refusesInputs = (changes: Refusals<object>) =>
   refuses(changes, (change) => aligner.align({ ...input, ...change } as AlignInput));
 
-refusesInputs({
-  "depth missing: INVALID_ARGUMENT depth": [{ depth: undefined }, /found nothing, expected a Float32Array/],
-  "depth as a plain array: INVALID_ARGUMENT depth": [
-    { depth: Array.from(depth) },
-    /19200.*Float32Array\.from\(depth\)/,
-  ],
-  "depth as doubles: INVALID_ARGUMENT depth": [{ depth: Float64Array.from(depth) }, /Float32Array\.from\(depth\)/],
-  "8-bit depth: EIGHT_BIT_DEPTH depth": [{ depth: new Uint8Array(pixels).fill(9) }, /256 levels/],
-  "depth too short: WRONG_LENGTH depth": [{ depth: depth.slice(1) }, /19199 values.*160 × 120 = 19200/],
-  "depth beyond the memory: OUT_OF_MEMORY depth": [
-    { depth: new Float32Array(8193 ** 2), width: 8193, height: 8193 },
-    /an array of 269 MB, expected at most 268 MB/,
-  ],
-  "width missing: INVALID_ARGUMENT width": [{ width: undefined }, /nothing/],
-  "width as a fraction: INVALID_ARGUMENT width": [{ width: 160.5 }, /160\.5/],
-  "sizes that contradict: SIZE_MISMATCH depth": [{ depth: { data: depth, ...size }, width: 99 }, /99 × 120/],
-  "a depth scale of zero: INVALID_ARGUMENT depthScale": [{ depthScale: 0 }, /found 0/],
-  "an unknown kind of depth: INVALID_ARGUMENT depthKind": [{ depthKind: "relative" }, /"affine-invariant-disparity"/],
-  "a misspelt property: INVALID_ARGUMENT input.depth_scale": [{ depth_scale: 0.001 }, /depthScale/],
-  "a point map beside depth: INVALID_ARGUMENT depth": [{ pointMap: new Float32Array(3 * pixels) }, /not both/],
-  "mask missing: INVALID_ARGUMENT mask": [{ mask: undefined }, /found nothing, expected a Uint8Array/],
-  "mask as a plain array: INVALID_ARGUMENT mask": [{ mask: Array.from(mask) }, /Uint8Array\.from\(mask\)/],
-  "mask as floats: INVALID_ARGUMENT mask": [{ mask: Float32Array.from(mask) }, /Uint8Array\.from\(mask\)/],
-  "an RGBA mask: WRONG_LENGTH mask": [
-    { mask: new Uint8ClampedArray(4 * pixels) },
-    /76800 values, 4 per pixel.*one channel/,
-  ],
-  "a mask as ImageData: INVALID_ARGUMENT mask": [{ mask: { [Symbol.toStringTag]: "ImageData" } }, /one channel/],
-  "mask of another size: SIZE_MISMATCH mask": [
-    { mask: { data: new Uint8Array(80 * 60), width: 80, height: 60 } },
-    /80 × 60 pixels.*160 × 120.*resizeMask/s,
-  ],
-  "an unknown way of resizing: INVALID_ARGUMENT resizeMask": [{ resizeMask: "bilinear" }, /"nearest"/],
-  "mask empty: EMPTY_MASK mask": [{ mask: new Uint8Array(pixels) }, /no non-zero pixel/],
-  "mask without depth: NO_DEPTH_IN_MASK depth": [{ depth: inMask(0) }, /no reading in the \d+ pixels/],
-  "depth all equal: FLAT_DEPTH depth": [{ depth: inMask(0.7) }, /0\.7 m in all \d+ readings/],
-  "too few points: TOO_FEW_POINTS depth": [
-    { mask: mask.map((m, i) => (m !== 0 && i < mask.indexOf(1) + 5 ? 1 : 0)) },
-    /at least \d+/,
-  ],
-  "camera as null: INVALID_ARGUMENT camera": [{ camera: null }, /null/],
-  "camera with NaN: INVALID_CAMERA camera.cx": [{ camera: { ...camera, cx: Number.NaN } }, /NaN/],
-  "camera with fx of zero: INVALID_CAMERA camera.fx": [{ camera: { ...camera, fx: 0 } }, /found 0/],
-  "K column by column: INVALID_CAMERA camera.K": [{ camera: { K: [300, 0, 0, 0, 300, 0, 80, 60, 1] } }, /transpose/],
-  "an uncertainty of 100 %: INVALID_ARGUMENT camera.focalUncertainty": [
-    { camera: { ...camera, focalUncertainty: 100 } },
-    /0\.1 for 10 %/,
-  ],
-  "a camera of another image: SIZE_MISMATCH camera": [{ camera: { ...camera, width: 640, height: 480 } }, /640 × 480/],
-  "a camera file as camera: INVALID_ARGUMENT camera": [{ camera: { cam_K: [] } }, /cameraFile/],
-  "a camera with other names: INVALID_ARGUMENT camera": [{ camera: { focal: 600 } }, /\{ fx, fy, cx, cy \}.*`focal`/],
-  "camera and camera file: INVALID_ARGUMENT cameraFile": [{ cameraFile: "{}" }, /not both/],
-  "a scene camera without image id: INVALID_ARGUMENT imageId": [
-    { camera: undefined, cameraFile: { "1": { cam_K: [] }, "2": { cam_K: [] } } },
-    /one of 1, 2/,
-  ],
-});
-
-const flattened = (x: number, y: number, z: number) => ({
-  mesh: { ...mesh, positions: mesh.positions.map((value, i) => value * ([x, y, z][i % 3] ?? 0)) },
-});
+refusesInputs([
+  [{ depth: undefined }, "INVALID_ARGUMENT depth", /found nothing, expected a Float32Array/],
+  [{ depth: Array.from(depth) }, "INVALID_ARGUMENT depth", /19200.*Float32Array\.from\(depth\)/],
+  [{ depth: Float64Array.from(depth) }, "INVALID_ARGUMENT depth", /Float32Array\.from\(depth\)/],
+  [{ depth: new Uint8Array(pixels).fill(9) }, "EIGHT_BIT_DEPTH depth", /256 levels/],
+  [{ depth: depth.slice(1) }, "WRONG_LENGTH depth", /19199 values.*160 × 120 = 19200/],
+  [{ depth: new Float32Array(8193 ** 2), width: 8193, height: 8193 }, "OUT_OF_MEMORY depth", /269 MB.*268/],
+  [{ width: undefined }, "INVALID_ARGUMENT width", /nothing/],
+  [{ width: 160.5 }, "INVALID_ARGUMENT width", /160\.5/],
+  [{ depth: { data: depth, ...size }, width: 99 }, "SIZE_MISMATCH depth", /99 × 120/],
+  [{ depthScale: 0 }, "INVALID_ARGUMENT depthScale", /found 0/],
+  [{ depthKind: "relative" }, "INVALID_ARGUMENT depthKind", /"affine-invariant-disparity"/],
+  [{ depth_scale: 0.001 }, "INVALID_ARGUMENT input.depth_scale", /depthScale/],
+  [{ pointMap: new Float32Array(3 * pixels) }, "INVALID_ARGUMENT depth", /not both/],
+  [{ mask: undefined }, "INVALID_ARGUMENT mask", /found nothing, expected a Uint8Array/],
+  [{ mask: Array.from(mask) }, "INVALID_ARGUMENT mask", /Uint8Array\.from\(mask\)/],
+  [{ mask: Float32Array.from(mask) }, "INVALID_ARGUMENT mask", /Uint8Array\.from\(mask\)/],
+  [{ mask: new Uint8ClampedArray(4 * pixels) }, "WRONG_LENGTH mask", /76800 values, 4 per pixel.*one channel/],
+  [{ mask: { [Symbol.toStringTag]: "ImageData" } }, "INVALID_ARGUMENT mask", /one channel/],
+  [{ mask: { data: new Uint8Array(80 * 60), width: 80, height: 60 } }, "SIZE_MISMATCH mask", /80 × 60.*resizeMask/s],
+  [{ resizeMask: "bilinear" }, "INVALID_ARGUMENT resizeMask", /"nearest"/],
+  [{ mask: new Uint8Array(pixels) }, "EMPTY_MASK mask", /no non-zero pixel/],
+  [{ depth: inMask(0) }, "NO_DEPTH_IN_MASK depth", /no reading in the \d+ pixels/],
+  [{ depth: inMask(0.7) }, "FLAT_DEPTH depth", /0\.7 m in all \d+ readings/],
+  [{ mask: mask.map((m, i) => m * Number(i < mask.indexOf(1) + 5)) }, "TOO_FEW_POINTS depth", /at least \d+/],
+  [{ camera: null }, "INVALID_ARGUMENT camera", /null/],
+  [{ camera: { ...camera, cx: Number.NaN } }, "INVALID_CAMERA camera.cx", /NaN/],
+  [{ camera: { ...camera, fx: 0 } }, "INVALID_CAMERA camera.fx", /found 0/],
+  [{ camera: { K: [300, 0, 0, 0, 300, 0, 80, 60, 1] } }, "INVALID_CAMERA camera.K", /transpose/],
+  [{ camera: { ...camera, focalUncertainty: 100 } }, "INVALID_ARGUMENT camera.focalUncertainty", /0\.1 for 10 %/],
+  [{ camera: { ...camera, width: 640, height: 480 } }, "SIZE_MISMATCH camera", /640 × 480/],
+  [{ camera: { cam_K: [] } }, "INVALID_ARGUMENT camera", /cameraFile/],
+  [{ camera: { focal: 600 } }, "INVALID_ARGUMENT camera", /\{ fx, fy, cx, cy \}.*`focal`/],
+  [{ cameraFile: "{}" }, "INVALID_ARGUMENT cameraFile", /not both/],
+  [{ camera: undefined, cameraFile: { "1": K, "2": K } }, "INVALID_ARGUMENT imageId", /one of 1, 2/],
+]);
 
 const positioned = (positions: unknown) => ({ mesh: { ...mesh, positions } });
 const indexed = (indices: unknown) => ({ mesh: { ...mesh, indices } });
@@ -96,29 +72,22 @@ const samples = { positions: new Float32Array(6), normals: new Float32Array(6), 
 const rgb = new Uint8Array(3 * pixels);
 const colored = (change: object) => ({ image: rgb, mesh: { ...mesh, ...change } });
 
-refusesInputs({
-  "mesh missing: INVALID_ARGUMENT mesh": [{ mesh: undefined }, /found nothing/],
-  "positions as a plain array: INVALID_ARGUMENT mesh.positions": [positioned([0, 0, 0]), /Float32Array\.from/],
-  "positions not in threes: WRONG_LENGTH mesh.positions": [positioned(mesh.positions.slice(1)), /multiple of 3/],
-  "indices as a plain array: INVALID_ARGUMENT mesh.indices": [indexed([0, 1, 2]), /Uint32Array\.from/],
-  "an index out of range: INDEX_OUT_OF_RANGE mesh.indices": [
-    indexed(changed(mesh.indices, 7, 1e6)),
-    /1000000 in triangle 2/,
-  ],
-  "no triangle: EMPTY_MESH mesh": [indexed(new Uint32Array(0)), /no triangle/],
-  "a NaN vertex: NON_FINITE mesh.positions": [positioned(changed(mesh.positions, 4, Number.NaN)), /NaN.*vertex 1/],
-  "a mesh without area: DEGENERATE_MESH mesh": [flattened(0, 0, 0)],
-  "colours as a plain array: INVALID_ARGUMENT mesh.colors": [colored({ colors: [0, 0, 0] })],
-  "an unknown space of colours: INVALID_OPTION mesh.colorSpace": [
-    colored({ colors: new Uint8Array(mesh.positions.length), colorSpace: "rgb" }),
-  ],
-  "samples of other lengths: WRONG_LENGTH mesh.samples": [
-    colored({ samples: { ...samples, colors: new Uint8Array(5) } }),
-  ],
-  "a photo of floats: INVALID_ARGUMENT image": [{ image: new Float32Array(3 * pixels) }],
-  "a photo without height: INVALID_ARGUMENT image.height": [{ image: { data: rgb, width } }],
-  "a photo of another shape: SIZE_MISMATCH image": [{ image: { data: rgb, width: pixels, height: 1 } }],
-});
+refusesInputs([
+  [{ mesh: undefined }, "INVALID_ARGUMENT mesh", /found nothing/],
+  [positioned([0, 0, 0]), "INVALID_ARGUMENT mesh.positions", /Float32Array\.from/],
+  [positioned(mesh.positions.slice(1)), "WRONG_LENGTH mesh.positions", /multiple of 3/],
+  [indexed([0, 1, 2]), "INVALID_ARGUMENT mesh.indices", /Uint32Array\.from/],
+  [indexed(changed(mesh.indices, 7, 1e6)), "INDEX_OUT_OF_RANGE mesh.indices", /1000000 in triangle 2/],
+  [indexed(new Uint32Array(0)), "EMPTY_MESH mesh", /no triangle/],
+  [positioned(changed(mesh.positions, 4, Number.NaN)), "NON_FINITE mesh.positions", /NaN.*vertex 1/],
+  [positioned(mesh.positions.map(() => 0)), "DEGENERATE_MESH mesh"],
+  [colored({ colors: [0, 0, 0] }), "INVALID_ARGUMENT mesh.colors"],
+  [colored({ colors: new Uint8Array(mesh.positions.length), colorSpace: "rgb" }), "INVALID_OPTION mesh.colorSpace"],
+  [colored({ samples: { ...samples, colors: new Uint8Array(5) } }), "WRONG_LENGTH mesh.samples"],
+  [{ image: new Float32Array(3 * pixels) }, "INVALID_ARGUMENT image"],
+  [{ image: { data: rgb, width } }, "INVALID_ARGUMENT image.height"],
+  [{ image: { data: rgb, width: pixels, height: 1 } }, "SIZE_MISMATCH image"],
+]);
 
 /** A GLB whose geometry is there in compressed form only. */
 function dracoGlb(): Uint8Array {
@@ -143,78 +112,64 @@ const huge = photo.slice();
 // 100 000 × 100 000 pixels.
 huge.set([0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0], 16);
 
-refusesInputs({
-  "8-bit PNG depth: EIGHT_BIT_DEPTH depth": [{ ...unsized, depth: png(bytes, width, height) }, /8-bit PNG/],
-  "depth of no known format: UNSUPPORTED_FORMAT depth": [
+refusesInputs([
+  [{ ...unsized, depth: png(bytes, width, height) }, "EIGHT_BIT_DEPTH depth", /8-bit PNG/],
+  [
     { ...unsized, depth: Buffer.from("BM a bitmap") },
+    "UNSUPPORTED_FORMAT depth",
     /16-bit grey PNG, a \.npy array, or a \.npz/,
   ],
-  "truncated depth: CORRUPT_FILE depth": [{ ...unsized, depth: npy(depth, height, width).slice(0, 5000) }],
-  "a mask file of another size: SIZE_MISMATCH mask": [{ mask: png(new Uint8Array(6).fill(1), 3, 2) }, /3 × 2 pixels/],
-  "RLE that does not fill its size: CORRUPT_FILE mask.counts": [{ mask: { size: [120, 160], counts: [5, 5] } }],
-  "a JPEG mask: UNSUPPORTED_FORMAT mask": [{ mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, /PNG/],
-  "a GLB that claims 4 GB: FILE_TOO_LARGE mesh": [{ mesh: header }, /claims 4294967295 bytes; the file has 100/],
-  "truncated GLB: CORRUPT_FILE mesh": [{ mesh: glb(mesh).slice(0, 5000) }],
-  "a Draco-compressed GLB: COMPRESSED_MESH mesh": [{ mesh: dracoGlb() }, /KHR_draco_mesh_compression.*gltf-transform/],
-  "a .gltf without its buffer: INVALID_ARGUMENT mesh.resources": [{ mesh: external }, /mesh\.bin/],
-  "an unknown mesh format: INVALID_OPTION mesh.format": [{ mesh: { bytes: glb(mesh), format: "fbx" } }, /fbx/],
-  "a photo that claims too much: FILE_TOO_LARGE image": [{ image: huge }],
-  "a WebP photo: UNSUPPORTED_FORMAT image": [{ image: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }],
-});
+  [{ ...unsized, depth: npy(depth, height, width).slice(0, 5000) }, "CORRUPT_FILE depth"],
+  [{ mask: png(new Uint8Array(6).fill(1), 3, 2) }, "SIZE_MISMATCH mask", /3 × 2 pixels/],
+  [{ mask: { size: [120, 160], counts: [5, 5] } }, "CORRUPT_FILE mask.counts"],
+  [{ mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, "UNSUPPORTED_FORMAT mask", /PNG/],
+  [{ mesh: header }, "FILE_TOO_LARGE mesh", /claims 4294967295 bytes; the file has 100/],
+  [{ mesh: glb(mesh).slice(0, 5000) }, "CORRUPT_FILE mesh"],
+  [{ mesh: dracoGlb() }, "COMPRESSED_MESH mesh", /KHR_draco_mesh_compression.*gltf-transform/],
+  [{ mesh: external }, "INVALID_ARGUMENT mesh.resources", /mesh\.bin/],
+  [{ mesh: { bytes: glb(mesh), format: "fbx" } }, "INVALID_OPTION mesh.format", /fbx/],
+  [{ image: huge }, "FILE_TOO_LARGE image"],
+  [{ image: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }, "UNSUPPORTED_FORMAT image"],
+]);
 
-const options: Refusals<unknown> = {
-  "options as text: INVALID_ARGUMENT options": ["paper", /string "paper"/],
-  "an unknown option: UNKNOWN_OPTION options.qualty": [{ qualty: "best" }, /Did you mean `quality`/],
-  "an option of createAligner: UNKNOWN_OPTION options.workers": [{ workers: 4 }, /createAligner\(\{ workers \}\)/],
-  "an option of the other preset: UNKNOWN_OPTION options.guard": [{ guard: null }, /Pass `preset: "paper"`/],
-  "the same under preset paper: UNKNOWN_OPTION options.quality": [
-    { preset: "paper", quality: "best" },
-    /Omit `preset`/,
-  ],
-  "an unknown preset: INVALID_OPTION options.preset": [{ preset: "fast" }, /precise.*paper/],
-  "a seed below 0: INVALID_OPTION options.seed": [{ seed: -1 }, /-1/],
-  "voxelDivisions too small: INVALID_OPTION options.voxelDivisions": [
-    { preset: "paper", voxelDivisions: 1 },
-    /5 to 200/,
-  ],
-  "a guard without 1: INVALID_OPTION options.guard": [{ preset: "paper", guard: [1.2, 1.5] }, /≤ 1 ≤/],
-  "lockScale as a number: INVALID_OPTION options.lockScale": [{ preset: "paper", lockScale: 1 }],
-  "an unknown quality: INVALID_OPTION options.quality": [{ quality: "ultra" }, /"ultra".*fast.*balanced.*best/],
-  "a scale of zero: INVALID_OPTION options.scale": [{ scale: 0 }, /number above 0/],
-  "a scale as another word: INVALID_OPTION options.scale": [{ scale: "fixed" }, /"fixed".*"free"/],
-  "bounds the wrong way round: INVALID_OPTION options.scale": [{ scale: [2, 1] }, /\[2, 1\].*min ≤ max/],
-  "a known extent below 0: INVALID_OPTION options.knownExtentM": [{ knownExtentM: -0.1 }, /-0\.1.*above 0/],
-  "an unknown side: INVALID_OPTION options.knownExtentAxis": [{ knownExtentAxis: "w" }, /longest.*z/],
-  "two known sizes: INVALID_OPTION options.knownExtentM": [{ scale: 1, knownExtentM: 1 }, /omit one of the two/],
-  "up as zero: INVALID_OPTION options.cameraUp": [{ cameraUp: [0, 0, 0], meshUp: [0, 1, 0] }, /not all 0/],
-  "up in the camera alone: INVALID_OPTION options.meshUp": [{ cameraUp: [0, -1, 0] }, /in both frames/],
-  "an unknown symmetry: INVALID_OPTION options.symmetry": [{ symmetry: "round" }, /"round".*"auto"/],
-  "an axis of zero: INVALID_OPTION options.symmetry.axis": [{ symmetry: [{ axis: [0, 0, 0] }] }, /other than 0/],
-  "a local search from nowhere: INVALID_OPTION options.search": [{ search: "local" }, /without an initial pose/],
-  "an initial pose that is none: INVALID_ARGUMENT options.initial": [{ initial: 5 }, /number 5.*matrix/],
-  "an initial pose without rotation: INVALID_TRANSFORM options.initial.rotation": [
-    { initial: { ...truth, rotation: [0, 0, 0, 0] } },
-    /quaternion/,
-  ],
-  "an initial pose beyond the bounds: INVALID_OPTION options.initial": [
-    { initial: truth, scale: [0.1, 0.2] },
-    /0\.09.*within `scale`: \[0\.1, 0\.2\]/,
-  ],
-  "a budget of zero: INVALID_OPTION options.workBudget": [{ workBudget: 0 }, /above 0/],
-  "onProgress as text: INVALID_ARGUMENT options.onProgress": [{ onProgress: "log" }, /function/],
-  "a signal that is none: INVALID_ARGUMENT options.signal": [{ signal: { aborted: false } }, /AbortSignal/],
-};
+const options: Refusals<unknown> = [
+  ["paper", "INVALID_ARGUMENT options", /string "paper"/],
+  [{ qualty: "best" }, "UNKNOWN_OPTION options.qualty", /Did you mean `quality`/],
+  [{ workers: 4 }, "UNKNOWN_OPTION options.workers", /createAligner\(\{ workers \}\)/],
+  [{ guard: null }, "UNKNOWN_OPTION options.guard", /Pass `preset: "paper"`/],
+  [{ preset: "paper", quality: "best" }, "UNKNOWN_OPTION options.quality", /Omit `preset`/],
+  [{ preset: "fast" }, "INVALID_OPTION options.preset", /precise.*paper/],
+  [{ seed: -1 }, "INVALID_OPTION options.seed", /-1/],
+  [{ preset: "paper", voxelDivisions: 1 }, "INVALID_OPTION options.voxelDivisions", /5 to 200/],
+  [{ preset: "paper", guard: [1.2, 1.5] }, "INVALID_OPTION options.guard", /≤ 1 ≤/],
+  [{ preset: "paper", lockScale: 1 }, "INVALID_OPTION options.lockScale"],
+  [{ quality: "ultra" }, "INVALID_OPTION options.quality", /"ultra".*fast.*balanced.*best/],
+  [{ scale: 0 }, "INVALID_OPTION options.scale", /number above 0/],
+  [{ scale: "fixed" }, "INVALID_OPTION options.scale", /"fixed".*"free"/],
+  [{ scale: [2, 1] }, "INVALID_OPTION options.scale", /\[2, 1\].*min ≤ max/],
+  [{ knownExtentM: -0.1 }, "INVALID_OPTION options.knownExtentM", /-0\.1.*above 0/],
+  [{ knownExtentAxis: "w" }, "INVALID_OPTION options.knownExtentAxis", /longest.*z/],
+  [{ scale: 1, knownExtentM: 1 }, "INVALID_OPTION options.knownExtentM", /omit one of the two/],
+  [{ cameraUp: [0, 0, 0], meshUp: [0, 1, 0] }, "INVALID_OPTION options.cameraUp", /not all 0/],
+  [{ cameraUp: [0, -1, 0] }, "INVALID_OPTION options.meshUp", /in both frames/],
+  [{ symmetry: "round" }, "INVALID_OPTION options.symmetry", /"round".*"auto"/],
+  [{ symmetry: [{ axis: [0, 0, 0] }] }, "INVALID_OPTION options.symmetry.axis", /other than 0/],
+  [{ search: "local" }, "INVALID_OPTION options.search", /without an initial pose/],
+  [{ initial: 5 }, "INVALID_ARGUMENT options.initial", /number 5.*matrix/],
+  [{ initial: { ...truth, rotation: [0, 0, 0, 0] } }, "INVALID_TRANSFORM options.initial.rotation", /quaternion/],
+  [{ initial: truth, scale: [0.1, 0.2] }, "INVALID_OPTION options.initial", /0\.09.*within `scale`: \[0\.1, 0\.2\]/],
+  [{ workBudget: 0 }, "INVALID_OPTION options.workBudget", /above 0/],
+  [{ onProgress: "log" }, "INVALID_ARGUMENT options.onProgress", /function/],
+  [{ signal: { aborted: false } }, "INVALID_ARGUMENT options.signal", /AbortSignal/],
+];
 refuses(options, (value) => aligner.align(input, value as AlignOptions));
 
-const transforms: Refusals<unknown> = {
-  "no transform: INVALID_ARGUMENT transform": [undefined, /transform/],
-  "a scale of zero: INVALID_TRANSFORM transform": [{ ...truth, scale: 0 }, /scale/],
-  "a reflection: INVALID_TRANSFORM transform": [{ ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] }, /rotation/],
-  "a row-major matrix: INVALID_TRANSFORM transform.matrix": [
-    [0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1],
-    /column-major/,
-  ],
-};
+const transforms: Refusals<unknown> = [
+  [undefined, "INVALID_ARGUMENT transform", /transform/],
+  [{ ...truth, scale: 0 }, "INVALID_TRANSFORM transform", /scale/],
+  [{ ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] }, "INVALID_TRANSFORM transform", /rotation/],
+  [[0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1], "INVALID_TRANSFORM transform.matrix", /column-major/],
+];
 refuses(transforms, (transform) => aligner.evaluate(input, transform as Sim3Like));
 
 const cloud = Float64Array.from(mesh.positions);
@@ -224,36 +179,22 @@ const register = (source: unknown, target: unknown = cloud, options = {}) =>
 const estimate = (correspondences: unknown, source = cloud) =>
   aligner.estimateSim3(source, cloud, correspondences as Uint32Array);
 
-const others: Refusals<() => Promise<unknown>> = {
-  "evaluate without depth: INVALID_ARGUMENT depth": [
-    () => aligner.evaluate({ ...input, depth: undefined } as never, truth),
-    /nothing/,
-  ],
-  "a cloud as a plain array: INVALID_ARGUMENT source": [() => register([1, 2, 3]), /Float64Array\.from/],
-  "a broken triple: WRONG_LENGTH source": [() => register(cloud.slice(1)), /multiple of 3/],
-  "a NaN point: NON_FINITE source": [() => estimate(pairs, changed(cloud, 4, Number.NaN)), /NaN in point 1/],
-  "ten points: TOO_FEW_POINTS source": [() => register(cloud.slice(0, 30)), /10 points/],
-  "an option of align: UNKNOWN_OPTION options.guard": [() => register(cloud, cloud, { guard: null })],
-  "plain correspondences: INVALID_ARGUMENT correspondences": [() => estimate([0, 0]), /Uint32Array\.from/],
-  "half a pair: WRONG_LENGTH correspondences": [() => estimate(pairs.slice(1)), /even/],
-  "an index too far: INDEX_OUT_OF_RANGE correspondences": [
-    () => estimate(Uint32Array.of(0, 0, 1, 1, 2, 1e6)),
-    /pair 2/,
-  ],
-  "a video of unknown quality: INVALID_OPTION options.quality": [
-    () => aligner.track(mesh, { quality: "nice" } as never),
-  ],
-  "inputs that are one: INVALID_ARGUMENT inputs": [() => drain(input), /iterable/],
-  "a misspelt option of createAligner: UNKNOWN_OPTION worker": [
-    () => createAligner({ worker: 2 } as object),
-    /workers/,
-  ],
-  "a negative number of workers: INVALID_ARGUMENT workers": [() => createAligner({ workers: -1 }), /auto/],
-  "a script as createWorker: INVALID_ARGUMENT createWorker": [
-    () => createAligner({ workers: 1, createWorker: "worker.js" as never }),
-    /function/,
-  ],
-};
+const others: Refusals<() => Promise<unknown>> = [
+  [() => aligner.evaluate({ ...input, depth: undefined } as never, truth), "INVALID_ARGUMENT depth", /nothing/],
+  [() => register([1, 2, 3]), "INVALID_ARGUMENT source", /Float64Array\.from/],
+  [() => register(cloud.slice(1)), "WRONG_LENGTH source", /multiple of 3/],
+  [() => estimate(pairs, changed(cloud, 4, Number.NaN)), "NON_FINITE source", /NaN in point 1/],
+  [() => register(cloud.slice(0, 30)), "TOO_FEW_POINTS source", /10 points/],
+  [() => register(cloud, cloud, { guard: null }), "UNKNOWN_OPTION options.guard"],
+  [() => estimate([0, 0]), "INVALID_ARGUMENT correspondences", /Uint32Array\.from/],
+  [() => estimate(pairs.slice(1)), "WRONG_LENGTH correspondences", /even/],
+  [() => estimate(Uint32Array.of(0, 0, 1, 1, 2, 1e6)), "INDEX_OUT_OF_RANGE correspondences", /pair 2/],
+  [() => aligner.track(mesh, { quality: "nice" } as never), "INVALID_OPTION options.quality"],
+  [() => drain(input), "INVALID_ARGUMENT inputs", /iterable/],
+  [() => createAligner({ worker: 2 } as object), "UNKNOWN_OPTION worker", /workers/],
+  [() => createAligner({ workers: -1 }), "INVALID_ARGUMENT workers", /auto/],
+  [() => createAligner({ workers: 1, createWorker: "worker.js" as never }), "INVALID_ARGUMENT createWorker", /func/],
+];
 refuses(others, (call) => call());
 
 async function drain(inputs: unknown): Promise<void> {
@@ -263,39 +204,38 @@ async function drain(inputs: unknown): Promise<void> {
 const [first] = tableScene.objects;
 const inScene = (change: object) => ({ ...tableScene, objects: [{ ...first, ...change }] });
 const small = { data: new Uint8Array(4), width: 2, height: 2 };
-const scenes: Refusals<object> = {
-  "a scene of nothing: INVALID_ARGUMENT objects": [{ ...tableView, objects: [] }],
-  "a scene without depth: INVALID_ARGUMENT depth": [{ ...tableScene, depth: undefined }],
-  "an object without mask: INVALID_ARGUMENT objects[0].mask": [inScene({ mask: undefined })],
-  "a label without label map: INVALID_ARGUMENT objects[0].label": [inScene({ mask: undefined, label: 1 })],
-  "a label map of another size: SIZE_MISMATCH labels": [{ ...tableScene, labels: small }],
-  "an occluder of another size: WRONG_LENGTH occluders[0]": [{ ...tableScene, occluders: [new Uint8Array(3)] }],
-  "a normal of zero: INVALID_ARGUMENT support.normal": [{ ...tableScene, support: { normal: [0, 0, 0], d: 1 } }],
-};
+const scenes: Refusals<object> = [
+  [{ ...tableView, objects: [] }, "INVALID_ARGUMENT objects"],
+  [{ ...tableScene, depth: undefined }, "INVALID_ARGUMENT depth"],
+  [inScene({ mask: undefined }), "INVALID_ARGUMENT objects[0].mask"],
+  [inScene({ mask: undefined, label: 1 }), "INVALID_ARGUMENT objects[0].label"],
+  [{ ...tableScene, labels: small }, "SIZE_MISMATCH labels"],
+  [{ ...tableScene, occluders: [new Uint8Array(3)] }, "WRONG_LENGTH occluders[0]"],
+  [{ ...tableScene, support: { normal: [0, 0, 0], d: 1 } }, "INVALID_ARGUMENT support.normal"],
+];
 refuses(scenes, (scene) => aligner.alignScene(scene as never, quick));
 
-const sceneOptions: Refusals<object> = {
-  "the paper's method for a scene: INVALID_OPTION options.preset": [{ preset: "paper" }],
-  "one first pose for a scene: UNKNOWN_OPTION options.initial": [{ initial: poses[0] }],
-};
+const sceneOptions: Refusals<object> = [
+  [{ preset: "paper" }, "INVALID_OPTION options.preset"],
+  [{ initial: poses[0] }, "UNKNOWN_OPTION options.initial"],
+];
 refuses(sceneOptions, (options) => aligner.alignScene(tableScene, options as never));
 
 const still = { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] };
 const { mesh: _, ...frame } = input;
-const views: Refusals<object> = {
-  "no views: INVALID_ARGUMENT views": [{ views: undefined }],
-  "one camera pose of two: INVALID_ARGUMENT views": [{ views: [{ ...frame, cameraToWorld: still }, frame] }],
-  "a misspelt property of a view: INVALID_ARGUMENT views[1].depht": [{ views: [frame, { ...frame, depht: 1 }] }],
-  "a view's depth as a list: INVALID_ARGUMENT views[1].depth": [{ views: [frame, { ...frame, depth: [1, 2] }] }],
-  "a camera with a scale: INVALID_TRANSFORM views[0].cameraToWorld": [
-    { views: [{ ...frame, cameraToWorld: { ...still, scale: 2 } }] },
-  ],
-  "a view's photo of another shape: SIZE_MISMATCH views[1].image": [
+const views: Refusals<object> = [
+  [{ views: undefined }, "INVALID_ARGUMENT views"],
+  [{ views: [{ ...frame, cameraToWorld: still }, frame] }, "INVALID_ARGUMENT views"],
+  [{ views: [frame, { ...frame, depht: 1 }] }, "INVALID_ARGUMENT views[1].depht"],
+  [{ views: [frame, { ...frame, depth: [1, 2] }] }, "INVALID_ARGUMENT views[1].depth"],
+  [{ views: [{ ...frame, cameraToWorld: { ...still, scale: 2 } }] }, "INVALID_TRANSFORM views[0].cameraToWorld"],
+  [
     { views: [frame, { ...frame, image: { data: rgb, width: pixels, height: 1 } }] },
+    "SIZE_MISMATCH views[1].image",
     /field of view/,
   ],
-  "depth beside views: INVALID_ARGUMENT input.depth": [{ views: [frame], depth: 1 }],
-};
+  [{ views: [frame], depth: 1 }, "INVALID_ARGUMENT input.depth"],
+];
 refuses(views, (change) => aligner.alignViews({ mesh, ...change } as never));
 
 test("no input at all", async () => {

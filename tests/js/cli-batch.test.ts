@@ -241,11 +241,6 @@ test("- is stdout, whose table then goes to stderr; pipes that end early end the
   assert.match(run("align a cases/a1 --csv -", ...quick).stdout, /^case,error,confidence,.*\n.*\n.*\n$/);
   const sh = (command: string) => spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" }).stdout;
   const program = `"${process.execPath}" "${commandLine}" align cases/a1 cases/a2 cases/b1 --workers 1`;
-  assert.deepEqual(Object.keys(JSON.parse(sh(`${program} --json /dev/fd/3 3>&1 >/dev/null | cat`))), [
-    "a1",
-    "a2",
-    "b1",
-  ]);
   assert.match(sh(`${program} | head -n 1`), /^case .*\n$/);
   sh(`${program} --json closed.json | head -n 1`);
   assert.equal(Object.keys(results("closed.json")).length, 3);

@@ -1,6 +1,6 @@
 /** The command line with one photo: depth as models guess it, and no camera file. */
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { files, folder, read, results, succeeds, writeCase } from "../support/command-line.js";
@@ -99,7 +99,7 @@ test("relative depth has no unit, and none is printed, until --known-extent make
 
 test("a batch of relative depth: columns of metres are empty, pictures are in its unit, and it resumes", () => {
   const batch = `align relative model ${relative} --jsonl b.jsonl --csv b.csv --workers 1`;
-  const { stdout, stderr } = succeeds(`${batch} --report report --overlay overlay --glb posed --json b.json`);
+  const { stdout, stderr } = succeeds(`${batch} --report report --overlay overlay --glb posed`);
   hasNoMetres(stdout);
   assert.doesNotMatch(stderr, /no pictures/);
   assert.match(stdout, /^case .*Chamfer mm.*Δtrans mm(.*\n)*model .* – /m);
@@ -110,13 +110,6 @@ test("a batch of relative depth: columns of metres are empty, pictures are in it
     assert.deepEqual([of.isMetric, of.txM, of.chamferMm, of.depthMaeMm], ["false", "", "", ""]);
     assert.ok(Number(of.scale) > 0 && Number(of.iou) > 0.9 && Number(of.timeMs) > 0);
   }
-  assert.equal(read("report/rows.js").match(/"isMetric":false/g)?.length, 2);
-  // A fiftieth of what is visible of the mesh, here in thousandths of the unit.
-  const details = read("report/cases/relative/details.js");
-  const { limitMm } = JSON.parse(details.slice(details.indexOf("{"), -2)) as { limitMm: number };
-  const expected = (1000 * results("b.json").relative.scale * extentM) / truth.scale / 50;
-  assert.ok(Math.abs(limitMm / expected - 1) < 0.5, `${limitMm}`);
-  assert.ok(readFileSync(join(folder, "posed", "relative.glb")).length > 1000);
   const [line] = read("b.jsonl").split("\n");
   writeFileSync(join(folder, "b.jsonl"), `${line}\n`);
   const again = succeeds(`${batch} --resume`);

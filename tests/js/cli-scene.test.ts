@@ -5,12 +5,12 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { exportPly } from "sim3align/conventions";
 import { Quaternion, Vector3 } from "three";
-import { files, folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
-import { glb, png } from "../support/files.js";
+import { folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
+import { png } from "../support/files.js";
 import { assertValid, verticesOf } from "../support/gltf-validator.js";
 import { assertNear } from "../support/random.js";
 import { sam3dFiles } from "../support/sam3d.js";
-import { mesh, rotationRows, transformed } from "../support/scene.js";
+import { rotationRows } from "../support/scene.js";
 import { masks, plane, poses, standingGlb, standingMesh, tableFiles, tableView } from "../support/table.js";
 
 const { width, height, depth, camera } = tableView;
@@ -132,29 +132,4 @@ test("upright objects of a scene stand in their own frames, and stay where they 
   }
   assert.match(read("scene.usda"), /upAxis = "Z"/);
   assert.match(read(join("urdf", "scene.json")), /thing_0/);
-});
-
-test("the GLB of a case holds the mesh in the proportions that were found, also upright", async () => {
-  const narrow = { ...mesh, positions: mesh.positions.map((x, i) => (i % 3 === 0 ? 0.9 * x : x)) };
-  writeCase("narrow", { ...files, "mesh.glb": glb(narrow) });
-  const flags = "--quality fast --proportions axes --json p.json";
-  const { stdout } = succeeds(`align narrow ${flags} --glb posed`);
-  const { stretch, sizeM, scale, quaternion, translation } = results("p.json").narrow.proportions;
-  assert.ok(stretch[0][0] > 1.02, `${stretch}`);
-  const sizes = sizeM.map((size: number) => (1000 * size).toFixed(1));
-  assert.match(stdout, new RegExp(`in proportion +x ${sizes[0]} mm ± .*y ${sizes[1]} mm ± .*z ${sizes[2]} mm`));
-  const stretched = narrow.positions.map((_, i) => {
-    const first = i - (i % 3);
-    return stretch[i % 3].reduce(
-      (sum: number, s: number, k: number) => sum + s * (narrow.positions[first + k] ?? 0),
-      0,
-    );
-  });
-  // The frame of a glTF camera: y up, z backward.
-  const expected = transformed(stretched, { scale, rotation: quaternion, translation }).map((x, i) =>
-    i % 3 === 0 ? x : -x,
-  );
-  assertNear(await verticesOf(bytes(join("posed", "narrow.glb"))), expected, "vertices", 1e-5);
-  succeeds(`align narrow ${flags} --glb upright --upright`);
-  assertNear(await verticesOf(bytes(join("upright", "narrow.glb"))), expected, "upright", 1e-5);
 });

@@ -2,14 +2,7 @@
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { Worker } from "node:worker_threads";
-import {
-  type Aligner,
-  type AlignInput,
-  type AlignOptions,
-  createAligner,
-  type OptionsOf,
-  Sim3AlignError,
-} from "sim3align";
+import { type Aligner, type AlignInput, createAligner, type OptionsOf } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
@@ -63,27 +56,6 @@ for (const [name, call] of Object.entries(calls)) {
     }
   });
 }
-
-test("errors are those of this thread: class, code, argument and message", async () => {
-  const bad: [AlignInput, AlignOptions][] = [
-    [{ ...input, depth: new Float32Array(7) }, {}],
-    [{ ...input, mask: new Uint8Array(input.mask.length) }, {}],
-    [{ ...input, mesh: new Uint8Array(9) }, {}],
-    [{ ...input, mesh: { positions: Float32Array.of(0, 0, 0, 1, 1, 1, 2, 2, 2) } }, {}],
-    [input, { search: "local" }],
-    [input, { voxelDivision: 3 } as AlignOptions],
-    [input, { initial: { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, -1] } }],
-  ];
-  for (const [faulty, options] of bad) {
-    const settled = await Promise.allSettled([here, pool].map((aligner) => aligner.align(faulty, options)));
-    const errors = settled.map((call): unknown => (call.status === "rejected" ? call.reason : call.value));
-    const parts = errors.map((error) => {
-      assert.ok(error instanceof Sim3AlignError, String(error));
-      return [error.code, error.argument, error.message];
-    });
-    assert.deepEqual(parts[1], parts[0]);
-  }
-});
 
 test("with transfer the arrays are moved, and handed back, with an error too", async () => {
   const moved = structuredClone(input);

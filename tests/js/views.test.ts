@@ -1,7 +1,7 @@
 /** Several views: known and unknown cameras, photos, with and without workers. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { createAligner, type MeshArrays, type ViewInput, type ViewsInput } from "sim3align";
+import { createAligner, type ViewInput, type ViewsInput } from "sim3align";
 import { printedBox } from "../support/printed-box.js";
 import { withoutTimes } from "../support/results.js";
 import { frameAt, turnBetween } from "../support/rig.js";
@@ -80,11 +80,5 @@ for (const isKnown of [true, false]) {
     );
     using prepared = await pool.prepareMesh(box.mesh);
     assert.deepEqual((await pool.alignViews({ mesh: prepared, views })).matrix, found.matrix, "a prepared mesh");
-    // Without photos, or without colours, shape alone counts.
-    const plain: MeshArrays = { positions: box.mesh.positions, indices: box.mesh.indices };
-    const bare = views.map(({ image: _, ...view }) => view as ViewInput);
-    const shape = await here.alignViews({ mesh: plain, views: bare }, quick);
-    const uncolored = await here.alignViews({ mesh: plain, views }, quick);
-    assert.deepEqual([uncolored.matrix, uncolored.views[0]?.color], [shape.matrix, undefined]);
   });
 }
