@@ -86,11 +86,7 @@ test("bad cases are reported, the good ones aligned, and the exit status is that
   const found = Object.entries<{ error?: { code: string } }>(many).map(([name, { error }]) => [name, error?.code]);
   const [missing, empty, corrupt] = ["FILE_NOT_FOUND", "EMPTY_MASK", "CORRUPT_FILE"];
   const codes = [missing, undefined, empty, missing, corrupt, undefined, missing];
-  assert.deepEqual(
-    found,
-    names.map((name, i) => [name, codes[i]]),
-    stderr,
-  );
+  for (const [i, name] of names.entries()) assert.deepEqual(found[i], [name, codes[i]], stderr);
   const properties = ["code", "argument", "found", "expected", "remedy", "message"];
   assert.deepEqual(Object.keys(many["no-mask"].error), properties);
   assert.match(many["no-mask"].error.message, /mask: .*no-mask.*mask\.png or mask\.npy or mask\.json/);

@@ -150,10 +150,8 @@ test("a last line that was cut off is repaired, however long it is; a complete b
     const { stderr } = run("align", ...all, ...quick, "--jsonl", "torn.jsonl", "--resume");
     assert.match(stderr, new RegExp(`resumed: ${count} of 4`));
     assert.equal(linesOf("torn.jsonl")[0], text.split("\n")[0], "what is there stays");
-    assert.deepEqual(
-      entriesOf("torn.jsonl").filter((entry) => entry.case !== "elsewhere"),
-      entriesOf("whole.jsonl"),
-    );
+    const entries = entriesOf("torn.jsonl").filter((entry) => entry.case !== "elsewhere");
+    assert.deepEqual(entries, entriesOf("whole.jsonl"));
   }
   const again = run("align", ...all, "--jsonl", "whole.jsonl", "--resume", "--csv", "again.csv");
   assert.deepEqual([again.status, again.stdout], [1, ""]);
@@ -176,10 +174,8 @@ test("a case that has moved is resumed by its content", () => {
   assert.match(again.stdout, /^renamed,/m, "the name that it has now");
   // A copy beside the original is another case.
   writeCase("elsewhere/copy", { ...incomplete, "camera.json": { fovYDeg: 42 } });
-  assert.match(
-    run("align elsewhere/copy elsewhere/m2 --jsonl elsewhere/record.jsonl --resume").stderr,
-    /resumed: 1 of 2/,
-  );
+  const copied = run("align elsewhere/copy elsewhere/m2 --jsonl elsewhere/record.jsonl --resume");
+  assert.match(copied.stderr, /resumed: 1 of 2/);
 });
 
 test("a signal keeps what is done, says how to go on, and ends the program as the signal does", async () => {
@@ -229,14 +225,7 @@ test("results are never lost by accident: a file with other content is not conti
 
 test("- is stdout, whose table then goes to stderr; pipes that end early end the run", () => {
   const jsonl = run("align a cases/a1 --jsonl -", ...quick);
-  assert.deepEqual(
-    jsonl.stdout
-      .trimEnd()
-      .split("\n")
-      .map((line) => JSON.parse(line).case)
-      .sort(),
-    ["a", "a1"],
-  );
+  assert.deepEqual(jsonl.stdout.match(/(?<=^{"case":")\w+/gm)?.sort(), ["a", "a1"]);
   assert.match(jsonl.stderr, /^a +\d/m);
   assert.match(run("align a cases/a1 --csv -", ...quick).stdout, /^case,error,confidence,.*\n.*\n.*\n$/);
   const sh = (command: string) => spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" }).stdout;

@@ -69,10 +69,7 @@ test("a video is tracked from the mask of its first frame; its record is resumed
     assert.ok(state === "tracking" && confidence > 0, name);
     assert.ok(turnBetween(quaternion, frameAt(3 * k).pose.rotation) < 4, name);
   }
-  assert.deepEqual(
-    read("v.csv").match(/^video\/\w+/gm),
-    names.map((name) => `video/${name}`),
-  );
+  assert.deepEqual(read("v.csv").match(/(?<=^video\/)\w+/gm), names);
   assert.match(succeeds(`track video ${flags} --resume`).stderr, /resumed: 1 of 1/);
 });
 

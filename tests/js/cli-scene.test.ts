@@ -39,10 +39,7 @@ test("a scene folder gives JSON, a table, lengths in the proportions that were f
   }
   assert.ok(Math.abs(table.support.d - plane.d) < 0.003 && table.support.normal.length === 3);
   assert.equal((await assertValid(bytes("s.glb"))).totalTriangleCount, standingMesh.indices.length + 2);
-  assert.deepEqual(
-    read("s.csv").match(/^table\/[\w-]+/gm),
-    names.map((name) => `table/${name}`),
-  );
+  assert.deepEqual(read("s.csv").match(/(?<=^table\/)[\w-]+/gm), names);
   assert.match(succeeds(`scene table ${flags.replace(" --scene-glb s.glb", "")} --resume`).stderr, /resumed: 1 of 1/);
 });
 
@@ -113,12 +110,8 @@ test("upright objects of a scene stand in their own frames, and stay where they 
   const [own, straight] = [await verticesOf(bytes("own.glb")), await verticesOf(bytes("straight.glb"))];
   const shift = [0, 1, 2].map((k) => (straight[k] ?? 0) - (own[k] ?? 0));
   assert.ok(Math.abs(shift[1] ?? 1) < 1e-5, "the origin of the scene moves along the ground only");
-  assertNear(
-    straight,
-    own.map((x, i) => x + (shift[i % 3] ?? 0)),
-    "the scene",
-    1e-5,
-  );
+  const shifted = own.map((x, i) => x + (shift[i % 3] ?? 0));
+  assertNear(straight, shifted, "the scene", 1e-5);
   // Of all objects, in the frame of the first: the first has its bottom at 0.
   const local = await verticesOf(bytes("straight.glb"), "thing-0");
   const heights = local.slice(0, local.length / 3).filter((_, i) => i % 3 === 1);

@@ -47,11 +47,8 @@ const sorted = (numbers: readonly number[]) => [...numbers].sort((a, b) => a - b
 
 test("the box along the mesh's axes has its extents, scaled; its parts agree", () => {
   const box = orientedBoundingBox(mesh, truth);
-  assertNear(
-    box.sizeM,
-    bounds(mesh.positions).sides.map((side) => truth.scale * side),
-    "size",
-  );
+  const sizes = bounds(mesh.positions).sides.map((side) => truth.scale * side);
+  assertNear(box.sizeM, sizes, "size");
   assert.ok(new Quaternion(...box.rotation).angleTo(new Quaternion(...truth.rotation)) < 1e-6);
   const pose = new Matrix4().compose(
     new Vector3(...box.centerM),
@@ -194,12 +191,8 @@ test("a GLB and a scene of upright objects are where they were", async () => {
   for (const other of others) {
     const shift = [0, 1, 2].map((k) => (other[k] ?? 0) - (own[k] ?? 0));
     assertNear([shift[1] ?? 1], [0], "heights", 1e-5);
-    assertNear(
-      other,
-      own.map((x, i) => x + (shift[i % 3] ?? 0)),
-      "the scene",
-      1e-5,
-    );
+    const shifted = own.map((x, i) => x + (shift[i % 3] ?? 0));
+    assertNear(other, shifted, "the scene", 1e-5);
   }
   const { tiltRad } = toCuboid(orientedBoundingBox(straight.mesh, straight.transform), { frame: "opencv" });
   assertNear([Math.cos(tiltRad)], [0.9 / Math.hypot(...support.normal)], "the tilt is that of the support", 1e-6);

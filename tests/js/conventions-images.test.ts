@@ -150,10 +150,7 @@ test("a crop holds the pixels of its box, of the photo too, and everything else 
     assert.deepEqual(rest, { mesh, seed: 3 });
     assert.deepEqual(part, { data: Uint8Array.of(9, 10), width: 2, height: 1 });
     assert.deepEqual([...pointMap.data], [27, 28, 29, 30, 31, 32]);
-    assert.deepEqual(
-      [...photo.data],
-      Array.from({ length: 2 * (3 + k) }, (_, i) => 9 * (3 + k) + i),
-    );
+    assert.deepEqual(photo.data, image.data.slice(9 * (3 + k), 11 * (3 + k)));
   }
   const found = maskBox({ ...labels, data: Uint8Array.of(0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0) });
   assert.deepEqual(found, { left: 1, top: 1, width: 2, height: 2 });

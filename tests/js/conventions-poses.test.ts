@@ -87,18 +87,13 @@ test("row-major matrices are NumPy's, and each frame is the one that its axes sa
       ["optical", "opencv"],
     ] as const) {
       const { position, orientation, scale: scaled } = toRos(pose, { frame });
-      assert.deepEqual(
-        [Object.keys(position), Object.keys(orientation)],
-        [
-          ["x", "y", "z"],
-          ["x", "y", "z", "w"],
-        ],
-      );
-      const parts = { rotation: Object.values(orientation), translation: Object.values(position) } as Omit<
-        Pose,
-        "scale"
-      >;
-      assertNear(transformed(points, { ...parts, scale: scaled }), expected[name].flat(), frame);
+      assert.equal([...Object.keys(position), ...Object.keys(orientation)].join(), "x,y,z,x,y,z,w");
+      const moved = {
+        scale: scaled,
+        rotation: Object.values(orientation),
+        translation: Object.values(position),
+      } as Pose;
+      assertNear(transformed(points, moved), expected[name].flat(), frame);
     }
     assert.deepEqual(toRos(pose), toRos(pose, { frame: "body" }));
   }
@@ -109,11 +104,8 @@ test("OpenGL's frame, compose and invert, glTF's nodes: by three.js", () => {
     const [a, b, c] = [random.pose(), random.pose(), random.pose()];
     const expected = new Matrix4().makeScale(1, -1, -1).multiply(threeMatrix(a));
     const { matrix, position, quaternion, scale } = toThree(a);
-    const composed = new Matrix4().compose(
-      new Vector3(...position),
-      new Quaternion(...quaternion),
-      new Vector3(...scale),
-    );
+    const [place, turned] = [new Vector3(...position), new Quaternion(...quaternion)];
+    const composed = new Matrix4().compose(place, turned, new Vector3(...scale));
     for (const found of [toFrame(a, "opengl").matrix, matrix, composed.elements])
       assertNear(found, expected.elements, seed);
     const node = toGltfNode(a);
@@ -161,11 +153,8 @@ test("SAM 3D Objects' layouts put vertices where its formula puts them, and surv
     for (const vertices of ["glb", "z-up"] as const) {
       const back = toSam3d(fromSam3d(layout, { vertices }), { vertices });
       const sign = Math.sign(rotation[0] ?? 1);
-      assertNear(
-        back.rotation,
-        rotation.map((q) => sign * q),
-        "rotation",
-      );
+      const rotated = rotation.map((q) => sign * q);
+      assertNear(back.rotation, rotated, "rotation");
       assertNear([...back.scale, ...back.translation], [...layout.scale.flat(), ...translation.flat()], "the rest");
     }
   }

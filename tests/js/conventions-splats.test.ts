@@ -94,12 +94,8 @@ test(".splat files: positions, and shapes up to the bytes of their rotations", (
     for (const [i, gaussian] of before.entries()) {
       const placed = after[i] as Gaussian;
       assertNear(placed.position, applyToPoints(pose, Float64Array.from(gaussian.position)), seed, 1e-6);
-      assertNear(
-        placed.scales,
-        gaussian.scales.map((scale) => scale * pose.scale),
-        seed,
-        1e-6,
-      );
+      const scaled = gaussian.scales.map((scale) => scale * pose.scale);
+      assertNear(placed.scales, scaled, seed, 1e-6);
       assert.deepEqual([placed.color, placed.opacity], [gaussian.color, gaussian.opacity], seed);
       const columns = (of: Gaussian) => [0, 1, 2].map((axis) => rows(of.rotation).map((row) => row[axis] ?? 0));
       const expected = columns(gaussian).flatMap((column) => times(pose.rotationMatrix, column));

@@ -96,11 +96,8 @@ test("depth: whole numbers, as an array, as PNG and as .npy, in a unit that is s
   }
   const entry = { cam_K: K, depth_scale: 0.1 };
   const byCamera = { ...fileOf({ "7": entry, "8": { ...entry, depth_scale: 1 } }), imageId: 7 };
-  assert.deepEqual(
-    await evaluated({ ...byCamera, depth: png(tenths, width, height) }),
-    asArray,
-    "the camera file's scale",
-  );
+  const byFile = await evaluated({ ...byCamera, depth: png(tenths, width, height) });
+  assert.deepEqual(byFile, asArray, "the camera file's scale");
   assert.deepEqual(await evaluated({ ...byCamera, depth: tenths, ...size }), asArray, "for an array, too");
   assert.deepEqual(await evaluated({ ...byCamera, depth: depthFile }), reference, "floats are metres all the same");
   const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));

@@ -57,15 +57,9 @@ test("the random walker solves its linear system, and stays between the priors",
       residual[i] = (residual[i] ?? 0) + flow;
       residual[j] = (residual[j] ?? 0) - flow;
     }
-    assert.ok(
-      residual.every((x) => Math.abs(x) < 1e-8),
-      `${seed}: ${residual}`,
-    );
+    for (const x of residual) assert.ok(Math.abs(x) < 1e-8, `${seed}: ${residual}`);
     const [low, high] = [Math.min(...prior), Math.max(...prior)];
-    assert.ok(
-      found.every((x) => x > low - 1e-7 && x < high + 1e-7),
-      seed,
-    );
+    for (const x of found) assert.ok(x > low - 1e-7 && x < high + 1e-7, `${seed}: ${x}`);
   });
 });
 
@@ -134,22 +128,9 @@ test("one click finds an object by its colour, and by its depth where the colour
 
 test("strokes are obeyed: what they cover is, or is not, in the region", () => {
   const { view, truth } = ballOnTable(true);
-  const remove: Stroke = {
-    points: [
-      [58, 50],
-      [58, 70],
-    ],
-    radius: 3,
-    adds: false,
-  };
-  const add: Stroke = {
-    points: [
-      [120, 30],
-      [130, 30],
-    ],
-    radius: 3,
-    adds: true,
-  };
+  const line = (from: [number, number], to: [number, number]) => ({ points: [from, to], radius: 3 });
+  const remove: Stroke = { ...line([58, 50], [58, 70]), adds: false };
+  const add: Stroke = { ...line([120, 30], [130, 30]), adds: true };
   const found = regionOf({ ...view, depth: null }, [click, remove, add]);
   for (const { points, adds } of [remove, add, click]) {
     for (const [x, y] of points) assert.equal(found[y * view.width + x], adds ? 1 : 0, `${x}, ${y}`);

@@ -50,10 +50,7 @@ test("a correction is carried on, and a loss is reported", async () => {
   using tracker = await here.track(mesh);
   const [first, second] = [await tracker.next(frames[0]), await tracker.next(frames[1])];
   const changed = await tracker.correct({ ...second, scale: 1.01 * second.scale });
-  assert.deepEqual(
-    changed.map(({ frame }) => frame),
-    [0, 1],
-  );
+  assert.equal(changed.map(({ frame }) => frame).join(), "0,1");
   assert.ok(Math.abs((changed[0]?.scale ?? 0) / first.scale / 1.01 - 1) < 1e-6, `${changed[0]?.scale}`);
   const lost = await tracker.next({ ...frames[2], mask: new Uint8Array(160 * 120) });
   assert.deepEqual([lost.state, lost.confidence], ["lost", 0]);
