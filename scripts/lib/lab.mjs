@@ -13,7 +13,8 @@ const profile = process.env.SIM3ALIGN_LAB_PROFILE ?? "native";
 
 const buildLab = once(async () => {
   await rustToolchain();
-  await run("cargo", ["build", "--quiet", "--profile", profile, "--package", "sim3align-lab"]);
+  // Of the whole workspace, with the features of which the tests compile the dependencies.
+  await run("cargo", ["build", "--quiet", "--profile", profile, "--workspace", "--bin", "sim3align-lab"]);
 });
 
 /**

@@ -26,10 +26,12 @@ async function timing() {
   return { env: { [runner]: "env RUSTC_BOOTSTRAP=1" }, args: ["--", "-Zunstable-options", "--report-time"] };
 }
 
+/** Of all packages at once, so that each dependency is compiled with the same features. */
 export async function native() {
   await rustToolchain();
   const { env, args } = await timing();
-  const tests = await cargoTest(["--workspace", "--tests", ...args], { env });
+  const programs = ["native", "fuzz", "lab"].flatMap((name) => ["--test", name]);
+  const tests = await cargoTest(["--workspace", ...programs, ...args], { env });
   return sum([tests, await cargoTest(["--workspace", "--doc"])]);
 }
 

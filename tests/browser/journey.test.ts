@@ -5,7 +5,7 @@ import type { Browser } from "puppeteer-core";
 import { createAligner } from "sim3align";
 import { work } from "../bundlers/work.js";
 import { browserNames, inNode, launch, skipped, Tab } from "../support/driver.js";
-import { crossOriginHost, servedFolder } from "../support/element-host.js";
+import { crossOriginHost, elementFolder, servedFolder } from "../support/element-host.js";
 import { files } from "../support/page-files.js";
 import { input, mesh } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
@@ -29,7 +29,7 @@ for (const name of browserNames) {
 
     test("the package has the bits of Node, in both entries, with and without workers", async () => {
       const expected = await work(createAligner);
-      const { page, errors } = await open("install-test/node_modules/sim3align/package.json");
+      const { page, errors } = await open(`${elementFolder}/frame.html`);
       for (const entry of ["index", "inline"]) {
         const found = (await page.evaluate(`(async () => {
           const { createAligner } = await import("/install-test/node_modules/sim3align/${entry}.js");

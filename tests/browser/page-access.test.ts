@@ -11,8 +11,6 @@ const test = pageTests(WEBGL);
 const phone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true } satisfies BrowserContextOptions;
 const views: readonly [string, BrowserContextOptions][] = [
   ["a laptop", { viewport: { width: 1280, height: 800 } }],
-  ["a laptop, dark", { viewport: { width: 1280, height: 800 }, colorScheme: "dark" }],
-  ["a phone", phone],
   ["a phone, dark", { ...phone, colorScheme: "dark" }],
 ];
 

@@ -1,9 +1,8 @@
 /** Several scenes: in one list, in several tabs, and one after the other while alignments run. */
 import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
-import { violations } from "../support/axe.js";
-import { farther, four } from "../support/page-cases.js";
-import { drop, dropFolder, files, inFolder } from "../support/page-files.js";
+import { four } from "../support/page-cases.js";
+import { drop, dropFolder, files } from "../support/page-files.js";
 import { PATIENCE, pageTests, SitePage, until } from "../support/site.js";
 
 const test = pageTests();
@@ -65,42 +64,6 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   await opened.click("#forget");
   await isShown(page, "IMG_003");
   assert.equal(await page.locator(".scenes li").count(), 3);
-});
-
-test("two tabs keep their scenes apart, and the second one asks", async (opened, page) => {
-  await drop(opened, files);
-  await opened.shows("Own files");
-  await kept(page);
-  const [tab] = await Promise.all([page.waitForEvent("popup"), page.evaluate(() => void open(location.href))]);
-  const other = new SitePage(tab, []);
-  await other.aligned();
-  assert.notEqual(await tab.getAttribute("main", "data-scene"), "Own files");
-  assert.match((await tab.textContent("#other-tabs")) ?? "", /Another tab has Own files open/);
-  assert.deepEqual(await violations(tab), []);
-  await dropFolder(other, inFolder("second", farther(0.2)));
-  await other.shows("second");
-  await tab.click("#accept");
-  await kept(tab);
-  const centreOf = async (one: Page) => (await one.textContent("#centre"))?.split(" m")[0];
-  const centres = [await centreOf(page), await centreOf(tab)];
-  assert.notEqual(centres[0], centres[1]);
-  // The first tab works on, then both are loaded again.
-  await page.click(".hand-panel .more summary");
-  await opened.press("Move left");
-  await opened.press("Move right");
-  await page.click("#accept");
-  await kept(page);
-  await tab.reload();
-  await isShown(tab, "second");
-  await page.reload();
-  await isShown(page, "Own files");
-  assert.deepEqual([await centreOf(page), await centreOf(tab)], centres);
-  for (const each of [page, tab]) {
-    assert.equal(await each.locator(".scenes li").count(), 0);
-    assert.match((await each.textContent("#accept")) ?? "", /Accepted/);
-    assert.ok((await new SitePage(each, []).metric("iou")) > 0.9);
-  }
-  await tab.close();
 });
 
 /** A second tab of the same browser, once its first scene is aligned. */

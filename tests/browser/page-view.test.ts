@@ -1,62 +1,9 @@
 /** The views: framing, ground, keyboard, measuring, before and after, numbers, wheel and drag in the image. */
 import assert from "node:assert/strict";
 import { WEBGL } from "../support/browser.js";
-import { depthNpy, dropFolder, files, HEIGHT, inFolder, pinhole, WIDTH } from "../support/page-files.js";
-import { mesh, render, truth } from "../support/scene.js";
-import { pageTests, type SitePage, spacePixels, until } from "../support/site.js";
+import { pageTests } from "../support/site.js";
 
 const test = pageTests(WEBGL);
-
-/** The box of the pixels that differ from the background, as shares of the view: left, top, right, bottom. */
-async function drawn({ page }: SitePage): Promise<[number, number, number, number]> {
-  const { width, height, data } = await spacePixels(page);
-  let [left, top, right, bottom] = [1, 1, 0, 0];
-  // Without the border, which may cover a part of a pixel.
-  const edge = 3;
-  const ground = 4 * (edge * width + edge);
-  for (let i = 0; i < width * height; i++) {
-    const [x, y] = [i % width, Math.floor(i / width)];
-    if (x < edge || y < edge || x >= width - edge || y >= height - edge) continue;
-    if ([0, 1, 2].every((k) => Math.abs((data[4 * i + k] ?? 0) - (data[ground + k] ?? 0)) <= 24)) continue;
-    [left, right] = [Math.min(left, x / width), Math.max(right, x / width)];
-    [top, bottom] = [Math.min(top, y / height), Math.max(bottom, y / height)];
-  }
-  return [left, top, right, bottom];
-}
-
-/** What is wrong with where an object is drawn. */
-function faultOf(box: [number, number, number, number]): string | null {
-  const [left, top, right, bottom] = box;
-  const text = box.map((x) => x.toFixed(2)).join(", ");
-  if (bottom - top < 0.25 && right - left < 0.25) return `small: ${text}`;
-  if (left < 0.02 || top < 0.02 || right > 0.98 || bottom > 0.98) return `cut: ${text}`;
-  const isAside = Math.abs((left + right) / 2 - 0.5) > 0.25 || Math.abs((top + bottom) / 2 - 0.5) > 0.25;
-  return isAside ? `aside: ${text}` : null;
-}
-
-test("objects of every size and distance are framed, before and after an alignment", {
-  reducedMotion: "reduce",
-}, async (opened) => {
-  await opened.has3d("webgl");
-  for (const name of ["Points", "Sizes"]) await opened.show3d(name, false);
-  for (const factor of [1, 30, 0.1]) {
-    if (factor !== 1) {
-      const pose = { ...truth, scale: factor * truth.scale, translation: truth.translation.map((x) => factor * x) };
-      const seen = render(mesh, pose as typeof truth, pinhole, WIDTH, HEIGHT, 1.5 * factor);
-      const name = `times ${factor}`;
-      await dropFolder(opened, inFolder(name, { ...files, "depth.npy": depthNpy(seen.depth) }));
-      await opened.shows(name);
-    }
-    for (const from of ["Camera", "Three-quarter", "Top", "Side"]) {
-      await opened.press(from);
-      const fault = async () => {
-        const wrong = faultOf(await drawn(opened));
-        return wrong && `${factor} × the size from ${from}: ${wrong}`;
-      };
-      await until(fault, (found) => found === null);
-    }
-  }
-});
 
 test("two clicks measure a distance", async (opened, page) => {
   await opened.has3d("webgl");

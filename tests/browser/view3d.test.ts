@@ -1,16 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import {
-  isGreen,
-  isNear,
-  open,
-  openCube,
-  type Place,
-  pixelOf,
-  placeOf,
-  withoutWebGpu,
-  withWebGpu,
-} from "../support/view3d.js";
+import { isGreen, isNear, open, openCube, pixelOf, placeOf, withoutWebGpu, withWebGpu } from "../support/view3d.js";
 
 const [webGpu, webGl] = [withWebGpu(), withoutWebGpu()];
 
@@ -71,33 +61,6 @@ test("glTF node transforms are applied, and an invalid GLB leaves the view uncha
   );
   assert.match(said, /Error/);
   await check();
-  assert.deepEqual(errors, []);
-});
-
-test("the view follows the size of its host, and dispose removes everything", async () => {
-  const { page, errors, facts } = await openCube(webGl);
-  await page.evaluate(() => {
-    const host = document.querySelector("#host") as HTMLElement;
-    Object.assign(host.style, { width: "200px", height: "400px" });
-    // Observers are notified in the order of their creation, so the view has been notified before this one.
-    return new Promise((resolve) => new ResizeObserver(() => resolve(undefined)).observe(host));
-  });
-  // The image now has bars above and below.
-  const scale = 200 / facts.width;
-  const top = (400 - scale * facts.height) / 2;
-  const at = (u: number, v: number): Place => [scale * (u + 0.5), top + scale * (v + 0.5)];
-  const [first, fourth, bar] = await page.evaluate(
-    (places) => harness.colours(places),
-    [at(10, 10), at(150, 110), [100, 5] as Place],
-  );
-  isNear(first, facts.quarters[0] ?? []);
-  isNear(fourth, facts.quarters[3] ?? []);
-  isNear(bar, [250, 251, 252]);
-  const label = await page.getAttribute("#host canvas", "aria-label");
-  assert.match(label ?? "", /^3D view from the depth camera: 19,200 points of the scene, placed meshes: cube$/);
-  await page.evaluate(() => harness.view.dispose());
-  assert.equal(await page.locator("#host *").count(), 0);
-  assert.equal(await page.evaluate(() => harness.idleFrames()), 0);
   assert.deepEqual(errors, []);
 });
 

@@ -182,12 +182,6 @@ export class SitePage {
     await menu.evaluate((menu) => menu?.hidePopover());
   }
 
-  /** Shows or hides a layer of the 3D view. */
-  async show3d(layer: string, isShown: boolean): Promise<void> {
-    const box = this.page.locator(".space").getByLabel(layer, { exact: true });
-    await this.reveal(box, () => box.setChecked(isShown));
-  }
-
   /** Shows or hides a layer of the image. */
   async showInImage(layer: "outline" | "silhouette" | "zoom", isShown: boolean): Promise<void> {
     const box = this.page.locator(`#layer-${layer}`);
@@ -219,17 +213,6 @@ export class SitePage {
       await found.fill(value);
       await found.press("Enter");
     });
-  }
-
-  /** The commands that the palette lists, without their keys. */
-  async commands(): Promise<string[]> {
-    await this.page.keyboard.press("Control+k");
-    await this.page.locator(".palette[open]").waitFor(PATIENCE);
-    const options = this.page.locator(".palette [role=option]");
-    const texts = await options.evaluateAll((all) => all.map((one) => one.firstChild?.textContent ?? ""));
-    await this.page.keyboard.press("Escape");
-    await this.page.locator(".palette").waitFor({ state: "hidden", ...PATIENCE });
-    return texts;
   }
 
   /** Holds back all messages of workers, so that a running alignment does not end. */
@@ -277,19 +260,6 @@ export class SitePage {
   violations(): Promise<string[]> {
     return violations(this.page);
   }
-}
-
-/** A screenshot of the 3D view. */
-export async function spacePixels(page: Page): Promise<Pixels> {
-  const png = await page.locator(".space .view-host").screenshot();
-  return pixelsOf(
-    page,
-    `fetch("data:image/png;base64,${png.toString("base64")}").then((png) => png.blob()).then(createImageBitmap).then((bitmap) => {
-      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-      context.drawImage(bitmap, 0, 0);
-      return context;
-    })`,
-  );
 }
 
 /** The pixels of a canvas. `context` is a script that resolves to its context. */

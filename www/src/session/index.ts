@@ -108,7 +108,8 @@ async function attempt(work: Work, files: readonly NamedFile[]): Promise<void> {
     }
     stored.set(id, files);
     hasSession(true);
-    if (works.get(id) === work) unstored.delete(id);
+    // A change that was made meanwhile still waits to be written.
+    if (works.get(id) === work && pending?.id !== id) unstored.delete(id);
     if (unstored.size === 0) notKept.value = null;
   } catch (cause) {
     const { name, message } = cause as Error;
