@@ -150,32 +150,23 @@ test("align takes files as well, with and without workers", async () => {
 // Colours of the mesh's vertices, and a photo of them, a little darker.
 const vertices = mesh.positions.length / 3;
 const colors = Uint8Array.from({ length: 3 * vertices }, (_, i) => (11 * i) % 256);
-const withAlpha = Uint8ClampedArray.from({ length: 4 * vertices }, (_, i) =>
-  i % 4 === 3 ? 9 : (colors[3 * Math.floor(i / 4) + (i % 4)] ?? 0),
-);
+const opaque = (rgb: Uint8Array, alpha: number) =>
+  Uint8ClampedArray.from({ length: (4 * rgb.length) / 3 }, (_, i) =>
+    i % 4 === 3 ? alpha : (rgb[3 * Math.floor(i / 4) + (i % 4)] ?? 0),
+  );
+const withAlpha = opaque(colors, 9);
 const rgb = Uint8Array.from({ length: 3 * width * height }, (_, i) => (7 * i + (i % 3) * 50) % 256);
-const rgba = Uint8ClampedArray.from({ length: 4 * width * height }, (_, i) =>
-  i % 4 === 3 ? i % 256 : (rgb[3 * Math.floor(i / 4) + (i % 4)] ?? 0),
-);
+const rgba = opaque(rgb, 77);
 const linear = (code: number) => {
   const x = code / 255;
   return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
 };
 
 /** Like the class of browsers: its properties are accessors of the prototype. */
-class ImageData {
-  get data() {
-    return rgba;
-  }
-  get width() {
-    return width;
-  }
-  get height() {
-    return height;
-  }
-  get [Symbol.toStringTag]() {
-    return "ImageData";
-  }
+class ImageData {}
+const values = { data: rgba, ...size, [Symbol.toStringTag]: "ImageData" };
+for (const name of Reflect.ownKeys(values)) {
+  Object.defineProperty(ImageData.prototype, name, { get: () => values[name as "data"] });
 }
 
 test("photo and mesh colours: every form of arrays and files gives the same agreement", async () => {
@@ -183,16 +174,8 @@ test("photo and mesh colours: every form of arrays and files gives the same agre
   const { colorAgreement } = colored.metrics;
   assert.ok(Math.abs(colorAgreement ?? 0) > 1e-3, `${colorAgreement}`);
   const photo = png(rgb, width, height, 3);
-  const images = [
-    rgba,
-    new Uint8Array(rgba),
-    { data: rgb, ...size },
-    new ImageData(),
-    photo,
-    arrayBuffer(photo),
-    blobOf(photo),
-  ];
-  for (const image of [...images, new Uint8Array([0, ...rgb, 0]).subarray(1, rgb.length + 1)]) {
+  const images = [rgba, new Uint8Array(rgba), { data: rgb, ...size }, new ImageData(), photo, blobOf(photo)];
+  for (const image of images) {
     assert.deepEqual(await evaluated({ image, mesh: { ...mesh, colors } }), colored);
   }
   const meshes: Partial<MeshArrays>[] = [
