@@ -97,23 +97,11 @@ test("posed meshes are valid, and are where the pose is, also without a GLB", as
 });
 
 test("a resumed batch has the rows of all cases, and draws what is missing", async () => {
-  const args = [
-    "one",
-    "two",
-    "obj",
-    "--quality",
-    "fast",
-    "--workers",
-    "1",
-    "--jsonl",
-    "r.jsonl",
-    "--report",
-    "resumed",
-  ];
-  const { stderr } = await interrupted(/^one .*\n/m, "SIGINT", "align", ...args);
+  const args = "align one two obj --quality fast --workers 1 --jsonl r.jsonl --report resumed";
+  const { stderr } = await interrupted(/^one .*\n/m, "SIGINT", ...args.split(" "));
   assert.match(stderr, /with --resume/);
   rmSync(join(folder, "resumed", "cases", "one"), { recursive: true });
-  succeeds("align", ...args, "--resume");
+  succeeds(`${args} --resume`);
   const { rows, details } = reportOf("resumed");
   assert.deepEqual(rows.map((row) => row.name).sort(), ["obj", "one", "two"]);
   assert.deepEqual(Object.keys(details).sort(), ["obj", "one", "two"]);
