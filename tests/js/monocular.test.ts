@@ -1,17 +1,14 @@
 /** Depth as models guess it, and cameras that nobody wrote down: what is unknown is estimated with the pose. */
 import assert from "node:assert/strict";
-import { after, test } from "node:test";
+import { test } from "node:test";
 import { type AlignInput, createAligner, type DepthKind, type FrameInput, type Sim3 } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
-import { withoutTimes } from "../support/results.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 import { poses, tableScene } from "../support/table.js";
 
 const here = await createAligner();
-const pool = await createAligner({ workers: 2 });
-after(() => pool.dispose());
 
 const quick = { quality: "fast" } as const;
 const { width, height, mask, camera } = view;
@@ -84,21 +81,6 @@ test("a missing focal length is estimated from the object, with a warning, and a
   assert.deepEqual(warnings, []);
 });
 
-test("workers, a prepared mesh and moved arrays give the same bits; a signal ends a calibration", async () => {
-  using prepared = await pool.prepareMesh(mesh);
-  for (const aligner of [pool, here]) {
-    for (const one of [disparity, { ...disparity, mesh: prepared }]) {
-      assert.deepEqual(withoutTimes(await aligner.align(one, quick)), withoutTimes(found));
-    }
-    const stop = new AbortController();
-    const onProgress = () => stop.abort(new Error("enough"));
-    await assert.rejects(() => aligner.align(disparity, { ...quick, signal: stop.signal, onProgress }), /enough/);
-  }
-  const { input: returned, ...moved } = await pool.align(structuredClone(disparity), { ...quick, transfer: true });
-  assert.deepEqual(withoutTimes(moved), withoutTimes(found));
-  assert.equal((returned?.depth as Float32Array | undefined)?.length, view.depth.length);
-});
-
 test("a scene is calibrated once, by all its objects; one length makes it metric; a broken object does not end it", async () => {
   const depthKind = "affine-invariant-disparity" as const;
   const depth = predicted[depthKind](tableScene.depth as Float32Array);
@@ -110,9 +92,6 @@ test("a scene is calibrated once, by all its objects; one length makes it metric
     const scale = poses[i]?.scale ?? 0;
     assert.ok(object.error === undefined && Math.abs(object.scale / scale - 1) < 0.06, `${i}`);
   }
-  const matrices = ({ objects }: typeof result) =>
-    objects.map((one) => (one.error === undefined ? one.matrix : one.error));
-  assert.deepEqual(matrices(await pool.alignScene(scene, quick)), matrices(result));
   const [first, second] = scene.objects;
   const broken = { ...scene, objects: [first, { ...second, mesh: new Uint8Array([1, 2, 3]) }] } as typeof tableScene;
   const [whole, other] = (await here.alignScene(broken, quick)).objects;
@@ -127,24 +106,19 @@ test("views of relative depth have one size, and the cameras' distance makes it 
   });
   const all = await here.alignViews({ mesh, views }, quick);
   assert.ok(all.views.every((each) => each.depthCalibration?.isMetric));
-  assert.deepEqual(withoutTimes(await pool.alignViews({ mesh, views }, quick)), withoutTimes(all));
 });
 
 test("a video of relative depth has one size, in a unit of its own", async () => {
   const video = [0, 3, 6].map((angle) => frameAt(angle));
-  const tracked = async (aligner: typeof here) => {
-    using tracker = await aligner.track(mesh);
-    const frames = video.map(({ frame }, k): FrameInput => {
-      const depth = frame.depth.map((z) => (4 + 0.2 * k) / z - 1 - 0.1 * k);
-      return { ...frame, depth, depthKind: "affine-invariant-disparity" };
-    });
-    return await Promise.all(frames.map((frame) => tracker.next(frame)));
-  };
-  const poses = await tracked(here);
+  using tracker = await here.track(mesh);
+  const frames = video.map(({ frame }, k): FrameInput => {
+    const depth = frame.depth.map((z) => (4 + 0.2 * k) / z - 1 - 0.1 * k);
+    return { ...frame, depth, depthKind: "affine-invariant-disparity" };
+  });
+  const poses = await Promise.all(frames.map((frame) => tracker.next(frame)));
   for (const [k, { state, rotation, scale, depthCalibration }] of poses.entries()) {
     assert.deepEqual([state, depthCalibration?.isMetric], ["tracking", false]);
     assert.ok(turnBetween(rotation, video[k]?.pose.rotation ?? []) < 6, `frame ${k}`);
     assert.ok(Math.abs(scale / (poses[0]?.scale ?? 0) - 1) < 0.03, `frame ${k}: ${scale}`);
   }
-  assert.deepEqual(await tracked(pool), poses);
 });

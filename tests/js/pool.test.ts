@@ -7,6 +7,7 @@ import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { brick, input, mesh, transformed, truth } from "../support/scene.js";
+import { tableScene } from "../support/table.js";
 import { Gate, slowInput, Workers } from "../support/workers.js";
 
 const here = await createAligner();
@@ -28,6 +29,7 @@ const source = Float64Array.from(mesh.positions.slice(0, 3000));
 const target = transformed(source, truth);
 const pairs = Uint32Array.from({ length: 2000 }, (_, i) => Math.floor(i / 2));
 const { mesh: _, mask, ...view } = brick;
+const relative = { ...input, depth: input.depth.map((z) => 1 / z), depthKind: "affine-invariant-disparity" } as const;
 const views = [view, view, view].map((one) => ({ ...one, mask }));
 const poses: OptionsOf<"precise" | "paper", true>[] = [
   {},
@@ -40,11 +42,12 @@ const calls: Record<string, (aligner: Aligner) => Promise<unknown>> = {
   ...Object.fromEntries(
     poses.map((options) => [`align ${JSON.stringify(options)}`, (aligner: Aligner) => aligner.align(brick, options)]),
   ),
+  "align relative depth": (aligner) => aligner.align(relative, quick),
   evaluate: (aligner) => aligner.evaluate(input, truth, { truth }),
   register: (aligner) => aligner.register(source, target, { seed: 2, ransacIterations: 2000 }),
   estimateSim3: (aligner) => aligner.estimateSim3(source, target, pairs),
   alignViews: (aligner) => aligner.alignViews({ mesh: brick.mesh, views }, quick),
-  alignScene: (aligner) => aligner.alignScene({ ...view, objects: [{ mask, mesh: brick.mesh }] }, hard),
+  alignScene: (aligner) => aligner.alignScene(tableScene, quick),
 };
 
 for (const [name, call] of Object.entries(calls)) {
