@@ -1,7 +1,7 @@
-/** Many cases on the command line: results that come as cases finish, and what is refused before the first one. */
+/** Many cases on the command line: which they are, tables and records of their results, and batches that end early. */
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, symlinkSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, renameSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import {
@@ -19,93 +19,210 @@ import {
 import { commandLine } from "../support/environment.js";
 import { poseJson, truth } from "../support/scene.js";
 
-const gt = poseJson(truth);
-for (const name of ["one", "two", "three"]) writeCase(name, { ...files, "gt.json": gt });
-writeCase("empty", {});
-
+const inFolder = (...path: string[]) => join(folder, ...path);
+const linesOf = (path: string) => read(path).trimEnd().split("\n");
 const quick = ["--quality", "fast"];
-/** In the order of the command line. */
-const inOrder = [...quick, "--workers", "1"];
+const complete = { ...files, "gt.json": poseJson(truth) };
+// Without depth map: their failures are quick, and count as done.
+const { "depth.npy": _, ...incomplete } = files;
 
-for (const signal of ["SIGINT", "SIGTERM"] as const) {
-  test(`${signal} after two of four cases: their rows and their JSON are there`, async () => {
-    const names = ["one", "two", endless(`endless-${signal}`), "three"];
-    writeFileSync(join(folder, "part.json"), "{}\n");
-    const ended = await interrupted(/^two .*\n/m, signal, "align", ...names, ...inOrder, "--json", "part.json");
-    assert.equal(ended.signal, signal, ended.stderr);
-    assert.deepEqual(Object.keys(results("part.json")), ["one", "two"]);
-    assert.ok(results("part.json").two.errors.scaleError < 0.05);
-    assert.match(ended.stderr, /interrupted: 2 of 4 cases are done; they are in part\.json/);
-    assert.match(ended.stdout, /^case .*Δrot °.*\none .*\ntwo .*\n/);
-    const stdout = await interrupted(/never/, signal, "align", "one", "--json", "-", ...quick);
-    assert.equal(stdout.signal, null, "nothing interrupts a run that ends");
-  });
+for (const name of ["a", "b", "c"]) writeCase(name, complete);
+writeCase('x, "y"', {});
+for (const name of ["cases/a1", "cases/a2", "cases/b1", "cases/deep/c1", "odd/[x]", "odd/x"])
+  writeCase(name, incomplete);
+mkdirSync(inFolder("cases", "a1", "textures"));
+writeFileSync(inFolder("cases", "a-file"), "");
+mkdirSync(inFolder("linked", "inner"), { recursive: true });
+symlinkSync(join("..", "cases", "a1"), inFolder("linked", "first"));
+symlinkSync(join("..", "..", "cases", "a1"), inFolder("linked", "inner", "second"));
+symlinkSync(join("..", "..", "linked"), inFolder("linked", "inner", "round"));
+symlinkSync("nowhere", inFolder("linked", "broken"));
+writeFileSync(inFolder("list.txt"), "# two of them\ncases/b1\r\n\n  cases/a1  \nodd/[x]\nodd/x");
+
+/** Command lines, and the cases that they name, in order. */
+const named: Record<string, string> = {
+  "cases/a*": "a1,a2",
+  "cases/*1 cases/a2 ./cases/a1/": "a1,b1,a2",
+  [inFolder("cases", "a*")]: "a1,a2",
+  // At any depth, and nothing inside of a case; no link leads round in a circle.
+  "cases/**": "a1,a2,b1,c1",
+  "linked/f*": "first",
+  "linked/**": "first,second",
+  "odd/[x]": "[x]",
+  "cases/a* --list list.txt": "a1,a2,b1,[x],x",
+  "--list -": "a2,a1",
+};
+
+test("cases are named by folders, patterns, lists and stdin", () => {
+  const input = `cases/a2\n${"cases/a1\n".repeat(3000)}`;
+  for (const [words, names] of Object.entries(named)) {
+    const all = [commandLine, "align", ...words.split(" "), "--jsonl", "-", "--workers", "1"];
+    const { stdout, stderr } = spawnSync(process.execPath, all, { cwd: folder, encoding: "utf8", input });
+    assert.equal(stdout.match(/(?<=^{"case":")[^"]+/gm)?.join(), names, `${words}: ${stderr}`);
+  }
+  const { stdout, stderr } = run("align cases/a1 ./cases/a1/ cases/a2 --json twice.json");
+  assert.match(stderr, /skipped, given twice: \.\/cases\/a1\//);
+  assert.equal(stdout.match(/^a[12] /gm)?.length, 2);
+  writeCase("other/a1", incomplete);
+  run("align cases/a1 other/a1 --workers 1 --json names.json");
+  assert.deepEqual(Object.keys(results("names.json")), ["cases/a1", "other/a1"], "one name: by their paths");
+});
+
+/** The entries of a record by case, without times. */
+function entriesOf(path: string): { case: string; path: string }[] {
+  const entries = linesOf(path).map((line) => JSON.parse(line));
+  for (const entry of entries) delete entry.timingsMs;
+  return entries.sort((x, y) => (x.case < y.case ? -1 : 1));
 }
 
-test("an interruption before the first result leaves the file as it was", async () => {
-  writeFileSync(join(folder, "old.json"), "{}\n");
-  const child = spawn(process.execPath, [commandLine, "align", endless("never"), "--json", "old.json"], {
-    cwd: folder,
-  });
-  // The signal ends the program at any time.
-  const ended = new Promise((resolve) => child.on("close", (_, signal) => resolve(signal)));
-  child.on("spawn", () => child.kill("SIGINT"));
-  assert.equal(await ended, "SIGINT");
-  assert.equal(read("old.json"), "{}\n");
-});
+/** The rows of a table by case, without times. */
+const rowsOf = (path: string) =>
+  linesOf(path)
+    .map((line) => line.replace(/,[^,]*$/, ""))
+    .sort();
 
-test("the JSON of many cases is the text that JSON.stringify writes", () => {
-  const { status } = run("align one empty two", ...inOrder, "--json", "many.json");
-  assert.equal(status, 1);
-  const text = read("many.json");
-  assert.equal(text, `${JSON.stringify(JSON.parse(text), null, 2)}\n`);
-  const { stdout } = run("align one empty two", ...inOrder, "--json", "-");
-  assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "empty", "two"]);
-});
+const all = ["a", "b", "c", 'x, "y"'];
+const whole = run("align", ...all, ...quick, "--jsonl", "whole.jsonl", "--csv", "whole.csv", "--json", "whole.json");
 
-test("the JSON is written to pipes, too", () => {
-  const command = `"${process.execPath}" "${commandLine}" align one two --quality fast --workers 1 --json /dev/fd/3 3>&1 >/dev/null | cat`;
-  const { stdout, stderr } = spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" });
-  assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "two"], stderr);
-});
-
-test("a file that cannot be written is noticed before the first case", () => {
-  mkdirSync(join(folder, "folder"), { recursive: true });
-  for (const flag of ["align one two --json", "evaluate one --json", "align one two --jsonl", "align one two --csv"]) {
-    refusesUsage({
-      [`${flag} nowhere/out`]: /--\w+ nowhere.out: the file cannot be written: .*no such/,
-      [`${flag} folder`]: /--\w+ folder: this is a folder/,
-      [`${flag} one/mask.png/out.json`]: /cannot be written/,
-    });
+test("--jsonl has a line for each case, the entry of --json; --csv its numbers", () => {
+  assert.equal(whole.status, 1, whole.stderr);
+  const json = results("whole.json");
+  assert.deepEqual([Object.keys(json).sort(), linesOf("whole.jsonl").length], [all, all.length]);
+  for (const line of linesOf("whole.jsonl")) {
+    const { case: name, path, content, ...entry } = JSON.parse(line);
+    assert.deepEqual([entry, path], [json[name], name]);
+    assert.equal(typeof content, name.startsWith("x") ? "undefined" : "string");
   }
-  assert.ok(!existsSync(join(folder, "nowhere")));
+  const [head = [], ...rows] = linesOf("whole.csv").map((line) => line.split(","));
+  assert.match(read("whole.csv"), /^case,error,confidence,.*\n(.*\n)*"x, ""y""",FILE_NOT_FOUND,/);
+  for (const row of rows.filter(([name]) => name?.length === 1)) {
+    const cells = Object.fromEntries(head.map((heading, i) => [heading, row[i]]));
+    const { scale, confidence, translation, quaternion, metrics, errors, alternatives } = json[cells.case ?? ""];
+    const { txM, tyM, tzM, qw, iou, rotationErrorDeg } = cells;
+    const found = [txM, tyM, tzM, qw, cells.scale, cells.confidence, iou, rotationErrorDeg, cells.alternatives];
+    const expected = [...translation, quaternion[3], scale, confidence, metrics.iou, errors.rotationErrorDeg];
+    assert.deepEqual(found.map(Number), [...expected, alternatives.length]);
+  }
 });
 
-test("a case that is given twice is aligned once, with a message", () => {
-  const given = ["one", "./one/", "two", join(folder, "two")];
-  const { stdout, stderr } = succeeds("align", ...given, ...inOrder, "--json", "twice.json");
-  assert.deepEqual(Object.keys(results("twice.json")), ["one", "two"]);
-  assert.match(stderr, /skipped, given twice: \.\/one\/, .*two/);
-  assert.equal(stdout.trimEnd().split("\n").length, 3, "the headings and two rows");
+test("a batch that is killed and resumed gives the same files, with any number of workers", async () => {
+  for (const workers of ["1", "2"]) {
+    const record = ["--jsonl", `killed-${workers}.jsonl`, "--csv", `killed-${workers}.csv`, "--workers", workers];
+    const args = ["align", ...all, ...quick, ...record];
+    // A case that never ends: the batch is killed in its middle.
+    rmSync(inFolder("c"), { recursive: true });
+    endless("c");
+    const killed = await interrupted(/^[ab] .*\n[ab] .*\n/m, "SIGKILL", ...args);
+    rmSync(inFolder("c"), { recursive: true });
+    writeCase("c", complete);
+    assert.equal(killed.signal, "SIGKILL", killed.stderr);
+    const before = linesOf(`killed-${workers}.jsonl`).length;
+    const { status, stderr, stdout } = run(...args, "--resume", "--json", `killed-${workers}.json`);
+    assert.equal(status, 1, "a case has failed, if not in this run");
+    assert.match(stderr, new RegExp(`resumed: ${before} of 4 cases are in killed-${workers}.jsonl`));
+    assert.equal(stdout.match(/^([abc]|x,) /gm)?.length, 4 - before, "no case is aligned twice");
+    assert.deepEqual(entriesOf(`killed-${workers}.jsonl`), entriesOf("whole.jsonl"));
+    assert.deepEqual(rowsOf(`killed-${workers}.csv`), rowsOf("whole.csv"));
+    assert.deepEqual(Object.keys(results(`killed-${workers}.json`)).sort(), all);
+  }
 });
 
-test("links to one folder are cases of their own: a folder of links is a data set", () => {
-  mkdirSync(join(folder, "links"));
-  for (const name of ["first", "second"]) symlinkSync(join("..", "one"), join(folder, "links", name));
-  succeeds("align links/* one", ...inOrder, "--json", "links.json");
-  assert.deepEqual(Object.keys(results("links.json")), ["first", "second", "one"]);
-  assert.equal(
-    run("align links/**", ...inOrder, "--csv", "-")
-      .stdout.trimEnd()
-      .split("\n").length,
-    3,
-  );
+test("a last line that was cut off is repaired, however long it is; a complete batch is not aligned again", () => {
+  const [first = "", second = ""] = linesOf("whole.jsonl");
+  const long = JSON.stringify({ case: "elsewhere", text: "ü".repeat(100_000) });
+  const torn: [text: string, resumed: number][] = [
+    [`${first}\n${second.slice(0, 5)}`, 1],
+    [`${first}\n${second.slice(0, second.length / 2)}`, 1],
+    [`${first}\n${second}`, 2],
+    [`${long}\n${first}\n${long.slice(0, -2)}`, 1],
+  ];
+  for (const [text, count] of torn) {
+    writeFileSync(inFolder("torn.jsonl"), text);
+    const { stderr } = run("align", ...all, ...quick, "--jsonl", "torn.jsonl", "--resume");
+    assert.match(stderr, new RegExp(`resumed: ${count} of 4`));
+    assert.equal(linesOf("torn.jsonl")[0], text.split("\n")[0], "what is there stays");
+    const entries = entriesOf("torn.jsonl").filter((entry) => entry.case !== "elsewhere");
+    assert.deepEqual(entries, entriesOf("whole.jsonl"));
+  }
+  const again = run("align", ...all, "--jsonl", "whole.jsonl", "--resume", "--csv", "again.csv");
+  assert.deepEqual([again.status, again.stdout], [1, ""]);
+  assert.match(again.stderr, /resumed: 4 of 4.*failed earlier: x, "y" \(FILE_NOT_FOUND\); remove their lines/s);
+  assert.deepEqual(rowsOf("again.csv"), rowsOf("whole.csv"));
 });
 
-test("a reader that closes stdout ends the run, unless there is JSON to write", () => {
-  const sh = (command: string) => spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" });
-  const program = `"${process.execPath}" "${commandLine}" align one two three empty --quality fast --workers 1`;
-  assert.match(sh(`${program} | head -n 1`).stdout, /^case .*\n$/);
+test("a case that has moved is resumed by its content", () => {
+  for (const [name, fovYDeg] of [
+    ["m1", 41],
+    ["m2", 42],
+  ] as const) {
+    writeCase(`place/${name}`, { ...incomplete, "camera.json": { fovYDeg } });
+  }
+  run("align place/m1 place/m2 --jsonl place/record.jsonl");
+  renameSync(inFolder("place"), inFolder("elsewhere"));
+  renameSync(inFolder("elsewhere", "m1"), inFolder("elsewhere", "renamed"));
+  const again = run("align elsewhere/renamed elsewhere/m2 --jsonl elsewhere/record.jsonl --resume --csv -");
+  assert.match(again.stderr, /resumed: 2 of 2/);
+  assert.match(again.stdout, /^renamed,/m, "the name that it has now");
+  // A copy beside the original is another case.
+  writeCase("elsewhere/copy", { ...incomplete, "camera.json": { fovYDeg: 42 } });
+  const copied = run("align elsewhere/copy elsewhere/m2 --jsonl elsewhere/record.jsonl --resume");
+  assert.match(copied.stderr, /resumed: 1 of 2/);
+});
+
+test("a signal keeps what is done, says how to go on, and ends the program as the signal does", async () => {
+  for (const signal of ["SIGINT", "SIGTERM"] as const) {
+    const record = `${signal}.jsonl`;
+    const args = ["align", "a", "b", endless("endless"), "c", ...quick, "--workers", "1"];
+    const outputs = ["--jsonl", record, "--json", "part.json"];
+    writeFileSync(inFolder("part.json"), "{}\n");
+    const stopped = await interrupted(/^b .*\n/m, signal, ...args, ...outputs);
+    assert.equal(stopped.signal, signal, stopped.stderr);
+    assert.match(stopped.stderr, /interrupted: 2 of 4 cases are done; they are in .*SIG/);
+    assert.match(stopped.stderr, /To go on, run the same command with --resume\.\n/);
+    assert.deepEqual(Object.keys(results("part.json")), ["a", "b"]);
+    rmSync(inFolder("endless"), { recursive: true });
+    writeCase("endless", incomplete);
+    assert.match(run(...args, ...outputs, "--resume").stderr, /resumed: 2 of 4/);
+    rmSync(inFolder("endless"), { recursive: true });
+  }
+});
+
+test("one process at a time writes a record; the lock of one that was killed does not hold", async () => {
+  const args = ["align", "cases/a1", endless("held"), "--jsonl", "two.jsonl", "--resume", "--workers", "2"];
+  const first = spawn(process.execPath, [commandLine, ...args], { cwd: folder });
+  const ended = new Promise((resolve) => first.on("close", resolve));
+  await new Promise((resolve) => first.stdout.once("data", resolve));
+  const message = `--jsonl two\\.jsonl: process ${first.pid} writes this record since .*two\\.jsonl\\.lock`;
+  refusesUsage({ [args.join(" ")]: new RegExp(message) });
+  first.kill("SIGKILL");
+  await ended;
+  rmSync(inFolder("held"), { recursive: true });
+  writeCase("held", incomplete);
+  assert.match(run(...args).stderr, /resumed: 1 of 2/);
+  assert.ok(!existsSync(inFolder("two.jsonl.lock")), "the lock ends with the program");
+});
+
+test("results are never lost by accident: a file with other content is not continued or overwritten", () => {
+  const text = "the work of a day\n";
+  const [line = ""] = linesOf("whole.jsonl");
+  writeFileSync(inFolder("kept.jsonl"), text);
+  refusesUsage({ "align a --jsonl kept.jsonl": /--jsonl kept\.jsonl: the file has content\. Pass --resume/ });
+  for (const content of [text, text.trimEnd(), `${line}\n${text}`, '{"case": 1}\n']) {
+    writeFileSync(inFolder("kept.jsonl"), content);
+    refusesUsage({ "align a --jsonl kept.jsonl --resume": /kept\.jsonl: line \d is not an object with "case"/ });
+    assert.equal(read("kept.jsonl"), content);
+  }
+});
+
+test("- is stdout, whose table then goes to stderr; pipes that end early end the run", () => {
+  const jsonl = run("align a cases/a1 --jsonl -", ...quick);
+  assert.deepEqual(jsonl.stdout.match(/(?<=^{"case":")\w+/gm)?.sort(), ["a", "a1"]);
+  assert.match(jsonl.stderr, /^a +\d/m);
+  assert.match(run("align a cases/a1 --csv -", ...quick).stdout, /^case,error,confidence,.*\n.*\n.*\n$/);
+  const sh = (command: string) => spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" }).stdout;
+  const program = `"${process.execPath}" "${commandLine}" align cases/a1 cases/a2 cases/b1 --workers 1`;
+  assert.match(sh(`${program} | head -n 1`), /^case .*\n$/);
   sh(`${program} --json closed.json | head -n 1`);
-  assert.deepEqual(Object.keys(results("closed.json")), ["one", "two", "three", "empty"]);
+  assert.equal(Object.keys(results("closed.json")).length, 3);
+  succeeds("align a --jsonl begun.jsonl --resume", ...quick);
 });

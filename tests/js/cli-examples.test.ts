@@ -4,10 +4,10 @@ import { spawnSync } from "node:child_process";
 import { chmodSync, cpSync, readdirSync, readFileSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { before, test } from "node:test";
-import { resultsText, writeBop } from "../support/bop-dataset.js";
+import { bopResults, segmentation, writeBop } from "../support/bop.js";
 import { files, folder, pixels, run, writeCase } from "../support/command-line.js";
 import { commandLine, repository } from "../support/environment.js";
-import { cocoRle, glb, npy, obj, png, writeFiles } from "../support/files.js";
+import { glb, npy, obj, png, writeFiles } from "../support/files.js";
 import { frameAt, frameFiles } from "../support/rig.js";
 import { sam3dFiles } from "../support/sam3d.js";
 import { mesh, poseJson, truth, view } from "../support/scene.js";
@@ -15,19 +15,7 @@ import { masks, poses, standingGlb, tableFiles, tableView } from "../support/tab
 import { deflated, zip } from "../support/zip.js";
 
 const skip = process.platform === "win32" ? "the examples are for a POSIX shell" : false;
-
-/** Runs a line of a shell in a folder of the data. */
-function shell(line: string, cwd: string): string {
-  const env = { ...process.env, PATH: `${join(folder, "bin")}${delimiter}${process.env.PATH}` };
-  const { status, stdout, stderr } = spawnSync("sh", ["-c", line], { cwd, encoding: "utf8", env });
-  assert.equal(status, 0, stderr);
-  assert.ok((stdout + stderr).trim() !== "", "it says something");
-  return stdout;
-}
-
-const write = (path: string, content: Uint8Array | string | object) => writeFiles(folder, { [path]: content });
-
-const tableMask = (i: number) => png(masks[i] as Uint8Array, tableView.width, tableView.height);
+const { width, height, depth } = view;
 
 /** Frames whose cameras are known only through the object. */
 function writeFrames(name: string, angles: readonly number[]): void {
@@ -35,87 +23,80 @@ function writeFrames(name: string, angles: readonly number[]): void {
   for (const [k, angle] of angles.entries()) writeCase(`${name}/frame_0${k}`, frameFiles(frameAt(angle)));
 }
 
-before(() => {
-  for (const name of ["cases/mug", "cases/pan"]) writeCase(name, { ...files, "gt.json": poseJson(truth) });
-  write("annotated.json", poseJson(truth));
-  const { width, height, depth } = view;
-  write("d.npy", npy(depth, height, width));
-  write("moge.npz", zip([deflated("depth.npy", npy(depth, height, width))]));
+const bop = (path: string) => join(folder, "bop", path);
+// As much of jq as the examples use.
+const follow = `process.argv[1].slice(1).split(".").reduce((value, key) => value[key], JSON.parse(fs.readFileSync(0)))`;
+
+before(async () => {
+  const depthFile = npy(depth, height, width);
   const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
-  write("d.png", png(millimetres, width, height));
-  write("m.png", pixels);
-  write("mug.glb", glb(mesh));
-  write("mug.obj", obj(mesh));
-  // Formats are told by the content.
-  write("photo.jpg", png(new Uint8Array(3 * width * height).fill(90), width, height, 3));
+  for (const name of ["cases/mug", "cases/pan", "mug", "target/cases/cases/lmo/one"]) {
+    writeCase(name, { ...files, "gt.json": poseJson(truth) });
+  }
   writeFrames("views/mug", [0, 40]);
   writeFrames("videos/mug", [0, 3]);
-  writeCase("scenes/desk", tableFiles());
-  const objects = poses.map((pose, i) => ({ name: `thing-${i}`, mask: tableMask(i), glb: standingGlb, pose }));
-  writeCase("outputs/desk", sam3dFiles(tableView, objects));
-
-  const found = writeBop(join(folder, "bop", "lmo"));
-  // A target is enough.
-  write("bop/lmo/test_targets_bop19.json", [{ scene_id: 2, im_id: 3, obj_id: 3, inst_count: 1 }]);
-  for (const name of ["ycbv", "tless"])
-    cpSync(join(folder, "bop", "lmo"), join(folder, "bop", name), { recursive: true });
-  cpSync(join(folder, "bop/tless/test"), join(folder, "bop/tless/test_primesense"), { recursive: true });
-  cpSync(join(folder, "bop/tless/models"), join(folder, "bop/tless/models_cad"), { recursive: true });
-  cpSync(join(folder, "bop/lmo/models"), join(folder, "bop/models"), { recursive: true });
-  cpSync(join(folder, "bop/lmo/test/000003"), join(folder, "bop/test/000048"), { recursive: true });
-  const mask = found.get(join("test", "000002", "mask_visib", "000003_000000.png")) as Uint8Array;
+  writeCase("scenes/desk", tableFiles(1));
+  const tableMask = png(masks[0] as Uint8Array, tableView.width, tableView.height);
+  const object = { name: "thing-0", mask: tableMask, glb: standingGlb, pose: poses[0] as (typeof poses)[0] };
+  writeCase("outputs/desk", sam3dFiles(tableView, [object]));
+  writeBop(bop("lmo"));
   const detection = { scene_id: 2, image_id: 3, category_id: 3, score: 0.9, time: 0.5 };
-  write("cnos_lmo-test.json", [{ ...detection, segmentation: cocoRle(mask, 640, 480) }]);
-  write("other_lmo-test.csv", resultsText());
-  write("bin/sim3align", `#!/bin/sh\nexec "${process.execPath}" "${commandLine}" "$@"\n`);
-  write("bin/npx", `#!/bin/sh\nexec "$@"\n`);
-  // As much of jq as the examples use.
-  const follow = `process.argv[1].slice(1).split(".").reduce((value, key) => value[key], JSON.parse(fs.readFileSync(0)))`;
-  write("bin/jq", `#!/bin/sh\nexec "${process.execPath}" -p '${follow}' "$1"\n`);
+  const archive = zip([deflated("depth.npy", depthFile)]);
+  writeFiles(folder, {
+    ...{ "annotated.json": poseJson(truth), "d.npy": depthFile, "depth.npy": depthFile },
+    ...{ "moge.npz": archive, "depth.npz": archive, "d.png": png(millimetres, width, height) },
+    ...{ "m.png": pixels, "mask.png": pixels, "mug.glb": glb(mesh), "mug.obj": obj(mesh) },
+    // Formats are told by the content.
+    "photo.jpg": png(new Uint8Array(3 * width * height).fill(90), width, height, 3),
+    // A target is enough.
+    "bop/lmo/test_targets_bop19.json": [{ scene_id: 2, im_id: 3, obj_id: 3, inst_count: 1 }],
+    "cnos_lmo-test.json": [{ ...detection, segmentation: await segmentation("000002/mask_visib/000003_000000.png") }],
+    "other_lmo-test.csv": bopResults,
+    "bin/sim3align": `#!/bin/sh\nexec "${process.execPath}" "${commandLine}" "$@"\n`,
+    "bin/npx": `#!/bin/sh\nexec "$@"\n`,
+    "bin/jq": `#!/bin/sh\nexec "${process.execPath}" -p '${follow}' "$1"\n`,
+  });
   for (const name of ["sim3align", "npx", "jq"]) chmodSync(join(folder, "bin", name), 0o755);
+  for (const name of ["ycbv", "tless"]) cpSync(bop("lmo"), bop(name), { recursive: true });
+  cpSync(bop("tless/test"), bop("tless/test_primesense"), { recursive: true });
+  cpSync(bop("tless/models"), bop("tless/models_cad"), { recursive: true });
+  cpSync(bop("lmo/models"), bop("models"), { recursive: true });
+  cpSync(bop("lmo/test/000003"), bop("test/000048"), { recursive: true });
 });
 
-for (const command of ["", "align", "scene", "track", "evaluate", "bop"]) {
+/** The commands by where they stand; each once. */
+const commands = new Map<string, string>();
+const add = (command: string, place: string) => {
+  const plain = command.replace(/ +#.*/, "").replace(/^npx /, "").trim();
+  if (!commands.has(plain)) commands.set(plain, place);
+};
+const helps = ["", "align", "scene", "track", "evaluate", "bop"].map((command) => {
   const help = run(...(command === "" ? [] : [command]), "--help").stdout;
   const lines = (/\nExamples\n((?: {2}.*\n)+)/.exec(help)?.[1] ?? "").trimEnd().split("\n");
   // In the first text, explanations follow.
   const examples = lines.map((line) => line.trim().split(/ {3,}/)[0] as string);
-
-  test(`sim3align ${command} --help has examples`, () => {
-    assert.ok(examples.length >= 3, help);
-    for (const example of examples) assert.match(example, new RegExp(`sim3align ${command}`));
-  });
-
-  for (const example of examples) {
-    test(example, { skip }, () => {
-      const stdout = shell(example, folder);
-      if (example.includes("jq")) assert.ok(Number(stdout) > 0, stdout);
-    });
-  }
-}
-
-/** What the documents' commands read: the data of the help texts, some under other names. */
-const data = ["bop", "cases", "outputs", "scenes", "videos", "views", "d.png", "m.png", "mug.glb", "photo.jpg"];
-const others = {
-  ...{ "cases/mug": "mug", cases: "target/cases/cases/lmo" },
-  ...{ "d.npy": "depth.npy", "moge.npz": "depth.npz", "m.png": "mask.png" },
-};
-const documents = join(folder, "documents");
-before(() => {
-  const copies = [
-    ...[...data, "cnos_lmo-test.json", "other_lmo-test.csv"].map((name) => [name, name]),
-    ...Object.entries(others),
-  ];
-  for (const [from = "", to = ""] of copies) cpSync(join(folder, from), join(documents, to), { recursive: true });
+  for (const example of examples) add(example, `sim3align ${command} --help`);
+  return { command, examples };
 });
-
 const guides = readdirSync(join(repository, "docs", "guides")).map((name) => join("docs", "guides", name));
-const known = new Set<string>();
 for (const document of ["README.md", ...guides]) {
   const text = readFileSync(join(repository, document), "utf8");
-  for (const [, command = ""] of text.matchAll(/^ {4}(npx sim3align .*)$/gm)) {
-    if (known.has(command)) continue;
-    known.add(command);
-    test(`${document}: ${command}`, { skip }, () => void shell(command, documents));
+  for (const [, command = ""] of text.matchAll(/^ {4}(npx sim3align .*)$/gm)) add(command, document);
+}
+
+test("every help text has examples of its command", () => {
+  for (const { command, examples } of helps) {
+    assert.ok(examples.length >= 3, command);
+    for (const example of examples) assert.match(example, new RegExp(`sim3align ${command}`));
   }
+});
+
+for (const [command, place] of commands) {
+  test(`${place}: ${command}`, { skip }, () => {
+    const env = { ...process.env, PATH: `${join(folder, "bin")}${delimiter}${process.env.PATH}` };
+    const { status, stdout, stderr } = spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8", env });
+    assert.equal(status, 0, stderr);
+    assert.ok((stdout + stderr).trim() !== "", "it prints something");
+    if (command.includes("jq")) assert.ok(Number(stdout) > 0, stdout);
+  });
 }

@@ -1,9 +1,9 @@
 /** The command line with several frames: views and videos. */
 import assert from "node:assert/strict";
-import { mkdirSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { folder, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
+import { folder, read, results, run, succeeds, writeCase } from "../support/command-line.js";
 import { glb, obj, png, viewFiles } from "../support/files.js";
 import { printedBox } from "../support/printed-box.js";
 import { frameAt, frameFiles, turnBetween } from "../support/rig.js";
@@ -18,8 +18,7 @@ function writeFrames(name: string, angles: readonly number[], { poses = true, ma
     const { rotation, translation } = seen.cameraToWorld;
     const rows = rotationRows(rotation).map((row, i) => [...row, translation[i]]);
     writeCase(`${name}/frame_0${k}`, {
-      ...others,
-      ...(k < masks ? { "mask.png": mask } : {}),
+      ...{ ...others, ...(k < masks ? { "mask.png": mask } : {}) },
       ...(poses ? { "pose.json": { camera_to_world: [...rows, [0, 0, 0, 1]] } } : {}),
     });
   }
@@ -28,57 +27,50 @@ function writeFrames(name: string, angles: readonly number[], { poses = true, ma
 writeFrames("known", [0, 120, 240]);
 writeFrames("unknown", [0, 150], { poses: false });
 writeFrames("video", [0, 3, 6], { masks: 1 });
-
 const names = ["frame_00", "frame_01", "frame_02"];
 
-test("views with camera poses have a pose in the world and in each frame", () => {
+test("views with camera poses have a pose in the world and in each frame, which evaluate scores", () => {
   const { stdout } = succeeds("align known --json known.json");
-  assert.match(stdout, /world from mesh/);
-  assert.match(stdout, /frame_02.*used.*errors: scale/);
+  assert.match(stdout, /world from mesh.*frame_02.*used.*errors: scale/s);
   const { known } = results("known.json");
-  assert.ok(Math.abs(known.scale / truth.scale - 1) < 0.02);
-  assert.equal(known.rotation.length, 3);
-  assert.equal(known.translation.length, 3);
-  assert.ok(turnBetween(known.quaternion, truth.rotation) < 3);
-  assert.deepEqual(Object.keys(known.frames), names);
+  assert.ok(Math.abs(known.scale / truth.scale - 1) < 0.02 && turnBetween(known.quaternion, truth.rotation) < 3);
+  assert.deepEqual([known.rotation.length, known.translation.length, Object.keys(known.frames)], [3, 3, names]);
   for (const [k, name] of names.entries()) {
-    const frame = known.frames[name];
-    assert.deepEqual([frame.rotation.length, frame.translation.length, frame.role], [3, 3, "used"]);
-    assert.ok(frame.confidence > 0.5 && frame.errors.rotationErrorDeg < 3, name);
-    assert.ok(turnBetween(frame.camera.quaternion, frameAt(120 * k).cameraToWorld.rotation) < 1e-3, name);
+    const { rotation, translation, role, confidence, errors, camera } = known.frames[name];
+    assert.deepEqual([rotation.length, translation.length, role], [3, 3, "used"]);
+    assert.ok(confidence > 0.5 && errors.rotationErrorDeg < 3, name);
+    assert.ok(turnBetween(camera.quaternion, frameAt(120 * k).cameraToWorld.rotation) < 1e-3, name);
+  }
+  assert.match(succeeds("evaluate known --transform known.json --json e.json").stdout, /known\/frame_01: evaluation/);
+  for (const name of names) {
+    const { metrics, errors } = results("e.json").known.frames[name];
+    assert.ok(metrics.iou > 0.8 && Math.abs(errors.scaleError - known.frames[name].errors.scaleError) < 1e-9, name);
   }
 });
 
-test("views without camera poses have one size, and poses in their frames only", () => {
-  const { stdout, stderr } = succeeds("align unknown known --json - --quality fast --no-metrics");
+test("views without camera poses have one size, and poses in their frames only; a table has a row for each frame", () => {
+  const flags = "--json - --csv views.csv --quality fast --no-metrics --no-image";
+  const { stdout, stderr } = succeeds(`align unknown known ${flags}`);
   const { unknown, known } = JSON.parse(stdout);
-  assert.ok(Math.abs(unknown.scale / truth.scale - 1) < 0.04);
-  assert.equal("rotation" in unknown, false);
+  assert.ok(Math.abs(unknown.scale / truth.scale - 1) < 0.04 && !("rotation" in unknown));
   assert.ok(Math.abs(unknown.frames.frame_00.scale / unknown.frames.frame_01.scale - 1) < 1e-9);
   assert.equal("metrics" in known.frames.frame_00, false);
   assert.match(stderr, /case +conf\./);
+  assert.deepEqual(read("views.csv").match(/^\w+/gm)?.sort(), ["case", "known", "unknown"]);
 });
 
-test("a video is tracked from the mask of its first frame", () => {
-  const { stdout } = succeeds("track video --json video.json");
-  assert.match(stdout, /frame_02 +tracking/);
+test("a video is tracked from the mask of its first frame; its record is resumed", () => {
+  const flags = "--json video.json --jsonl v.jsonl --csv v.csv";
+  assert.match(succeeds(`track video ${flags}`).stdout, /frame_02 +tracking/);
   const { video } = results("video.json");
-  assert.deepEqual(Object.keys(video.frames), names);
-  assert.equal(video.scale, video.frames.frame_02.scale);
+  assert.deepEqual([Object.keys(video.frames), video.scale], [names, video.frames.frame_02.scale]);
   for (const [k, name] of names.entries()) {
     const { state, quaternion, confidence } = video.frames[name];
-    assert.equal(state, "tracking");
-    assert.ok(confidence > 0 && turnBetween(quaternion, frameAt(3 * k).pose.rotation) < 4, name);
+    assert.ok(state === "tracking" && confidence > 0, name);
+    assert.ok(turnBetween(quaternion, frameAt(3 * k).pose.rotation) < 4, name);
   }
-});
-
-test("--no-image is an option of cases with frames, too", () => {
-  for (const args of [
-    ["align", "known", "--quality", "fast"],
-    ["track", "video"],
-  ]) {
-    succeeds(...args, "--no-image");
-  }
+  assert.deepEqual(read("v.csv").match(/(?<=^video\/)\w+/gm), names);
+  assert.match(succeeds(`track video ${flags} --resume`).stderr, /resumed: 1 of 1/);
 });
 
 test("the photos of frames are read, and left out with --no-image", () => {
@@ -86,52 +78,29 @@ test("the photos of frames are read, and left out with --no-image", () => {
   writeCase("printed", { "mesh.obj": obj(box.mesh) });
   const turned = [0, 4].map((angle, k) => {
     const { frame, image, pose } = box.frameAt(angle);
-    writeCase(`printed/frame_0${k}`, {
-      ...viewFiles(frame),
-      "rgb.png": png(image.data, frame.width, frame.height, 3),
-    });
+    const photo = png(image.data, frame.width, frame.height, 3);
+    writeCase(`printed/frame_0${k}`, { ...viewFiles(frame), "rgb.png": photo });
     return pose;
   });
-  const frameOf = (args: string[], json: string) => {
-    succeeds(...args, "printed", "--json", json);
-    return results(json).printed.frames.frame_00;
+  const frameOf = (words: string) => {
+    succeeds(`${words} printed --json photos.json`);
+    return results("photos.json").printed.frames.frame_00;
   };
-  for (const command of ["align", "track"]) {
-    const colored = frameOf([command], `${command}-colored.json`);
-    assert.ok(turnBetween(colored.quaternion, (turned[0] as { rotation: number[] }).rotation) < 3, command);
-    if (command === "align") {
-      assert.equal(colored.color.verdict === "agreed" || colored.color.verdict === "decided", true);
-      assert.equal(frameOf([command, "--no-image"], "plain.json").color, undefined);
-    }
-  }
+  const [aligned, tracked] = [frameOf("align"), frameOf("track")];
+  for (const { quaternion } of [aligned, tracked]) assert.ok(turnBetween(quaternion, turned[0]?.rotation ?? []) < 3);
+  assert.match(aligned.color.verdict, /^(agreed|decided)$/);
+  assert.equal(frameOf("align --quality fast --no-image").color, undefined);
 });
 
-test("what fails in a video is told with its file", () => {
+test("what fails in a video is reported with its file", () => {
   writeCase("spoilt", { "mesh.glb": "no mesh", "frame_00/note.txt": "" });
-  const properties = ["code", "argument", "found", "expected", "remedy", "message", "file"];
-  const mesh = run("track spoilt --json spoilt.json");
-  assert.equal(mesh.status, 1, mesh.stderr);
-  const { error } = results("spoilt.json").spoilt;
-  assert.deepEqual(Object.keys(error), properties);
-  assert.equal(error.argument, "mesh");
-  assert.match(error.file, /spoilt.mesh\.glb$/);
-
   writeFrames("torn", [0, 3]);
   writeFileSync(join(folder, "torn", "frame_01", "depth.npy"), "no depth");
-  const frame = run("track torn --json torn.json");
-  assert.equal(frame.status, 1, frame.stderr);
-  const { frame_00, frame_01 } = results("torn.json").torn.frames;
-  assert.equal(frame_00.state, "tracking");
-  assert.deepEqual(Object.keys(frame_01.error), properties);
-  assert.match(frame_01.error.file, /frame_01.depth\.npy$/);
-});
-
-test("wrong usage is told", () => {
-  mkdirSync(join(folder, "empty"));
-  refusesUsage({
-    "track empty": /frame_/,
-    "track video --quality nice": /Allowed choices/,
-    "align known --preset paper": /several frames/,
-    "align known --search local": /search/,
-  });
+  assert.equal(run("track spoilt torn --json failed.json").status, 1);
+  const { spoilt, torn } = results("failed.json");
+  const properties = ["code", "argument", "found", "expected", "remedy", "message", "file"];
+  for (const { error } of [spoilt, torn.frames.frame_01]) assert.deepEqual(Object.keys(error), properties);
+  assert.match(spoilt.error.file, /spoilt.mesh\.glb$/);
+  assert.match(torn.frames.frame_01.error.file, /frame_01.depth\.npy$/);
+  assert.equal(torn.frames.frame_00.state, "tracking");
 });

@@ -1,102 +1,128 @@
-/** `sim3align scene`: scene folders and images of BOP, JSON, GLB and failures. */
+/** `sim3align scene`: scene folders, images of BOP and outputs of SAM 3D; JSON, tables, GLB and files of simulators. */
 import assert from "node:assert/strict";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { plyText } from "../support/bop-dataset.js";
-import { folder, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
+import { exportPly } from "sim3align/conventions";
+import { Quaternion, Vector3 } from "three";
+import { folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
 import { png } from "../support/files.js";
-import { assertValid } from "../support/gltf-validator.js";
+import { assertValid, verticesOf } from "../support/gltf-validator.js";
+import { assertNear } from "../support/random.js";
+import { sam3dFiles } from "../support/sam3d.js";
 import { rotationRows } from "../support/scene.js";
-import { masks, plane, poses, standingMesh, tableFiles, tableView } from "../support/table.js";
+import { masks, plane, poses, standingGlb, standingMesh, tableFiles, tableView } from "../support/table.js";
 
 const { width, height, depth, camera } = tableView;
+const bytes = (path: string) => new Uint8Array(readFileSync(join(folder, path)));
+const names = ["thing-0", "thing-1", "thing-2"];
 writeCase("table", tableFiles());
+writeFileSync(join(folder, "plane.json"), JSON.stringify(plane));
 
-test("a scene folder gives JSON, a table and a GLB", async () => {
-  const { stdout } = succeeds("scene table --quality fast --json s.json --scene-glb s.glb");
+test("a scene folder gives JSON, a table, lengths in the proportions that were found, and a GLB; a record is resumed", async () => {
+  const flags = "--quality fast --proportions axes --json s.json --csv s.csv --jsonl s.jsonl --scene-glb s.glb";
+  const { stdout } = succeeds(`scene table ${flags}`);
   assert.match(stdout, /table: support n = .*thing-0.*support.*thing-2/s);
   const { table } = results("s.json");
-  assert.deepEqual(Object.keys(table.objects), ["thing-0", "thing-1", "thing-2"]);
+  assert.deepEqual(Object.keys(table.objects), names);
+  const lines = stdout.split("\n");
   for (const [i, pose] of poses.entries()) {
-    const object = table.objects[`thing-${i}`];
-    assert.ok(Math.abs(object.scale / pose.scale - 1) < 0.05);
-    assert.equal(object.matrix.length, 16);
-    assert.equal(object.rotation.length, 3);
-    assert.ok(object.confidence >= 0 && object.errors.scaleError < 0.05);
-    assert.equal(object.contact.restsOn, i < 2 ? "support" : null);
+    const { scale, matrix, rotation, confidence, errors, contact, proportions } = table.objects[`thing-${i}`];
+    assert.ok(Math.abs(scale / pose.scale - 1) < 0.05 && errors.scaleError < 0.05 && confidence >= 0);
+    assert.deepEqual([matrix.length, rotation.length, contact.restsOn], [16, 3, i < 2 ? "support" : null]);
+    const sides = [0, 1, 2].map((k) => {
+      const [sizeMm, percent] = [1000 * proportions.sizeM[k], 100 * proportions.uncertainty[k]];
+      return `${"xyz"[k]} ${sizeMm.toFixed(1)} mm ± ${percent.toFixed(1)} %`;
+    });
+    const below = lines[lines.findIndex((line) => line.startsWith(`thing-${i}`)) + 1];
+    assert.equal(below?.trim(), `in proportion  ${sides.join(", ")}`);
   }
-  assert.ok(Math.abs(table.support.d - plane.d) < 0.003);
-  assert.equal(table.support.normal.length, 3);
-  const { totalTriangleCount } = await assertValid(new Uint8Array(readFileSync(join(folder, "s.glb"))));
-  assert.equal(totalTriangleCount, standingMesh.indices.length + 2);
+  assert.ok(Math.abs(table.support.d - plane.d) < 0.003 && table.support.normal.length === 3);
+  assert.equal((await assertValid(bytes("s.glb"))).totalTriangleCount, standingMesh.indices.length + 2);
+  assert.deepEqual(read("s.csv").match(/(?<=^table\/)[\w-]+/gm), names);
+  assert.match(succeeds(`scene table ${flags.replace(" --scene-glb s.glb", "")} --resume`).stderr, /resumed: 1 of 1/);
 });
 
-test("lengths in the proportions found are below the row of each object", () => {
-  const { stdout } = succeeds("scene table --quality fast --proportions axes --json sizes.json");
-  for (const name of ["thing-0", "thing-1", "thing-2"]) {
-    const { sizeM, uncertainty } = results("sizes.json").table.objects[name].proportions;
-    const sides = [0, 1, 2].map(
-      (k) => `${"xyz"[k]} ${(1000 * sizeM[k]).toFixed(1)} mm ± ${(100 * uncertainty[k]).toFixed(1)} %`,
-    );
-    const [, own] = stdout.split("\n").slice(stdout.split("\n").findIndex((line) => line.startsWith(name)));
-    assert.equal(own?.trim(), `in proportion  ${sides.join(", ")}`);
-  }
-});
-
-test("the support is given, or there is none", () => {
-  writeFileSync(join(folder, "plane.json"), JSON.stringify(plane));
-  succeeds("scene table --quality fast --support none --json n.json");
-  assert.equal(results("n.json").table.support, null);
+test("the support and one scale for all objects are options; a scene that cannot be read fails alone", () => {
+  writeCase("no-depth", { "camera.json": camera });
+  const { status, stdout } = run("scene no-depth table --quality fast --support none --scale 0.06 --json f.json");
+  assert.equal(status, 1);
+  assert.match(stdout, /no-depth: FILE_NOT_FOUND/);
+  const { "no-depth": failed, table } = results("f.json");
+  assert.deepEqual([failed.error.code, table.support], ["FILE_NOT_FOUND", null]);
+  for (const name of names) assert.ok(Math.abs(table.objects[name].scale - 0.06) < 1e-12, name);
   succeeds("scene table --quality fast --support plane.json --json p.json");
   assert.equal(results("p.json").table.support.confidence, 1);
 });
 
 test("an image of BOP is a scene", () => {
   const scene = join("bop", "test", "000007");
-  const millimetres = Uint16Array.from(depth, (z) => Math.round(10_000 * z));
+  const K = [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1];
+  const two = poses.slice(0, 2);
+  const entries = two.map((pose, i) => ({
+    ...{ obj_id: i + 1, cam_R_m2c: rotationRows(pose.rotation).flat() },
+    cam_t_m2c: pose.translation.map((x) => 1000 * x),
+  }));
   writeCase(scene, {
-    "scene_camera.json": {
-      "3": { cam_K: [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1], depth_scale: 0.1 },
-    },
-    "scene_gt.json": {
-      "3": poses.slice(0, 2).map((pose, i) => ({
-        obj_id: i + 1,
-        cam_R_m2c: rotationRows(pose.rotation).flat(),
-        cam_t_m2c: pose.translation.map((x) => 1000 * x),
-      })),
-    },
+    "scene_camera.json": { "3": { cam_K: K, depth_scale: 0.1 } },
+    "scene_gt.json": { "3": entries },
+    "depth/000003.png": png(
+      Uint16Array.from(depth, (z) => Math.round(10_000 * z)),
+      width,
+      height,
+    ),
   });
-  for (const name of ["depth", "mask_visib"]) mkdirSync(join(folder, scene, name), { recursive: true });
-  writeFileSync(join(folder, scene, "depth", "000003.png"), png(millimetres, width, height));
-  for (const i of [0, 1]) {
-    writeFileSync(
-      join(folder, scene, "mask_visib", `000003_00000${i}.png`),
-      png(masks[i] as Uint8Array, width, height),
-    );
-  }
-  mkdirSync(join(folder, "bop", "models"), { recursive: true });
-  for (const [i, pose] of poses.slice(0, 2).entries()) {
-    writeFileSync(
-      join(folder, "bop", "models", `obj_00000${i + 1}.ply`),
-      plyText({ ...standingMesh, positions: standingMesh.positions.map((x) => 1000 * pose.scale * x) }),
-    );
+  for (const [i, pose] of two.entries()) {
+    writeCase(scene, { [`mask_visib/000003_00000${i}.png`]: png(masks[i] as Uint8Array, width, height) });
+    const positions = standingMesh.positions.map((x) => 1000 * pose.scale * x);
+    writeCase("bop", { [`models/obj_00000${i + 1}.ply`]: exportPly({ ...standingMesh, positions }) });
   }
   succeeds("scene", scene, "--quality", "fast", "--json", "b.json");
   const { objects } = results("b.json")["000007/000003"];
   assert.deepEqual(Object.keys(objects), ["1-0", "2-1"]);
-  for (const object of Object.values<{ errors: { scaleError: number } }>(objects)) {
-    assert.ok(object.errors.scaleError < 0.05);
-  }
+  for (const id of ["1-0", "2-1"]) assert.ok(objects[id].errors.scaleError < 0.05);
 });
 
-test("a scene that cannot be read fails alone", () => {
-  writeCase("no-depth", { "camera.json": camera });
-  const { status, stdout } = run("scene no-depth table --quality fast --json f.json");
-  assert.equal(status, 1);
-  assert.match(stdout, /no-depth: FILE_NOT_FOUND/);
-  const written = results("f.json");
-  assert.equal(written["no-depth"].error.code, "FILE_NOT_FOUND");
-  assert.equal(Object.keys(written.table.objects).length, 3);
-  refusesUsage({ "scene table no-depth --scene-glb two.glb": /./ });
+test("an output of SAM 3D is a scene; a scale goes before its placements, and simulators need metres", async () => {
+  const objects = poses.slice(0, 2).map((pose, i) => ({
+    ...{ name: `thing-${i}`, mask: png(masks[i] as Uint8Array, width, height), glb: standingGlb, pose },
+  }));
+  writeCase("sam3d", sam3dFiles(tableView, objects));
+  succeeds("scene --sam3d sam3d --depth-kind metric --quality fast --scene-glb o.glb --json o.json");
+  for (const [i, { pose }] of objects.entries()) {
+    const found = results("o.json").sam3d.objects[`thing-${i}`];
+    assert.ok(Math.abs(found.scale / pose.scale - 1) < 0.05, `${found.scale}`);
+    assertNear(found.translation, pose.translation, "place", 0.01);
+  }
+  await assertValid(bytes("o.glb"));
+  const scale = poses[0]?.scale ?? 1;
+  succeeds(`scene --sam3d sam3d --quality fast --scale ${1.01 * scale},${2 * scale} --json g.json`);
+  assert.equal(results("g.json").sam3d.depthUnit, "unknown (scale-invariant)");
+  refusesUsage({ "scene --sam3d sam3d --usd w.usda": /--depth-kind metric/ });
+});
+
+test("upright objects of a scene stand in their own frames, and stay where they are, in files of simulators too", async () => {
+  const simulators = "--mjcf mujoco --urdf urdf --usd scene.usda --density 250 --parts 4";
+  succeeds("scene table --quality fast --no-rest --scene-glb own.glb");
+  const upright = `scene table --quality fast --no-rest --upright --scene-glb straight.glb ${simulators}`;
+  assert.match(succeeds(upright).stdout, /thing_0: [\d.]+ kg, \d convex parts, free, where it was found/);
+  await assertValid(bytes("straight.glb"));
+  const [own, straight] = [await verticesOf(bytes("own.glb")), await verticesOf(bytes("straight.glb"))];
+  const shift = [0, 1, 2].map((k) => (straight[k] ?? 0) - (own[k] ?? 0));
+  assert.ok(Math.abs(shift[1] ?? 1) < 1e-5, "the origin of the scene moves along the ground only");
+  const shifted = own.map((x, i) => x + (shift[i % 3] ?? 0));
+  assertNear(straight, shifted, "the scene", 1e-5);
+  // Of all objects, in the frame of the first: the first has its bottom at 0.
+  const local = await verticesOf(bytes("straight.glb"), "thing-0");
+  const heights = local.slice(0, local.length / 3).filter((_, i) => i % 3 === 1);
+  assert.ok(Math.abs(Math.min(...heights)) < 1e-4);
+  // Bodies turn about the vertical only.
+  const bodies = [...read(join("mujoco", "scene.xml")).matchAll(/name="thing_\d_found" size="7" data="([^"]+)"/g)];
+  assert.equal(bodies.length, 3);
+  for (const [, data = ""] of bodies) {
+    const [, , , w = 0, x = 0, y = 0, z = 0] = data.split(" ").map(Number);
+    assertNear(new Vector3(0, 0, 1).applyQuaternion(new Quaternion(x, y, z, w)).toArray(), [0, 0, 1], "up", 1e-5);
+  }
+  assert.match(read("scene.usda"), /upAxis = "Z"/);
+  assert.match(read(join("urdf", "scene.json")), /thing_0/);
 });

@@ -1,18 +1,25 @@
-/** Every form of depth, mask, camera and mesh gives the result that plain typed arrays give. */
+/** Every form of depth, mask, camera, mesh and photo gives the result that plain typed arrays give. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type AlignInput, type CameraFileInput, createAligner, type Evaluation } from "sim3align";
-import { codesOf, rejectsWith } from "../support/errors.js";
-import { cocoRle, glb, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
+import { type AlignInput, type CameraFileInput, createAligner, type Evaluation, type MeshArrays } from "sim3align";
+import { codesOf } from "../support/errors.js";
+import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 
 const { width, height, depth, mask, camera } = view;
 const aligner = await createAligner();
-const { depthUnit: unit, ...reference } = await aligner.evaluate(input, truth);
-const withoutSize = { depth: { data: depth, width, height }, mask, camera, mesh };
+const plain = { depth: { data: depth, width, height }, mask, camera, mesh };
 
-/** Within what rounding depth to a tenth of a millimetre does. */
+/** The result without the unit that was taken, which tells the forms apart. */
+async function evaluated(changes: object): Promise<Evaluation> {
+  const { depthUnit: _, ...evaluation } = await aligner.evaluate({ ...plain, ...changes } as AlignInput, truth);
+  return evaluation;
+}
+
+const reference = await evaluated({});
+
+/** Whether metrics are as close as rounding of the depth leaves them. */
 function assertClose(found: Evaluation, tolerance: number): void {
   for (const [name, value] of Object.entries(reference.metrics)) {
     const other = found.metrics[name as keyof typeof found.metrics];
@@ -20,143 +27,102 @@ function assertClose(found: Evaluation, tolerance: number): void {
   }
 }
 
-/** The result without the unit that was taken, which tells the forms apart. */
-async function evaluated(input: AlignInput): Promise<Evaluation> {
-  const { depthUnit: _, ...evaluation } = await aligner.evaluate(input, truth);
-  return evaluation;
-}
-
-test("the unit that was taken is told", () => assert.equal(unit, "metres (float values, assumed)"));
-
-/** A form that loses nothing. */
-function same(name: string, make: () => Partial<AlignInput>): void {
-  test(name, async () => {
-    const changed = { ...withoutSize, ...make() } as AlignInput;
-    assert.deepEqual(await evaluated(changed), reference);
-  });
-}
-
 const arrayBuffer = (bytes: Uint8Array) => Uint8Array.from(bytes).buffer;
-const tenths = Uint16Array.from(depth, (z) => Math.round(10_000 * z));
-
-same("depth: with its size", () => ({}));
-same("depth: bytes of a .npy file", () => ({ depth: npy(depth, height, width) }));
-same("depth: an ArrayBuffer with a .npy file", () => ({ depth: arrayBuffer(npy(depth, height, width)) }));
-same("depth: a Blob with a .npy file", () => ({ depth: new Blob([arrayBuffer(npy(depth, height, width))]) }));
-same("depth: a file and its size", () => ({ depth: npy(depth, height, width), width, height }));
-same("depth: floats in millimetres", () => ({
-  depth: { data: depth.map((z) => z * 1024), width, height },
-  depthScale: 1 / 1024,
-}));
-same("depth: 0, negative, NaN and infinite values are no reading", () => {
-  const bad = [0, -1, Number.NaN, Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-  const outside = depth.map((z, i) => (mask[i] === 0 && i % 3 === 0 ? (bad[i % bad.length] ?? 0) : z));
-  return { depth: { data: outside, width, height } };
+const blobOf = (bytes: Uint8Array) => new Blob([arrayBuffer(bytes)]);
+const shared = new Float32Array(new SharedArrayBuffer(depth.byteLength));
+shared.set(depth);
+const readings = [0, -1, Number.NaN, Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
+const size = { width, height };
+const depthFile = npy(depth, height, width);
+const rle = cocoRle(mask, width, height);
+const twice = Uint8Array.from({ length: 4 * width * height }, (_, i) => {
+  const [u, v] = [i % (2 * width), Math.floor(i / (2 * width))];
+  return mask[Math.floor(v / 2) * width + Math.floor(u / 2)] ?? 0;
 });
+const K = [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1];
+const fileOf = (cameraFile: CameraFileInput) => ({ camera: undefined, cameraFile });
+const json = JSON.stringify({ ...camera, ...size });
+const shrunk = { positions: mesh.positions.map((x) => x / 2), indices: mesh.indices };
 
-test("depth: whole numbers, as an array, as PNG and as .npy, all alike", async () => {
-  const asArray = await evaluated({ ...withoutSize, depth: { data: tenths, width, height }, depthScale: 0.0001 });
+/** Forms that lose nothing. */
+const forms: Record<string, object> = {
+  "depth with its size beside it": { depth, ...size },
+  "depth on shared memory": { depth: { data: shared, ...size } },
+  "depth: bytes of a .npy file": { depth: depthFile },
+  "depth: a Blob with a .npy file": { depth: blobOf(depthFile) },
+  "depth: floats in another unit": { depth: { data: depth.map((z) => z * 1024), ...size }, depthScale: 1 / 1024 },
+  "depth: 0, negative, NaN and infinite values are no reading": {
+    depth: { data: depth.map((z, i) => (mask[i] === 0 && i % 3 === 0 ? (readings[i % 5] ?? 0) : z)), ...size },
+  },
+  "mask: other values than 1": { mask: mask.map((m) => 200 * m) },
+  "mask: a clamped array": { mask: Uint8ClampedArray.from(mask) },
+  "mask with its size": { mask: { data: mask, ...size } },
+  "mask: an ArrayBuffer of pixels": { mask: arrayBuffer(mask) },
+  "mask: bytes of a PNG": { mask: maskPng(mask, width, height) },
+  "mask: a Blob with a PNG": { mask: blobOf(png(mask, width, height)) },
+  "mask: bytes of a .npy file": { mask: npy(mask, height, width) },
+  "mask: COCO RLE": { mask: rle },
+  "mask of twice the size, resized": {
+    ...{ mask: { data: twice, width: 2 * width, height: 2 * height }, resizeMask: "nearest" },
+  },
+  "camera with the image's size": { camera: { ...camera, ...size } },
+  "camera: K": { camera: { K } },
+  "camera: K in rows": { camera: { K: [K.slice(0, 3), K.slice(3, 6), K.slice(6)] } },
+  "camera file: text": fileOf(json),
+  "camera file: a Blob": fileOf(new Blob([json])),
+  "camera file: ROS CameraInfo": fileOf({ ...size, k: K, d: [0, 0, 0, 0, 0], distortion_model: "" }),
+  "mesh: 16-bit indices": { mesh: { ...mesh, indices: Uint16Array.from(mesh.indices) } },
+  "mesh: bytes of a GLB": { mesh: glb(mesh) },
+  "mesh: bytes of an OBJ, named": { mesh: { bytes: obj(mesh), format: "obj" } },
+  "mesh: a .gltf and its buffer": {
+    mesh: {
+      bytes: Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "mesh.bin" }))),
+      resources: { "mesh.bin": gltfBuffer(mesh) },
+    },
+  },
+  "mesh: a GLB whose node moves it": { mesh: glb(shrunk, { scale: [2, 2, 2] }) },
+};
+
+for (const [name, changes] of Object.entries(forms)) {
+  test(name, async () => assert.deepEqual(await evaluated(changes), reference));
+}
+
+test("depth: whole numbers, as an array, as PNG and as .npy, in a unit that is stated or millimetres", async () => {
+  const tenths = Uint16Array.from(depth, (z) => Math.round(10_000 * z));
+  const asArray = await evaluated({ depth: { data: tenths, ...size }, depthScale: 0.0001 });
   assertClose(asArray, 0.05);
   for (const file of [png(tenths, width, height), npy(tenths, height, width)]) {
-    assert.deepEqual(await evaluated({ ...withoutSize, depth: file, depthScale: 0.0001 }), asArray);
+    assert.deepEqual(await evaluated({ depth: file, depthScale: 0.0001 }), asArray);
   }
-  const bopCamera = { cam_K: [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1], depth_scale: 0.1 };
-  const { camera: _, ...withoutCamera } = withoutSize;
-  const byCamera = {
-    ...withoutCamera,
-    depth: png(tenths, width, height),
-    cameraFile: { "7": bopCamera, "8": { ...bopCamera, depth_scale: 1 } },
-    imageId: 7,
-  };
-  assert.deepEqual(await evaluated(byCamera), asArray, "the camera file's scale");
-  const bare = { ...byCamera, depth: tenths, width, height };
-  assert.deepEqual(await evaluated(bare), asArray, "the camera file's scale for an array");
-  const floats = { ...byCamera, depth: npy(depth, height, width) };
-  assert.deepEqual(await evaluated(floats), reference, "floats are metres whatever the camera file says");
-});
-
-test("depth: whole numbers are millimetres where nothing is said", async () => {
+  const entry = { cam_K: K, depth_scale: 0.1 };
+  const byCamera = { ...fileOf({ "7": entry, "8": { ...entry, depth_scale: 1 } }), imageId: 7 };
+  const byFile = await evaluated({ ...byCamera, depth: png(tenths, width, height) });
+  assert.deepEqual(byFile, asArray, "the camera file's scale");
+  assert.deepEqual(await evaluated({ ...byCamera, depth: tenths, ...size }), asArray, "for an array, too");
+  assert.deepEqual(await evaluated({ ...byCamera, depth: depthFile }), reference, "floats are metres all the same");
   const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
-  const asArray = await evaluated({ ...withoutSize, depth: { data: millimetres, width, height } });
-  assertClose(asArray, 0.5);
-  assert.deepEqual(await evaluated({ ...withoutSize, depth: png(millimetres, width, height) }), asArray);
+  const assumed = await evaluated({ depth: { data: millimetres, ...size } });
+  assertClose(assumed, 0.5);
+  assert.deepEqual(await evaluated({ depth: png(millimetres, width, height) }), assumed);
 });
 
-same("mask: other values than 1", () => ({ mask: mask.map((m) => 200 * m) }));
-same("mask: a clamped array", () => ({ mask: Uint8ClampedArray.from(mask) }));
-same("mask: with its size", () => ({ mask: { data: mask, width, height } }));
-same("mask: an ArrayBuffer of pixels", () => ({ mask: arrayBuffer(mask) }));
-same("mask: bytes of a PNG", () => ({
-  mask: maskPng(mask, width, height),
-}));
-same("mask: a Blob with a PNG", () => ({ mask: new Blob([arrayBuffer(png(mask, width, height))]) }));
-same("mask: bytes of a .npy file", () => ({ mask: npy(mask, height, width) }));
-same("mask: COCO RLE", () => ({ mask: cocoRle(mask, width, height) }));
-same("mask: bytes of JSON with COCO RLE", () => ({ mask: Buffer.from(JSON.stringify(cocoRle(mask, width, height))) }));
-same("mask: twice the size, resized", () => {
-  const data = Uint8Array.from({ length: 4 * width * height }, (_, i) => {
-    const [u, v] = [i % (2 * width), Math.floor(i / (2 * width))];
-    return mask[Math.floor(v / 2) * width + Math.floor(u / 2)] ?? 0;
-  });
-  return { mask: { data, width: 2 * width, height: 2 * height }, resizeMask: "nearest" };
-});
-
-const K = [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1];
-same("camera: with the image's size", () => ({ camera: { ...camera, width, height } }));
-same("camera: K", () => ({ camera: { K } }));
-same("camera: K as a typed array", () => ({ camera: { K: Float64Array.from(K) } }));
-same("camera: K in rows", () => ({ camera: { K: [K.slice(0, 3), K.slice(3, 6), K.slice(6)] } }));
-const fileOf = (cameraFile: CameraFileInput) => () => ({ camera: undefined, cameraFile });
-same("camera file: text", fileOf(JSON.stringify({ ...camera, width, height })));
-same("camera file: bytes", fileOf(Buffer.from(JSON.stringify(camera))));
-same("camera file: a Blob", fileOf(new Blob([JSON.stringify(camera)])));
-same("camera file: ROS CameraInfo", fileOf({ width, height, k: K, d: [0, 0, 0, 0, 0], distortion_model: "" }));
-same("camera file: what readCamera made of it", () => ({
-  camera: { ...camera, width, height, warnings: [] },
-}));
-
-test("camera: a vertical field of view", async () => {
+test("camera: a vertical field of view, and lens distortion, which is warned of", async () => {
   const fovYDeg = (360 / Math.PI) * Math.atan(height / 2 / camera.fy);
-  const { metrics } = await evaluated({ ...withoutSize, camera: { fovYDeg } });
+  const { metrics } = await evaluated({ camera: { fovYDeg } });
   assert.ok((metrics.iou ?? 0) > 0.95, `${metrics.iou}`);
-  const { camera: _, ...rest } = withoutSize;
-  const fromText = await evaluated({ ...rest, cameraFile: JSON.stringify({ fovYDeg }) });
-  assert.deepEqual(fromText.metrics, metrics);
-});
-
-test("camera file: lens distortion is warned of", async () => {
-  const cameraFile = { width, height, k: K, d: [0.1, -0.2, 0, 0, 0], distortion_model: "plumb_bob" };
-  const { camera: _, ...rest } = withoutSize;
-  const { warnings, metrics } = await evaluated({ ...rest, cameraFile });
-  assert.deepEqual(codesOf(warnings), ["CAMERA_NOT_PINHOLE"]);
+  assert.deepEqual((await evaluated(fileOf(JSON.stringify({ fovYDeg })))).metrics, metrics);
+  const distorted = { ...size, k: K, d: [0.1, -0.2, 0, 0, 0], distortion_model: "plumb_bob" };
+  const { warnings, ...found } = await evaluated(fileOf(distorted));
+  assert.deepEqual([codesOf(warnings), found.metrics], [["CAMERA_NOT_PINHOLE"], reference.metrics]);
   assert.match(warnings[0]?.message ?? "", /distortion/);
-  assert.deepEqual(metrics, reference.metrics);
-});
-
-same("mesh: 16-bit indices", () => ({ mesh: { ...mesh, indices: Uint16Array.from(mesh.indices) } }));
-same("mesh: bytes of a GLB", () => ({ mesh: glb(mesh) }));
-same("mesh: a Blob with a GLB", () => ({ mesh: new Blob([arrayBuffer(glb(mesh))]) }));
-same("mesh: bytes of an OBJ, named", () => ({ mesh: { bytes: obj(mesh), format: "obj" } }));
-same("mesh: bytes of an OBJ, recognised", () => ({ mesh: obj(mesh) }));
-same("mesh: a .gltf and its buffer", () => ({
-  mesh: {
-    bytes: Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "mesh.bin" }))),
-    resources: { "mesh.bin": gltfBuffer(mesh) },
-  },
-}));
-same("mesh: a GLB whose node moves it", () => {
-  const shrunk = { positions: mesh.positions.map((x) => x / 2), indices: mesh.indices };
-  return { mesh: glb(shrunk, { scale: [2, 2, 2] }) };
 });
 
 test("mesh: triangles without indices, null for indices", async () => {
   const corners = Float32Array.from({ length: 3 * mesh.indices.length }, (_, i) => {
     return mesh.positions[3 * (mesh.indices[Math.floor(i / 3)] ?? 0) + (i % 3)] ?? 0;
   });
-  for (const indices of [undefined, null]) {
-    const soup = { ...withoutSize, mesh: { positions: corners, indices } };
-    assertClose(await evaluated(soup), 1e-3);
-  }
+  for (const indices of [undefined, null])
+    assertClose(await evaluated({ mesh: { positions: corners, indices } }), 1e-3);
 });
 
 test("a point map takes the place of depth and camera", async () => {
@@ -166,20 +132,86 @@ test("a point map takes the place of depth and camera", async () => {
     const [u, v] = [pixel % width, Math.floor(pixel / width)];
     return [((u - camera.cx) * z) / camera.fx, ((v - camera.cy) * z) / camera.fy, z][i % 3] ?? 0;
   });
-  assertClose(await evaluated({ pointMap: { data, width, height }, mask, mesh }), 0.02);
-  assertClose(await evaluated({ pointMap: data, width, height, mask, mesh }), 0.02);
-  assertClose(await evaluated({ pointMap: data, width, height, mask, mesh, camera }), 0.02);
-  const both = { pointMap: data, depth, width, height, mask, mesh } as unknown as AlignInput;
-  const expected = ["INVALID_ARGUMENT depth", /not both/] as const;
-  await rejectsWith(() => evaluated(both), ...expected);
+  const without = { depth: undefined, camera: undefined };
+  assertClose(await evaluated({ ...without, pointMap: { data, ...size } }), 0.02);
+  assertClose(await evaluated({ ...without, pointMap: data, ...size }), 0.02);
+  assertClose(await evaluated({ ...without, pointMap: data, ...size, camera }), 0.02);
 });
 
-test("align takes files as well", async () => {
-  const files = {
-    depth: npy(depth, height, width),
-    mask: png(mask, width, height),
-    cameraFile: JSON.stringify(camera),
-    mesh: glb(mesh),
-  };
-  assert.deepEqual(withoutTimes(await aligner.align(files)), withoutTimes(await aligner.align(input)));
+test("align takes files as well, with and without workers", async () => {
+  const files = { depth: depthFile, mask: png(mask, width, height), cameraFile: json, mesh: glb(mesh) };
+  const expected = withoutTimes(await aligner.align(input, { quality: "fast" }));
+  using pool = await createAligner({ workers: 1 });
+  for (const one of [aligner, pool]) {
+    assert.deepEqual(withoutTimes(await one.align(files, { quality: "fast" })), expected);
+  }
+});
+
+// Colours of the mesh's vertices, and a photo of them, a little darker.
+const vertices = mesh.positions.length / 3;
+const colors = Uint8Array.from({ length: 3 * vertices }, (_, i) => (11 * i) % 256);
+const opaque = (rgb: Uint8Array, alpha: number) =>
+  Uint8ClampedArray.from({ length: (4 * rgb.length) / 3 }, (_, i) =>
+    i % 4 === 3 ? alpha : (rgb[3 * Math.floor(i / 4) + (i % 4)] ?? 0),
+  );
+const withAlpha = opaque(colors, 9);
+const rgb = Uint8Array.from({ length: 3 * width * height }, (_, i) => (7 * i + (i % 3) * 50) % 256);
+const rgba = opaque(rgb, 77);
+const linear = (code: number) => {
+  const x = code / 255;
+  return x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
+};
+
+/** Like the class of browsers: its properties are accessors of the prototype. */
+class ImageData {}
+const values = { data: rgba, ...size, [Symbol.toStringTag]: "ImageData" };
+for (const name of Reflect.ownKeys(values)) {
+  Object.defineProperty(ImageData.prototype, name, { get: () => values[name as "data"] });
+}
+
+test("photo and mesh colours: every form of arrays and files gives the same agreement", async () => {
+  const colored = await evaluated({ image: rgb, mesh: { ...mesh, colors } });
+  const { colorAgreement } = colored.metrics;
+  assert.ok(Math.abs(colorAgreement ?? 0) > 1e-3, `${colorAgreement}`);
+  const photo = png(rgb, width, height, 3);
+  const images = [rgba, new Uint8Array(rgba), { data: rgb, ...size }, new ImageData(), photo, blobOf(photo)];
+  for (const image of images) {
+    assert.deepEqual(await evaluated({ image, mesh: { ...mesh, colors } }), colored);
+  }
+  const meshes: Partial<MeshArrays>[] = [
+    { colors: withAlpha },
+    { colors: Float32Array.from(colors, (code) => code / 255) },
+    { colors: Float32Array.from(colors, linear), colorSpace: "linear" },
+    { colors: Float32Array.from(withAlpha, linear), colorSpace: "linear" },
+  ];
+  for (const form of meshes) assert.deepEqual(await evaluated({ image: rgb, mesh: { ...mesh, ...form } }), colored);
+  for (const one of [{ image: rgb }, { mesh: { ...mesh, colors } }]) {
+    assert.deepEqual(await evaluated(one), reference, "neither counts without the other");
+  }
+});
+
+test("a mesh with a texture that can't be read is aligned by its shape, with a warning where there is a photo", async () => {
+  const parts = gltfJson(mesh);
+  const [primitive] = parts.meshes[0]?.primitives ?? [];
+  const webp = glbOf(
+    {
+      ...parts,
+      meshes: [{ primitives: [{ ...primitive, attributes: { POSITION: 0, TEXCOORD_0: 2 }, material: 0 }] }],
+      accessors: [...parts.accessors, { bufferView: 0, componentType: 5126, count: vertices, type: "VEC2" }],
+      materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
+      textures: [{ source: 0 }],
+      images: [{ uri: "data:image/webp;base64,UklGRgAAAABXRUJQVlA4IA==" }],
+    },
+    gltfBuffer(mesh),
+  );
+  using pool = await createAligner({ workers: 1 });
+  for (const [one, mesh] of [
+    [aligner, webp],
+    [pool, await pool.prepareMesh(webp)],
+  ] as const) {
+    const { warnings, metrics } = await one.evaluate({ ...input, image: rgb, mesh }, truth);
+    assert.deepEqual([codesOf(warnings), metrics], [["COLORS_NOT_READ"], reference.metrics]);
+    assert.match(warnings[0]?.message ?? "", /WebP.*gltf-transform/);
+  }
+  assert.deepEqual((await aligner.evaluate({ ...input, mesh: webp }, truth)).warnings, []);
 });

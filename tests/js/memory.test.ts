@@ -1,174 +1,116 @@
-/** Memory: calls wait for one another, what does not fit is refused, and heaps that have grown are let go. */
+/** Memory: calls wait for one another, heaps that have grown are let go, and what does not fit is refused. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Worker } from "node:worker_threads";
-import { type Aligner, createAligner, Sim3AlignError } from "sim3align";
+import { type Aligner, createAligner } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
-import { glueModule } from "../support/internals.js";
+import { withoutTimes } from "../support/results.js";
 import { input, mesh, render, truth } from "../support/scene.js";
-import { Workers, withoutTimes, workerUrl } from "../support/workers.js";
+
+/** The memory of the newest instance of each WebAssembly module, in the order in which the modules are loaded. */
+const heaps = new Map<WebAssembly.Module, WebAssembly.Memory>();
+function note(module: WebAssembly.Module, { exports }: WebAssembly.Instance): void {
+  const memory = exports.memory as WebAssembly.Memory;
+  // Those of Node's own modules are smaller.
+  if (memory.buffer.byteLength > 1 << 20) heaps.set(module, memory);
+}
+const { instantiate, Instance } = WebAssembly;
+WebAssembly.instantiate = (async (module: WebAssembly.Module, imports: WebAssembly.Imports) => {
+  const instance = await instantiate(module, imports);
+  note(module, instance);
+  return instance;
+}) as typeof instantiate;
+WebAssembly.Instance = new Proxy(Instance, {
+  construct(Target, [module, imports]) {
+    const instance = new Target(module, imports);
+    note(module, instance);
+    return instance;
+  },
+});
 
 const quick = { quality: "fast" } as const;
+const { mesh: _, ...frame } = input;
 const aligner = await createAligner();
 const expected = withoutTimes(await aligner.align(input, quick));
-
-type Name = "core" | "joint";
-// Loads the joint module.
+const works = async () => assert.deepEqual(withoutTimes(await aligner.align(input, quick)), expected);
+// Loads the module of scenes, views and videos.
 (await aligner.track(mesh)).close();
-const heap = async (name: Name): Promise<WebAssembly.Memory> => (await glueModule(name)).initSync().memory;
-const bytesOf = async (name: Name) => (await heap(name)).buffer.byteLength;
+const names = ["core", "joint"] as const;
+type Name = (typeof names)[number];
+const heap = (name: Name) => [...heaps.values()][names.indexOf(name)] as WebAssembly.Memory;
+const bytesOf = (name: Name) => heap(name).buffer.byteLength;
 
 /** More than an idle heap may have; the pages are never touched. */
 const LARGE = 256 * 2 ** 20;
-/** Pages of a heap that cannot grow. */
-const ALL = 2 ** 16;
 const PAGE = 2 ** 16;
+/** Bytes of a heap that cannot grow. */
+const ALL = 2 ** 16 * PAGE;
+const grow = (name: Name, bytes: number) => heap(name).grow((bytes - bytesOf(name)) / PAGE);
 
-/** Makes the heap of a module so large, or as large as a heap can be. */
-async function grow(name: Name, bytes: number): Promise<void> {
-  const memory = await heap(name);
-  memory.grow(bytes / PAGE - memory.buffer.byteLength / PAGE);
-}
-
-const { mesh: _, ...frame } = input;
-const largeFrame = render(mesh, truth, { fx: 900, fy: 900, cx: 639.5, cy: 479.5 }, 1280, 960);
-const large = { ...largeFrame, mesh };
+const large = render(mesh, truth, { fx: 900, fy: 900, cx: 639.5, cy: 479.5 }, 1280, 960);
 
 test("calls that begin together take the memory of one", async () => {
   // The first one leaves between its data what the module keeps of the mesh.
-  for (let i = 0; i < 2; i++) await aligner.align(large, quick);
-  const one = await bytesOf("core");
-  const results = await Promise.all(Array.from({ length: 12 }, () => aligner.align(large, quick)));
-  assert.equal(await bytesOf("core"), one);
-  for (const result of results) assert.deepEqual(result.matrix, results[0]?.matrix);
+  for (let i = 0; i < 2; i++) await aligner.align({ ...large, mesh }, quick);
+  const one = bytesOf("core");
+  const results = await Promise.all(Array.from({ length: 6 }, () => aligner.align({ ...large, mesh }, quick)));
+  assert.equal(bytesOf("core"), one);
+  for (const { matrix } of results) assert.deepEqual(matrix, results[0]?.matrix);
 });
 
-test("calls of several aligners wait in their order; one that waits ends at its abort, and at the end of its aligner", async () => {
-  const other = await createAligner();
-  const order: string[] = [];
-  const named = (name: string, call: Promise<unknown>) =>
-    call.then(
-      () => order.push(name),
-      (error) => order.push(`${name}: ${error instanceof Sim3AlignError ? error.code : error}`),
-    );
-  const abort = new AbortController();
-  const calls = [
-    named("first", aligner.align(large, quick)),
-    named("second", other.align(input, quick)),
-    named("aborted", aligner.align(input, { ...quick, signal: abort.signal })),
-    named("evaluated", aligner.evaluate(input, truth)),
-  ];
-  await new Promise((resolve) => setTimeout(resolve));
-  abort.abort("enough");
-  other.dispose();
-  await Promise.all(calls);
-  assert.deepEqual([...order].sort(), ["aborted: enough", "evaluated", "first", "second: DISPOSED"]);
-  // The two did not wait for the first.
-  assert.deepEqual(order.slice(-2), ["first", "evaluated"]);
+test("prepared meshes, trackers and calls that fail leave nothing behind", async () => {
+  const round = async () => {
+    const prepared = await aligner.prepareMesh(mesh);
+    await aligner.align({ ...input, mesh: prepared }, quick);
+    const tracker = await aligner.track(prepared);
+    await tracker.next(frame);
+    tracker.close();
+    prepared.dispose();
+    await assert.rejects(aligner.align({ ...input, mask: new Uint8Array(input.mask.length) }), { code: "EMPTY_MASK" });
+  };
+  for (let i = 0; i < 3; i++) await round();
+  const before = names.map(bytesOf);
+  for (let i = 0; i < 12; i++) await round();
+  assert.deepEqual(names.map(bytesOf), before);
 });
 
-test("scenes wait for one another, and their objects do not", async () => {
-  const { mask, ...view } = frame;
-  const scene = { ...view, objects: [{ mask, mesh }] };
-  const poses = await Promise.all([1, 2].map(async () => (await aligner.alignScene(scene, quick)).objects[0]));
-  assert.ok(poses[0] !== undefined && poses[0].error === undefined && poses[1]?.error === undefined);
-  assert.deepEqual(poses[0].matrix, poses[1]?.matrix);
-});
-
-test("a heap that has grown is let go when no call runs; a prepared mesh is prepared again, with the same bits", async () => {
+test("a heap that has grown is let go when no call waits for it; a prepared mesh keeps its bits", async () => {
   using prepared = await aligner.prepareMesh(mesh);
-  assert.deepEqual(withoutTimes(await aligner.align({ ...input, mesh: prepared }, quick)), expected);
-  await grow("core", LARGE);
-  assert.deepEqual(withoutTimes(await aligner.align({ ...input, mesh: prepared }, quick)), expected);
-  assert.ok((await bytesOf("core")) < LARGE / 4);
-  assert.deepEqual(withoutTimes(await aligner.align({ ...input, mesh: prepared }, quick)), expected);
-});
-
-test("a heap stays while calls wait for it", async () => {
-  await grow("core", LARGE);
-  const glue = await glueModule("core");
+  const align = async () => withoutTimes(await aligner.align({ ...input, mesh: prepared }, quick));
+  assert.deepEqual(await align(), expected);
+  grow("core", LARGE);
   const during: number[] = [];
-  const onProgress = () => during.push(glue.initSync().memory.buffer.byteLength);
+  const onProgress = () => during.push(bytesOf("core"));
   await Promise.all([aligner.align(input, quick), aligner.align(input, { ...quick, onProgress })]);
   assert.ok(during.length > 0 && during.every((bytes) => bytes >= LARGE), `${during}`);
-  assert.ok((await bytesOf("core")) < LARGE / 4);
+  assert.deepEqual(await align(), expected);
+  assert.ok(bytesOf("core") < LARGE / 4);
 });
 
 test("a heap in which a tracker lives is let go when the tracker is closed", async () => {
   const tracker = await aligner.track(mesh);
-  const first = (await tracker.next(frame)).matrix;
-  await grow("joint", LARGE);
-  const second = await tracker.next(frame);
-  assert.equal(second.frame, 1);
-  assert.ok((await bytesOf("joint")) >= LARGE);
+  const { matrix } = await tracker.next(frame);
+  grow("joint", LARGE);
+  assert.equal((await tracker.next(frame)).frame, 1);
+  assert.ok(bytesOf("joint") >= LARGE);
   tracker.close();
   await aligner.evaluate(input, truth);
-  assert.ok((await bytesOf("joint")) < LARGE / 4);
   using again = await aligner.track(mesh);
-  assert.deepEqual((await again.next(frame)).matrix, first);
-});
-
-test("a worker lets go of a heap that has grown, and gets a prepared mesh again", async () => {
-  const glue = new URL("wasm/core.js", workerUrl).href;
-  // Before every job but the first, the heap is made too large.
-  const script = `
-    const { parentPort } = require("node:worker_threads");
-    const on = parentPort.on.bind(parentPort);
-    let jobs = 0;
-    parentPort.on = (name, listen) => {
-      on(name, async (message) => {
-        if (message?.type === "job" && jobs++ > 0) {
-          const { memory } = await (await import(${JSON.stringify(glue)})).default();
-          memory.grow(${LARGE / PAGE});
-        }
-        listen(message);
-      });
-    };
-    import(${JSON.stringify(workerUrl.href)});`;
-  using pool = await createAligner({ workers: 1, createWorker: () => new Worker(script, { eval: true }) });
-  using prepared = await pool.prepareMesh(mesh);
-  for (let call = 0; call < 3; call++) {
-    assert.deepEqual(withoutTimes(await pool.align({ ...input, mesh: prepared }, quick)), expected);
-  }
-});
-
-test("what cannot fit is refused with a code of its own, and the next call has the same bits", async () => {
-  const side = 2 ** 13 + 1;
-  const depth = new Float32Array(side * side);
-  const found = ["OUT_OF_MEMORY depth", /an array of 269 MB, expected at most 268 MB/] as const;
-  await rejectsWith(
-    () => aligner.align({ ...input, depth, width: side, height: side, mask: new Uint8Array(4) }),
-    ...found,
-  );
-  assert.deepEqual(withoutTimes(await aligner.align(input, quick)), expected);
+  assert.deepEqual((await again.next(frame)).matrix, matrix);
+  assert.ok(bytesOf("joint") < LARGE / 4);
 });
 
 for (const [name, run] of Object.entries({
-  core: (a: Aligner) => a.align(large, quick),
-  joint: (a: Aligner) => a.alignViews({ views: [largeFrame], mesh }, quick),
-})) {
-  test(`an exhausted heap (${name}) is no trap`, async () => {
-    await grow(name as Name, ALL * PAGE);
-    const exhausted = ["OUT_OF_MEMORY input", /4 GB.*Crop the images/] as const;
-    await rejectsWith(() => run(aligner), ...exhausted);
-    assert.ok((await bytesOf(name as Name)) < LARGE / 4);
-    assert.deepEqual(withoutTimes(await aligner.align(input, quick)), expected);
+  core: (one: Aligner) => one.align({ ...large, mesh }, quick),
+  joint: (one: Aligner) => one.alignViews({ views: [large], mesh }, quick),
+}) as [Name, (one: Aligner) => Promise<unknown>][]) {
+  test(`an exhausted heap (${name}) is no trap, and a tracker in it says that it is lost`, async () => {
+    using tracker = await aligner.track(mesh);
+    await tracker.next(frame);
+    grow(name, ALL);
+    await rejectsWith(() => run(aligner), "OUT_OF_MEMORY input", /4 GB.*Crop the images/);
+    if (name === "joint") await rejectsWith(() => tracker.next(frame), "TRACKER_LOST tracker", /options.initial/);
+    else assert.equal((await tracker.next(frame)).frame, 1);
+    await works();
+    assert.ok(bytesOf(name) < LARGE / 4);
   });
 }
-
-test("a tracker whose memory or worker is gone says so", async () => {
-  const lost = ["TRACKER_LOST tracker", /Open another one.*options.initial/] as const;
-  using tracker = await aligner.track(mesh);
-  await tracker.next(frame);
-  await grow("joint", ALL * PAGE);
-  await rejectsWith(() => aligner.alignViews({ views: [largeFrame], mesh }, quick), "OUT_OF_MEMORY input");
-  await rejectsWith(() => tracker.next(frame), ...lost);
-  await rejectsWith(() => tracker.correct(truth), ...lost);
-  const workers = new Workers();
-  using pool = await createAligner({ workers: 1, createWorker: workers.create });
-  using distant = await pool.track(mesh);
-  await distant.next(frame);
-  for (const worker of workers.made) await worker.terminate();
-  await rejectsWith(() => distant.next(frame), ...lost);
-  await rejectsWith(() => distant.correct(truth), ...lost);
-});

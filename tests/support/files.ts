@@ -1,10 +1,14 @@
 /** Encoders of the files that the tests pass, written independently of the package's readers. */
 
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { deflateSync } from "node:zlib";
 import { crc32 } from "./crc32.js";
+import { repository } from "./environment.js";
 import type { Mesh, View } from "./scene.js";
+
+/** A file that another program wrote. */
+export const fixture = (name: string) => new Uint8Array(readFileSync(join(repository, "tests", "fixtures", name)));
 
 /** A `.npy` file, version 1.0. */
 export function npy(data: Float32Array | Uint16Array | Uint8Array, height: number, width: number): Uint8Array {

@@ -1,6 +1,8 @@
-/** Khronos' own judgement of glTF files. */
+/** glTF files as others see them: Khronos' validator and three.js' loader. */
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
+import { type BufferGeometry, Mesh, Vector3 } from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 interface Report {
   issues: { numErrors: number; numWarnings: number; messages: { code: string; message: string; pointer?: string }[] };
@@ -18,4 +20,25 @@ export async function assertValid(glb: Uint8Array): Promise<Report["info"]> {
   const serious = issues.messages.map(({ code, message, pointer }) => `${code} ${message} ${pointer ?? ""}`);
   assert.equal(issues.numErrors + issues.numWarnings, 0, serious.join("\n"));
   return info;
+}
+
+/** The scene of a GLB. */
+export const loadGlb = async (glb: Uint8Array) =>
+  (await new GLTFLoader().parseAsync(Uint8Array.from(glb).buffer, "")).scene;
+
+/** All vertices of a GLB in its world, or in the frame of the node of this name; without those of the support. */
+export async function verticesOf(glb: Uint8Array, frame?: string): Promise<number[]> {
+  const scene = await loadGlb(glb);
+  scene.updateMatrixWorld(true);
+  const into = frame === undefined ? undefined : scene.getObjectByName(frame)?.matrixWorld.clone().invert();
+  const found: number[] = [];
+  scene.traverse((child) => {
+    if (!(child instanceof Mesh) || child.name === "support") return;
+    const { position } = (child.geometry as BufferGeometry).attributes;
+    for (let i = 0; i < (position?.count ?? 0); i++) {
+      const vertex = new Vector3().fromBufferAttribute(position as never, i).applyMatrix4(child.matrixWorld);
+      found.push(...(into === undefined ? vertex : vertex.applyMatrix4(into)).toArray());
+    }
+  });
+  return found;
 }

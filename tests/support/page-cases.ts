@@ -1,6 +1,5 @@
 /** Scenes that the tests of the page drop on it: several ones, a video, and inputs of which one is wrong or odd. */
-import { zipSync } from "fflate";
-import { glbOf, obj, png } from "./files.js";
+import { obj, png } from "./files.js";
 import {
   cameraFile,
   depthNpy,
@@ -15,9 +14,6 @@ import {
   WIDTH,
 } from "./page-files.js";
 import { cuboid, mesh, type Pose, render, transformed, truth } from "./scene.js";
-
-/** Files as one archive. */
-export const zipped = (content: Files): Files => ({ "folder.zip": Buffer.from(zipSync(content)) });
 
 /** The complete case with another depth map, mask or mesh. */
 const changed = (more: Files): Files => ({ ...files, ...more });
@@ -43,18 +39,6 @@ export function tiltedBox(): Files {
   });
 }
 
-/** The mask is a patch of the wall, which is not quite parallel to the image: no object at all. */
-export function bareWall(): Files {
-  const depth = seen.depth.map((z, i) => (z === 1.5 ? 1 / (1 / z + 0.0006 * (i % WIDTH)) : z));
-  const mask = new Uint8Array(WIDTH * HEIGHT);
-  for (let v = 8; v < 40; v++) mask.fill(1, v * WIDTH + 8, v * WIDTH + 48);
-  return changed({ "depth.npy": depthNpy(depth), "mask.png": maskPng(mask) });
-}
-
-/** Depth of the shape that depth models return, passed as metres. */
-export const relativeDepth = (): Files =>
-  changed({ "depth.npy": depthNpy(seen.depth.map((z) => (z > 0 ? 0.05 + 2 * (z - 0.6) : 0))) });
-
 /** Depth in another unit than millimetres, as some datasets have it. */
 export function depthInUnits(perMetre: number): Files {
   const depth = png(
@@ -70,22 +54,6 @@ export function depthInUnits(perMetre: number): Files {
 export function otherCamera(width: number, height: number): Files {
   const scaled = { fx: 2 * pinhole.fx, fy: 2 * pinhole.fy, cx: 2 * pinhole.cx + 0.5, cy: 2 * pinhole.cy + 0.5 };
   return changed({ "camera.json": jsonFile({ ...scaled, width, height }) });
-}
-
-/** The header of the mesh says that it has 17 million triangles. */
-export function hugeMesh(): Files {
-  const accessors = [
-    { count: 3, componentType: 5126, type: "VEC3" },
-    { count: 51_000_000, componentType: 5125, type: "SCALAR" },
-  ];
-  const json = {
-    asset: { version: "2.0" },
-    nodes: [{ mesh: 0 }],
-    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
-    accessors,
-  };
-  const { "mesh.obj": _, ...rest } = files;
-  return { ...rest, "scan.glb": glbOf(json, new Uint8Array(1 << 21)) };
 }
 
 /** Twice as large as the depth map, as photos are. */

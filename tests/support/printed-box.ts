@@ -1,4 +1,5 @@
 /** A box whose print alone tells which of its half turns is right, and photos of it. */
+import { BoxGeometry } from "three";
 import { frameAt, type RigFrame } from "./rig.js";
 import { type Mesh, rotationRows } from "./scene.js";
 
@@ -29,32 +30,13 @@ function print(point: readonly number[]): Color {
 
 /** The box, with colours per vertex. */
 function box(): Mesh & { colors: Uint8Array } {
-  const [positions, indices]: [number[], number[]] = [[], []];
-  for (let side = 0; side < 6; side++) {
-    const axis = side >> 1;
-    const first = positions.length / 3;
-    for (let i = 0; i <= CELLS; i++) {
-      for (let j = 0; j <= CELLS; j++) {
-        const point = [0, 0, 0];
-        point[axis] = (side % 2 === 1 ? 1 : -1) * (half[axis] as number);
-        point[(axis + 1) % 3] = ((2 * i) / CELLS - 1) * (half[(axis + 1) % 3] as number);
-        point[(axis + 2) % 3] = ((2 * j) / CELLS - 1) * (half[(axis + 2) % 3] as number);
-        positions.push(...point);
-      }
-    }
-    for (let i = 0; i < CELLS; i++) {
-      for (let j = 0; j < CELLS; j++) {
-        const a = first + i * (CELLS + 1) + j;
-        const [b, c, d] = [a + CELLS + 1, a + CELLS + 2, a + 1];
-        indices.push(...(side % 2 === 1 ? [a, b, c, a, c, d] : [a, c, b, a, d, c]));
-      }
-    }
-  }
+  const [x, y, z] = half;
+  const geometry = new BoxGeometry(2 * x, 2 * y, 2 * z, CELLS, CELLS, CELLS);
+  const positions = Float32Array.from(geometry.getAttribute("position").array);
+  const indices = Uint32Array.from(geometry.index?.array ?? []);
   const colors = new Uint8Array(positions.length);
-  for (let k = 0; k < positions.length; k += 3) {
-    colors.set(print(positions.slice(k, k + 3)), k);
-  }
-  return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices), colors };
+  for (let k = 0; k < positions.length; k += 3) colors.set(print(Array.from(positions.subarray(k, k + 3))), k);
+  return { positions, indices, colors };
 }
 
 /** A frame with its photo. */

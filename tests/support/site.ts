@@ -26,8 +26,6 @@ export async function until<T>(measure: () => Promise<T>, isWanted: (found: T) =
 interface WorkerGate {
   close(): void;
   open(): void;
-  /** Whether a message waits. */
-  isHolding(): boolean;
 }
 
 declare global {
@@ -35,7 +33,7 @@ declare global {
 }
 
 /** Runs in the page: replaces `Worker` by one whose messages wait for the gate. */
-export function installWorkerGate(): void {
+function installWorkerGate(): void {
   let isOpen = true;
   let isPassing = false;
   const waiting: (() => void)[] = [];
@@ -55,7 +53,6 @@ export function installWorkerGate(): void {
     close() {
       isOpen = false;
     },
-    isHolding: () => waiting.length > 0,
     open() {
       isOpen = true;
       // Each message in its own task, in order, as without the gate.

@@ -1,4 +1,5 @@
 /** Files of 3D Gaussians, written independently of the package. */
+import { Quaternion, Triangle, Vector3 } from "three";
 import { Random } from "./random.js";
 import type { Mesh } from "./scene.js";
 
@@ -78,41 +79,20 @@ export const gaussiansInRecords = (file: Uint8Array): Gaussian[] =>
     };
   });
 
-/** Flat Gaussians on the surface of a mesh, and transparent ones around it. */
-export function splatOf({ positions, indices }: Mesh, count: number, seed: number): Gaussian[] {
-  const random = new Random(seed);
-  const vertex = (i: number) => Array.from(positions.subarray(3 * i, 3 * i + 3));
-  const triangles = Array.from({ length: indices.length / 3 }, (_, t) => {
-    const [a, b, c] = [0, 1, 2].map((k) => vertex(indices[3 * t + k] ?? 0)) as [number[], number[], number[]];
-    const [u, v] = [b, c].map((corner) => corner.map((x, k) => x - (a[k] ?? 0))) as [number[], number[]];
-    const [x = 0, y = 0, z = 0] = u;
-    const [p = 0, q = 0, r = 0] = v;
-    const normal = [y * r - z * q, z * p - x * r, x * q - y * p];
-    return { a, u, v, normal, area: Math.hypot(...normal) / 2 };
+/** A flat Gaussian on each triangle of a mesh, and transparent ones around it. */
+export function splatOf({ positions, indices }: Mesh): Gaussian[] {
+  const random = new Random(1);
+  const common = { opacity: 0.9, color: [200, 100, 50], harmonics: [] };
+  const flat = Array.from({ length: indices.length / 3 }, (_, t): Gaussian => {
+    const corners = [0, 1, 2].map((k) => new Vector3().fromArray(positions, 3 * (indices[3 * t + k] ?? 0)));
+    const triangle = new Triangle(...(corners as [Vector3, Vector3, Vector3]));
+    const { x, y, z, w } = new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), triangle.getNormal(new Vector3()));
+    const size = 0.7 * Math.sqrt(triangle.getArea());
+    const position = triangle.getMidpoint(new Vector3()).toArray();
+    return { ...common, position, scales: [size, size, size / 10], rotation: [w, x, y, z] };
   });
-  const total = triangles.reduce((sum, { area }) => sum + area, 0);
-  const spacing = Math.sqrt(total / count);
-  const gaussians: Gaussian[] = [];
-  let [triangle, passed] = [0, 0];
-  for (let i = 0; i < count; i++) {
-    const at = ((i + random.between(0, 1)) / count) * total;
-    while (triangle < triangles.length - 1 && passed + (triangles[triangle]?.area ?? 0) < at) {
-      passed += triangles[triangle]?.area ?? 0;
-      triangle++;
-    }
-    const { a, u, v, normal, area } = triangles[triangle] as (typeof triangles)[number];
-    const [s, t] = [Math.sqrt(random.between(0, 1)), random.between(0, 1)];
-    const position = a.map((x, k) => x + s * (1 - t) * (u[k] ?? 0) + s * t * (v[k] ?? 0));
-    const [x = 0, y = 0, z = 0] = normal.map((n) => n / (2 * area));
-    // From z to the normal.
-    const rotation = z > -0.999 ? [1 + z, -y, x, 0] : [0, 1, 0, 0];
-    const scales = [spacing, spacing, spacing / 10];
-    gaussians.push({ position, scales, rotation, opacity: 0.9, color: [200, 100, 50], harmonics: [] });
-  }
-  for (let i = 0; i < count / 20; i++) {
-    const [position, opacity] = [random.list(3, -2, 2), random.between(0.01, 0.2)];
-    const scales = [spacing, spacing, spacing];
-    gaussians.push({ position, scales, rotation: [1, 0, 0, 0], opacity, color: [0, 0, 255], harmonics: [] });
-  }
-  return gaussians;
+  const around = flat.slice(0, flat.length / 20).map((gaussian) => {
+    return { ...gaussian, position: random.list(3, -2, 2), opacity: random.between(0.01, 0.2) };
+  });
+  return [...flat, ...around];
 }

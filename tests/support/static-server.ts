@@ -1,4 +1,6 @@
-import { scriptModule } from "./internals.js";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { repository } from "./environment.js";
 
 /** A running server. */
 export interface Server {
@@ -8,4 +10,4 @@ export interface Server {
 
 /** Serves a folder. */
 export const serve = async (folder: string): Promise<Server> =>
-  (await scriptModule("lib/static-server.mjs")).serve(folder);
+  (await import(pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href)).serve(folder);

@@ -75,19 +75,6 @@ window.requestAnimationFrame = (callback) => {
   return request(callback);
 };
 
-/** Makes the last WebGPU device look lost. */
-let end = () => {};
-const { prototype } = globalThis.GPUAdapter ?? { prototype: {} };
-const { requestDevice } = prototype;
-prototype.requestDevice = async function (...options) {
-  const device = await requestDevice.apply(this, options);
-  const failure = new Promise((resolve) => {
-    end = () => resolve({ reason: "unknown", message: "a failure of the driver" });
-  });
-  Object.defineProperty(device, "lost", { value: Promise.race([device.lost, failure]) });
-  return device;
-};
-
 globalThis.harness = {
   ...{ camera, width, height, quarters, wallM, object, scene },
   viewEvents: [],
@@ -113,7 +100,6 @@ globalThis.harness = {
     harness.view.setScene(scene());
     harness.view.lookFrom("camera");
   },
-  loseWebGpu: () => end(),
   /** The colours at positions in the view, CSS pixels. */
   async colours(places) {
     const bitmap = await createImageBitmap(await harness.view.snapshot());

@@ -25,7 +25,6 @@ export interface Harness {
   object(id: string, colour: string, kind?: string): object;
   start(width: number, height: number, forceWebGL?: boolean): Promise<"webgpu" | "webgl">;
   show(display?: object): void;
-  loseWebGpu(): void;
   colours(places: Place[]): Promise<[number, number, number][]>;
   idleFrames(): Promise<number>;
   view: {

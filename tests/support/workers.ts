@@ -7,7 +7,7 @@ import { installDir } from "./environment.js";
 import { blob, render, truth } from "./scene.js";
 
 /** The installed package's script for workers. */
-export const workerUrl = pathToFileURL(join(installDir, "node_modules", "sim3align", "worker.js"));
+const workerUrl = pathToFileURL(join(installDir, "node_modules", "sim3align", "worker.js"));
 
 /** A worker, and promises of what it does. */
 export interface WatchedWorker extends Worker {
@@ -55,8 +55,6 @@ export class Gate {
     this.open = resolve;
   });
 }
-
-export { withoutTimes } from "./results.js";
 
 const mesh = blob(60, 90);
 

@@ -1,0 +1,77 @@
+/** Wrong usage of the command line: refused before the first case, with exit status 2 and nothing on stdout. */
+import assert from "node:assert/strict";
+import { existsSync, mkdirSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { files, folder, read, refusesUsage, writeCase } from "../support/command-line.js";
+import { frameAt, frameFiles } from "../support/rig.js";
+import { tableFiles } from "../support/table.js";
+
+writeCase("blob", files);
+writeCase("cases/one", files);
+writeCase("views", { "mesh.glb": files["mesh.glb"] });
+for (const [k, angle] of [0, 40].entries()) writeCase(`views/frame_0${k}`, frameFiles(frameAt(angle)));
+writeCase("table", tableFiles());
+for (const name of ["folder", "empty", "other"]) mkdirSync(join(folder, name));
+writeFileSync(join(folder, "file"), "");
+writeFileSync(join(folder, "photo.jpg"), "");
+writeFileSync(join(folder, "other", "index.html"), "mine");
+writeFileSync(join(folder, "empty.txt"), "# none\n\n");
+const parts = "--depth blob/depth.npy --mask blob/mask.png";
+
+const usage: Record<string, Record<string, RegExp>> = {
+  "of commands and folders": {
+    align: /at least one case folder/,
+    evaluate: /Pass at least one case folder/,
+    "aling blob": /unknown command/,
+    "align cases": /but holds some\. Pass 'cases\/\*\*'/,
+    "align z*": /z\*: no folder matches the pattern/,
+    "track empty": /frame_/,
+    "align --list nowhere.txt": /--list nowhere\.txt: the list cannot be read: ENOENT/,
+    "align --list empty.txt": /--list: empty\.txt names no case folder/,
+    "align --depth blob/depth.npy": /belong together/,
+    "align blob --depth blob/depth.npy": /but not both/,
+    "align photo.jpg": /is a photo: pass its --depth, --mask and --mesh/,
+    [`align photo.jpg ${parts} --mesh blob/mesh.glb --image photo.jpg`]: /one photo/,
+    "align blob --image photo.jpg": /--image belongs/,
+  },
+  "of options": {
+    "align blob --sead 1": /unknown option '--sead'.*--seed/s,
+    "align blob --preset fast": /Allowed choices are precise, paper/,
+    "align blob --guard none": /options\.guard.*option of preset "paper"/,
+    "align blob --scale 0": /options\.scale.*above 0/,
+    "align blob --camera-up 0,1": /X,Y,Z/,
+    "align blob --search local": /options\.search.*initial/,
+    "align blob --symmetry [{axis}]": /Invalid JSON/,
+    "align blob --seed one": /Not a number/,
+    "align blob --options [1]": /Expected an object/,
+    'align blob --options {"sead":1}': /options\.sead/,
+    "align blob --camera 1066,1067,312": /Found 3 values, expected four numbers: fx,fy,cx,cy/,
+    "align blob --workers 1.5": /Expected 1 to 64, or "auto"/,
+    "align views --preset paper": /several frames/,
+  },
+  "of outputs": {
+    "align blob --json nowhere/out": /--json nowhere.out: the file cannot be written: .*no such/,
+    "align blob --csv folder": /--csv folder: this is a folder/,
+    "align blob --resume": /--resume needs --jsonl FILE/,
+    "align blob --jsonl - --resume": /--resume needs a file/,
+    "align blob --jsonl same --csv ./same": /--jsonl and --csv name the same file/,
+    "align blob --json - --jsonl -": /--json and --jsonl name the same file/,
+    "align blob --report file": /--report file: the folder cannot be made/,
+    "align blob --report other": /--report other: the folder has other content/,
+    "align blob --jsonl free.jsonl --overlay file": /--overlay file/,
+    "scene table table2 --mjcf many": /--mjcf takes a single scene/,
+    "scene table --usd nowhere/scene.usda": /--usd nowhere/,
+    "scene table --depth-kind affine-invariant --mjcf m": /--mjcf needs metres.*--known-extent/,
+  },
+};
+
+for (const [what, messages] of Object.entries(usage))
+  test(`wrong usage ${what} is refused`, () => refusesUsage(messages));
+
+test("what is refused has written nothing, and leaves no lock", () => {
+  assert.equal(read(join("other", "index.html")), "mine");
+  for (const path of ["nowhere", "same", "free.jsonl", "free.jsonl.lock", join("other", "rows.js")]) {
+    assert.ok(!existsSync(join(folder, path)), path);
+  }
+});

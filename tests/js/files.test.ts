@@ -1,0 +1,237 @@
+/** Files of other programs, read through `sim3align/formats`: depth, masks, meshes, and photos with their EXIF data. */
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import type { PinholeCamera } from "sim3align";
+import {
+  type Exif,
+  externalResources,
+  focalFromExif,
+  type ReadDepthOptions,
+  readDepth,
+  readExif,
+  readImage,
+  readMask,
+  readMesh,
+} from "sim3align/formats";
+import { repository } from "../support/environment.js";
+import { type ExifFields, jpegHead, pngWith, tiff } from "../support/exif.js";
+import { cocoRle, fixture, gltfJson, npy, obj, png } from "../support/files.js";
+import { mesh } from "../support/scene.js";
+
+const relative = { depthKind: "affine-invariant-disparity" } as const;
+const FLOATS = "metres (float values, assumed)";
+
+/** What `tests/fixtures` holds: the kind of depth map, its size and unit, and its camera; or the fault. */
+const depthFixtures: Record<
+  string,
+  [size: string, unit: string, fx?: number | undefined, options?: ReadDepthOptions] | [fault: string]
+> = {
+  "depth-f4.npy": ["7 × 5", FLOATS],
+  "depth-16.png": ["7 × 5", "0.001 m (16-bit integers, assumed)"],
+  "depth-16-pillow.png": ["7 × 5", "0.0001 m (camera file)", undefined, { integerDepthScale: 0.0001 }],
+  "depth-uint16.tiff": ["37 × 23", "0.0002 m (depthScale)", undefined, { depthScale: 0.0002 }],
+  "depth-depth-pro.npz": ["37 × 23", FLOATS, 41.5],
+  "depth-moge.npz": ["37 × 23", FLOATS, 0.9 * 37],
+  "depth-da3.npz": ["37 × 23", FLOATS, 40],
+  "depth-disparity.npz": ["37 × 23", "none (affine-invariant-disparity)", undefined, relative],
+  "depth-opencv.exr": ["37 × 23", FLOATS],
+  "depth-blender.exr": ["37 × 23", FLOATS],
+  "depth-float32.tiff": ["37 × 23", FLOATS],
+  "depth-opencv.pfm": ["37 × 23", FLOATS],
+  "depth-disparity.npz as metres": ["UNSUPPORTED_FORMAT"],
+  "depth-da3-batch.npz": ["UNSUPPORTED_FORMAT"],
+  "depth-moge-points.exr": ["UNSUPPORTED_FORMAT"],
+  "depth-8.png": ["EIGHT_BIT_DEPTH"],
+};
+
+test("depth maps of every library: size, values, unit and camera, or the code of the fault", async () => {
+  for (const [name, [expected, unit, fx, options]] of Object.entries(depthFixtures)) {
+    const reading = readDepth(fixture(name.split(" ")[0] as string), options);
+    if (unit === undefined) {
+      await assert.rejects(reading, { name: "Sim3AlignError", code: expected, argument: "depth" }, name);
+      continue;
+    }
+    const { data, width, height, unit: found, camera } = await reading;
+    assert.deepEqual([`${width} × ${height}`, found], [expected, unit], name);
+    const isCamera = fx === undefined ? camera === undefined : Math.abs((camera?.fx ?? 0) / fx - 1) < 1e-6;
+    assert.ok(isCamera, `${name}: ${camera?.fx}`);
+    // 0.5 + 0.01 u + 0.1 v metres in the small files; 1.5 + 0.02 u + 0.01 v and a millimetre of noise in the others.
+    if (unit.startsWith("none")) continue;
+    const value = width === 7 ? 0.5 + 0.01 * 6 + 0.1 * 4 : 1.5 + 0.02 * 36 + 0.01 * 22;
+    const scale = options?.integerDepthScale === undefined ? 1 : 0.1;
+    assert.ok(Math.abs((data.at(-1) ?? 0) / scale - value) < 0.0021, `${name}: ${data.at(-1)}`);
+    assert.equal(data[0], 0, `${name}: no reading`);
+  }
+});
+
+/** What a file holds, or why it is refused. */
+interface Expected {
+  data: (number | null)[];
+  width: number;
+  height: number;
+  unit: string;
+  camera?: PinholeCamera;
+  /** Of angles, whose functions differ in their last bits. */
+  cameraTolerance?: number;
+  options?: ReadDepthOptions;
+  error?: { code: string; argument: string };
+}
+
+const python = process.env.SIM3ALIGN_DEPTH_FILES ?? "";
+const skip = python === "" && "No Python with the packages of scripts/bench/depth-files/requirements.txt.";
+
+test("depth maps that numpy, OpenCV, OpenEXR and tifffile write now: values, mask, camera and unit", {
+  skip,
+}, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "sim3align-depth-"));
+  execFileSync(python, [join(repository, "tests", "fixtures", "make_depth_files.py"), folder]);
+  const all = JSON.parse(readFileSync(join(folder, "expected.json"), "utf8")) as Record<string, Expected>;
+  assert.ok(Object.keys(all).length > 25);
+  for (const [name, expected] of Object.entries(all)) {
+    const reading = readDepth(new Uint8Array(readFileSync(join(folder, name))), expected.options);
+    if (expected.error !== undefined) {
+      await assert.rejects(reading, expected.error, name);
+      continue;
+    }
+    const { data, width, height, unit, camera } = await reading;
+    assert.deepEqual([width, height, unit], [expected.width, expected.height, expected.unit], name);
+    const values = Float32Array.from(expected.data, (z) => z ?? Number.NaN);
+    assert.deepEqual(data, values, name);
+    for (const [key, value] of Object.entries(expected.camera ?? {})) {
+      const found = camera?.[key as keyof PinholeCamera] ?? Number.NaN;
+      const isNear = Math.abs(found / value - 1) <= (expected.cameraTolerance ?? 0);
+      assert.ok(isNear, `${name}: ${key} ${found}, not ${value}`);
+    }
+  }
+});
+
+test("kinds of depth: what their values mean", async () => {
+  const file = npy(Float32Array.of(0, -2, Number.NaN, 0.5, Number.POSITIVE_INFINITY, 3), 2, 3);
+  const read = async (options: ReadDepthOptions) => Array.from((await readDepth(file, options)).data);
+  assert.deepEqual(await read({}), [0, 0, 0, 0.5, 0, 3]);
+  assert.deepEqual(await read({ depthKind: "scale-invariant", depthScale: 2 }), [0, 0, 0, 1, 0, 6]);
+  for (const depthKind of ["affine-invariant", "affine-invariant-disparity"] as const) {
+    assert.deepEqual(await read({ depthKind }), [0, -2, Number.NaN, 0.5, Number.NaN, 3]);
+  }
+  const picture = png(Uint8Array.of(0, 7, 255, 1), 2, 2);
+  const { data, unit } = await readDepth(picture, relative);
+  assert.deepEqual([...data, unit], [0, 7, 255, 1, "none (affine-invariant-disparity)"]);
+  const eightBit = { code: "EIGHT_BIT_DEPTH", argument: "depth", message: /depthKind "affine-invariant-disparity"/ };
+  await assert.rejects(readDepth(picture), eightBit);
+  const unknown = { code: "INVALID_OPTION", argument: "options.depthKind", message: /"scale-invariant"/ };
+  for (const depthKind of ["relative", 7])
+    await assert.rejects(readDepth(picture, { depthKind: depthKind as never }), unknown);
+  await assert.rejects(readDepth("depth.npy" as never), { code: "INVALID_ARGUMENT", argument: "file" });
+});
+
+test("masks in JSON are those of pycocotools; run lengths that do not fit are refused", async () => {
+  // The object is where (u² + 3 v) mod 5 < 2, of 7 × 5 pixels.
+  const expected = Uint8Array.from({ length: 35 }, (_, i) => (((i % 7) ** 2 + 3 * Math.floor(i / 7)) % 5 < 2 ? 1 : 0));
+  for (const name of ["rle-small.json", "rle-small-plain.json"]) {
+    const json = JSON.parse(Buffer.from(fixture(name)).toString());
+    const annotation = Buffer.from(`\ufeff ${JSON.stringify({ id: 1, segmentation: json })}`);
+    for (const file of [fixture(name), json, annotation]) assert.deepEqual((await readMask(file)).data, expected, name);
+  }
+  // The blob's pixels and bounding box (x 61 to 319) as pycocotools counts them.
+  for (const name of ["rle-blob.json", "rle-blob-plain.json"]) {
+    const { data, width, height } = await readMask(fixture(name));
+    assert.deepEqual([width, height, data.filter((pixel) => pixel === 1).length], [320, 240, 24117]);
+    const columns = [...data.keys()].filter((i) => data[i] === 1).map((i) => i % 320);
+    assert.deepEqual([columns.reduce((a, b) => Math.min(a, b)), columns.reduce((a, b) => Math.max(a, b))], [61, 319]);
+  }
+  const refused: [size: string, counts: string, fault: string][] = [
+    ...["[36]", "[30,4]", "[4294967295,4294967295]", "[-1,36]", "[1.5]", '"~"'].map(
+      (counts): [string, string, string] => ["[5,7]", counts, "CORRUPT_FILE mask.counts"],
+    ),
+    ["[5,7]", "{}", "INVALID_ARGUMENT mask.counts"],
+    ["[0,7]", "[0]", "EMPTY_IMAGE mask.size"],
+    ["[100000,100000]", "[1]", "FILE_TOO_LARGE mask.size"],
+    ["[5,7,1]", "[35]", "UNSUPPORTED_FORMAT mask"],
+  ];
+  for (const [size, counts, fault] of refused) {
+    const [code, argument] = fault.split(" ");
+    await assert.rejects(readMask(Buffer.from(`{"size":${size},"counts":${counts}}`)), { code, argument }, counts);
+  }
+  assert.deepEqual((await readMask(cocoRle(expected, 7, 5))).data, expected);
+});
+
+test("the files that a mesh refers to are named", async () => {
+  const gltf = Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "a%20b.bin" })));
+  assert.deepEqual(await externalResources(gltf), { shape: ["a%20b.bin"], colors: [] });
+  const named = Buffer.concat([Buffer.from("mtllib my.mtl\nmtllib C:\\away.mtl\n"), obj(mesh)]);
+  assert.deepEqual(await externalResources(named), { shape: [], colors: ["C:/away.mtl", "my.mtl"] });
+  await assert.rejects(readMesh(Uint8Array.of(1, 2, 3)), { code: "UNSUPPORTED_FORMAT" });
+});
+
+const phone: [ExifFields, ExifFields] = [
+  { make: "Maker", model: "Phone 1", orientation: 6 },
+  { focalLength: { rational: [425, 100] }, focal35: 26, pixelX: 4032, pixelY: 3024, zoom: { rational: [0, 1] } },
+];
+const reflex: [ExifFields, ExifFields] = [
+  { make: "Maker", orientation: 1 },
+  {
+    ...{ focalLength: { rational: [50, 1] }, planeX: { rational: [6000 * 254, 224] }, planeUnit: 2 },
+    ...{ pixelX: 6000, pixelY: 4000, zoom: { rational: [2, 1] } },
+  },
+];
+
+test("EXIF data of PNG and JPEG, in both byte orders", async () => {
+  const shared = { orientation: 6, focalLength35mm: 26, focalLengthMm: 4.25, make: "Maker", model: "Phone 1" };
+  for (const isLittle of [true, false]) {
+    for (const file of [pngWith(tiff(...phone, isLittle)), jpegHead(tiff(...phone, isLittle))]) {
+      assert.deepEqual(await readExif(file), { ...shared, width: 4032, height: 3024 });
+    }
+    const { sensorWidthMm, ...rest } = await readExif(pngWith(tiff(...reflex, isLittle)));
+    assert.ok(Math.abs((sensorWidthMm as number) - 22.4) < 1e-9, `${sensorWidthMm}`);
+    const others = { orientation: 1, focalLengthMm: 50, make: "Maker", width: 6000, height: 4000, digitalZoom: 2 };
+    assert.deepEqual(rest, others);
+  }
+  // The photo is turned by the same orientation.
+  const { width, height } = await readImage(pngWith(tiff(...phone, true)));
+  assert.deepEqual([width, height], [2, 3]);
+  assert.deepEqual(await readExif(png(Uint8Array.of(1), 1, 1)), { orientation: 1 });
+});
+
+const full: Exif = { orientation: 1, focalLength35mm: 26, width: 4032, height: 3024 };
+const sensor: Exif = { orientation: 1, focalLengthMm: 50, sensorWidthMm: 22.4, width: 6000, height: 4000 };
+const bySensor = (50 / 22.4) * 6000;
+// 43.267 mm, the diagonal of full frame, are 5040 pixels.
+const original = (26 * 5040) / 43.2666;
+const sure = focalFromExif(full, { width: 4032, height: 3024 })?.uncertainty as number;
+
+/** What is known of the lens, the image, its focal length in pixels, and the range of the uncertainty. */
+const focals: [what: string, exif: Exif, width: number, height: number, focalPx: number, low: number, high: number][] =
+  [
+    ["the equivalent in the original", full, 4032, 3024, original, 0.02, 0.04],
+    ["half a millimetre is much of 13", { ...full, focalLength35mm: 13 }, 4032, 3024, original / 2, 1.01 * sure, 0.1],
+    ["the sensor's width", sensor, 6000, 4000, bySensor, 0, 0.03],
+    ["both contradict each other", { ...sensor, focalLength35mm: 50 }, 6000, 4000, (50 / 36) * 6000, 0.2, 1],
+    ["a digital zoom", { ...sensor, digitalZoom: 2 }, 6000, 4000, 2 * bySensor, 0.2, 1],
+    ["a quarter of the size", full, 1008, 756, original / 4, 0.999 * sure, 1.001 * sure],
+    ["sides that a network likes", full, 518, 392, (original * 518) / 4032, 0, 0.05],
+    ["turned by its orientation", { ...full, orientation: 6 }, 756, 1008, original / 4, 0, 0.04],
+    ["cropped to a square", full, 3024, 3024, original, 1.001 * sure, 0.05],
+    ["smaller on both sides: perhaps resized as well", full, 2400, 2400, original, 2 * sure, 1],
+    ["without the original size", { orientation: 1, focalLength35mm: 26 }, 400, 300, (26 * 500) / 43.2666, 0, 1],
+  ];
+
+test("the focal length of EXIF data: of the original, resized, turned and cropped, with its uncertainty", () => {
+  for (const [what, exif, width, height, focalPx, low, high] of focals) {
+    const focal = focalFromExif(exif, { width, height });
+    assert.ok(focal !== undefined, what);
+    assert.ok(Math.abs(focal.focalPx / focalPx - 1) < 0.01, `${what}: ${focal.focalPx}, ${focalPx}`);
+    assert.ok(focal.uncertainty >= low && focal.uncertainty <= high, `${what}: ± ${focal.uncertainty}`);
+  }
+  assert.match(focalFromExif(full, { width: 4032, height: 3024 })?.source ?? "", /26 mm \(35 mm equivalent\)/);
+  assert.match(focalFromExif(full, { width: 3024, height: 3024 })?.source ?? "", /cropped/);
+  // Wider than the original: the EXIF data are those of another image.
+  assert.equal(focalFromExif(full, { width: 5000, height: 1000 }), undefined);
+  assert.equal(focalFromExif({ orientation: 1, width: 40, height: 30 }, { width: 40, height: 30 }), undefined);
+  assert.equal(focalFromExif({ ...full, focalLength35mm: 4 }, { width: 4032, height: 3024 }), undefined);
+  const wrong = { code: "INVALID_ARGUMENT", argument: "size.width" };
+  assert.throws(() => focalFromExif(full, { width: 0, height: 5 }), wrong);
+});

@@ -1,0 +1,228 @@
+/** Camera files, pose files and case folders: what other tools write, and what is refused. */
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { createAligner } from "sim3align";
+import { type ReadCameraOptions, readCamera, readCase, readPose } from "sim3align/formats";
+import { type Fault, rejectsWith } from "../support/errors.js";
+import { cocoRle, fixture, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
+import { input, mesh, truth, view } from "../support/scene.js";
+
+const K = [600, 0, 319.5, 0, 610, 239.5, 0, 0, 1];
+const rows = [K.slice(0, 3), K.slice(3, 6), K.slice(6)];
+const intrinsics = { fx: 600, fy: 610, cx: 319.5, cy: 239.5 };
+const size = { width: 640, height: 480 };
+const withNumber = (numbers: number[], place: number, number: number) =>
+  numbers.map((other, i) => (i === place ? number : other));
+
+const cameras: Record<string, unknown> = {
+  "our own": intrinsics,
+  "RealSense's": { fx: 600, fy: 610, ppx: 319.5, ppy: 239.5, ...size, model: "brown_conrady" },
+  "K in one row": { K },
+  "K in rows": { K: rows },
+  "K alone": K,
+  "K alone, in rows": rows,
+  "K times 2": { K: K.map((number) => 2 * number) },
+  "Open3D's, column by column": { ...size, intrinsic_matrix: [600, 0, 0, 0, 610, 0, 319.5, 239.5, 1] },
+  "BOP's whole file": { "0": { cam_K: K, depth_scale: 0.1 } },
+  "BOP's entry": { cam_K: K, depth_scale: 0.1 },
+  "ROS 1": { header: { seq: 1 }, ...size, distortion_model: "plumb_bob", D: [0, 0, 0, 0, 0], K, R: [1] },
+  "ROS 2": { ...size, d: [], k: K },
+};
+
+test("cameras of every tool are the same camera, as bytes, text, Blob and object", async () => {
+  for (const [name, json] of Object.entries(cameras)) {
+    const text = JSON.stringify(json);
+    const forms = [text, `\ufeff${text}`, Buffer.from(text), Buffer.from(`\ufeff${text}`), new Blob([text]), json];
+    for (const file of forms) {
+      const { fx, fy, cx, cy, warnings } = await readCamera(file as string, size);
+      assert.deepEqual({ fx, fy, cx, cy, warnings }, { ...intrinsics, warnings: [] }, name);
+    }
+  }
+});
+
+test("a camera's size, depth scale and distortion are those of the file", async () => {
+  const full = { ...intrinsics, ...size, depthScale: 0.001 };
+  assert.deepEqual(await readCamera(full), { ...full, warnings: [] });
+  assert.deepEqual(await readCamera({ ...intrinsics, width: 1.5, height: -1 }), { ...intrinsics, warnings: [] });
+  // BOP's depth_scale is in millimetres: YCB-Video's 0.1 is a tenth of one.
+  assert.equal((await readCamera({ ...intrinsics, depth_scale: 0.1 })).depthScale, 0.1 / 1000);
+  const { warnings } = await readCamera({ ...size, D: [0.1, -0.2, 0, 0, 0], K });
+  assert.equal(warnings.length, 1);
+  assert.match(warnings[0] ?? "", /rectified/);
+});
+
+test("a field of view needs the size of the image", async () => {
+  for (const file of [{ fovYDeg: 60 }, { fov_y_deg: 60 }, { fovYDeg: 60, ...size }]) {
+    const { fx, fy, cx, cy } = await readCamera(file, size);
+    assert.deepEqual([fx, cx, cy], [fy, 319.5, 239.5]);
+  }
+});
+
+test("of several images one has to be chosen", async () => {
+  const entry = (f: number) => ({ cam_K: [f, 0, 1, 0, f, 1, 0, 0, 1], depth_scale: 1 });
+  const file = { "3": entry(3), "20": entry(20), "100": entry(100) };
+  for (const [imageId, fx] of [
+    ["3", 3],
+    [20, 20],
+    ["000100", 100],
+  ] as const) {
+    assert.equal((await readCamera(file, { imageId })).fx, fx);
+  }
+  for (const imageId of [undefined, "4", ""]) {
+    const fault = "INVALID_ARGUMENT options.imageId";
+    await rejectsWith(() => readCamera(file, { imageId }), fault, /expected one of 3, 20, 100\./);
+  }
+  assert.equal((await readCamera({ "0": entry(5), "1": entry(6) }, { imageId: "000000" })).fx, 5);
+});
+
+const corrupt = ["", "nonsense", Buffer.of(0x7b, 0xff, 0x7d), `{"fx":1e999}`, "[".repeat(100_000)];
+const others: unknown[] = [
+  ...["1", "[]", "[1,2,3]", "{}", { fx: 600, fy: 610, cx: 319.5 }, { ...intrinsics, fx: "600" }],
+  ...[{ K: [1, 2, 3] }, { K: [...rows, rows[0]] }, { K: "eye" }, { K: null }, { intrinsic_matrix: 7 }],
+  ...[{ "0": { cam_R_m2c: [] } }, { ...intrinsics, fx: Number.NaN }],
+];
+const refusedCameras: [unknown, Fault, RegExp, ReadCameraOptions?][] = [
+  ...corrupt.map((file): [unknown, Fault, RegExp] => [file, "CORRUPT_FILE camera", /JSON.* download or export/]),
+  ...others.map((file): [unknown, Fault, RegExp] => [file, "INVALID_CAMERA camera", /fx, fy, cx and cy/]),
+  [{ focal: 1, center: 2 }, "INVALID_CAMERA camera", /found an object with focal, center.* Write .* fx, fy, cx and cy/],
+  [{ ...intrinsics, fx: 0 }, "INVALID_CAMERA camera.fx", /found 0/],
+  ...[0, -1, "1", null].map((depth_scale): [unknown, Fault, RegExp] => [
+    ...([{ ...intrinsics, depth_scale }, "INVALID_CAMERA camera.depthScale", /number above 0/] as const),
+  ]),
+  // A column-major K, as of MATLAB.
+  [[600, 0, 0, 0, 610, 0, 319.5, 239.5, 1], "INVALID_CAMERA camera.K", /transpose/],
+  [{ K: withNumber(K, 8, 0) }, "INVALID_CAMERA camera.K", /row-major/],
+  [{ K: withNumber(K, 1, 1) }, "INVALID_CAMERA camera.K", /row-major/],
+  [`{${" ".repeat(1 << 24)}}`, "FILE_TOO_LARGE camera", /16777216/],
+  [{ fovYDeg: 60 }, "INVALID_ARGUMENT options.width", /field of view/],
+  [{ fovYDeg: 180 }, "INVALID_CAMERA camera.fovYDeg", /below 180/, size],
+  [{ ...intrinsics, ...size }, "SIZE_MISMATCH camera", /640 × 480.*320 × 240/, { width: 320, height: 240 }],
+  [intrinsics, "INVALID_ARGUMENT options.width", /1\.5/, { width: 1.5 }],
+  [7, "INVALID_ARGUMENT file", /number 7/],
+];
+
+test("what is no camera is refused", async () => {
+  for (const [file, fault, message, options] of refusedCameras) {
+    await rejectsWith(() => readCamera(file as string, options), fault, message);
+  }
+});
+
+test("poses come as parts or as a matrix, as BOP's entry, or not at all", async () => {
+  const matrix = [0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 1, 2, 3, 1];
+  const rotation = [
+    [0, -1, 0],
+    [1, 0, 0],
+    [0, 0, 1],
+  ];
+  const pose = { scale: 2, translation: [1, 2, 3], symmetry: "none" };
+  const forms = [
+    { ...pose, rotation, available: true },
+    { ...pose, rotation: rotation.flat() },
+    { ...pose, rotation: [0, 0, Math.SQRT1_2, Math.SQRT1_2] },
+    ...[{ matrix }, matrix],
+  ];
+  for (const form of forms) {
+    for (const file of [form, JSON.stringify(form), Buffer.from(JSON.stringify(form))]) {
+      const found = await readPose(file);
+      for (const [i, number] of [...(found?.transform.matrix ?? [])].entries()) {
+        assert.ok(Math.abs(number - (matrix[i] ?? 0)) < 1e-12, JSON.stringify(form));
+      }
+      assert.equal(found?.symmetry, "none");
+    }
+  }
+  assert.equal(await readPose({ available: false, symmetry: "unknown" }), null);
+  const bop = await readPose({ cam_R_m2c: rotation.flat(), cam_t_m2c: [1000, 2000, 3000] });
+  assert.deepEqual([bop?.transform.scale, bop?.transform.translation], [0.001, [1, 2, 3]]);
+  for (const [words, symmetry] of [
+    [" Continuous about z", "auto"],
+    ["discrete (4)", "auto"],
+    ["unknown", "none"],
+  ]) {
+    assert.equal((await readPose({ matrix, symmetry: words }))?.symmetry, symmetry);
+  }
+});
+
+test("what is no pose is refused", async () => {
+  const rotation = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+  const pose = { scale: 1, rotation, translation: [0, 0, 0] };
+  const invalid: [unknown, Fault][] = [
+    [{ ...pose, scale: 0 }, "INVALID_TRANSFORM pose.scale"],
+    [{ ...pose, rotation: withNumber(rotation, 8, -1) }, "INVALID_TRANSFORM pose.rotation"],
+    [{ ...pose, rotation: [0, 0, 0, 0] }, "INVALID_TRANSFORM pose.rotation"],
+    [{ ...pose, rotation: 7 }, "INVALID_TRANSFORM pose.rotation"],
+    [{ ...pose, translation: [0, 0] }, "INVALID_TRANSFORM pose.translation"],
+    [{}, "INVALID_TRANSFORM pose.scale"],
+    [{ matrix: [1, 2] }, "INVALID_TRANSFORM pose.matrix"],
+    // A row-major matrix.
+    [{ matrix: [1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }, "INVALID_TRANSFORM pose"],
+    ["7", "INVALID_TRANSFORM pose"],
+    ["{", "CORRUPT_FILE pose"],
+    [`{"scale":1,"rotation":[1],"translation":[0,0,1e999]}`, "CORRUPT_FILE pose"],
+  ];
+  for (const [file, fault] of invalid) await rejectsWith(() => readPose(file as object), fault);
+});
+
+const { width, height, depth, mask, camera } = view;
+const json = (value: unknown) => Buffer.from(JSON.stringify(value));
+const files = {
+  "depth.npy": npy(depth, height, width),
+  "mask.json": json(cocoRle(mask, width, height)),
+  "mesh.gltf": json(gltfJson(mesh, {}, { uri: "./sub/a%20b.bin" })),
+  "sub/a b.bin": new Blob([Uint8Array.from(gltfBuffer(mesh))]),
+  "camera.json": json(camera),
+  "gt.json": json({ ...truth, symmetry: "discrete" }),
+};
+
+test("a case is read from files by their names, lazily where they are functions", async () => {
+  const read: string[] = [];
+  const lazy = (name: string, bytes: Uint8Array) => async () => {
+    read.push(name);
+    return bytes;
+  };
+  const { "mask.json": maskFile, ...withoutMask } = files;
+  const all = { ...files, "mask.json": lazy("mask.json", maskFile), "notes.txt": lazy("notes.txt", new Uint8Array()) };
+  const {
+    input: found,
+    files: names,
+    truth: pose,
+  } = await readCase({ ...all, "depth.png": lazy("depth.png", maskFile) });
+  assert.deepEqual(read, ["mask.json"]);
+  assert.deepEqual(names, { depth: "depth.npy", mask: "mask.json", mesh: "mesh.gltf", camera: "camera.json" });
+  assert.deepEqual([pose?.symmetry, pose?.transform.translation], ["auto", truth.translation]);
+  const aligner = await createAligner();
+  assert.deepEqual(await aligner.evaluate(found, truth), await aligner.evaluate(input, truth));
+  const missing = /mask\.png or mask\.npy or mask\.json/;
+  await rejectsWith(() => readCase(withoutMask), "FILE_NOT_FOUND mask", missing);
+  const { "sub/a b.bin": __, ...withoutBuffer } = files;
+  await rejectsWith(() => readCase(withoutBuffer), "FILE_NOT_FOUND mesh", /sub\/a b\.bin/);
+  for (const uri of ["../mesh.bin", "/mesh.bin", "file:///mesh.bin", "sub\\..\\..\\mesh.bin", "%2e%2e/mesh.bin"]) {
+    const outside = { ...files, "mesh.gltf": json(gltfJson(mesh, {}, { uri })) };
+    await rejectsWith(() => readCase(outside), "CORRUPT_FILE mesh", /below it/);
+  }
+});
+
+test("a case's photo, textures and settings go into its input; a camera may be missing", async () => {
+  const photo = fixture("photo.jpg");
+  const found = await readCase({ ...files, "rgb.jpg": photo });
+  assert.deepEqual([found.input.image, found.files.image], [photo, "rgb.jpg"]);
+  const without = await readCase({ ...files, "rgb.jpg": photo }, { image: false });
+  assert.deepEqual(["image" in without.input, "image" in without.files], [false, false]);
+  const { "mesh.gltf": _, ...others } = files;
+  const named = Buffer.concat([Buffer.from("mtllib my.mtl\n"), obj(mesh)]);
+  const library = Buffer.from("newmtl print\nmap_Kd maps/print.png\n");
+  const textured = { ...others, "mesh.obj": named, "my.mtl": library, "maps/print.png": fixture("photo.png") };
+  const { resources } = (await readCase(textured)).input.mesh as { resources: object };
+  assert.deepEqual(Object.keys(resources).sort(), ["maps/print.png", "my.mtl"]);
+  const { "camera.json": __, ...uncalibrated } = files;
+  const entry = { cam_K: [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1] };
+  const scene = { ...uncalibrated, "scene_camera.json": json({ "7": entry, "8": entry }) };
+  const chosen = await readCase(scene, { imageId: 7, depthScale: 0.0001 });
+  assert.deepEqual([chosen.input.imageId, chosen.input.depthScale], [7, 0.0001]);
+  const alone = await readCase(uncalibrated, { depthKind: "affine-invariant" });
+  assert.equal(alone.input.depthKind, "affine-invariant");
+  assert.ok(!("cameraFile" in alone.input) && !("camera" in alone.files));
+  assert.equal(
+    (await readCase({ ...files, "depth.npy": png(Uint16Array.from(depth), width, height) })).files.depth,
+    "depth.npy",
+  );
+});
