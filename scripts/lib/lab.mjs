@@ -11,7 +11,8 @@ import { rustToolchain } from "./setup.mjs";
  */
 const profile = process.env.SIM3ALIGN_LAB_PROFILE ?? "native";
 
-const buildLab = once(async () => {
+/** Builds the program. */
+export const buildLab = once(async () => {
   await rustToolchain();
   // Of the whole workspace, with the features of which the tests compile the dependencies.
   await run("cargo", ["build", "--quiet", "--profile", profile, "--workspace", "--bin", "sim3align-lab"]);

@@ -8,7 +8,7 @@ import { join, resolve } from "node:path";
 import { environment } from "../bench/results.mjs";
 import { markdownTable } from "../bench/table.mjs";
 import { digest } from "../lib/cache.mjs";
-import { runLab, runTestedLab } from "../lib/lab.mjs";
+import { runLab } from "../lib/lab.mjs";
 import { packageVersion } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
@@ -29,12 +29,11 @@ const quickFile = at("docs", "record", "quick.json");
  * @property {string} [out]
  * @property {boolean} [fresh]
  * @property {readonly string[]} [only] sets, for a look at them
- * @property {boolean} [tested] by the program that the tests of the lab run, which has the same bits
  * @property {number} [threads]
  */
 
 /** @param {RecordOptions} options */
-export async function record({ quick = false, check, save, out, fresh = false, only, tested, threads }) {
+export async function record({ quick = false, check, save, out, fresh = false, only, threads }) {
   if (only !== undefined && (save || check)) {
     throw new Error("Found --only with --save or --check. Remedy: leave it out; a record is whole.");
   }
@@ -59,7 +58,7 @@ export async function record({ quick = false, check, save, out, fresh = false, o
       const keep = set.name === "registration" ? "--records" : "--json";
       const args = [...set.args(count), ...(prepared ?? []), keep, file];
       if (threads !== undefined) args.push("--threads", `${threads}`);
-      await (tested ? runTestedLab : runLab)(args);
+      await runLab(args);
       writeFileSync(`${file}.done`, "");
     });
     if (existsSync(file)) found.push({ set: set.name, results: resultsOf(set, file) });

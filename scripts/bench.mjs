@@ -4,15 +4,15 @@
  */
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
-import { digest } from "../lib/cache.mjs";
-import { buildLab, runLab } from "../lib/lab.mjs";
-import { at } from "../lib/paths.mjs";
-import { pythonWith } from "../lib/python.mjs";
-import { step } from "../lib/step.mjs";
-import { command, count } from "./command.mjs";
-import { notes, ownRows, tableMarkdown, tables } from "./paper.mjs";
-import { meshMethods, pairMethods, runPeers, versionsOf } from "./peers.mjs";
-import { environment, openResults, readResults } from "./results.mjs";
+import { command, count } from "./bench/command.mjs";
+import { notes, ownRows, tableMarkdown, tables } from "./bench/paper.mjs";
+import { meshMethods, pairMethods, runPeers, versionsOf } from "./bench/peers.mjs";
+import { environment, openResults, readResults } from "./bench/results.mjs";
+import { digest } from "./lib/cache.mjs";
+import { buildLab, runLab } from "./lib/lab.mjs";
+import { at } from "./lib/paths.mjs";
+import { pythonWith } from "./lib/python.mjs";
+import { step } from "./lib/step.mjs";
 
 /**
  * @typedef {object} BenchmarkOptions
