@@ -1,255 +1,239 @@
-//! The whole pipeline on an observation rendered from a known pose.
+//! `align`: the pose of a rendered object, what its options promise, and the same result in parts and with helpers; the
+//! preset `paper`.
 
-use nalgebra::Matrix3;
+use core::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::align::{align, align_paper};
-use sim3align::metrics::Metrics;
-use sim3align::options::Options;
+use sim3align::align::helper::Helper;
+use sim3align::align::search::Request;
+use sim3align::align::{align, align_paper, align_task};
+use sim3align::geometry::image::bounds_of;
+use sim3align::helpers::{Helpers, Link, READY};
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::searched::recipe::ROUNDS;
-use sim3align::progress::{Host, Stage};
-use sim3align::report::Preset;
-use sim3align::report::{PaperAlignment, Sim3};
+use sim3align::pauses::Pauses;
+use sim3align::precise::searched::start::prepare;
+use sim3align::report::PaperAlignment;
 
+use crate::observations::{HEIGHT, WIDTH, body, camera, observe, quick, solve, truth, turn_deg};
 use crate::prelude::*;
-use crate::shapes::{body, observe, truth};
+use crate::shapes::{self, view};
 
-fn solve(options: &PaperOptions) -> PaperAlignment {
-    let mesh = body();
-    align_paper(&observe(&mesh, 1.0), &mesh, options, &mut Silent).unwrap()
+fn pose(result: &Alignment) -> Similarity {
+    pose_of(&result.camera_from_mesh)
 }
 
-fn pose(found: &Sim3) -> Similarity {
-    // Bit by bit: the matrix has the scale multiplied in.
-    let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_fn(|i, j| found.rotation_matrix[i][j]));
-    Similarity { scale: found.scale, rotation, translation: found.translation.into() }
+fn is_warned(found: &Alignment, code: WarningCode) -> bool {
+    found.warnings.iter().any(|warning| warning.code == code)
+}
+
+#[wasm_bindgen_test]
+fn finds_the_pose_and_the_size() {
+    let result = solve(&quick());
+    let pose = pose(&result);
+    assert!((pose.scale / truth().scale - 1.0).abs() < 0.01, "scale {}", pose.scale);
+    assert!(turn_deg(&pose, &truth()) < 1.5, "{}°", turn_deg(&pose, &truth()));
+    assert!((pose.translation - truth().translation).norm() < 2e-3, "{}", pose.translation);
+    assert!(result.metrics.unwrap().iou.unwrap() > 0.97 && result.warnings.is_empty(), "{:?}", result.warnings);
+    let (residual, terms) = (result.diagnostics.common.residual_m, result.diagnostics.terms);
+    assert!(residual > 0.0 && residual < 2e-3, "{residual}");
+    assert!(terms.overlap > 0.95 && terms.depth > 0.8 && terms.outline > 0.9, "{terms:?}");
+    assert!(result.uncertainty.unwrap().scale > 0.0 && result.uncertainty.unwrap().scale < 0.05);
+    // A mesh that does not fit.
+    let other = align(&observe(&body(), &truth()), &cuboid(Vec3::new(0.2, 0.3, 1.4)), &quick(), &mut Silent).unwrap();
+    assert!(result.confidence > 0.8 && other.confidence < 0.5, "{}, {}", result.confidence, other.confidence);
+    assert!(is_warned(&other, WarningCode::MeshDoubtful), "{:?}", other.warnings);
+}
+
+#[wasm_bindgen_test]
+fn bounds_of_the_scale_hold_and_are_reported() {
+    let bounded = solve(&AlignOptions { scale: ScaleOption::Between([0.175, 0.3]), ..quick() });
+    assert!(bounded.camera_from_mesh.scale >= 0.175 - 1e-9, "{}", bounded.camera_from_mesh.scale);
+    assert!(bounded.diagnostics.common.clamped && is_warned(&bounded, WarningCode::ScaleClamped), "{bounded:?}");
+    let wide = solve(&AlignOptions { scale: ScaleOption::Between([0.01, 3.0]), ..quick() });
+    assert!(!wide.diagnostics.common.clamped);
+    assert_eq!(wide.camera_from_mesh, solve(&quick()).camera_from_mesh, "bounds that hold nothing change nothing");
+}
+
+#[wasm_bindgen_test]
+fn a_local_search_refines_the_pose_it_is_given() {
+    let near = Similarity {
+        scale: 1.08 * truth().scale,
+        rotation: Rotation3::new(Vector3::new(0.1, -0.12, 0.08)) * truth().rotation,
+        translation: truth().translation + Vector3::new(0.006, -0.004, 0.02),
+    };
+    let found = |initial, search| pose(&solve(&AlignOptions { initial: Some(initial), search, ..quick() }));
+    let pose = found(near, SearchScope::Local);
+    assert!(turn_deg(&pose, &truth()) < 1.5 && (pose.scale / truth().scale - 1.0).abs() < 0.01, "{pose:?}");
+    // Far from the truth it stays there; searched everywhere, the same pose does no harm.
+    let far = Similarity { rotation: Rotation3::new(Vector3::new(2.5, 0.0, 0.0)) * truth().rotation, ..truth() };
+    assert!(turn_deg(&found(far, SearchScope::Local), &truth()) > 30.0);
+    assert!(turn_deg(&found(far, SearchScope::Global), &truth()) < 1.5);
+}
+
+#[wasm_bindgen_test]
+fn an_initial_pose_decides_between_turns_that_look_alike_and_no_others() {
+    let brick = cuboid(Vec3::new(1.0, 0.8, 0.55));
+    let observation = observe(&brick, &truth());
+    let half_turns =
+        [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| Rotation3::new(axis * core::f64::consts::PI));
+    let turned = |by: &Rotation3<f64>| Similarity { rotation: truth().rotation * by, ..truth() };
+    for half_turn in half_turns {
+        let initial = turned(&half_turn);
+        let options = AlignOptions { initial: Some(initial), symmetry: Symmetry::None, ..quick() };
+        let found = pose(&align(&observation, &brick, &options, &mut Silent).unwrap());
+        assert!(turn_deg(&found, &initial) < 3.0, "{} for {half_turn}", turn_deg(&found, &initial));
+        // What the image tells, the initial pose does not overrule.
+        let found = pose(&solve(&AlignOptions { initial: Some(initial), ..quick() }));
+        assert!(turn_deg(&found, &truth()) < 1.5, "{} for {half_turn}", turn_deg(&found, &truth()));
+    }
+}
+
+#[wasm_bindgen_test]
+fn an_occluder_hides_and_does_not_shrink() {
+    let mesh = body();
+    let whole = observe(&mesh, &truth());
+    // A board before the right third of the object.
+    let [[first, last], _] = bounds_of(whole.mask().data(), WIDTH, |m| *m != 0);
+    let cut = first + 2 * (last + 1 - first) / 3;
+    let is_object = |u, v| u < cut && whole.mask().get(u, v) != Some(0);
+    let depth = |u, v| if u < cut { whole.depth().get(u, v).unwrap() } else { 0.35 };
+    let observation = view(camera(), [WIDTH, HEIGHT], is_object, depth).unwrap();
+    let options = AlignOptions { quality: Quality::Balanced, ..quick() };
+    let result = align(&observation, &mesh, &options, &mut Silent).unwrap();
+    let pose = pose(&result);
+    assert!((pose.scale / truth().scale - 1.0).abs() < 0.03, "scale {}", pose.scale);
+    assert!(turn_deg(&pose, &truth()) < 4.0, "{}°", turn_deg(&pose, &truth()));
+    assert!(result.diagnostics.terms.hidden > 0.1);
+}
+
+#[wasm_bindgen_test]
+fn pauses_and_a_prepared_mesh_change_nothing() {
+    let mesh = body();
+    let prepared = PreparedMesh::new(mesh.clone());
+    prepare(&prepared).unwrap();
+    for quality in [Quality::Fast, Quality::Balanced] {
+        let options = AlignOptions { quality, ..AlignOptions::default() };
+        let whole = align(&observe(&mesh, &truth()), &mesh, &options, &mut Silent).unwrap();
+        for (seed, one_in) in [(0, 0), (0, 1), (1, 50)] {
+            let pauses = Pauses::new(pausing(seed, one_in), None);
+            let mut task = align_task(observe(&mesh, &truth()), &prepared, options.clone(), Silent, pauses).unwrap();
+            let mut steps = 1;
+            let found = loop {
+                match task.step(0.0).unwrap() {
+                    Some(found) => break found,
+                    None => steps += 1,
+                }
+            };
+            assert_eq!(found, whole, "{quality:?}, seed {seed}, one pause in {one_in}");
+            assert!(one_in != 1 || steps > 300, "{quality:?}: {steps} steps");
+            assert_eq!(task.step(0.0).unwrap_err().code, ErrorCode::Internal, "the task is over");
+        }
+    }
+}
+
+/// Helpers in the same thread, which come at once and of which the last one leaves.
+struct Crew {
+    helpers: Vec<Helper>,
+    arrived: VecDeque<Vec<f64>>,
+    random: Random,
+    answers: usize,
+}
+
+#[derive(Clone)]
+struct Crowd(Rc<RefCell<Crew>>);
+
+impl Link for Crowd {
+    fn ask(&self) {}
+
+    fn send(&self, helper: usize, message: &[f64]) {
+        self.0.borrow_mut().helpers.get_mut(helper).into_iter().for_each(|helper| helper.receive(message));
+    }
+
+    fn receive(&self) -> Option<Vec<f64>> {
+        let Crew { helpers, arrived, random, answers } = &mut *self.0.borrow_mut();
+        let k = random.below(helpers.len());
+        if *answers == 300 && helpers.len() > 1 {
+            arrived.push_back(vec![(helpers.len() - 1) as f64]);
+            helpers.pop();
+            *answers += 1;
+        } else if let Some(mut answer) = helpers[k].step(|| true) {
+            answer[0] = k as f64;
+            arrived.push_back(answer);
+            *answers += 1;
+        }
+        arrived.pop_front()
+    }
+
+    fn wait(&self) {}
+}
+
+#[wasm_bindgen_test]
+fn an_alignment_with_helpers_has_the_same_bits() {
+    let mesh = body();
+    let options = AlignOptions { work_budget: Some(30.0), ..AlignOptions::default() };
+    let alone = align(&observe(&mesh, &truth()), &mesh, &options, &mut Silent).unwrap();
+    for count in [1, 3] {
+        let helper = |_| {
+            let (request, prepared) = (Request::new(options.clone()).unwrap(), PreparedMesh::new(mesh.clone()));
+            Helper::new(vec![Some(observe(&mesh, &truth()))], Rc::new(prepared), request, |_| ())
+        };
+        let helpers = (0..count).map(helper).collect();
+        let arrived = (0..count).map(|k| [&[k as f64], &READY[1..]].concat()).collect();
+        let crew = Crew { helpers, arrived, random: Random::new(count, 33), answers: 0 };
+        let crowd = Crowd(Rc::new(RefCell::new(crew)));
+        let pauses = Pauses::none().with_helpers(Helpers::new(crowd.clone()));
+        let prepared = PreparedMesh::borrowed(&mesh);
+        let mut task = align_task(observe(&mesh, &truth()), prepared, options.clone(), Silent, pauses).unwrap();
+        let found = loop {
+            if let Some(found) = task.step(f64::INFINITY).unwrap() {
+                break found;
+            }
+        };
+        assert_eq!(found, alone, "{count} helpers");
+        assert!(crowd.0.borrow().answers > 20, "they helped: {}", crowd.0.borrow().answers);
+    }
 }
 
 fn paper() -> PaperOptions {
     PaperOptions::default()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn finds_a_clean_object_near_its_pose_and_reports_how() {
-    let mesh = body();
-    let observation = observe(&mesh, 1.0);
-    let result = align_paper(&observation, &mesh, &paper(), &mut Silent).unwrap();
+fn solve_by_paper(options: &PaperOptions) -> PaperAlignment {
+    align_paper(&shapes::observe(&shapes::body(), 1.0), &shapes::body(), options, &mut Silent).unwrap()
+}
+
+#[wasm_bindgen_test]
+fn the_paper_finds_a_clean_object_near_its_pose() {
+    let result = solve_by_paper(&paper());
     let truth = Truth { camera_from_mesh: truth(), symmetry: Symmetry::None };
     // As many points as the paper's method has by default.
     let PaperOptions { max_observed_points, surface_samples, .. } = paper();
     let options = EvaluateOptions { max_observed_points, surface_samples, ..EvaluateOptions::against(Some(&truth)) };
-    let scored = evaluate(&observation, &mesh, &pose(&result.camera_from_mesh), &options).unwrap();
+    let (mesh, pose) = (shapes::body(), pose_of(&result.camera_from_mesh));
+    let scored = evaluate(&shapes::observe(&mesh, 1.0), &mesh, &pose, &options).unwrap();
     let errors = scored.errors.unwrap();
     // The scale is RANSAC's, locked: it is as good as a consensus of descriptors, not as a refinement.
     assert!(errors.scale_error < 0.2 && errors.rotation_error_deg < 6.0, "{errors:?}");
-    // The paper's method has the normals of all points, and `evaluate` those of enough for three digits.
-    let metrics = result.metrics.unwrap();
-    let consistency = [scored.metrics, metrics].map(|m| m.normal_consistency.unwrap());
-    assert!((consistency[0] - consistency[1]).abs() < 2e-3, "{consistency:?}");
-    assert_eq!(scored.metrics, Metrics { normal_consistency: scored.metrics.normal_consistency, ..metrics });
-    assert_eq!(scored.diagnostics.scale_ratio, result.diagnostics.common.scale_ratio);
-    assert!(result.metrics.unwrap().iou.unwrap() > 0.7, "{:?}", result.metrics);
-    let counts = result.diagnostics.counts;
-    assert!(counts.inliers >= 3 && counts.inliers <= counts.matches, "{counts:?}");
-    assert!(counts.source_voxels < counts.source_points && counts.target_voxels < counts.target_points, "{counts:?}");
-    assert!(
-        !result.diagnostics.common.collapsed && !result.diagnostics.common.clamped && result.warnings.is_empty(),
-        "{:?}",
-        result.warnings
-    );
+    // The paper's method has the normals of all points, and `evaluate` those of enough for three digits; the matrix of a
+    // result has rounded once.
+    let near = |a: Option<f64>, b: Option<f64>, by: f64| (a.unwrap() - b.unwrap()).abs() < by;
+    let (found, again) = (result.metrics.unwrap(), scored.metrics);
+    assert!(near(again.normal_consistency, found.normal_consistency, 2e-3), "{again:?}, {found:?}");
+    assert!(near(again.iou, found.iou, 1e-9) && near(again.chamfer_mm, found.chamfer_mm, 1e-6), "{again:?}, {found:?}");
+    assert!(found.iou.unwrap() > 0.7, "{found:?}");
+    let common = result.diagnostics.common;
+    assert!(!common.collapsed && !common.clamped && result.warnings.is_empty(), "{:?}", result.warnings);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn the_same_seed_gives_the_same_bits_everywhere() {
-    let bits = |result: &PaperAlignment| {
-        let matrix = result.camera_from_mesh.matrix.map(f64::to_bits);
-        let metrics = result.metrics.unwrap();
-        fingerprint(matrix.into_iter().chain([metrics.iou, metrics.chamfer_mm].map(|m| m.unwrap().to_bits())))
-    };
-    let first = bits(&solve(&paper()));
-    assert_eq!(first, bits(&solve(&paper())));
-    let other_seed = PaperOptions { seed: 1, ..paper() };
-    assert_ne!(first, bits(&solve(&other_seed)), "the seed has no effect");
-    // One number for native code and for WebAssembly: after a change of the method, take the new one from
-    // the message once both agree on it.
-    assert_eq!(first, EXPECTED, "{first:#x}");
-}
-
-const EXPECTED: u64 = 0x04da_e448_130a_6309;
-
-#[wasm_bindgen_test(unsupported = test)]
-fn a_scale_at_the_guard_is_reported() {
-    let narrow = PaperOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() };
-    let clamped = solve(&narrow);
+#[wasm_bindgen_test]
+fn a_scale_at_the_guard_of_the_paper_is_reported() {
+    let clamped = solve_by_paper(&PaperOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() });
     assert!(clamped.diagnostics.common.clamped, "{:?}", clamped.diagnostics);
     assert!(clamped.warnings.iter().any(|w| w.code == WarningCode::ScaleClamped), "{:?}", clamped.warnings);
     // The refinement is stopped at the guard too, and says so.
-    let tight = PaperOptions { lock_scale: false, guard: Some([0.999, 1.001]), ..paper() };
-    let stopped = solve(&tight).diagnostics;
+    let stopped =
+        solve_by_paper(&PaperOptions { lock_scale: false, guard: Some([0.999, 1.001]), ..paper() }).diagnostics;
     assert!(stopped.common.clamped && stopped.counts.clamped == 0, "{stopped:?}");
-}
-
-#[derive(Default)]
-struct Listener {
-    calls: Vec<(Stage, f64)>,
-    best: Vec<(Similarity, f64)>,
-    clock: f64,
-}
-
-impl Host for Listener {
-    fn now_ms(&mut self) -> f64 {
-        self.clock += 1.0;
-        self.clock
-    }
-
-    fn progress(&mut self, stage: Stage, fraction: f64) {
-        self.calls.push((stage, fraction));
-    }
-
-    fn best(&mut self, camera_from_mesh: &Similarity, score: f64) {
-        self.best.push((*camera_from_mesh, score));
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn progress_brings_the_best_pose_of_every_round_and_in_the_end_the_result() {
-    let mesh = body();
-    let mut listener = Listener::default();
-    let options = AlignOptions { quality: Quality::Fast, ..AlignOptions::default() };
-    let result = align(&observe(&mesh, 1.0), &mesh, &options, &mut listener).unwrap();
-    assert_eq!(listener.best.len(), ROUNDS);
-    let (pose, score) = listener.best.last().unwrap();
-    assert_eq!((Sim3::from(pose), *score), (result.camera_from_mesh, result.diagnostics.score));
-    assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn progress_never_falls_and_every_stage_is_timed() {
-    let mesh = body();
-    let mut listener = Listener::default();
-    let result = align_paper(&observe(&mesh, 1.0), &mesh, &paper(), &mut listener).unwrap();
-    assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
-    assert_eq!(listener.calls.last().unwrap().1, 1.0);
-    let timed = result.diagnostics.common.timings_ms.stages();
-    let names: Vec<&str> = timed.iter().map(|(stage, _)| stage.as_str()).collect();
-    assert_eq!(names, ["observe", "sample", "normals", "features", "matching", "ransac", "filter", "icp", "metrics"]);
-    assert!(timed.iter().all(|(_, ms)| *ms == 1.0), "{timed:?}");
-    assert_eq!(result.diagnostics.common.timings_ms.total_ms(), 9.0);
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn millimetres_passed_as_metres_are_noticed() {
-    let mesh = body();
-    let result = align(&observe(&mesh, 0.001), &mesh, &AlignOptions::default(), &mut Silent).unwrap();
-    assert!(result.warnings.iter().any(|w| w.code == WarningCode::DepthLooksLikeMillimetres), "{:?}", result.warnings);
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn options_out_of_range_and_flat_meshes_are_refused() {
-    let mesh = body();
-    let observation = observe(&mesh, 1.0);
-    let bad = [
-        AlignOptions { max_observed_points: 3, ..AlignOptions::default() },
-        AlignOptions { scale: ScaleOption::Between([2.0, 1.0]), ..AlignOptions::default() },
-        AlignOptions { scale: ScaleOption::Fixed(0.0), ..AlignOptions::default() },
-        AlignOptions { scale: ScaleOption::Between([1.0, f64::INFINITY]), ..AlignOptions::default() },
-        AlignOptions { known_extent_m: Some(-0.1), ..AlignOptions::default() },
-        AlignOptions { camera_up: Some([0.0; 3]), mesh_up: Some([0.0, 1.0, 0.0]), ..AlignOptions::default() },
-        AlignOptions { work_budget: Some(f64::NAN), ..AlignOptions::default() },
-    ];
-    for options in bad {
-        let error = align(&observation, &mesh, &options, &mut Silent).unwrap_err();
-        assert_eq!(error.code, ErrorCode::InvalidOption);
-        assert!(options.validate().is_err() && error.argument.starts_with("options."), "{error}");
-    }
-    let bad = [
-        PaperOptions { voxel_divisions: f64::NAN, ..paper() },
-        PaperOptions { guard: Some([1.5, 2.0]), ..paper() },
-        PaperOptions { surface_samples: 99, ..paper() },
-        PaperOptions { ransac_confidence: 1.0, ..paper() },
-    ];
-    for options in bad {
-        let error = align_paper(&observation, &mesh, &options, &mut Silent).unwrap_err();
-        assert_eq!(error.code, ErrorCode::InvalidOption);
-        assert!(options.validate().is_err() && error.argument.starts_with("options."), "{error}");
-    }
-    let error =
-        align(&observation, &cuboid(Vec3::new(1.0, 1.0, 0.0)), &AlignOptions::default(), &mut Silent).unwrap_err();
-    assert_eq!(error.code, ErrorCode::DegenerateMesh);
-}
-
-/// Good options, and what is wrong with those that are not: the option at fault, and words of its error.
-#[wasm_bindgen_test(unsupported = test)]
-fn options_that_contradict_each_other_are_refused() {
-    let base = AlignOptions::default;
-    let up = Some([0.0, 1.0, 0.0]);
-    let pose = Some(truth());
-    let good = [
-        base(),
-        AlignOptions { search: SearchScope::Local, initial: pose, ..base() },
-        AlignOptions { camera_up: Some([0.0, -2.0, 0.1]), mesh_up: up, ..base() },
-        AlignOptions { scale: ScaleOption::Fixed(0.2), ..base() },
-        AlignOptions { known_extent_m: Some(0.1), initial: pose, ..base() },
-        AlignOptions { scale: ScaleOption::Between([0.1, 0.2]), initial: pose, ..base() },
-        // What went through 32-bit floats is not outside.
-        AlignOptions { scale: ScaleOption::Fixed(0.17 * (1.0 + 1e-7)), initial: pose, ..base() },
-        AlignOptions { scale: ScaleOption::Fixed(0.17 * (1.0 - 1e-7)), initial: pose, ..base() },
-    ];
-    for options in good {
-        assert_eq!(options.validate(), Ok(()), "{options:?}");
-    }
-    let bad = [
-        (AlignOptions { search: SearchScope::Local, ..base() }, "options.search", "without an initial pose"),
-        (AlignOptions { camera_up: up, ..base() }, "options.meshUp", "`cameraUp` alone"),
-        (AlignOptions { mesh_up: up, ..base() }, "options.cameraUp", "`meshUp` alone"),
-        (
-            AlignOptions { scale: ScaleOption::Between([0.5, 2.0]), known_extent_m: Some(0.095), ..base() },
-            "options.knownExtentM",
-            "0.095 m and a scale of [0.5, 2]",
-        ),
-        (
-            AlignOptions { scale: ScaleOption::Between([0.2, 0.3]), initial: pose, ..base() },
-            "options.initial",
-            "[0.2, 0.3]",
-        ),
-        (AlignOptions { scale: ScaleOption::Between([0.1, 0.16]), initial: pose, ..base() }, "options.initial", "0.17"),
-        (AlignOptions { scale: ScaleOption::Fixed(0.2), initial: pose, ..base() }, "options.initial", "`scale`: 0.2."),
-    ];
-    let mesh = body();
-    let observation = observe(&mesh, 1.0);
-    for (options, argument, words) in bad {
-        let error = align(&observation, &mesh, &options, &mut Silent).unwrap_err();
-        assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidOption, argument), "{error}");
-        assert!(error.to_string().contains(words), "{error}");
-        assert_eq!(options.validate(), Err(error));
-    }
-}
-
-/// Not pinned to bits: what a caller of the default may rely on.
-#[wasm_bindgen_test(unsupported = test)]
-fn the_default_searches_by_rendering() {
-    let mesh = body();
-    let observation = observe(&mesh, 1.0);
-    let mut listener = Listener::default();
-    let result = align(&observation, &mesh, &AlignOptions::default(), &mut listener).unwrap();
-    assert_eq!(result.diagnostics.common.preset, Preset::Precise);
-    assert!(result.diagnostics.score > 0.0 && result.diagnostics.counts.renders > 0, "{:?}", result.diagnostics.counts);
-    assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
-    assert_eq!(listener.calls.last().unwrap().1, 1.0);
-    for name in ["prepare", "search", "refine"] {
-        assert!(
-            result.diagnostics.common.timings_ms.stages().iter().any(|(stage, _)| stage.as_str() == name),
-            "no {name}"
-        );
-    }
-    let truth = Truth { camera_from_mesh: truth(), symmetry: Symmetry::None };
-    let options = EvaluateOptions::against(Some(&truth));
-    let evaluated = evaluate(&observation, &mesh, &pose(&result.camera_from_mesh), &options).unwrap();
-    let errors = evaluated.errors.unwrap();
-    assert!(errors.scale_error < 0.05 && errors.rotation_error_deg < 10.0, "{errors:?}");
-    for other in &result.alternatives {
-        let pose = pose_of(&other.camera_from_mesh);
-        assert!((pose.scale / other.camera_from_mesh.scale - 1.0).abs() < 1e-9);
-        assert!(other.score <= result.diagnostics.score && (0.0..=180.0).contains(&other.turn_deg), "{other:?}");
-    }
 }

@@ -1,6 +1,7 @@
-//! All metrics of a pose, on observations rendered from known ones.
+//! Metrics of a pose, on observations rendered from known ones, and the metrics of masks against their definition.
 
 use sim3align::evidence::clouds::Sampling;
+use sim3align::metrics::silhouette::{boundary_f, boundary_tolerance_px};
 use sim3align::metrics::{Metrics, evaluate};
 
 use crate::prelude::*;
@@ -26,7 +27,7 @@ fn score(observation: &Observation, mesh: &Mesh, pose: &Similarity) -> Metrics {
     evaluate(observation, mesh, pose, &Sampling::default()).unwrap()
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn the_true_pose_is_perfect() {
     let egg = mapped(&ellipsoid(Vec3::new(0.5, 0.8, 1.0), 48), |p| p + Vec3::new(3.0, -2.0, 1.0) * 0.1);
     for (name, mesh, consistency) in [("egg", egg, 0.995), ("box", cuboid(Vec3::new(1.0, 0.7, 0.5)), 0.96)] {
@@ -40,19 +41,7 @@ fn the_true_pose_is_perfect() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn depth_that_is_off_by_five_millimetres() {
-    let mesh = sphere(0.5, 64);
-    let m = score(&observe(&mesh, 0.005), &mesh, &pose());
-    assert!((m.depth_mae_mm.unwrap() - 5.0).abs() < 1e-3, "{m:?}");
-    assert_eq!(m.iou, Some(1.0));
-    // Along the ray; the distance to a sphere is shorter where it is slanted, but not on average by half.
-    assert!((2.5..5.0).contains(&m.uni_chamfer_mm.unwrap()), "{m:?}");
-    // 5 % of the box diagonal of half a sphere of radius 75 mm are 11 mm.
-    assert_eq!(m.fitness, Some(1.0));
-}
-
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn a_pose_out_of_sight_gives_null_or_zero() {
     let mesh = sphere(0.5, 16);
     let observation = observe(&mesh, 0.0);
@@ -63,23 +52,16 @@ fn a_pose_out_of_sight_gives_null_or_zero() {
     assert!(behind.uni_chamfer_mm.unwrap() > 1000.0);
     let json = serde_json::to_value(behind).unwrap();
     assert!(json["centerDriftPx"].is_null() && json["depthMaeMm"].is_null(), "{json}");
-
-    let beside = score(&observation, &mesh, &at(0.25, 0.8));
-    assert_eq!((beside.iou, beside.boundary_f, beside.depth_mae_mm), (Some(0.0), Some(0.0), None));
-    assert!(beside.center_drift_px.unwrap() > 40.0);
+    assert!(score(&observation, &mesh, &at(0.25, 0.8)).center_drift_px.unwrap() > 40.0);
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn only_readings_inside_the_mask_count() {
     let mesh = sphere(0.5, 32);
     let full = observe(&mesh, 0.0);
     // A hole in the depth and a wrong reading outside the mask change nothing in the error.
-    const MIDDLE: usize = (HEIGHT / 2) * WIDTH + WIDTH / 2;
-    let holed = with_depth(&full, |i, z| match i {
-        0 => 0.1,
-        MIDDLE => 0.0,
-        _ => z,
-    });
+    let middle = (HEIGHT / 2) * WIDTH + WIDTH / 2;
+    let holed = with_depth(&full, |i, z| if i == 0 { 0.1 } else { z * f32::from(u8::from(i != middle)) });
     assert_eq!(score(&holed.unwrap(), &mesh, &pose()).depth_mae_mm, Some(0.0));
     // A mask with half of the object: what is rendered beyond it has no say.
     let mut mask = full.mask().clone();
@@ -89,69 +71,48 @@ fn only_readings_inside_the_mask_count() {
     assert!((0.3..0.6).contains(&half.iou.unwrap()), "{half:?}");
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn the_same_seed_gives_the_same_bits() {
-    let mesh = ellipsoid(Vec3::new(0.5, 0.3, 0.4), 24);
-    let observation = observe(&mesh, 0.003);
-    let options = |seed| Sampling { max_points: 500, surface_samples: 400, seed };
-    let run = |seed| evaluate(&observation, &mesh, &pose(), &options(seed)).unwrap();
-    assert_eq!(run(1), run(1));
-    assert_ne!(run(1).chamfer_mm, run(2).chamfer_mm);
-    assert_eq!(run(1).iou, run(2).iou);
+/// From the definition: outlines by comparing shifted copies, matches by walking the disk.
+fn boundary_f_slowly(a: &Mask, b: &Mask) -> f64 {
+    let (w, h) = (a.width() as i64, a.height() as i64);
+    let outline = |m: &Mask| {
+        let at = |u: i64, v: i64| m.get(u.min(w - 1) as usize, v.min(h - 1) as usize).unwrap() != 0;
+        // Where there is no diagonal neighbour, the copy of the border stands in: it is one of the others.
+        let differs = |&(u, v): &(i64, i64)| [(1, 0), (0, 1), (1, 1)].iter().any(|(x, y)| at(u, v) != at(u + x, v + y));
+        (0..w * h).map(|i| (i % w, i / w)).filter(differs).collect::<Vec<_>>()
+    };
+    let radius = (0.008 * f64::from((w * w + h * h) as u32).sqrt()).ceil() as i64;
+    let (oa, ob) = (outline(a), outline(b));
+    let share = |of: &[(i64, i64)], other: &[(i64, i64)]| {
+        let near = |p: &(i64, i64), q: &(i64, i64)| (p.0 - q.0).pow(2) + (p.1 - q.1).pow(2) <= radius * radius;
+        of.iter().filter(|p| other.iter().any(|q| near(p, q))).count() as f64 / of.len() as f64
+    };
+    let (precision, recall) = (share(&ob, &oa), share(&oa, &ob));
+    if precision + recall == 0.0 { 0.0 } else { 2.0 * precision * recall / (precision + recall) }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn what_cannot_be_scored_is_refused() {
-    let mesh = sphere(0.5, 16);
-    let observation = observe(&mesh, 0.0);
-    let flat = mapped(&mesh, |_| Vec3::ONE);
-    let code =
-        |mesh: &Mesh, pose: &Similarity| evaluate(&observation, mesh, pose, &Sampling::default()).unwrap_err().code;
-    assert_eq!(code(&flat, &pose()), ErrorCode::DegenerateMesh);
-    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(code(&mesh, &Similarity { scale, ..pose() }), ErrorCode::InvalidTransform, "scale {scale}");
+#[wasm_bindgen_test]
+fn boundary_f_equals_its_definition() {
+    let mut partly = 0;
+    for seed in 0..30 {
+        let mut random = Random::new(seed, 916);
+        let size = [60 + random.below(200), 60 + random.below(100)];
+        let mut blob = || {
+            let mut mask = Mask::filled(size[0], size[1], 0);
+            for _ in 0..3 {
+                // Disks, some beyond the border.
+                let [cu, cv, r] =
+                    [random.below(size[0]), random.below(size[1]), 5 + random.below(30)].map(|x| x as i64);
+                for (i, pixel) in mask.data_mut().iter_mut().enumerate() {
+                    let (u, v) = ((i % size[0]) as i64, (i / size[0]) as i64);
+                    *pixel |= u8::from((u - cu).pow(2) + (v - cv).pow(2) <= r * r);
+                }
+            }
+            mask
+        };
+        let (a, b) = (blob(), blob());
+        let f = boundary_f(&a, &b, boundary_tolerance_px(size[0], size[1]));
+        assert_eq!(f, boundary_f_slowly(&a, &b), "seed {seed}");
+        partly += usize::from(f > 0.0 && f < 1.0);
     }
-    let nowhere = Similarity { translation: Vector3::new(0.0, f64::NAN, 1.0), ..pose() };
-    assert_eq!(code(&mesh, &nowhere), ErrorCode::InvalidTransform);
-}
-
-/// A mesh of more than 262 144 triangles is rendered as it is, but searched decimated. The object is .3 m in size.
-#[wasm_bindgen_test(unsupported = test)]
-fn the_surface_of_a_large_mesh_is_measured_as_exactly_as_matters() {
-    let [fine, coarse] = [270, 180].map(|rings| ellipsoid(Vec3::new(0.5, 0.8, 1.0), rings));
-    assert!(fine.triangles().len() > 1 << 18 && coarse.triangles().len() < 1 << 18);
-    let observation = observe(&fine, 0.0);
-    let m = score(&observation, &fine, &pose());
-    assert_eq!((m.iou, m.fitness, m.depth_mae_mm), (Some(1.0), Some(1.0), Some(0.0)));
-    // A thousandth of the size; as long as nothing is decimated, it is 0.
-    let error_mm = m.uni_chamfer_mm.unwrap();
-    assert!(error_mm > 0.0 && error_mm < 0.3, "{error_mm} mm");
-    let moved = Similarity { translation: pose().translation + Vector3::new(0.004, 0.0, 0.006), ..pose() };
-    let [a, b] = [&fine, &coarse].map(|mesh| score(&observation, mesh, &moved));
-    for (name, a, b) in [
-        ("chamfer", a.chamfer_mm, b.chamfer_mm),
-        ("uni-chamfer", a.uni_chamfer_mm, b.uni_chamfer_mm),
-        ("normals", a.normal_consistency, b.normal_consistency),
-    ] {
-        assert!((a.unwrap() / b.unwrap() - 1.0).abs() < 0.03, "{name}: {a:?} for {b:?}");
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn every_platform_gives_these_bits() {
-    let mesh = ellipsoid(Vec3::new(0.5, 0.3, 0.4), 24);
-    let mut rasteriser = Rasteriser::new();
-    rasteriser.render(&mesh, &pose(), &camera(), WIDTH, HEIGHT);
-    let pixels = rasteriser.depth().iter().zip(rasteriser.triangles());
-    let image = fingerprint(pixels.map(|(z, t)| u64::from(z.to_bits()) << 32 | u64::from(*t)));
-
-    let m = score(&observe(&mesh, 0.003), &mesh, &Similarity { scale: 0.152, ..pose() });
-    let fields = [m.boundary_f, m.center_drift_px, m.iou, m.chamfer_mm, m.uni_chamfer_mm, m.fitness];
-    let fields = fields.into_iter().chain([m.normal_consistency, m.depth_mae_mm]);
-    let metrics = fingerprint(fields.map(|f| f.unwrap().to_bits()));
-    assert_eq!(
-        (image, metrics),
-        (13_419_859_691_801_430_286, 2_454_295_624_806_816_696),
-        "an intended change of the method changes these: {m:?}"
-    );
+    assert!(partly > 15, "only {partly} pairs were worth comparing");
 }

@@ -4,14 +4,13 @@ use sim3align::align::{align, align_paper};
 use sim3align::options::Options;
 use sim3align::paper::options::{GuardMode, PaperOptions};
 use sim3align::precise::options::{ExtentAxis, Proportions};
-use sim3align::register::options::Icp;
-use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
+use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
 use sim3align::register::report::Registration;
 use sim3align::register::{estimate_sim3, register};
 use sim3align::report::{Counts, PaperAlignment, SearchCounts};
 
 use crate::prelude::*;
-use crate::{precise, shapes};
+use crate::{observations, shapes};
 
 /// A call: what it finds with its usual options, and with others.
 struct Trial<'a, O, R, C> {
@@ -59,7 +58,7 @@ fn scale(result: &Alignment) -> f64 {
 }
 
 fn extent() -> Vec3 {
-    Bounds::of(precise::body().positions()).unwrap().extent()
+    Bounds::of(observations::body().positions()).unwrap().extent()
 }
 
 const PRECISE: &[Effect<AlignOptions, Alignment, SearchCounts>] = &[
@@ -84,7 +83,7 @@ const PRECISE: &[Effect<AlignOptions, Alignment, SearchCounts>] = &[
     ("meshUp", |t| costs_a_lean(t, [-1.0, -1.0], [-1.0, 1.0])),
     ("symmetry", |t| {
         let brick = cuboid(Vec3::new(0.5, 0.8, 1.1));
-        let observation = precise::observe(&brick, &precise::truth());
+        let observation = observations::observe(&brick, &observations::truth());
         let alternatives = |symmetry: Symmetry| {
             let options = AlignOptions { symmetry, ..t.base.clone() };
             align(&observation, &brick, &options, &mut Silent).unwrap().alternatives.len()
@@ -93,14 +92,14 @@ const PRECISE: &[Effect<AlignOptions, Alignment, SearchCounts>] = &[
     }),
     ("initial", |t| {
         // One candidate more, which is the truth: more is drawn, and what is found is hardly worse.
-        let given = t.with(|o| o.initial = Some(precise::truth()));
+        let given = t.with(|o| o.initial = Some(observations::truth()));
         given.diagnostics.counts.renders > t.usually.renders
             && given.diagnostics.score > t.usual.diagnostics.score - 0.01
     }),
     ("search", |t| {
         let renders = |search| {
             let counts = t.count(|o| {
-                o.initial = Some(precise::truth());
+                o.initial = Some(observations::truth());
                 o.search = search;
             });
             counts.renders
@@ -130,7 +129,7 @@ const PRECISE: &[Effect<AlignOptions, Alignment, SearchCounts>] = &[
 /// Whether directions of up that contradict what is seen cost score, and those that agree with it none.
 fn costs_a_lean(t: &Trial<'_, AlignOptions, Alignment, SearchCounts>, agree: [f64; 2], contradict: [f64; 2]) -> bool {
     let gain = |[camera, mesh]: [f64; 2]| {
-        let up = precise::truth().rotation * Vector3::y() * camera;
+        let up = observations::truth().rotation * Vector3::y() * camera;
         let found = t.with(|o| {
             o.camera_up = Some(up.into());
             o.mesh_up = Some([0.0, mesh, 0.0]);
@@ -199,16 +198,16 @@ const PAPER: &[Effect<PaperOptions, PaperAlignment, Counts>] = &[
     }),
 ];
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn every_option_of_precise_has_its_effect() {
-    let mesh = precise::body();
-    let observation = precise::observe(&mesh, &precise::truth());
-    assert_effects(PRECISE, &precise::quick(), |found| found.diagnostics.counts, &|options| {
+    let mesh = observations::body();
+    let observation = observations::observe(&mesh, &observations::truth());
+    assert_effects(PRECISE, &observations::quick(), |found| found.diagnostics.counts, &|options| {
         align(&observation, &mesh, options, &mut Silent).unwrap()
     });
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn every_option_of_the_paper_preset_has_its_effect() {
     let mesh = shapes::body();
     let observation = shapes::observe(&mesh, 1.0);
@@ -263,7 +262,7 @@ fn inconsistent(counts: Counts) -> f64 {
     counts.inconsistent as f64 / counts.iterations as f64
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn every_option_of_register_has_its_effect() {
     let draw = &mut Draw::new(21);
     let truth = draw.similarity([1.0, 2.0], 3.0);
@@ -299,7 +298,7 @@ const ESTIMATE: &[Effect<EstimateSim3Options, Registration, Counts>] = &[
     ("edgeSimilarity", |t| inconsistent(t.count(|o| o.edge_similarity = 0.0)) < 0.1 * inconsistent(t.usually)),
 ];
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn every_option_of_estimate_sim3_has_its_effect() {
     let draw = &mut Draw::new(22);
     let truth = draw.similarity([1.0, 2.0], 3.0);

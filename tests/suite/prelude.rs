@@ -6,40 +6,24 @@ pub use sim3align::error::ErrorCode;
 pub use sim3align::evidence::observation::Observation;
 pub use sim3align::geometry::cloud::{Bounds, Cloud};
 pub use sim3align::geometry::image::{DepthMap, Image, Mask};
-pub use sim3align::geometry::kd_tree::KdTree;
 pub use sim3align::geometry::mesh::Mesh;
-pub use sim3align::geometry::normal_equations::NormalEquations;
 pub use sim3align::geometry::pinhole::Pinhole;
 pub use sim3align::geometry::random::Random;
 pub use sim3align::geometry::rasteriser::Rasteriser;
-pub use sim3align::geometry::rotations::{angle_between, exp};
+pub use sim3align::geometry::rotations::exp;
 pub use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 pub use sim3align::geometry::surface::sample_surface;
-pub use sim3align::geometry::triangle_tree::TriangleTree;
 pub use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 pub use sim3align::options::scale::ScaleOption;
-pub use sim3align::precise::drawn::equivalence::Equivalence;
 pub use sim3align::precise::drawn::pose::{CropPose, MeshFrame, Step};
 pub use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 pub use sim3align::precise::drawn::render::{Canvas, Model};
-pub use sim3align::precise::observed::clean::CleanObservation;
 pub use sim3align::precise::observed::grid::CropGrid;
 pub use sim3align::precise::options::{AlignOptions, Quality, SearchScope};
-pub use sim3align::precise::scored::objective::Objective;
-pub use sim3align::precise::scored::prior::Prior;
 pub use sim3align::precise::scored::score::{Score, Scoring, Weights};
-pub use sim3align::precise::searched::recipe::SearchSettings;
-pub use sim3align::precise::searched::refine::Refiner;
 pub use sim3align::progress::Silent;
-pub use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-pub use sim3align::report::{Alignment, Effort, WarningCode};
+pub use sim3align::report::{Alignment, WarningCode};
 pub use wasm_bindgen_test::wasm_bindgen_test;
 
 pub use crate::shapes::{cuboid, ellipsoid, joined, mapped, sphere};
 pub use crate::support::*;
-
-/// The objective of a mesh without a symmetry, without surroundings.
-pub fn objective<'a>(model: &'a Model, grid: &'a CropGrid, scoring: Scoring, prior: Prior) -> Objective<'a> {
-    let equivalence = Box::leak(Box::<Equivalence>::default());
-    Objective { model, grid, scoring, prior, equivalence, surroundings: None }
-}

@@ -1,4 +1,4 @@
-//! Meshes that the tests share.
+//! Meshes that the tests share, and observations of them.
 
 use glam::Vec3;
 use sim3align::error::Result;
@@ -53,12 +53,6 @@ pub fn ellipsoid(semi_axes: Vec3, rings: u32) -> Mesh {
         }
     }
     Mesh::new(positions, triangles).unwrap()
-}
-
-/// The mesh with every face turned over.
-pub fn inverted(mesh: &Mesh) -> Mesh {
-    let triangles = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-    Mesh::new(mesh.positions().to_vec(), triangles).unwrap()
 }
 
 /// Both meshes as one.

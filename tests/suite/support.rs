@@ -1,36 +1,27 @@
-//! What the tests of geometry and stages share: seeded draws, random similarities, surfaces with known normals,
-//! and the check that no axis of a test matrix is dead.
+//! What the tests share: seeded draws, random similarities, surfaces with known normals, pauses and fingerprints.
 
-use core::cell::{Cell, RefCell};
+use core::cell::RefCell;
 
 use glam::Vec3;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
-use sim3align::geometry::cloud::{Bounds, Cloud};
+use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::random::Random;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 use sim3align::report::Sim3;
 
 thread_local! {
-    /// How often the clock of [`pausing`] was read, and of what it draws whether to pause.
-    static READ: Cell<usize> = const { Cell::new(0) };
+    /// Of what the clock of [`pausing`] draws whether to pause.
     static CHANCE: RefCell<Option<(Draw, usize)>> = const { RefCell::new(None) };
 }
 
 /// A clock by which a step until 0 pauses at one pause point of `one_in`, by chance; never if that is 0.
 pub fn pausing(seed: u64, one_in: usize) -> fn() -> f64 {
-    READ.set(0);
     CHANCE.set((one_in > 0).then(|| (Draw::new(seed), one_in)));
     || {
-        READ.set(READ.get() + 1);
         let is_due = |(draw, one_in): &mut (Draw, usize)| draw.below(*one_in) == 0;
         let is_due = CHANCE.with_borrow_mut(|chance| chance.as_mut().is_some_and(is_due));
         if is_due { f64::INFINITY } else { f64::NEG_INFINITY }
     }
-}
-
-/// Number of pause points since the last [`pausing`].
-pub fn pause_points() -> usize {
-    READ.get()
 }
 
 /// Seeded draws of what tests need.
@@ -116,11 +107,6 @@ pub fn blob(draw: &mut Draw, count: usize) -> Cloud {
     })
 }
 
-/// A torus about z with radii 1 and 0.35.
-pub fn torus(draw: &mut Draw, count: usize) -> Cloud {
-    surface(count, || on_torus(draw, core::f64::consts::TAU))
-}
-
 /// A mug: an open cylinder, its bottom, and half a torus as handle.
 pub fn mug(draw: &mut Draw, count: usize) -> Cloud {
     surface(count, || match draw.below(10) {
@@ -139,35 +125,6 @@ pub fn mug(draw: &mut Draw, count: usize) -> Cloud {
             (stand(p) + Vector3::x() * 0.8, stand(n))
         }
     })
-}
-
-/// A box with the given edges, sampled by area.
-pub fn box_surface(draw: &mut Draw, edges: [f64; 3], count: usize) -> Cloud {
-    let areas = [0, 1, 2].map(|i| edges[(i + 1) % 3] * edges[(i + 2) % 3]);
-    let total: f64 = areas.iter().sum();
-    surface(count, || {
-        let at = draw.between(0.0, total);
-        let axis = if at < areas[0] { 0 } else { 1 + usize::from(at >= areas[0] + areas[1]) };
-        let sign = if draw.below(2) == 0 { -1.0 } else { 1.0 };
-        let mut p = Vector3::from_fn(|i, _| draw.between(-0.5, 0.5) * edges[i]);
-        p[axis] = 0.5 * sign * edges[axis];
-        (p, Vector3::ith(axis, sign))
-    })
-}
-
-/// The unit sphere.
-pub fn sphere_surface(draw: &mut Draw, count: usize) -> Cloud {
-    surface(count, || {
-        let d = draw.direction();
-        (d, d)
-    })
-}
-
-/// The cloud with its box centred and of diagonal 1, the frame in which the stages work.
-pub fn unit_box(cloud: &Cloud) -> Cloud {
-    let bounds = Bounds::of(&cloud.points).unwrap();
-    let points = cloud.points.iter().map(|&p| (p - bounds.center()) / bounds.diagonal()).collect();
-    Cloud { points, normals: cloud.normals.clone() }
 }
 
 /// The cloud under a similarity, computed in f64.
@@ -202,25 +159,6 @@ pub fn pose_error(found: &Similarity, truth: &Similarity) -> f64 {
 /// How far a matrix is from a proper rotation.
 pub fn rotation_defect(r: &Matrix3<f64>) -> f64 {
     (r.transpose() * r - Matrix3::identity()).amax().max((r.determinant() - 1.0).abs())
-}
-
-/// Checks of a full test matrix that every two values of every axis give different results somewhere: an axis
-/// whose values all give the same tests nothing. `cells` hold the values' positions and the result.
-pub fn assert_no_dead_axis<const N: usize, T: PartialEq>(names: [&str; N], cells: &[([usize; N], T)]) {
-    for (axis, name) in names.into_iter().enumerate() {
-        let values = 1 + cells.iter().map(|(at, _)| at[axis]).max().unwrap();
-        assert!(values > 1, "{name} has a single value");
-        for a in 0..values {
-            for b in 0..a {
-                let differs = cells.iter().filter(|(at, _)| at[axis] == a).any(|(at, result)| {
-                    let mut other = *at;
-                    other[axis] = b;
-                    cells.iter().any(|(at, r)| *at == other && r != result)
-                });
-                assert!(differs, "{name}: values {a} and {b} give the same results everywhere");
-            }
-        }
-    }
 }
 
 fn surface(count: usize, mut draw: impl FnMut() -> (Vector3<f64>, Vector3<f64>)) -> Cloud {

@@ -1,11 +1,9 @@
-//! The tests of convex parts, mass and rest, in one binary: natively, and in Node under wasm-bindgen-test.
+//! The tests of convex parts, mass and rest, as WebAssembly in Node.
+#![cfg(target_arch = "wasm32")]
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-// As WebAssembly, the tests' own helpers count as public.
+// As WebAssembly, the tests' helpers count as public.
 #![allow(missing_docs)]
 
-pub mod degenerate;
-pub mod mass;
-pub mod parts;
-pub mod rest;
+pub mod bodies;
 pub mod scene;
 pub mod solids;

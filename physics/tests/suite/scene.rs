@@ -1,20 +1,16 @@
-//! Bodies of a scene: what is free rests, and what cannot rest is fixed where it is.
+//! Bodies of a scene: what is free rests, what cannot rest is fixed where it is, and meshes that are no solids.
 
 use glam::{DQuat, DVec3, Vec3};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
-use sim3align_physics::apart::{ASIDE_M, INSIDE_M, depth};
-use sim3align_physics::body::Pose;
-use sim3align_physics::columns::Columns;
-use sim3align_physics::ground::{AGREE_M, agreed_height};
-use sim3align_physics::part::convex_parts;
+use sim3align_physics::ground::AGREE_M;
 use sim3align_physics::scene::{Object, On, Settings, Settled};
 use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::solids::{Draw, cuboid, moved, similarity, tray};
+use crate::solids::{Draw, cuboid, moved, similarity};
 
 const SETTINGS: Settings =
-    Settings { density: 400.0, parts: 16, turn_deg: 8.0, move_m: 0.03, fits_ground: false, rest: true };
+    Settings { density: 400.0, parts: 1, turn_deg: 8.0, move_m: 0.03, fits_ground: false, rest: true };
 
 fn settle(objects: &[Object], settings: &Settings) -> Vec<Settled> {
     sim3align_physics::scene::settle(objects, settings).0
@@ -32,32 +28,7 @@ fn lowest(settled: &Settled) -> f64 {
     settled.body.points(settled.body.pose).map(|p| p.z).fold(f64::INFINITY, f64::min)
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn columns_are_the_extent_of_a_box_over_its_cells() {
-    let [part] = convex_parts(&cuboid(Vec3::new(0.0, 0.0, 0.1), Vec3::new(0.1, 0.2, 0.4)), 1).try_into().unwrap();
-    let columns = Columns::of(&part, 0.01);
-    let cells: Vec<_> = columns.cells().collect();
-    assert_eq!(cells.len(), 10 * 20);
-    for (at, [low, high]) in cells {
-        assert!((low - 0.1).abs() < 1e-6 && (high - 0.4).abs() < 1e-6, "{at:?}: {low} to {high}");
-        assert_eq!(columns.at(at), Some([low, high]));
-    }
-    assert_eq!(columns.at([-1, 0]), None);
-    assert_eq!(columns.at([10, 0]), None);
-    // A copy that is moved by 3 cm along x shares 7 cm of 10: the least side of what both share is that.
-    let moved_by = |by: DVec3| Columns::of(&part.mapped(|p| p + by), 0.01);
-    for (by, depth) in [(DVec3::X * 0.03, 0.07), (DVec3::Z * 0.26, 0.04), (DVec3::Z * 0.31, 0.0), (DVec3::X, 0.0)] {
-        let found = columns.overlap(&moved_by(by), [0, 0]);
-        assert!((found - depth).abs() < 1e-6, "moved by {by}: {found} m deep, expected {depth}");
-    }
-    // Steps of cells are moves.
-    for (step, depth) in [([3, 0], 0.05), ([-3, 0], 0.09), ([0, 15], 0.05), ([8, 0], 0.0)] {
-        let found = columns.overlap(&moved_by(DVec3::X * -0.02), step);
-        assert!((found - depth).abs() < 1e-6, "by {step:?} cells: {found} m deep, expected {depth}");
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn bodies_on_the_ground_are_free_and_stand_on_it() {
     for seed in 0..30 {
         let mut draw = Draw::new(600 + seed);
@@ -74,7 +45,7 @@ fn bodies_on_the_ground_are_free_and_stand_on_it() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn what_would_move_too_far_or_rests_on_nothing_is_fixed_where_it_is() {
     let tilted = similarity(1.0, DQuat::from_rotation_x(0.3), DVec3::ZERO);
     for (what, pose, on) in [
@@ -92,7 +63,7 @@ fn what_would_move_too_far_or_rests_on_nothing_is_fixed_where_it_is() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn a_stack_is_put_down_from_below_in_any_order() {
     let on = [On::Object(2), On::Ground, On::Object(1)];
     let floats = [0.21, 0.004, 0.108];
@@ -105,18 +76,7 @@ fn a_stack_is_put_down_from_below_in_any_order() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn a_body_stands_in_a_tray_and_not_on_its_hull() {
-    let (tray, _) = tray();
-    let objects =
-        [object(tray, moved(0.0, 0.0, 0.0), On::Ground), object(cube(0.06), moved(0.07, 0.07, 0.021), On::Object(0))];
-    let settled = settle(&objects, &SETTINGS);
-    assert!(settled.iter().all(|body| body.is_free));
-    // The floor of the tray is 2 cm thick, within a cell of the decomposition.
-    assert!((lowest(&settled[1]) - 0.02).abs() < 0.006, "{}", lowest(&settled[1]));
-}
-
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn a_body_that_would_tip_over_an_edge_is_fixed() {
     let table = || object(cuboid(Vec3::ZERO, Vec3::new(0.4, 0.4, 0.1)), moved(0.0, 0.0, 0.0), On::Ground);
     // Its centre is 5 cm from its side: beyond x = 0.35, it is not over the table.
@@ -127,7 +87,7 @@ fn a_body_that_would_tip_over_an_edge_is_fixed() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn bodies_that_are_a_little_inside_of_each_other_are_moved_apart() {
     let at = |x: f64| object(cube(0.1), moved(x, 0.0, 0.0), On::Ground);
     let settled = settle(&[at(0.0), at(0.096)], &SETTINGS);
@@ -142,58 +102,7 @@ fn bodies_that_are_a_little_inside_of_each_other_are_moved_apart() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn no_body_is_moved_far_or_in_vain() {
-    let (mut parted, mut left) = (0, 0);
-    for seed in 0..16 {
-        let mut draw = Draw::new(700 + seed);
-        let objects: Vec<Object> = (0..4)
-            .map(|_| {
-                let size = Vec3::new(draw.between(0.02, 0.15) as f32, draw.between(0.02, 0.15) as f32, 0.1);
-                let at = DVec3::new(draw.between(-0.12, 0.12), draw.between(-0.12, 0.12), draw.between(-0.01, 0.01));
-                let turn = DQuat::from_rotation_z(draw.between(0.0, 6.0));
-                object(cuboid(-size / 2.0, size / 2.0), similarity(1.0, turn, at + DVec3::Z * 0.05), On::Ground)
-            })
-            .collect();
-        let settled = settle(&objects, &SETTINGS);
-        let at_rest = |i: usize| settled[i].found.translation.with_z(settled[i].body.pose.translation.z);
-        let columns = |i: usize, translation: DVec3| {
-            settled[i].body.columns(Pose { translation, ..settled[i].body.pose }, 0.0015)
-        };
-        for (i, Settled { body, found, moved_m, .. }) in settled.iter().enumerate() {
-            let net = body.pose.apply(body.mass.center) - found.apply(body.mass.center);
-            assert!((net.length() - moved_m).abs() < 1e-12, "seed {seed}: {moved_m} m are said for {net}");
-            let aside = net.truncate().length();
-            assert!(aside <= ASIDE_M + 1e-12 && *moved_m <= SETTINGS.move_m, "seed {seed}: {net}");
-            let mut is_closer = false;
-            for k in (0..settled.len()).filter(|k| *k != i) {
-                let [before, after] = [[at_rest(i), at_rest(k)], [i, k].map(|n| settled[n].body.pose.translation)]
-                    .map(|places| depth(&columns(i, places[0]), &columns(k, places[1])));
-                assert!(after <= before + 1e-12, "seed {seed}: {before} m deep became {after}");
-                is_closer |= after < before && after <= INSIDE_M;
-            }
-            assert!(aside < 1e-9 || is_closer, "seed {seed}: body {i} was moved in vain");
-            parted += usize::from(aside > 1e-9);
-            left += usize::from(!settled[i].inside.is_empty());
-        }
-    }
-    assert!(parted > 4 && left > 4, "{parted} bodies were moved aside, {left} are inside of others");
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn without_rest_every_body_keeps_its_pose() {
-    let lean = similarity(1.0, DQuat::from_rotation_x(0.05), DVec3::new(0.096, 0.0, 0.004));
-    let objects = [object(cube(0.1), moved(0.0, 0.0, 0.0), On::Ground), object(cube(0.1), lean, On::Ground)];
-    let settled = settle(&objects, &Settings { rest: false, ..SETTINGS });
-    for (body, put_down) in settled.iter().zip(settle(&objects, &SETTINGS)) {
-        assert_eq!(body.body.pose, body.found);
-        assert_eq!([body.moved_m, body.turned_deg], [0.0; 2]);
-        assert_eq!((body.is_free, body.found), (put_down.is_free, put_down.found));
-        assert_ne!(put_down.body.pose, put_down.found);
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
+#[wasm_bindgen_test]
 fn a_ground_that_was_found_is_moved_to_what_most_bodies_stand_on() {
     let fitting = Settings { fits_ground: true, ..SETTINGS };
     let at = |x: f64, z: f64| object(cube(0.1), moved(x, 0.0, z), On::Ground);
@@ -219,20 +128,47 @@ fn a_ground_that_was_found_is_moved_to_what_most_bodies_stand_on() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn the_ground_is_where_more_than_half_of_the_bodies_are() {
-    for (lowest, reach, height) in [
-        (&[][..], 1.0, None),
-        (&[0.011], 0.02, Some(0.011)),
-        (&[0.021], 0.02, None),
-        // One of two is no majority.
-        (&[-0.0136, 0.011], 0.02, None),
-        (&[-0.0025, -0.0104, -0.0072], 0.02, Some(-0.0088)),
-        (&[0.0, 0.0059, 0.02, -0.02], 0.02, None),
-        (&[0.0, 0.0059, 0.02], 0.02, Some(0.00295)),
-    ] {
-        let found = agreed_height(lowest, reach);
-        let is_same = found.zip(height).is_some_and(|(a, b)| (a - b).abs() < 1e-12);
-        assert!(is_same || (found.is_none() && height.is_none()), "{lowest:?}: {found:?}, expected {height:?}");
+/// Settles one object of parts; all of its numbers are finite. Returns the number of its parts and its mass.
+fn settled(mesh: &Mesh, scale: f64, what: &str) -> (usize, f64) {
+    let pose = similarity(scale, DQuat::from_rotation_x(0.02), DVec3::new(0.1, 0.2, 0.3));
+    let found = &settle(&[object(mesh.clone(), pose, On::Ground)], &Settings { parts: 16, ..SETTINGS })[0];
+    let (body, mass) = (&found.body, found.body.mass);
+    let corners = body.parts.iter().flat_map(|part| &part.positions);
+    let vectors = [mass.center, mass.moments, body.pose.translation];
+    assert!(corners.copied().chain(vectors).all(DVec3::is_finite), "{what}: {mass:?}");
+    assert!(mass.mass.is_finite() && mass.mass >= 0.0 && mass.moments.min_element() > 0.0, "{what}: {mass:?}");
+    assert!(body.parts.iter().all(|part| part.volume() > 0.0), "{what}: a part without volume");
+    (body.parts.len(), mass.mass)
+}
+
+#[wasm_bindgen_test]
+fn meshes_that_are_no_solids_have_finite_bodies() {
+    let flat = |corners: [Vec3; 3]| Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+    // About a thousandth of the diagonal to each side.
+    for corners in [[Vec3::ZERO, Vec3::X, Vec3::Y], [Vec3::ZERO, Vec3::X, 2.0 * Vec3::X]] {
+        let (count, mass) = settled(&flat(corners), 0.1, "flat");
+        assert!(count == 1 && mass > 0.0 && mass < 2.1e-3, "{corners:?}: {mass} kg");
+    }
+    assert_eq!(settled(&flat([Vec3::splat(0.3); 3]), 1.0, "point"), (0, 0.0));
+    for thickness in [0.1, 0.001] {
+        let (count, mass) = settled(&cuboid(Vec3::ZERO, Vec3::new(1.0, 0.7, thickness)), 0.1, "plate");
+        assert!(count == 1 && (mass / f64::from(0.28 * thickness) - 1.0).abs() < 1e-5, "{thickness}: {mass} kg");
+    }
+    for exponent in [-12, 9] {
+        let size = 10f32.powi(exponent);
+        let (count, mass) = settled(&cuboid(-Vec3::splat(size), Vec3::splat(size)), 0.1 / f64::from(size), "decades");
+        assert!(count == 1 && (mass - 3.2).abs() < 1e-3, "1e{exponent}: {mass} kg");
+    }
+    for size in [1e30f32, f32::MAX] {
+        let huge = object(cuboid(-Vec3::splat(size), Vec3::splat(size)), moved(0.0, 0.0, 0.0), On::Ground);
+        assert!(settle(&[huge], &SETTINGS)[0].body.parts.len() <= 1, "{size}");
+    }
+    for seed in 0..12 {
+        let mut draw = Draw::new(700 + seed);
+        let count = 3 + seed as usize % 30;
+        // Coordinates of few values: coincident, collinear and coplanar vertices, triangles without area.
+        let positions: Vec<Vec3> = (0..count).map(|_| draw.vector(0.0, 3.99).floor().as_vec3()).collect();
+        let triangles = (0..2 * count as u32).map(|k| [0, 5, 11].map(|step| (k * 7 + step) % count as u32)).collect();
+        settled(&Mesh::new(positions, triangles).unwrap(), 0.05, &format!("seed {seed}"));
     }
 }

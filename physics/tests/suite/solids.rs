@@ -28,47 +28,6 @@ pub fn together(meshes: &[Mesh]) -> Mesh {
     Mesh::new(positions, triangles).unwrap()
 }
 
-/// The solid of revolution about z of a profile (radius, z) from bottom to top, whose ends are on the axis.
-pub fn turned(profile: &[[f64; 2]], around: u32) -> Mesh {
-    let rings = profile.len() as u32;
-    let mut positions = Vec::new();
-    for [radius, z] in profile {
-        for j in 0..around {
-            let (sine, cosine) = libm::sincos(core::f64::consts::TAU * f64::from(j) / f64::from(around));
-            positions.push(DVec3::new(radius * cosine, radius * sine, *z).as_vec3());
-        }
-    }
-    let mut triangles = Vec::new();
-    for i in 0..rings - 1 {
-        for j in 0..around {
-            let [a, b] = [i * around + j, i * around + (j + 1) % around];
-            let [c, d] = [a + around, b + around];
-            // The other triangle of a cell at a pole has no area.
-            if i > 0 {
-                triangles.push([a, b, d]);
-            }
-            if i + 2 < rings {
-                triangles.push([a, d, c]);
-            }
-        }
-    }
-    Mesh::new(positions, triangles).unwrap()
-}
-
-/// A cylinder that stands on z = 0.
-pub fn cylinder(radius: f64, height: f64, around: u32) -> Mesh {
-    turned(&[[0.0, 0.0], [radius, 0.0], [radius, height], [0.0, height]], around)
-}
-
-/// A sphere about the origin.
-pub fn sphere(radius: f64, rings: u32) -> Mesh {
-    let at = |i: u32| {
-        let (sine, cosine) = libm::sincos(core::f64::consts::PI * f64::from(i) / f64::from(rings));
-        [if i.is_multiple_of(rings) { 0.0 } else { radius * sine }, -radius * cosine]
-    };
-    turned(&(0..=rings).map(at).collect::<Vec<_>>(), 2 * rings)
-}
-
 /// An L of two boxes, which share a face: 3 litres.
 pub fn bracket() -> Mesh {
     together(&[
