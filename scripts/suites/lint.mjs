@@ -4,7 +4,7 @@ import { dirname, join } from "node:path";
 import { filesBelow } from "../lib/cache.mjs";
 import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
-import { setUp } from "../lib/setup.mjs";
+import { setUp, wasmTarget } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
 import { checkCodes, checkDocuments } from "./documents.mjs";
 
@@ -16,12 +16,15 @@ const crates = [
 
 export async function lint() {
   await setUp();
-  const clippy = ["clippy", "--quiet", "--workspace", "--all-targets"];
+  const clippy = (/** @type {readonly string[]} */ args) => () =>
+    run("cargo", ["clippy", "--quiet", ...args, "--", "-D", "warnings"], { remedy: "correct what clippy names" });
+  const tested = ["sim3align", "sim3align-physics"].flatMap((name) => ["--package", name]);
   const [node, biome] = nodeProgram("@biomejs/biome", "biome");
   const [, tsc] = nodeProgram("typescript", "tsc");
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
-    ["clippy", () => run("cargo", [...clippy, "--", "-D", "warnings"], { remedy: "correct what clippy names" })],
+    ["clippy, native", clippy(["--workspace", "--all-targets"])],
+    ["clippy, tests in WebAssembly", clippy(["--tests", "--target", wasmTarget, ...tested])],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
     ...["pkg-config", "tests", "www", "scripts"].map(
       (folder) =>
