@@ -7,7 +7,7 @@ import { runChecks } from "../lib/step.mjs";
 const smallest = [
   ["record", "--quick", "--check"],
   ["bench", "--smallest"],
-  ["fit", "--smallest"],
+  ["fit", "--cases", "36", "--test-cases", "12"],
   ["speed", "--quick"],
   ["physics"],
   ["start", "--check"],

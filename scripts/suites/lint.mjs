@@ -24,7 +24,7 @@ export async function lint() {
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
     ["clippy, native", clippy(["--workspace", "--all-targets"])],
-    ["clippy, tests in WebAssembly", clippy(["--tests", "--target", wasmTarget, ...tested])],
+    ["clippy, tests in WebAssembly", clippy(["--test", "suite", "--target", wasmTarget, ...tested])],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
     ...["pkg-config", "tests", "www", "scripts"].map(
       (folder) =>

@@ -4,6 +4,9 @@
 //! proptest draws and shrinks the bytes from which an [`Entropy`] makes an input; a seed gives the same inputs everywhere.
 //! `SIM3ALIGN_FUZZ_SEED` chooses another one, as `npm run fuzz` does.
 
+#![cfg(not(target_family = "wasm"))]
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 mod calls;
 mod entropy;
 mod files;
