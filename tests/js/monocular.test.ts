@@ -1,7 +1,7 @@
 /** Depth as models guess it, and cameras that nobody wrote down: what is unknown is estimated with the pose. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type AlignInput, createAligner, type DepthKind, type FrameInput, type Sim3 } from "sim3align";
+import { type AlignInput, createAligner, type DepthKind, type Sim3 } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { frameAt, turnBetween } from "../support/rig.js";
@@ -106,19 +106,4 @@ test("views of relative depth have one size, and the cameras' distance makes it 
   });
   const all = await here.alignViews({ mesh, views }, quick);
   assert.ok(all.views.every((each) => each.depthCalibration?.isMetric));
-});
-
-test("a video of relative depth has one size, in a unit of its own", async () => {
-  const video = [0, 3, 6].map((angle) => frameAt(angle));
-  using tracker = await here.track(mesh);
-  const frames = video.map(({ frame }, k): FrameInput => {
-    const depth = frame.depth.map((z) => (4 + 0.2 * k) / z - 1 - 0.1 * k);
-    return { ...frame, depth, depthKind: "affine-invariant-disparity" };
-  });
-  const poses = await Promise.all(frames.map((frame) => tracker.next(frame)));
-  for (const [k, { state, rotation, scale, depthCalibration }] of poses.entries()) {
-    assert.deepEqual([state, depthCalibration?.isMetric], ["tracking", false]);
-    assert.ok(turnBetween(rotation, video[k]?.pose.rotation ?? []) < 6, `frame ${k}`);
-    assert.ok(Math.abs(scale / (poses[0]?.scale ?? 0) - 1) < 0.03, `frame ${k}: ${scale}`);
-  }
 });
