@@ -126,8 +126,16 @@ test("masks in JSON are those of pycocotools; run lengths that do not fit are re
     const annotation = Buffer.from(`\ufeff ${JSON.stringify({ id: 1, segmentation: json })}`);
     for (const file of [fixture(name), json, annotation]) assert.deepEqual((await readMask(file)).data, expected, name);
   }
-  const long = { code: "CORRUPT_FILE", argument: "mask.counts" };
-  await assert.rejects(readMask(Buffer.from('{"size":[5,7],"counts":[36]}')), long);
+  const refused: [size: string, counts: string, code: string, argument: string][] = [
+    ["[5,7]", "[36]", "CORRUPT_FILE", "mask.counts"],
+    ["[5,7]", "[30,4]", "CORRUPT_FILE", "mask.counts"],
+    ["[5,7]", "{}", "INVALID_ARGUMENT", "mask.counts"],
+    ["[0,7]", "[0]", "EMPTY_IMAGE", "mask.size"],
+    ["[5,7,1]", "[35]", "UNSUPPORTED_FORMAT", "mask"],
+  ];
+  for (const [size, counts, code, argument] of refused) {
+    await assert.rejects(readMask(Buffer.from(`{"size":${size},"counts":${counts}}`)), { code, argument }, counts);
+  }
   assert.deepEqual((await readMask(cocoRle(expected, 7, 5))).data, expected);
 });
 

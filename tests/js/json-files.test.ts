@@ -17,12 +17,10 @@ const withNumber = (numbers: number[], place: number, number: number) =>
 const cameras: Record<string, unknown> = {
   "our own": intrinsics,
   "RealSense's": { fx: 600, fy: 610, ppx: 319.5, ppy: 239.5, ...size, model: "brown_conrady" },
-  "K in rows": { K: rows },
   "K alone, in rows": rows,
   "K times 2": { K: K.map((number) => 2 * number) },
   "Open3D's, column by column": { ...size, intrinsic_matrix: [600, 0, 0, 0, 610, 0, 319.5, 239.5, 1] },
   "BOP's whole file": { "0": { cam_K: K, depth_scale: 0.1 } },
-  "BOP's entry": { cam_K: K, depth_scale: 0.1 },
   "ROS 1": { header: { seq: 1 }, ...size, distortion_model: "plumb_bob", D: [0, 0, 0, 0, 0], K, R: [1] },
   "ROS 2": { ...size, d: [], k: K },
 };
