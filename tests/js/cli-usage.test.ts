@@ -37,7 +37,6 @@ const usage: Record<string, Record<string, RegExp>> = {
   "of options": {
     "align blob --sead 1": /unknown option '--sead'.*--seed/s,
     "align blob --preset fast": /Allowed choices are precise, paper/,
-    "align blob --camera-up 0,1": /X,Y,Z/,
     "align blob --symmetry [{axis}]": /Invalid JSON/,
     "align blob --seed one": /Not a number/,
     "align blob --options [1]": /Expected an object/,
