@@ -17,13 +17,6 @@ const { width, height, depth, mask, camera } = view;
 const pixels = width * height;
 const size = { width, height };
 
-/** An array with another value at an index. */
-function changed<T extends { slice(): T; [index: number]: number }>(array: T, index: number, value: number): T {
-  const copy = array.slice();
-  copy[index] = value;
-  return copy;
-}
-
 const K = { cam_K: [] };
 const refusesInputs = (changes: Refusals<object>) =>
   refuses(changes, (change) => aligner.align({ ...input, ...change } as AlignInput));
@@ -70,7 +63,11 @@ refusesInputs([
   [positioned([0, 0, 0]), "INVALID_ARGUMENT mesh.positions", /Float32Array\.from/],
   [positioned(mesh.positions.slice(1)), "WRONG_LENGTH mesh.positions", /multiple of 3/],
   [indexed([0, 1, 2]), "INVALID_ARGUMENT mesh.indices", /Uint32Array\.from/],
-  [indexed(changed(mesh.indices, 7, 1e6)), "INDEX_OUT_OF_RANGE mesh.indices", /1000000 in triangle 2/],
+  [
+    indexed(mesh.indices.map((index, i) => (i === 7 ? 1e6 : index))),
+    "INDEX_OUT_OF_RANGE mesh.indices",
+    /1000000 in triangle 2/,
+  ],
   [colored({ colors: [0, 0, 0] }), "INVALID_ARGUMENT mesh.colors"],
   [colored({ colors: new Uint8Array(mesh.positions.length), colorSpace: "rgb" }), "INVALID_OPTION mesh.colorSpace"],
   [colored({ samples: { ...samples, colors: new Uint8Array(5) } }), "WRONG_LENGTH mesh.samples"],
