@@ -37,7 +37,9 @@ refusesInputs([
   [{ pointMap: new Float32Array(3 * pixels) }, "INVALID_ARGUMENT depth", /not both/],
   [{ mask: undefined }, "INVALID_ARGUMENT mask", /found nothing, expected a Uint8Array/],
   [{ mask: Array.from(mask) }, "INVALID_ARGUMENT mask", /Uint8Array\.from\(mask\)/],
+  [{ mask: Float32Array.from(mask) }, "INVALID_ARGUMENT mask", /Uint8Array\.from\(mask\)/],
   [{ mask: new Uint8ClampedArray(4 * pixels) }, "WRONG_LENGTH mask", /76800 values, 4 per pixel.*one channel/],
+  [{ mask: { [Symbol.toStringTag]: "ImageData" } }, "INVALID_ARGUMENT mask", /one channel/],
   [{ mask: { data: new Uint8Array(80 * 60), width: 80, height: 60 } }, "SIZE_MISMATCH mask", /80 × 60.*resizeMask/s],
   [{ resizeMask: "bilinear" }, "INVALID_ARGUMENT resizeMask", /"nearest"/],
   [{ mask: new Uint8Array(pixels) }, "EMPTY_MASK mask", /no non-zero pixel/],
@@ -104,6 +106,8 @@ const options: Refusals<unknown> = [
   [{ seed: -1 }, "INVALID_OPTION options.seed", /-1/],
   [{ quality: "ultra" }, "INVALID_OPTION options.quality", /"ultra".*fast.*balanced.*best/],
   [{ scale: "fixed" }, "INVALID_OPTION options.scale", /"fixed".*"free"/],
+  [{ knownExtentAxis: "w" }, "INVALID_OPTION options.knownExtentAxis", /longest.*z/],
+  [{ symmetry: "round" }, "INVALID_OPTION options.symmetry", /"round".*"auto"/],
   [{ symmetry: [{ axis: [0, 0, 0] }] }, "INVALID_OPTION options.symmetry.axis", /other than 0/],
   [{ initial: 5 }, "INVALID_ARGUMENT options.initial", /number 5.*matrix/],
   [{ initial: { ...truth, rotation: [0, 0, 0, 0] } }, "INVALID_TRANSFORM options.initial.rotation", /quaternion/],
@@ -122,12 +126,15 @@ refuses(transforms, (transform) => aligner.evaluate(input, transform as Sim3Like
 const cloud = Float64Array.from(mesh.positions);
 const register = (source: unknown, target: unknown = cloud, options = {}) =>
   aligner.register(source as Float64Array, target as Float64Array, options);
-const estimate = (correspondences: unknown) => aligner.estimateSim3(cloud, cloud, correspondences as Uint32Array);
+const estimate = (correspondences: unknown, source = cloud) =>
+  aligner.estimateSim3(source, cloud, correspondences as Uint32Array);
+const withNaN = cloud.map((x, i) => (i === 4 ? Number.NaN : x));
 
 const others: Refusals<() => Promise<unknown>> = [
   [() => aligner.evaluate({ ...input, depth: undefined } as never, truth), "INVALID_ARGUMENT depth", /nothing/],
   [() => register([1, 2, 3]), "INVALID_ARGUMENT source", /Float64Array\.from/],
   [() => register(cloud, cloud, { guard: null }), "UNKNOWN_OPTION options.guard"],
+  [() => estimate(Uint32Array.of(0, 0, 1, 1, 2, 2), withNaN), "NON_FINITE source", /NaN in point 1/],
   [() => estimate([0, 0]), "INVALID_ARGUMENT correspondences", /Uint32Array\.from/],
   [() => estimate(Uint32Array.of(0, 0, 1, 1, 2, 1e6)), "INDEX_OUT_OF_RANGE correspondences", /pair 2/],
   [() => aligner.track(mesh, { quality: "nice" } as never), "INVALID_OPTION options.quality"],

@@ -36,6 +36,7 @@ const usage: Record<string, Record<string, RegExp>> = {
   },
   "of options": {
     "align blob --sead 1": /unknown option '--sead'.*--seed/s,
+    "align blob --guard none": /options\.guard.*option of preset "paper"/,
     "align blob --preset fast": /Allowed choices are precise, paper/,
     "align blob --symmetry [{axis}]": /Invalid JSON/,
     "align blob --seed one": /Not a number/,

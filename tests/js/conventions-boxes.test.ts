@@ -205,6 +205,8 @@ test("wrong axes, boxes, cuboids and planes are refused", async () => {
     [() => toCuboid(box, { up: "z" }), "INVALID_OPTION options.up", /"x" or "-x" or "y" or "-y"/],
     [() => orientedBoundingBox(car, truth, { box: "smallest" as never }), "INVALID_OPTION options.box", /"minimal"/],
     [() => fromCvatCuboid([1, 2, 3]), "WRONG_LENGTH points", /16 numbers/],
+    [() => toCuboid({ ...box, sizeM: [1, 1, -1] }), "INVALID_ARGUMENT box.sizeM", /above 0/],
+    [() => uprightMesh({} as never, truth), "INVALID_ARGUMENT mesh.positions"],
     [upright({ support: { normal: [0, 0, 0] } }), "INVALID_ARGUMENT the length of options.support.normal"],
   ];
   for (const each of refused) await rejectsWith(...each);

@@ -155,6 +155,8 @@ test("tensors that leave the choice open, and sizes that do not go together, are
       /predicted_depth/,
     ],
     [() => cropInput({ depth, mask: small }, whole), "SIZE_MISMATCH input.mask", /8 × 6 pixels, expected 160 × 120/],
+    [() => maskFromTensor({ ...tensor, data: new Uint8Array(17) }), "WRONG_LENGTH tensor.data", /17 values/],
+    [() => maskBox({ data: new Uint8Array(4), width: 2, height: 2 }), "EMPTY_MASK mask", /no non-zero pixel/],
     [() => cropInput({ depth }, { ...whole, left: 1 }), "SIZE_MISMATCH box", /within/],
     // Bytes of a file cannot be cropped, and the whole photo would not belong to the part.
     [() => cropInput({ depth, image: fixture("photo.png") as never }, whole), "INVALID_ARGUMENT input.image"],

@@ -80,6 +80,7 @@ const refusedCameras: [unknown, Fault, RegExp, ReadCameraOptions?][] = [
   [{ K: withNumber(K, 8, 0) }, "INVALID_CAMERA camera.K", /row-major/],
   [`{${" ".repeat(1 << 24)}}`, "FILE_TOO_LARGE camera", /16777216/],
   [{ fovYDeg: 180 }, "INVALID_CAMERA camera.fovYDeg", /below 180/, size],
+  [{ fovYDeg: 60 }, "INVALID_ARGUMENT options.width", /field of view/],
   [{ ...intrinsics, ...size }, "SIZE_MISMATCH camera", /640 × 480.*320 × 240/, { width: 320, height: 240 }],
 ];
 
