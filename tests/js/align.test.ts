@@ -79,11 +79,6 @@ test("the defaults are those of the documentation: passing them, or undefined, c
   assert.deepEqual(withoutTimes(await aligner.align(input, PAPER_DEFAULTS)), withoutTimes(baseline));
 });
 
-test("a size that is passed is the size that is found", async () => {
-  const { scale } = await aligner.align(input, { ...quick, scale: 0.08 });
-  assert.ok(Math.abs(scale / 0.08 - 1) < 1e-9, `${scale}`);
-});
-
 test("the same call gives the same bits, after other calls and errors and in another instance; arguments stay", async () => {
   const { depth, mask, mesh } = input;
   const before = structuredClone([depth, mask, mesh.positions, mesh.indices]);

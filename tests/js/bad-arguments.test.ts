@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { type AlignInput, type AlignOptions, createAligner, type Sim3Like } from "sim3align";
 import { type Refusals, refuses, rejectsWith } from "../support/errors.js";
-import { fixture, glb, glbOf, gltfBuffer, gltfJson, npy, png } from "../support/files.js";
+import { glb, gltfJson, png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 import { poses, tableScene, tableView } from "../support/table.js";
@@ -16,14 +16,6 @@ after(async () => assert.deepEqual(withoutTimes(await aligner.align(input, quick
 const { width, height, depth, mask, camera } = view;
 const pixels = width * height;
 const size = { width, height };
-const inMask = (value: number) => depth.map((z, i) => (mask[i] === 0 ? z : value));
-
-/** An array with another value at an index. */
-function changed<T extends { slice(): T; [index: number]: number }>(array: T, index: number, value: number): T {
-  const copy = array.slice();
-  copy[index] = value;
-  return copy;
-}
 
 const K = { cam_K: [] };
 const refusesInputs = (changes: Refusals<object>) =>
@@ -51,12 +43,8 @@ refusesInputs([
   [{ mask: { data: new Uint8Array(80 * 60), width: 80, height: 60 } }, "SIZE_MISMATCH mask", /80 × 60.*resizeMask/s],
   [{ resizeMask: "bilinear" }, "INVALID_ARGUMENT resizeMask", /"nearest"/],
   [{ mask: new Uint8Array(pixels) }, "EMPTY_MASK mask", /no non-zero pixel/],
-  [{ depth: inMask(0) }, "NO_DEPTH_IN_MASK depth", /no reading in the \d+ pixels/],
-  [{ depth: inMask(0.7) }, "FLAT_DEPTH depth", /0\.7 m in all \d+ readings/],
-  [{ mask: mask.map((m, i) => m * Number(i < mask.indexOf(1) + 5)) }, "TOO_FEW_POINTS depth", /at least \d+/],
   [{ camera: null }, "INVALID_ARGUMENT camera", /null/],
   [{ camera: { ...camera, cx: Number.NaN } }, "INVALID_CAMERA camera.cx", /NaN/],
-  [{ camera: { ...camera, fx: 0 } }, "INVALID_CAMERA camera.fx", /found 0/],
   [{ camera: { K: [300, 0, 0, 0, 300, 0, 80, 60, 1] } }, "INVALID_CAMERA camera.K", /transpose/],
   [{ camera: { ...camera, focalUncertainty: 100 } }, "INVALID_ARGUMENT camera.focalUncertainty", /0\.1 for 10 %/],
   [{ camera: { ...camera, width: 640, height: 480 } }, "SIZE_MISMATCH camera", /640 × 480/],
@@ -77,10 +65,11 @@ refusesInputs([
   [positioned([0, 0, 0]), "INVALID_ARGUMENT mesh.positions", /Float32Array\.from/],
   [positioned(mesh.positions.slice(1)), "WRONG_LENGTH mesh.positions", /multiple of 3/],
   [indexed([0, 1, 2]), "INVALID_ARGUMENT mesh.indices", /Uint32Array\.from/],
-  [indexed(changed(mesh.indices, 7, 1e6)), "INDEX_OUT_OF_RANGE mesh.indices", /1000000 in triangle 2/],
-  [indexed(new Uint32Array(0)), "EMPTY_MESH mesh", /no triangle/],
-  [positioned(changed(mesh.positions, 4, Number.NaN)), "NON_FINITE mesh.positions", /NaN.*vertex 1/],
-  [positioned(mesh.positions.map(() => 0)), "DEGENERATE_MESH mesh"],
+  [
+    indexed(mesh.indices.map((index, i) => (i === 7 ? 1e6 : index))),
+    "INDEX_OUT_OF_RANGE mesh.indices",
+    /1000000 in triangle 2/,
+  ],
   [colored({ colors: [0, 0, 0] }), "INVALID_ARGUMENT mesh.colors"],
   [colored({ colors: new Uint8Array(mesh.positions.length), colorSpace: "rgb" }), "INVALID_OPTION mesh.colorSpace"],
   [colored({ samples: { ...samples, colors: new Uint8Array(5) } }), "WRONG_LENGTH mesh.samples"],
@@ -89,28 +78,9 @@ refusesInputs([
   [{ image: { data: rgb, width: pixels, height: 1 } }, "SIZE_MISMATCH image"],
 ]);
 
-/** A GLB whose geometry is there in compressed form only. */
-function dracoGlb(): Uint8Array {
-  const extension = "KHR_draco_mesh_compression";
-  const plain = gltfJson(mesh);
-  const primitive = {
-    ...plain.meshes[0]?.primitives[0],
-    extensions: { [extension]: { bufferView: 0, attributes: {} } },
-  };
-  const accessors = plain.accessors.map(({ bufferView: _, ...rest }) => rest);
-  const names = { extensionsUsed: [extension], extensionsRequired: [extension] };
-  return glbOf({ ...plain, meshes: [{ primitives: [primitive] }], accessors, ...names }, gltfBuffer(mesh));
-}
-
-const header = Buffer.alloc(100);
-header.write("glTF\x02\0\0\0\xff\xff\xff\xff\xf0\xff\xff\xffJSON", "latin1");
 const external = Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "mesh.bin" })));
 const bytes = new Uint8Array(pixels).fill(80);
 const unsized = { width: undefined, height: undefined };
-const photo = fixture("photo.png");
-const huge = photo.slice();
-// 100 000 × 100 000 pixels.
-huge.set([0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0], 16);
 
 refusesInputs([
   [{ ...unsized, depth: png(bytes, width, height) }, "EIGHT_BIT_DEPTH depth", /8-bit PNG/],
@@ -119,16 +89,10 @@ refusesInputs([
     "UNSUPPORTED_FORMAT depth",
     /16-bit grey PNG, a \.npy array, or a \.npz/,
   ],
-  [{ ...unsized, depth: npy(depth, height, width).slice(0, 5000) }, "CORRUPT_FILE depth"],
   [{ mask: png(new Uint8Array(6).fill(1), 3, 2) }, "SIZE_MISMATCH mask", /3 × 2 pixels/],
-  [{ mask: { size: [120, 160], counts: [5, 5] } }, "CORRUPT_FILE mask.counts"],
   [{ mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, "UNSUPPORTED_FORMAT mask", /PNG/],
-  [{ mesh: header }, "FILE_TOO_LARGE mesh", /claims 4294967295 bytes; the file has 100/],
-  [{ mesh: glb(mesh).slice(0, 5000) }, "CORRUPT_FILE mesh"],
-  [{ mesh: dracoGlb() }, "COMPRESSED_MESH mesh", /KHR_draco_mesh_compression.*gltf-transform/],
   [{ mesh: external }, "INVALID_ARGUMENT mesh.resources", /mesh\.bin/],
   [{ mesh: { bytes: glb(mesh), format: "fbx" } }, "INVALID_OPTION mesh.format", /fbx/],
-  [{ image: huge }, "FILE_TOO_LARGE image"],
   [{ image: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }, "UNSUPPORTED_FORMAT image"],
 ]);
 
@@ -140,25 +104,13 @@ const options: Refusals<unknown> = [
   [{ preset: "paper", quality: "best" }, "UNKNOWN_OPTION options.quality", /Omit `preset`/],
   [{ preset: "fast" }, "INVALID_OPTION options.preset", /precise.*paper/],
   [{ seed: -1 }, "INVALID_OPTION options.seed", /-1/],
-  [{ preset: "paper", voxelDivisions: 1 }, "INVALID_OPTION options.voxelDivisions", /5 to 200/],
-  [{ preset: "paper", guard: [1.2, 1.5] }, "INVALID_OPTION options.guard", /≤ 1 ≤/],
-  [{ preset: "paper", lockScale: 1 }, "INVALID_OPTION options.lockScale"],
   [{ quality: "ultra" }, "INVALID_OPTION options.quality", /"ultra".*fast.*balanced.*best/],
-  [{ scale: 0 }, "INVALID_OPTION options.scale", /number above 0/],
   [{ scale: "fixed" }, "INVALID_OPTION options.scale", /"fixed".*"free"/],
-  [{ scale: [2, 1] }, "INVALID_OPTION options.scale", /\[2, 1\].*min ≤ max/],
-  [{ knownExtentM: -0.1 }, "INVALID_OPTION options.knownExtentM", /-0\.1.*above 0/],
   [{ knownExtentAxis: "w" }, "INVALID_OPTION options.knownExtentAxis", /longest.*z/],
-  [{ scale: 1, knownExtentM: 1 }, "INVALID_OPTION options.knownExtentM", /omit one of the two/],
-  [{ cameraUp: [0, 0, 0], meshUp: [0, 1, 0] }, "INVALID_OPTION options.cameraUp", /not all 0/],
-  [{ cameraUp: [0, -1, 0] }, "INVALID_OPTION options.meshUp", /in both frames/],
   [{ symmetry: "round" }, "INVALID_OPTION options.symmetry", /"round".*"auto"/],
   [{ symmetry: [{ axis: [0, 0, 0] }] }, "INVALID_OPTION options.symmetry.axis", /other than 0/],
-  [{ search: "local" }, "INVALID_OPTION options.search", /without an initial pose/],
   [{ initial: 5 }, "INVALID_ARGUMENT options.initial", /number 5.*matrix/],
   [{ initial: { ...truth, rotation: [0, 0, 0, 0] } }, "INVALID_TRANSFORM options.initial.rotation", /quaternion/],
-  [{ initial: truth, scale: [0.1, 0.2] }, "INVALID_OPTION options.initial", /0\.09.*within `scale`: \[0\.1, 0\.2\]/],
-  [{ workBudget: 0 }, "INVALID_OPTION options.workBudget", /above 0/],
   [{ onProgress: "log" }, "INVALID_ARGUMENT options.onProgress", /function/],
   [{ signal: { aborted: false } }, "INVALID_ARGUMENT options.signal", /AbortSignal/],
 ];
@@ -167,27 +119,23 @@ refuses(options, (value) => aligner.align(input, value as AlignOptions));
 const transforms: Refusals<unknown> = [
   [undefined, "INVALID_ARGUMENT transform", /transform/],
   [{ ...truth, scale: 0 }, "INVALID_TRANSFORM transform", /scale/],
-  [{ ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] }, "INVALID_TRANSFORM transform", /rotation/],
   [[0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1], "INVALID_TRANSFORM transform.matrix", /column-major/],
 ];
 refuses(transforms, (transform) => aligner.evaluate(input, transform as Sim3Like));
 
 const cloud = Float64Array.from(mesh.positions);
-const pairs = Uint32Array.from({ length: 20 }, (_, i) => 40 * Math.floor(i / 2));
 const register = (source: unknown, target: unknown = cloud, options = {}) =>
   aligner.register(source as Float64Array, target as Float64Array, options);
 const estimate = (correspondences: unknown, source = cloud) =>
   aligner.estimateSim3(source, cloud, correspondences as Uint32Array);
+const withNaN = cloud.map((x, i) => (i === 4 ? Number.NaN : x));
 
 const others: Refusals<() => Promise<unknown>> = [
   [() => aligner.evaluate({ ...input, depth: undefined } as never, truth), "INVALID_ARGUMENT depth", /nothing/],
   [() => register([1, 2, 3]), "INVALID_ARGUMENT source", /Float64Array\.from/],
-  [() => register(cloud.slice(1)), "WRONG_LENGTH source", /multiple of 3/],
-  [() => estimate(pairs, changed(cloud, 4, Number.NaN)), "NON_FINITE source", /NaN in point 1/],
-  [() => register(cloud.slice(0, 30)), "TOO_FEW_POINTS source", /10 points/],
   [() => register(cloud, cloud, { guard: null }), "UNKNOWN_OPTION options.guard"],
+  [() => estimate(Uint32Array.of(0, 0, 1, 1, 2, 2), withNaN), "NON_FINITE source", /NaN in point 1/],
   [() => estimate([0, 0]), "INVALID_ARGUMENT correspondences", /Uint32Array\.from/],
-  [() => estimate(pairs.slice(1)), "WRONG_LENGTH correspondences", /even/],
   [() => estimate(Uint32Array.of(0, 0, 1, 1, 2, 1e6)), "INDEX_OUT_OF_RANGE correspondences", /pair 2/],
   [() => aligner.track(mesh, { quality: "nice" } as never), "INVALID_OPTION options.quality"],
   [() => drain(input), "INVALID_ARGUMENT inputs", /iterable/],
@@ -225,15 +173,9 @@ const still = { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] };
 const { mesh: _, ...frame } = input;
 const views: Refusals<object> = [
   [{ views: undefined }, "INVALID_ARGUMENT views"],
-  [{ views: [{ ...frame, cameraToWorld: still }, frame] }, "INVALID_ARGUMENT views"],
   [{ views: [frame, { ...frame, depht: 1 }] }, "INVALID_ARGUMENT views[1].depht"],
   [{ views: [frame, { ...frame, depth: [1, 2] }] }, "INVALID_ARGUMENT views[1].depth"],
   [{ views: [{ ...frame, cameraToWorld: { ...still, scale: 2 } }] }, "INVALID_TRANSFORM views[0].cameraToWorld"],
-  [
-    { views: [frame, { ...frame, image: { data: rgb, width: pixels, height: 1 } }] },
-    "SIZE_MISMATCH views[1].image",
-    /field of view/,
-  ],
   [{ views: [frame], depth: 1 }, "INVALID_ARGUMENT input.depth"],
 ];
 refuses(views, (change) => aligner.alignViews({ mesh, ...change } as never));

@@ -97,8 +97,8 @@ test("relative depth has no unit, and none is printed, until --known-extent make
   assert.ok(errors.rotationErrorDeg < 5 && errors.scaleError < 1e-6, JSON.stringify(errors));
 });
 
-test("a batch of relative depth: columns of metres are empty, pictures are in its unit, and it resumes", () => {
-  const batch = `align relative model ${relative} --jsonl b.jsonl --csv b.csv --workers 1`;
+test("a batch of relative depth: columns of metres are empty, and pictures are in its unit", () => {
+  const batch = `align relative model ${relative} --csv b.csv --workers 1`;
   const { stdout, stderr } = succeeds(`${batch} --report report --overlay overlay --glb posed`);
   hasNoMetres(stdout);
   assert.doesNotMatch(stderr, /no pictures/);
@@ -110,9 +110,4 @@ test("a batch of relative depth: columns of metres are empty, pictures are in it
     assert.deepEqual([of.isMetric, of.txM, of.chamferMm, of.depthMaeMm], ["false", "", "", ""]);
     assert.ok(Number(of.scale) > 0 && Number(of.iou) > 0.9 && Number(of.timeMs) > 0);
   }
-  const [line] = read("b.jsonl").split("\n");
-  writeFileSync(join(folder, "b.jsonl"), `${line}\n`);
-  const again = succeeds(`${batch} --resume`);
-  assert.match(again.stderr, /resumed: 1 of 2/);
-  hasNoMetres(again.stdout);
 });

@@ -201,22 +201,13 @@ test("a GLB and a scene of upright objects are where they were", async () => {
 test("wrong axes, boxes, cuboids and planes are refused", async () => {
   const box = orientedBoundingBox(car, truth);
   const upright = (options: unknown) => () => uprightMesh(mesh, truth, options as never);
-  const points = [0, 0, 0, 0, 0, 0, 1, 1, -1, 0, 0, 0, 0, 0, 0, 0];
   const refused: Refused[] = [
     [() => toCuboid(box, { up: "z" }), "INVALID_OPTION options.up", /"x" or "-x" or "y" or "-y"/],
-    [() => toCuboid(box, { front: "forward" as never }), "INVALID_OPTION options.front", /"-z"/],
-    [() => toCuboid({ ...box, sizeM: [1, 1, -1] }), "INVALID_ARGUMENT box.sizeM", /above 0/],
     [() => orientedBoundingBox(car, truth, { box: "smallest" as never }), "INVALID_OPTION options.box", /"minimal"/],
     [() => fromCvatCuboid([1, 2, 3]), "WRONG_LENGTH points", /16 numbers/],
-    [() => fromCvatCuboid(points), "INVALID_ARGUMENT points", /above 0/],
-    [
-      () => toCvatCuboid({ center: [0, 0, 0], size: [1, 0, 1], quaternion: [0, 0, 0, 1] }),
-      "INVALID_ARGUMENT cuboid.size",
-    ],
-    [upright({ up: "x" }), "INVALID_OPTION options.up"],
-    [upright({ support: { normal: [0, 0, 0] } }), "INVALID_ARGUMENT the length of options.support.normal"],
-    [upright({ support: {} }), "INVALID_ARGUMENT options.support.normal"],
+    [() => toCuboid({ ...box, sizeM: [1, 1, -1] }), "INVALID_ARGUMENT box.sizeM", /above 0/],
     [() => uprightMesh({} as never, truth), "INVALID_ARGUMENT mesh.positions"],
+    [upright({ support: { normal: [0, 0, 0] } }), "INVALID_ARGUMENT the length of options.support.normal"],
   ];
   for (const each of refused) await rejectsWith(...each);
 });

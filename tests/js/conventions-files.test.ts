@@ -160,24 +160,16 @@ test("what is no mesh, GLB or stretch is refused", async () => {
       stretchMesh(mesh, { stretch: numbers } as never);
   const refused: Refused[] = [
     [glb({ positions: [0, 0, 0] }), "INVALID_ARGUMENT mesh.positions", /Float32Array\.from/],
-    [glb({ positions: positions.slice(0, 8) }), "WRONG_LENGTH mesh.positions", /8 numbers/],
     [glb({ positions: positions.slice(0, 6) }), "WRONG_LENGTH mesh.positions", /2 vertices/],
-    [glb({ positions: new Float32Array() }), "EMPTY_MESH mesh", /no vertex/],
-    [glb({ positions, indices: new Uint32Array() }), "EMPTY_MESH mesh", /no triangle/],
     [glb({ positions, indices: Uint32Array.of(0, 1, 9) }), "INDEX_OUT_OF_RANGE mesh.indices", /below 9/],
-    [glb({ positions, indices: Uint32Array.of(0, 1) }), "WRONG_LENGTH mesh.indices", /2 indices/],
     [glb({ positions: positions.map((x, i) => (i === 5 ? Number.NaN : x)) }), "NON_FINITE mesh.positions", /vertex 1/],
     [glb(soup, { mode: "bake" }), "INVALID_OPTION options.mode", /"node" or "baked"/],
     [() => placeGlb(new Uint8Array(7), truth), "CORRUPT_FILE glb", /without a GLB header/],
     [() => placeGlb(good.slice(0, -1), truth), "CORRUPT_FILE glb", /bytes of/],
     [place(20, 0x78), "CORRUPT_FILE glb", /JSON/],
-    [place(15, 0x7f), "CORRUPT_FILE glb", /a chunk up to/],
     [place(4, 1), "UNSUPPORTED_FORMAT glb", /glTF 2/],
-    [() => placeGlb("glb" as never, truth), "INVALID_ARGUMENT glb", /bytes of a GLB/],
     [stretch(1, 0.5, 0, 0, 1, 0, 0, 0, 1), "INVALID_ARGUMENT proportions.stretch", /symmetric/],
     [stretch(1, 0, 0, 0, -1, 0, 0, 0, 1), "INVALID_ARGUMENT proportions.stretch", /positive/],
-    [stretch(1, 2), "WRONG_LENGTH proportions.stretch", /nine/],
-    [() => stretchMesh(mesh, undefined as never), "INVALID_ARGUMENT proportions", /proportions/],
   ];
   for (const each of refused) await rejectsWith(...each);
 });

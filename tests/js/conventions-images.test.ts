@@ -115,27 +115,13 @@ test("resized pixels are old pixels, each its nearest", () => {
   assert.deepEqual(resizeMask(mask, view), mask);
 });
 
-test("what is resized or cropped, camera and all, is the same scene", async () => {
+test("a cropped input is the same scene: half a pixel more would show", async () => {
   const aligner = await createAligner();
-  const size = { width: 2 * width, height: 2 * height };
-  const large = {
-    ...{ depth: resizeDepth(depth, size), mask: resizeMask(mask, size), mesh },
-    camera: resizeCamera(camera, { fromWidth: width, fromHeight: height, ...size }),
-  };
-  const full = { depth, mask, camera, mesh };
-  const box = maskBox(large.mask, { marginPx: 20 });
-  assert.ok(box.width < size.width && box.height < size.height);
-  // A crop of the exact image is the exact scene: half a pixel more would show.
-  const exact = cropInput(full, maskBox(mask, { marginPx: 5 }));
-  for (const [one, driftPx, depthMm] of [
-    [large, 0.3, 1],
-    [cropInput(large, box), 0.3, 1],
-    [exact, 0.05, 0.01],
-  ] as const) {
-    const { metrics } = await aligner.evaluate(one, truth);
-    assert.ok((metrics.iou ?? 0) > 0.97 && (metrics.depthMaeMm ?? 9) < depthMm, JSON.stringify(metrics));
-    assert.ok((metrics.centerDriftPx ?? 9) < driftPx, JSON.stringify(metrics));
-  }
+  const box = maskBox(mask, { marginPx: 5 });
+  assert.ok(box.width < width && box.height < height);
+  const { metrics } = await aligner.evaluate(cropInput({ depth, mask, camera, mesh }, box), truth);
+  assert.ok((metrics.iou ?? 0) > 0.97 && (metrics.depthMaeMm ?? 9) < 0.01, JSON.stringify(metrics));
+  assert.ok((metrics.centerDriftPx ?? 9) < 0.05, JSON.stringify(metrics));
 });
 
 test("a crop holds the pixels of its box, of the photo too, and everything else of the input", () => {
@@ -160,28 +146,20 @@ test("tensors that leave the choice open, and sizes that do not go together, are
   const tensor = { data: new Uint8Array(18), dims: [1, 3, 2, 3] };
   const small = resizeMask(mask, { width: 8, height: 6 });
   const whole = { left: 0, top: 0, width, height };
-  const size = { fromWidth: 1, fromHeight: 1, width: 2, height: 2 };
-  const photo = { data: new Uint8Array(12), width: 2, height: 2 };
-  const transposed = { K: [600, 0, 0, 0, 600, 0, 320, 240, 1] };
   const refused: Refused[] = [
     [() => maskFromTensor(tensor), "INVALID_OPTION choice", /iou_scores/],
-    [() => maskFromTensor(tensor, { index: 3 }), "INVALID_OPTION choice", /iou_scores/],
     [() => maskFromTensor(tensor, { scores: [1, 2] }), "WRONG_LENGTH choice.scores", /2 scores/],
-    [() => maskFromTensor({ ...tensor, data: new Uint8Array(17) }), "WRONG_LENGTH tensor.data", /17 values/],
     [
       () => depthFromTensor({ data: new Uint8Array(6), dims: [2, 3] }),
       "EIGHT_BIT_DEPTH tensor.data",
       /predicted_depth/,
     ],
-    [() => depthFromTensor({ data: new Float32Array(12), dims: [2, 2, 3] }), "WRONG_LENGTH tensor.dims", /2 maps/],
     [() => cropInput({ depth, mask: small }, whole), "SIZE_MISMATCH input.mask", /8 × 6 pixels, expected 160 × 120/],
+    [() => maskFromTensor({ ...tensor, data: new Uint8Array(17) }), "WRONG_LENGTH tensor.data", /17 values/],
+    [() => maskBox({ data: new Uint8Array(4), width: 2, height: 2 }), "EMPTY_MASK mask", /no non-zero pixel/],
     [() => cropInput({ depth }, { ...whole, left: 1 }), "SIZE_MISMATCH box", /within/],
-    [() => cropInput({ depth, image: photo }, whole), "SIZE_MISMATCH input.image"],
     // Bytes of a file cannot be cropped, and the whole photo would not belong to the part.
     [() => cropInput({ depth, image: fixture("photo.png") as never }, whole), "INVALID_ARGUMENT input.image"],
-    [() => maskBox({ data: new Uint8Array(4), width: 2, height: 2 }), "EMPTY_MASK mask", /no non-zero pixel/],
-    [() => resizeCamera({ ...camera, fx: 0 }, size), "INVALID_CAMERA camera.fx", /above 0/],
-    [() => resizeCamera(transposed, size), "INVALID_CAMERA camera.K", /transpose/],
     [() => depthFromDisparity(depth, { scale: Number.NaN }), "INVALID_ARGUMENT calibration.scale", /finite/],
   ];
   for (const each of refused) await rejectsWith(...each);

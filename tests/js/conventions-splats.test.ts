@@ -115,7 +115,6 @@ test("a splat is aligned where the mesh of the same object is, with and without 
   const [ply, records] = [splatPly(gaussians), splatRecords(gaussians)];
   const forms = [
     [aligner, ply],
-    [pool, records],
     [pool, { bytes: records, format: "splat" }],
   ] as const;
   for (const [one, mesh] of forms) {
@@ -144,15 +143,11 @@ test("what is no file of Gaussians is refused", async () => {
   const refused: Refused[] = [
     [place("splat.ply"), "INVALID_ARGUMENT splats", /PLY or \.splat/],
     [place(new Uint8Array()), "UNSUPPORTED_FORMAT splats", /0 bytes/],
-    [place(new Uint8Array(64)), "UNSUPPORTED_FORMAT splats", /64 bytes/],
-    [place(good.subarray(0, 100)), "CORRUPT_FILE splats", /end_header/],
     [place(good.subarray(0, good.length - 1)), "CORRUPT_FILE splats", /as many as/],
     [place(exportPly(mesh)), "UNSUPPORTED_FORMAT splats", /without Gaussians/],
     [place(renamed("binary_little_endian", "ascii")), "UNSUPPORTED_FORMAT splats", /format ascii/],
     [place(renamed("f_rest_8", "another")), "UNSUPPORTED_FORMAT splats", /8 properties f_rest/],
-    [place(renamed("float opacity", "list uchar int opacity")), "CORRUPT_FILE splats", /"list"/],
     [place(good, truth, { frame: "blender" }), "INVALID_OPTION options.frame"],
-    [place(good, { ...truth, scale: 0 }), "INVALID_TRANSFORM transform.scale"],
   ];
   for (const each of refused) await rejectsWith(...each);
 });

@@ -30,21 +30,11 @@ const depthFixtures: Record<
   string,
   [size: string, unit: string, fx?: number | undefined, options?: ReadDepthOptions] | [fault: string]
 > = {
-  "depth-f4.npy": ["7 × 5", FLOATS],
-  "depth-16.png": ["7 × 5", "0.001 m (16-bit integers, assumed)"],
   "depth-16-pillow.png": ["7 × 5", "0.0001 m (camera file)", undefined, { integerDepthScale: 0.0001 }],
   "depth-uint16.tiff": ["37 × 23", "0.0002 m (depthScale)", undefined, { depthScale: 0.0002 }],
-  "depth-depth-pro.npz": ["37 × 23", FLOATS, 41.5],
-  "depth-moge.npz": ["37 × 23", FLOATS, 0.9 * 37],
   "depth-da3.npz": ["37 × 23", FLOATS, 40],
   "depth-disparity.npz": ["37 × 23", "none (affine-invariant-disparity)", undefined, relative],
-  "depth-opencv.exr": ["37 × 23", FLOATS],
-  "depth-blender.exr": ["37 × 23", FLOATS],
-  "depth-float32.tiff": ["37 × 23", FLOATS],
-  "depth-opencv.pfm": ["37 × 23", FLOATS],
   "depth-disparity.npz as metres": ["UNSUPPORTED_FORMAT"],
-  "depth-da3-batch.npz": ["UNSUPPORTED_FORMAT"],
-  "depth-moge-points.exr": ["UNSUPPORTED_FORMAT"],
   "depth-8.png": ["EIGHT_BIT_DEPTH"],
 };
 
@@ -136,24 +126,14 @@ test("masks in JSON are those of pycocotools; run lengths that do not fit are re
     const annotation = Buffer.from(`\ufeff ${JSON.stringify({ id: 1, segmentation: json })}`);
     for (const file of [fixture(name), json, annotation]) assert.deepEqual((await readMask(file)).data, expected, name);
   }
-  // The blob's pixels and bounding box (x 61 to 319) as pycocotools counts them.
-  for (const name of ["rle-blob.json", "rle-blob-plain.json"]) {
-    const { data, width, height } = await readMask(fixture(name));
-    assert.deepEqual([width, height, data.filter((pixel) => pixel === 1).length], [320, 240, 24117]);
-    const columns = [...data.keys()].filter((i) => data[i] === 1).map((i) => i % 320);
-    assert.deepEqual([columns.reduce((a, b) => Math.min(a, b)), columns.reduce((a, b) => Math.max(a, b))], [61, 319]);
-  }
-  const refused: [size: string, counts: string, fault: string][] = [
-    ...["[36]", "[30,4]", "[4294967295,4294967295]", "[-1,36]", "[1.5]", '"~"'].map(
-      (counts): [string, string, string] => ["[5,7]", counts, "CORRUPT_FILE mask.counts"],
-    ),
-    ["[5,7]", "{}", "INVALID_ARGUMENT mask.counts"],
-    ["[0,7]", "[0]", "EMPTY_IMAGE mask.size"],
-    ["[100000,100000]", "[1]", "FILE_TOO_LARGE mask.size"],
-    ["[5,7,1]", "[35]", "UNSUPPORTED_FORMAT mask"],
+  const refused: [size: string, counts: string, code: string, argument: string][] = [
+    ["[5,7]", "[36]", "CORRUPT_FILE", "mask.counts"],
+    ["[5,7]", "[30,4]", "CORRUPT_FILE", "mask.counts"],
+    ["[5,7]", "{}", "INVALID_ARGUMENT", "mask.counts"],
+    ["[0,7]", "[0]", "EMPTY_IMAGE", "mask.size"],
+    ["[5,7,1]", "[35]", "UNSUPPORTED_FORMAT", "mask"],
   ];
-  for (const [size, counts, fault] of refused) {
-    const [code, argument] = fault.split(" ");
+  for (const [size, counts, code, argument] of refused) {
     await assert.rejects(readMask(Buffer.from(`{"size":${size},"counts":${counts}}`)), { code, argument }, counts);
   }
   assert.deepEqual((await readMask(cocoRle(expected, 7, 5))).data, expected);

@@ -4,7 +4,6 @@ import { test } from "node:test";
 import { type AlignInput, type CameraFileInput, createAligner, type Evaluation, type MeshArrays } from "sim3align";
 import { codesOf } from "../support/errors.js";
 import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
-import { withoutTimes } from "../support/results.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 
 const { width, height, depth, mask, camera } = view;
@@ -49,17 +48,14 @@ const forms: Record<string, object> = {
   "depth with its size beside it": { depth, ...size },
   "depth on shared memory": { depth: { data: shared, ...size } },
   "depth: bytes of a .npy file": { depth: depthFile },
-  "depth: a Blob with a .npy file": { depth: blobOf(depthFile) },
   "depth: floats in another unit": { depth: { data: depth.map((z) => z * 1024), ...size }, depthScale: 1 / 1024 },
   "depth: 0, negative, NaN and infinite values are no reading": {
     depth: { data: depth.map((z, i) => (mask[i] === 0 && i % 3 === 0 ? (readings[i % 5] ?? 0) : z)), ...size },
   },
   "mask: other values than 1": { mask: mask.map((m) => 200 * m) },
   "mask: a clamped array": { mask: Uint8ClampedArray.from(mask) },
-  "mask with its size": { mask: { data: mask, ...size } },
   "mask: an ArrayBuffer of pixels": { mask: arrayBuffer(mask) },
   "mask: bytes of a PNG": { mask: maskPng(mask, width, height) },
-  "mask: a Blob with a PNG": { mask: blobOf(png(mask, width, height)) },
   "mask: bytes of a .npy file": { mask: npy(mask, height, width) },
   "mask: COCO RLE": { mask: rle },
   "mask of twice the size, resized": {
@@ -67,12 +63,9 @@ const forms: Record<string, object> = {
   },
   "camera with the image's size": { camera: { ...camera, ...size } },
   "camera: K": { camera: { K } },
-  "camera: K in rows": { camera: { K: [K.slice(0, 3), K.slice(3, 6), K.slice(6)] } },
   "camera file: text": fileOf(json),
-  "camera file: a Blob": fileOf(new Blob([json])),
   "camera file: ROS CameraInfo": fileOf({ ...size, k: K, d: [0, 0, 0, 0, 0], distortion_model: "" }),
   "mesh: 16-bit indices": { mesh: { ...mesh, indices: Uint16Array.from(mesh.indices) } },
-  "mesh: bytes of a GLB": { mesh: glb(mesh) },
   "mesh: bytes of an OBJ, named": { mesh: { bytes: obj(mesh), format: "obj" } },
   "mesh: a .gltf and its buffer": {
     mesh: {
@@ -136,15 +129,6 @@ test("a point map takes the place of depth and camera", async () => {
   assertClose(await evaluated({ ...without, pointMap: { data, ...size } }), 0.02);
   assertClose(await evaluated({ ...without, pointMap: data, ...size }), 0.02);
   assertClose(await evaluated({ ...without, pointMap: data, ...size, camera }), 0.02);
-});
-
-test("align takes files as well, with and without workers", async () => {
-  const files = { depth: depthFile, mask: png(mask, width, height), cameraFile: json, mesh: glb(mesh) };
-  const expected = withoutTimes(await aligner.align(input, { quality: "fast" }));
-  using pool = await createAligner({ workers: 1 });
-  for (const one of [aligner, pool]) {
-    assert.deepEqual(withoutTimes(await one.align(files, { quality: "fast" })), expected);
-  }
 });
 
 // Colours of the mesh's vertices, and a photo of them, a little darker.

@@ -17,14 +17,10 @@ const withNumber = (numbers: number[], place: number, number: number) =>
 const cameras: Record<string, unknown> = {
   "our own": intrinsics,
   "RealSense's": { fx: 600, fy: 610, ppx: 319.5, ppy: 239.5, ...size, model: "brown_conrady" },
-  "K in one row": { K },
-  "K in rows": { K: rows },
-  "K alone": K,
   "K alone, in rows": rows,
   "K times 2": { K: K.map((number) => 2 * number) },
   "Open3D's, column by column": { ...size, intrinsic_matrix: [600, 0, 0, 0, 610, 0, 319.5, 239.5, 1] },
   "BOP's whole file": { "0": { cam_K: K, depth_scale: 0.1 } },
-  "BOP's entry": { cam_K: K, depth_scale: 0.1 },
   "ROS 1": { header: { seq: 1 }, ...size, distortion_model: "plumb_bob", D: [0, 0, 0, 0, 0], K, R: [1] },
   "ROS 2": { ...size, d: [], k: K },
 };
@@ -40,22 +36,12 @@ test("cameras of every tool are the same camera, as bytes, text, Blob and object
   }
 });
 
-test("a camera's size, depth scale and distortion are those of the file", async () => {
+test("a camera's size, depth scale, in millimetres for BOP, and field of view are those of the file", async () => {
   const full = { ...intrinsics, ...size, depthScale: 0.001 };
   assert.deepEqual(await readCamera(full), { ...full, warnings: [] });
-  assert.deepEqual(await readCamera({ ...intrinsics, width: 1.5, height: -1 }), { ...intrinsics, warnings: [] });
-  // BOP's depth_scale is in millimetres: YCB-Video's 0.1 is a tenth of one.
   assert.equal((await readCamera({ ...intrinsics, depth_scale: 0.1 })).depthScale, 0.1 / 1000);
-  const { warnings } = await readCamera({ ...size, D: [0.1, -0.2, 0, 0, 0], K });
-  assert.equal(warnings.length, 1);
-  assert.match(warnings[0] ?? "", /rectified/);
-});
-
-test("a field of view needs the size of the image", async () => {
-  for (const file of [{ fovYDeg: 60 }, { fov_y_deg: 60 }, { fovYDeg: 60, ...size }]) {
-    const { fx, fy, cx, cy } = await readCamera(file, size);
-    assert.deepEqual([fx, cx, cy], [fy, 319.5, 239.5]);
-  }
+  const { fx, fy, cx } = await readCamera({ fov_y_deg: 60 }, size);
+  assert.deepEqual([fx, cx], [fy, 319.5]);
 });
 
 test("of several images one has to be chosen", async () => {
@@ -92,13 +78,10 @@ const refusedCameras: [unknown, Fault, RegExp, ReadCameraOptions?][] = [
   // A column-major K, as of MATLAB.
   [[600, 0, 0, 0, 610, 0, 319.5, 239.5, 1], "INVALID_CAMERA camera.K", /transpose/],
   [{ K: withNumber(K, 8, 0) }, "INVALID_CAMERA camera.K", /row-major/],
-  [{ K: withNumber(K, 1, 1) }, "INVALID_CAMERA camera.K", /row-major/],
   [`{${" ".repeat(1 << 24)}}`, "FILE_TOO_LARGE camera", /16777216/],
-  [{ fovYDeg: 60 }, "INVALID_ARGUMENT options.width", /field of view/],
   [{ fovYDeg: 180 }, "INVALID_CAMERA camera.fovYDeg", /below 180/, size],
+  [{ fovYDeg: 60 }, "INVALID_ARGUMENT options.width", /field of view/],
   [{ ...intrinsics, ...size }, "SIZE_MISMATCH camera", /640 × 480.*320 × 240/, { width: 320, height: 240 }],
-  [intrinsics, "INVALID_ARGUMENT options.width", /1\.5/, { width: 1.5 }],
-  [7, "INVALID_ARGUMENT file", /number 7/],
 ];
 
 test("what is no camera is refused", async () => {
@@ -148,16 +131,11 @@ test("what is no pose is refused", async () => {
   const invalid: [unknown, Fault][] = [
     [{ ...pose, scale: 0 }, "INVALID_TRANSFORM pose.scale"],
     [{ ...pose, rotation: withNumber(rotation, 8, -1) }, "INVALID_TRANSFORM pose.rotation"],
-    [{ ...pose, rotation: [0, 0, 0, 0] }, "INVALID_TRANSFORM pose.rotation"],
-    [{ ...pose, rotation: 7 }, "INVALID_TRANSFORM pose.rotation"],
     [{ ...pose, translation: [0, 0] }, "INVALID_TRANSFORM pose.translation"],
-    [{}, "INVALID_TRANSFORM pose.scale"],
     [{ matrix: [1, 2] }, "INVALID_TRANSFORM pose.matrix"],
     // A row-major matrix.
     [{ matrix: [1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }, "INVALID_TRANSFORM pose"],
-    ["7", "INVALID_TRANSFORM pose"],
     ["{", "CORRUPT_FILE pose"],
-    [`{"scale":1,"rotation":[1],"translation":[0,0,1e999]}`, "CORRUPT_FILE pose"],
   ];
   for (const [file, fault] of invalid) await rejectsWith(() => readPose(file as object), fault);
 });

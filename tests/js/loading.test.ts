@@ -1,12 +1,10 @@
 /** Loading of the package and of its WebAssembly modules, each in a fresh process. */
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { cpSync, mkdtempSync } from "node:fs";
 import { createRequire } from "node:module";
-import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { pathToFileURL } from "node:url";
 import { createAligner } from "sim3align";
 import * as inline from "sim3align/inline";
 import { installDir, repository } from "../support/environment.js";
@@ -152,7 +150,7 @@ test("a failed load says what to do, and the next one tries again", () => {
   assert.equal(output, "done\n");
 });
 
-test("inline: the same bits, with workers and without, and no file beside its own scripts", async () => {
+test("inline: the same bits, with workers and without", async () => {
   const quick = { quality: "fast" } as const;
   const expected = withoutTimes(await (await createAligner()).align(input, quick));
   for (const workers of [0, 1]) {
@@ -163,18 +161,4 @@ test("inline: the same bits, with workers and without, and no file beside its ow
     await assert.rejects(aligner.align(input, { search: "local" }), (error) => error instanceof inline.Sim3AlignError);
     aligner.dispose();
   }
-  const from = dirname(fileURLToPath(import.meta.resolve("sim3align/inline")));
-  const folder = mkdtempSync(join(tmpdir(), "sim3align-inline-"));
-  cpSync(join(from, "inline.js"), join(folder, "inline.mjs"));
-  cpSync(join(from, "inline"), join(folder, "inline"), { recursive: true });
-  const output = inFreshProcess(`
-    const { createAligner } = await import(${JSON.stringify(join(folder, "inline.mjs"))});
-    for (const workers of [0, 1]) {
-      const aligner = await createAligner({ workers });
-      await estimate(aligner);
-      aligner.dispose();
-    }
-    console.log("done");
-  `);
-  assert.equal(output, "done\n");
 });

@@ -1,7 +1,7 @@
 /** Depth as models guess it, and cameras that nobody wrote down: what is unknown is estimated with the pose. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type AlignInput, createAligner, type DepthKind, type FrameInput, type Sim3 } from "sim3align";
+import { type AlignInput, createAligner, type DepthKind, type Sim3 } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { frameAt, turnBetween } from "../support/rig.js";
@@ -81,7 +81,7 @@ test("a missing focal length is estimated from the object, with a warning, and a
   assert.deepEqual(warnings, []);
 });
 
-test("a scene is calibrated once, by all its objects; one length makes it metric; a broken object does not end it", async () => {
+test("a scene is calibrated once, by all its objects; one length makes it metric", async () => {
   const depthKind = "affine-invariant-disparity" as const;
   const depth = predicted[depthKind](tableScene.depth as Float32Array);
   const objects = tableScene.objects.map((object, i) => (i === 0 ? { ...object, scale: poses[0]?.scale } : object));
@@ -92,10 +92,6 @@ test("a scene is calibrated once, by all its objects; one length makes it metric
     const scale = poses[i]?.scale ?? 0;
     assert.ok(object.error === undefined && Math.abs(object.scale / scale - 1) < 0.06, `${i}`);
   }
-  const [first, second] = scene.objects;
-  const broken = { ...scene, objects: [first, { ...second, mesh: new Uint8Array([1, 2, 3]) }] } as typeof tableScene;
-  const [whole, other] = (await here.alignScene(broken, quick)).objects;
-  assert.deepEqual([whole?.error, other?.error?.argument], [undefined, "mesh"]);
 });
 
 test("views of relative depth have one size, and the cameras' distance makes it metric", async () => {
@@ -106,19 +102,4 @@ test("views of relative depth have one size, and the cameras' distance makes it 
   });
   const all = await here.alignViews({ mesh, views }, quick);
   assert.ok(all.views.every((each) => each.depthCalibration?.isMetric));
-});
-
-test("a video of relative depth has one size, in a unit of its own", async () => {
-  const video = [0, 3, 6].map((angle) => frameAt(angle));
-  using tracker = await here.track(mesh);
-  const frames = video.map(({ frame }, k): FrameInput => {
-    const depth = frame.depth.map((z) => (4 + 0.2 * k) / z - 1 - 0.1 * k);
-    return { ...frame, depth, depthKind: "affine-invariant-disparity" };
-  });
-  const poses = await Promise.all(frames.map((frame) => tracker.next(frame)));
-  for (const [k, { state, rotation, scale, depthCalibration }] of poses.entries()) {
-    assert.deepEqual([state, depthCalibration?.isMetric], ["tracking", false]);
-    assert.ok(turnBetween(rotation, video[k]?.pose.rotation ?? []) < 6, `frame ${k}`);
-    assert.ok(Math.abs(scale / (poses[0]?.scale ?? 0) - 1) < 0.03, `frame ${k}: ${scale}`);
-  }
 });

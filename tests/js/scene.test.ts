@@ -72,8 +72,10 @@ test("progress names its object and never decreases; a signal ends the scene", a
 test("an object that cannot be aligned leaves the others", async () => {
   const [first, second] = tableScene.objects as [SceneInput["objects"][0], SceneInput["objects"][0]];
   const empty = { ...second, mask: new Uint8Array(width * height) };
-  const { objects } = await here.alignScene({ ...tableScene, objects: [first, empty] }, quick);
-  const [aligned, failed] = objects;
+  const broken = { ...second, mesh: new Uint8Array([1, 2, 3]) };
+  const { objects } = await here.alignScene({ ...tableScene, objects: [first, empty, broken] }, quick);
+  const [aligned, failed, unread] = objects;
+  assert.equal(unread?.error?.argument, "mesh");
   assert.deepEqual([aligned?.error, failed?.error?.code, failed?.name], [undefined, "EMPTY_MASK", "object 1"]);
 });
 

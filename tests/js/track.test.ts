@@ -62,19 +62,13 @@ test("a correction is carried on, and a loss is reported", async () => {
 test("a video with photos is found the right way round, and stays so", async () => {
   const box = printedBox();
   const printed = [0, 4, 8].map((degrees) => box.frameAt(degrees));
-  const found = [];
-  for (const aligner of aligners) {
-    using tracker = await aligner.track(box.mesh);
-    const poses = [];
-    for (const { frame, image } of printed) poses.push(await tracker.next({ ...frame, image }));
-    for (const [k, { rotation }] of poses.entries()) {
-      assert.ok(turnBetween(rotation, printed[k]?.pose.rotation ?? []) < 3, `frame ${k}`);
-    }
-    const image = { data: new Uint8Array(3 * 30 * 90), width: 30, height: 90 };
-    await rejectsWith(() => tracker.next({ ...frames[0], image }), "SIZE_MISMATCH image", /field of view/);
-    found.push(poses.map(({ matrix }) => matrix));
+  using tracker = await pool.track(box.mesh);
+  for (const { frame, image, pose } of printed) {
+    const { rotation } = await tracker.next({ ...frame, image });
+    assert.ok(turnBetween(rotation, pose.rotation) < 3, `${rotation}`);
   }
-  assert.deepEqual(found[0], found[1], "the same bits in a worker");
+  const image = { data: new Uint8Array(3 * 30 * 90), width: 30, height: 90 };
+  await rejectsWith(() => tracker.next({ ...frames[0], image }), "SIZE_MISMATCH image", /field of view/);
 });
 
 for (const [i, aligner] of aligners.entries()) {

@@ -69,7 +69,6 @@ export async function accepted(aligner: Aligner): Promise<void> {
     // @ts-expect-error the paper's method has no confidence
     void alignment?.confidence;
   }
-  await aligner.align({ pointMap: floats, width: 2, height: 2, mask: bytes, mesh });
   await aligner.align({ depth: bytes, mask: { size: [2, 2], counts: "04" }, camera: { K: [[1]] }, mesh: { bytes } });
   await aligner.align(
     { depth: bytes, mask: bytes, camera, mesh },
