@@ -1,12 +1,12 @@
 /** The views: framing, ground, keyboard, measuring, before and after, numbers, wheel and drag in the image. */
 import assert from "node:assert/strict";
 import { WEBGL } from "../support/browser.js";
-import { pageTests } from "../support/site.js";
+import { PATIENCE, pageTests } from "../support/site.js";
 
 const test = pageTests(WEBGL);
 
 test("two clicks measure a distance", async (opened, page) => {
-  await opened.has3d("webgl");
+  await page.locator('.view-host[data-backend="webgl"] canvas').waitFor(PATIENCE);
   await opened.press("Measure");
   assert.match((await page.textContent("#measured")) ?? "", /Click a point/);
   const canvas = page.locator(".image canvas");
