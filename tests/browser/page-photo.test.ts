@@ -75,7 +75,3 @@ test("the mask of a scene with depth is marked by keyboard, corrected and taken 
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.85);
 });
-
-declare global {
-  var sim3alignPhotoModel: unknown;
-}

@@ -1,7 +1,6 @@
 /** Depth that a model guessed, and cameras that nobody has given: sizes without a unit, until one of them is known. */
 import assert from "node:assert/strict";
-import type { Page } from "playwright-core";
-import { tiff, withExif } from "../support/exif.js";
+import { greyJpeg, tiff } from "../support/exif.js";
 import { png } from "../support/files.js";
 import { drop, type Files, files, HEIGHT, maskPng, seen, WIDTH } from "../support/page-files.js";
 import { mesh, truth } from "../support/scene.js";
@@ -20,21 +19,6 @@ function disparityPng(depth: Float32Array): Uint8Array {
   );
 }
 
-/** A JPEG of the size of the depth map, whose EXIF data state the focal length of its camera: 300 pixels are 65 mm. */
-async function photo(page: Page): Promise<Uint8Array> {
-  const address = await page.evaluate(
-    ([width, height]) => {
-      const canvas = document.createElement("canvas");
-      [canvas.width, canvas.height] = [width, height];
-      canvas.getContext("2d")?.fillRect(0, 0, width / 2, height);
-      return canvas.toDataURL("image/jpeg");
-    },
-    [WIDTH, HEIGHT] as const,
-  );
-  const jpeg = Buffer.from(address.split(",")[1] ?? "", "base64");
-  return withExif(jpeg, tiff({ make: "Maker" }, { focal35: 65, pixelX: WIDTH, pixelY: HEIGHT }, true));
-}
-
 /** A unit of length after a number, or alone. */
 const UNIT = /(\d\s*|\b)(mm|cm|m)\b/;
 
@@ -42,7 +26,8 @@ const shownText = ({ page }: SitePage) => page.evaluate(() => document.querySele
 
 test("a photo, relative disparity, a mask and a mesh without a camera are aligned, in no unit", async (opened, page) => {
   const dropped: Files = {
-    "photo.jpg": await photo(page),
+    // Of the size of the depth map, and with its focal length: 300 pixels are 65 mm on full frame.
+    "photo.jpg": greyJpeg(tiff({ make: "Maker" }, { focal35: 65, pixelX: WIDTH, pixelY: HEIGHT }, true), WIDTH, HEIGHT),
     "depth.png": disparityPng(seen.depth),
     "mask.png": maskPng(seen.mask),
     "mesh.obj": files["mesh.obj"] as Uint8Array,
@@ -71,7 +56,11 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   assert.ok(!("sizeM" in json.Object), "a size in metres");
 
   // The longest side of the blob, which nobody has told yet.
-  const longest = 100 * Math.max(...trueSides());
+  const sides = [0, 1, 2].map((k) => {
+    const along = mesh.positions.filter((_, i) => i % 3 === k);
+    return truth.scale * (Math.max(...along) - Math.min(...along));
+  });
+  const longest = 100 * Math.max(...sides);
   await opened.enter("#known-size", longest.toFixed(2));
   await page.locator("#dimensions", { hasText: "cm" }).waitFor();
   const metric = await opened.dimensions();
@@ -92,11 +81,3 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   assert.ok(Math.abs(Math.max(...(await opened.dimensions())) - longest) < 0.1);
   assert.deepEqual(await opened.violations(), []);
 });
-
-/** The sides of the box around the blob at its true size along its own axes, metres. */
-function trueSides(): number[] {
-  return [0, 1, 2].map((k) => {
-    const along = mesh.positions.filter((_, i) => i % 3 === k);
-    return truth.scale * (Math.max(...along) - Math.min(...along));
-  });
-}
