@@ -1,20 +1,15 @@
 /** From one photo: what is there is shown, the sheet says where the rest comes from, and the mask is marked on it. */
 import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
-import { tiff, withExif } from "../support/exif.js";
-import { ACROSS, DOWN, jpegOf, photoPng } from "../support/page-cases.js";
-import { drop, files, maskPng, seen } from "../support/page-files.js";
+import { greyJpeg, tiff } from "../support/exif.js";
+import { drop, files, HEIGHT, maskPng, seen, WIDTH } from "../support/page-files.js";
 import { PATIENCE, pageTests } from "../support/site.js";
 
 const test = pageTests();
 
-/** A JPEG of an image; with EXIF data, its focal length is 65 mm on full frame: 300 pixels of the depth map. */
-async function jpeg(page: Page, image: Uint8Array, hasExif = false): Promise<Uint8Array> {
-  const bytes = Buffer.from((await page.evaluate(jpegOf(image))) as string, "base64");
-  return hasExif
-    ? withExif(bytes, tiff({ make: "Maker" }, { focal35: 65, pixelX: ACROSS, pixelY: DOWN }, true))
-    : bytes;
-}
+/** Twice as large as the depth map, as photos are; 65 mm on full frame are 300 pixels of the depth map. */
+const [ACROSS, DOWN] = [2 * WIDTH, 2 * HEIGHT];
+const photo = greyJpeg(tiff({ make: "Maker" }, { focal35: 65, pixelX: ACROSS, pixelY: DOWN }, true), ACROSS, DOWN);
 
 const settled = (page: Page) =>
   page.locator("#mask-status[aria-busy=false]").filter({ hasText: "is marked" }).waitFor(PATIENCE);
@@ -25,7 +20,7 @@ const share = async (page: Page) => Number.parseInt((await page.textContent("#ma
 const trueShare = (100 * seen.mask.reduce((sum, inside) => sum + inside, 0)) / seen.mask.length;
 
 test("a photo alone is shown with its focal length, and the rest is named with its sources", async (opened, page) => {
-  await drop(opened, { "IMG_0815.jpg": await jpeg(page, photoPng, true) });
+  await drop(opened, { "IMG_0815.jpg": photo });
   const sheet = await opened.sheet();
   const pictured = sheet.locator('[data-field="photo"] canvas');
   await pictured.waitFor(PATIENCE);
@@ -40,13 +35,13 @@ test("a photo alone is shown with its focal length, and the rest is named with i
   assert.match(await page.evaluate(async (link) => (await fetch(link)).text(), own), /From one photo/);
   assert.ok(await page.isDisabled("#intake-open"));
   assert.deepEqual(await opened.violations(), []);
-  // A mask of the photo, also one that was saved with losses, is shown on it.
-  await drop(opened, { "mask.jpg": await jpeg(page, maskPng(seen.mask)) });
+  // A mask of the photo is shown on it.
+  await drop(opened, { "mask.png": maskPng(seen.mask) });
   await opened.sheet();
   assert.ok((await page.getAttribute("#mask-file", "accept"))?.split(",").includes(".jpg"));
   await sheet.locator(".pair canvas").first().waitFor(PATIENCE);
   assert.match((await sheet.locator('[data-field="photo"]').textContent()) ?? "", /IMG_0815\.jpg/);
-  assert.match((await sheet.locator(".pair").textContent()) ?? "", /mask\.jpg/);
+  assert.match((await sheet.locator(".pair").textContent()) ?? "", /mask\.png/);
 });
 
 test("the mask of a scene with depth is marked by keyboard, corrected and taken back", async (opened, page) => {

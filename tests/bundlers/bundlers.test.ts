@@ -13,9 +13,9 @@ import { type Found, work } from "./work.js";
 
 const folder = join(installDir, "apps");
 const appOf = (name: string) => join(installDir, "tests", "bundlers", `${name}.js`);
-const page = (script: string, head = "") =>
-  `<!doctype html><html><head><meta charset="utf-8"><link rel="icon" href="data:,">${head}</head>` +
-  `<body><script type="module" src="${script}"></script></body></html>`;
+const page =
+  `<!doctype html><html><head><meta charset="utf-8"><link rel="icon" href="data:,"></head>` +
+  `<body><script type="module" src="./main.js"></script></body></html>`;
 
 let browser: PageTest;
 let expected: Found;
@@ -39,31 +39,16 @@ async function check(path: string): Promise<void> {
 }
 
 /** A folder for one app, with its page. */
-function appFolder(name: string, html: string): string {
+function appFolder(name: string): string {
   const path = join(folder, name);
   mkdirSync(path, { recursive: true });
-  writeFileSync(join(path, "index.html"), html);
+  writeFileSync(join(path, "index.html"), page);
   return path;
 }
 
-test("a plain module script, with an import map", async () => {
-  const map = { imports: { sim3align: "/node_modules/sim3align/index.js" } };
-  appFolder("plain", page("/tests/bundlers/app.js", `<script type="importmap">${JSON.stringify(map)}</script>`));
-  await check("apps/plain/index.html");
-});
-
-test("a plain module script, in one piece", async () => {
-  const map = { imports: { "sim3align/inline": "/node_modules/sim3align/inline.js" } };
-  appFolder(
-    "plain-inline",
-    page("/tests/bundlers/app-inline.js", `<script type="importmap">${JSON.stringify(map)}</script>`),
-  );
-  await check("apps/plain-inline/index.html");
-});
-
 for (const name of ["app", "app-inline"]) {
   test(`Vite, built: ${name}`, async () => {
-    const root = appFolder(`vite-${name}`, page("./main.js"));
+    const root = appFolder(`vite-${name}`);
     writeFileSync(join(root, "main.js"), `import ${JSON.stringify(appOf(name))};\n`);
     await vite({ root, base: "./", logLevel: "error", configFile: false });
     await check(`apps/vite-${name}/dist/index.html`);
@@ -71,7 +56,7 @@ for (const name of ["app", "app-inline"]) {
 }
 
 test("Vite, as its development server serves it", async () => {
-  const root = appFolder("vite-dev", page("./main.js"));
+  const root = appFolder("vite-dev");
   writeFileSync(join(root, "main.js"), `import ${JSON.stringify(appOf("app"))};\n`);
   const server = await createServer({
     root,
@@ -89,7 +74,7 @@ test("Vite, as its development server serves it", async () => {
 
 for (const name of ["app", "app-inline"]) {
   test(`webpack: ${name}`, async () => {
-    const path = appFolder(`webpack-${name}`, page("./main.js"));
+    const path = appFolder(`webpack-${name}`);
     const stats = await new Promise<webpack.Stats | undefined>((resolve, reject) => {
       const config = {
         mode: "production",
@@ -106,7 +91,7 @@ for (const name of ["app", "app-inline"]) {
 }
 
 test("esbuild, in one piece, as one classic script", async () => {
-  const path = appFolder("esbuild", page("./main.js"));
+  const path = appFolder("esbuild");
   const { warnings } = await esbuild({
     entryPoints: [appOf("app-inline")],
     bundle: true,

@@ -1,5 +1,6 @@
 /** Runs in the page of the tests of the 3D view. esbuild bundles it with the view. */
 import { exportGlb } from "sim3align/conventions";
+import { BoxGeometry } from "three";
 import { SceneView } from "../../www/src/view3d/scene-view.ts";
 
 const [width, height] = [160, 120];
@@ -33,23 +34,8 @@ const mask = () =>
 
 /** A unit cube around a point. */
 function cube([x, y, z]) {
-  const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [
-    x + (i & 1) - 0.5,
-    y + ((i >> 1) & 1) - 0.5,
-    z + (i >> 2) - 0.5,
-  ]);
-  const faces = [
-    [0, 2, 3, 1],
-    [4, 5, 7, 6],
-    [0, 1, 5, 4],
-    [2, 6, 7, 3],
-    [0, 4, 6, 2],
-    [1, 3, 7, 5],
-  ];
-  return {
-    positions: Float32Array.from(corners),
-    indices: Uint32Array.from(faces.flatMap(([a, b, c, d]) => [a, b, c, a, c, d])),
-  };
+  const { attributes, index } = new BoxGeometry(1, 1, 1).translate(x, y, z);
+  return { positions: Float32Array.from(attributes.position.array), indices: Uint32Array.from(index.array) };
 }
 
 /** A cube around (3, 0, 0): as arrays, or as a GLB whose node translates and scales it. */
