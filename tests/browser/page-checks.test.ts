@@ -12,10 +12,10 @@ import {
   HEIGHT,
   jsonFile,
   maskPng,
-  pinhole,
   seen,
   WIDTH,
 } from "../support/page-files.js";
+import { pinhole } from "../support/scene.js";
 import { pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();

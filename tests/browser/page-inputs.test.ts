@@ -13,11 +13,10 @@ import {
   inFolder,
   jsonFile,
   maskPng,
-  pinhole,
   seen,
   WIDTH,
 } from "../support/page-files.js";
-import { mesh, render } from "../support/scene.js";
+import { mesh, pinhole, render } from "../support/scene.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();

@@ -1,9 +1,9 @@
 /** Outputs of SAM 3D Objects, dropped as they are. */
 import assert from "node:assert/strict";
 import { glb } from "../support/files.js";
-import { dropFolder, HEIGHT, inFolder, jsonFile, maskPng, pinhole, seen, WIDTH } from "../support/page-files.js";
+import { dropFolder, HEIGHT, inFolder, jsonFile, maskPng, seen, WIDTH } from "../support/page-files.js";
 import { layoutOf, pointMapNpy } from "../support/sam3d.js";
-import { mesh, truth } from "../support/scene.js";
+import { mesh, pinhole, truth } from "../support/scene.js";
 import { pageTests } from "../support/site.js";
 
 const test = pageTests();

@@ -9,7 +9,8 @@ import { compose, fromBop, fromFrame, invert, toSim3 } from "sim3align/conventio
 import { readMesh } from "sim3align/formats";
 import { otherPose, writeCase } from "../support/case-folder.js";
 import { repository, sampleDir } from "../support/environment.js";
-import { examplesDir, filesOf, newFolder, printedBy, runExample, samplePhoto } from "../support/examples.js";
+import { examplesDir, filesOf, newFolder, printedBy, runExample } from "../support/examples.js";
+import { greyJpeg, tiff } from "../support/exif.js";
 import { turnBetween } from "../support/rig.js";
 
 const aligner = await createAligner();
@@ -167,7 +168,8 @@ test("06-transformersjs aligns a photo without a camera, with the tensors of a r
     iou_scores: wrapped("float32", found.iou_scores),
   };
   const [height = 0, width = 0] = found.predicted_depth.dims;
-  const photo = samplePhoto(width, height);
+  // 32 mm on full frame.
+  const photo = greyJpeg(tiff({}, { focal35: 32, pixelX: width, pixelY: height }, true), width, height);
 
   const relative: Alignment = await alignTensors(aligner, tensors, photo, sample.mesh);
   assert.equal(relative.depthCalibration?.isMetric, false);

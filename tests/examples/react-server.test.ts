@@ -4,7 +4,8 @@ import { type ChildProcess, execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
-import { after, before, test } from "node:test";
+import type { Readable } from "node:stream";
+import { after, test } from "node:test";
 import { createAligner } from "sim3align";
 import { PageTest } from "../support/browser.js";
 import { sampleDir } from "../support/environment.js";
@@ -20,33 +21,25 @@ declare global {
   }
 }
 
-let server: ChildProcess;
-let url = "";
-let expected: number[] = [];
-before(async () => {
-  const vite = join(examplesDir, "node_modules", "vite", "bin", "vite.js");
-  const build = (...args: string[]) =>
-    execFileSync(process.execPath, [vite, "build", "--logLevel", "warn", ...args], { cwd: folder });
-  build();
-  build("--ssr", "entry-server.jsx", "--outDir", "dist/server");
-  server = spawn(process.execPath, ["server.mjs"], {
-    cwd: folder,
-    env: { ...process.env, PORT: "0" },
-    stdio: ["ignore", "pipe", "inherit"],
-  });
-  assert.ok(server.stdout);
-  [url = ""] = await once(createInterface({ input: server.stdout }), "line");
-  const aligner = await createAligner();
-  expected = [...(await aligner.align(filesOf(sampleDir), { quality: "fast" })).matrix];
-});
+const vite = join(examplesDir, "node_modules", "vite", "bin", "vite.js");
+const build = (...args: string[]) =>
+  execFileSync(process.execPath, [vite, "build", "--logLevel", "warn", ...args], { cwd: folder });
+
+let server: ChildProcess | undefined;
 after(async () => {
-  server.kill();
-  if (server.exitCode === null) await once(server, "exit");
+  server?.kill();
+  if (server?.exitCode === null) await once(server, "exit");
 });
 
 test("11-react-server renders the result in Node, is hydrated, and aligns in workers until it goes", {
   skip,
 }, async () => {
+  build();
+  build("--ssr", "entry-server.jsx", "--outDir", "dist/server");
+  const env = { ...process.env, PORT: "0" };
+  server = spawn(process.execPath, ["server.mjs"], { cwd: folder, env, stdio: ["ignore", "pipe", "inherit"] });
+  const [url = ""] = await once(createInterface({ input: server.stdout as Readable }), "line");
+  const expected = [...(await (await createAligner()).align(filesOf(sampleDir), { quality: "fast" })).matrix];
   const html = await (await fetch(url)).text();
   const [, shown = ""] = /<output id="first">([^<]*)<\/output>/.exec(html) ?? [];
   assert.deepEqual(JSON.parse(shown), expected);

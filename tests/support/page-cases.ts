@@ -9,11 +9,10 @@ import {
   inFolder,
   jsonFile,
   maskPng,
-  pinhole,
   seen,
   WIDTH,
 } from "./page-files.js";
-import { cuboid, mesh, type Pose, render, transformed, truth } from "./scene.js";
+import { cuboid, mesh, type Pose, pinhole, render, transformed, truth } from "./scene.js";
 
 /** The complete case with another depth map, mask or mesh. */
 const changed = (more: Files): Files => ({ ...files, ...more });

@@ -52,11 +52,7 @@ export function pageTests(flags: readonly string[] = WITHOUT_3D) {
 }
 
 /** The pixels of an image: red, green, blue, alpha. */
-export interface Pixels {
-  width: number;
-  height: number;
-  data: Buffer;
-}
+type Pixels = { width: number; height: number; data: Buffer };
 
 /** The page from the point of view of a user. */
 export class SitePage {
@@ -105,17 +101,13 @@ export class SitePage {
   }
 
   /** The origin of the current pose. */
-  source(): Promise<string | null> {
-    return this.page.getAttribute(".result", "data-source");
-  }
+  source = () => this.page.getAttribute(".result", "data-source");
 
   /** Waits for a pose of this origin. */
-  async isNow(source: string): Promise<void> {
-    await this.page.locator(`.result[data-source="${source}"]`).waitFor(PATIENCE);
-  }
+  isNow = (source: string) => this.page.locator(`.result[data-source="${source}"]`).waitFor(PATIENCE);
 
   /** Shows a control that is behind a disclosure or in a menu, uses it, and closes the menu. */
-  private async reveal(control: Locator, use: () => Promise<void>): Promise<void> {
+  private async reveal(control: Locator, use: (control: Locator) => Promise<unknown>): Promise<void> {
     const menu = await control.evaluateHandle((one) => {
       for (let at = one.closest("details"); at != null; at = at.parentElement?.closest("details") ?? null)
         at.open = true;
@@ -123,38 +115,29 @@ export class SitePage {
       menu?.showPopover();
       return menu;
     });
-    await use();
+    await use(control);
     await menu.evaluate((menu) => menu?.hidePopover());
   }
 
   /** Shows or hides a layer of the image. */
-  async showInImage(layer: "outline" | "silhouette" | "zoom", isShown: boolean): Promise<void> {
-    const box = this.page.locator(`#layer-${layer}`);
-    await this.reveal(box, () => box.setChecked(isShown));
-  }
+  showInImage = (layer: "outline" | "silhouette", isShown: boolean) =>
+    this.reveal(this.page.locator(`#layer-${layer}`), (box) => box.setChecked(isShown));
 
   /** Chooses from a list, wherever it is. */
-  async choose(list: string, value: string): Promise<void> {
-    const found = this.page.locator(list);
-    await this.reveal(found, async () => void (await found.selectOption(value)));
-  }
-
-  /** Clicks the button with exactly this name, wherever it is. */
-  async press(button: string): Promise<void> {
-    const found = this.page.getByRole("button", { name: button, exact: true, includeHidden: true });
-    await this.reveal(found, () => found.click());
-  }
+  choose = (list: string, value: string) => this.reveal(this.page.locator(list), (found) => found.selectOption(value));
 
   /** Clicks a control, wherever it is. */
-  async click(control: string): Promise<void> {
-    const found = this.page.locator(control);
-    await this.reveal(found, () => found.click());
+  click = (control: string) => this.reveal(this.page.locator(control), (found) => found.click());
+
+  /** Clicks the button with exactly this name, wherever it is. */
+  press(name: string): Promise<void> {
+    const button = this.page.getByRole("button", { name, exact: true, includeHidden: true });
+    return this.reveal(button, () => button.click());
   }
 
   /** Enters a number in a field, wherever it is. */
-  async enter(field: string, value: string): Promise<void> {
-    const found = this.page.locator(field);
-    await this.reveal(found, async () => {
+  enter(field: string, value: string): Promise<void> {
+    return this.reveal(this.page.locator(field), async (found) => {
       await found.fill(value);
       await found.press("Enter");
     });
@@ -207,7 +190,5 @@ export class SitePage {
   }
 
   /** The violations that axe finds, one line per rule. */
-  violations(): Promise<string[]> {
-    return violations(this.page);
-  }
+  violations = () => violations(this.page);
 }
