@@ -20,7 +20,7 @@ test("sizes are those of the object's sides, in a file of any axes", async (open
   for (const [k, side] of saved.entries()) assert.ok(Math.abs(100 * side - (sides[k] ?? 0)) < 0.06, `${saved}`);
   const trial = page.locator(".hand-panel .trial");
   // A known edge leaves the others in proportion.
-  await page.selectOption('.hand-panel [aria-label="Edge"]', "1");
+  await opened.choose('.hand-panel [aria-label="Edge"]', "1");
   await opened.enter("#known-size", "9.3");
   await trial.locator("p", { hasText: "The mesh fits" }).waitFor(PATIENCE);
   await opened.press("Use");
