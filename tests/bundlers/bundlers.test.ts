@@ -2,12 +2,12 @@
 import assert from "node:assert/strict";
 import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { before, test } from "node:test";
 import { build as esbuild } from "esbuild";
 import { createAligner } from "sim3align";
 import { createServer, build as vite } from "vite";
 import webpack from "webpack";
-import { PageTest } from "../support/browser.js";
+import { browserFor } from "../support/browser.js";
 import { installDir } from "../support/environment.js";
 import { type Found, work } from "./work.js";
 
@@ -17,17 +17,15 @@ const page =
   `<!doctype html><html><head><meta charset="utf-8"><link rel="icon" href="data:,"></head>` +
   `<body><script type="module" src="./main.js"></script></body></html>`;
 
-let browser: PageTest;
+const browser = browserFor(installDir);
 let expected: Found;
 before(async () => {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  browser = new PageTest(installDir);
   expected = await work(createAligner);
   const first = JSON.stringify(Object.values(expected)[0]);
   for (const matrix of Object.values(expected)) assert.equal(JSON.stringify(matrix), first, "workers change nothing");
 });
-after(() => browser?.stop());
 
 /** Opens a page of the installation, or of another server, and holds what it shows against Node's result. */
 async function check(path: string): Promise<void> {
