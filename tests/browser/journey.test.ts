@@ -4,10 +4,10 @@ import { after, before, describe, test } from "node:test";
 import type { Browser } from "puppeteer-core";
 import { createAligner } from "sim3align";
 import { work } from "../bundlers/work.js";
-import { browserNames, inNode, launch, skipped, Tab } from "../support/driver.js";
+import { browserNames, launch, skipped, Tab } from "../support/driver.js";
 import { crossOriginHost, elementFolder, servedFolder } from "../support/element-host.js";
 import { files } from "../support/page-files.js";
-import { input, mesh } from "../support/scene.js";
+import { input } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
 import { type Server, serve } from "../support/static-server.js";
 
@@ -45,24 +45,14 @@ for (const name of browserNames) {
       const host = await crossOriginHost();
       t.after(host.close);
       const { page, errors } = await open(host.path);
-      const given = {
-        ...{ depth: Array.from(input.depth), mask: Array.from(input.mask) },
-        ...{ width: input.width, height: input.height, camera: input.camera },
-        ...{ positions: Array.from(mesh.positions), indices: Array.from(mesh.indices) },
-      };
-      const found = await page.evaluate(({ depth, mask, positions, indices, ...view }) => {
-        const element = document.querySelector("sim3-align") as HTMLElement & { scene: unknown };
-        const aligned = new Promise((resolve) =>
-          element.addEventListener("align", (event) => resolve((event as CustomEvent).detail.objects[0].pose.matrix)),
-        );
-        const object = {
-          mask: Uint8Array.from(mask),
-          mesh: { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) },
-        };
-        element.scene = { ...view, depth: Float32Array.from(depth), objects: [object] };
-        return aligned;
-      }, given);
-      assert.deepEqual(found, [...(await inNode(input)).matrix]);
+      const found = await page.evaluate(`(async () => {
+        const { mask, mesh, ...view } = (await import("/install-test/tests/support/scene.js")).input;
+        const element = document.querySelector("sim3-align");
+        const aligned = new Promise((resolve) => element.addEventListener("align", ({ detail }) => resolve(detail)));
+        element.scene = { ...view, objects: [{ mask, mesh }] };
+        return (await aligned).objects[0].pose.matrix;
+      })()`);
+      assert.deepEqual(found, [...(await (await createAligner()).align(input)).matrix]);
       const area = await page.evaluate(() => {
         const panel = document.querySelector("sim3-align")?.shadowRoot?.querySelector(".result");
         return (panel?.clientWidth ?? 0) * (panel?.clientHeight ?? 0);

@@ -1,8 +1,7 @@
-/** Accessibility: axe, keyboard, phones, light and dark themes, layout shifts. */
+/** Accessibility: axe, keyboard, phones, light and dark themes. */
 import assert from "node:assert/strict";
 import type { BrowserContextOptions } from "playwright-core";
 import { WEBGL } from "../support/browser.js";
-import { cutParts, screens } from "../support/layout.js";
 import { drop, files } from "../support/page-files.js";
 import { PATIENCE, pageTests } from "../support/site.js";
 
@@ -28,17 +27,15 @@ for (const [name, context] of views) {
   });
 }
 
-for (const [name, context] of views) {
-  test(`axe finds nothing on the intake sheet, on ${name}`, { ...context }, async (opened) => {
-    const { "camera.json": _, ...rest } = files;
-    const { "mesh.obj": mesh, "mask.png": mask } = rest;
-    // Two objects whose names do not tell that they belong together, and no camera.
-    await drop(opened, { ...rest, "mask-b.png": mask as Uint8Array, "other.obj": mesh as Uint8Array });
-    const sheet = await opened.sheet();
-    await sheet.locator(".file-roles summary").click();
-    assert.deepEqual(await opened.violations(), []);
-  });
-}
+test("axe finds nothing on the intake sheet", phone, async (opened) => {
+  const { "camera.json": _, ...rest } = files;
+  const { "mesh.obj": mesh, "mask.png": mask } = rest;
+  // Two objects whose names do not tell that they belong together, and no camera.
+  await drop(opened, { ...rest, "mask-b.png": mask as Uint8Array, "other.obj": mesh as Uint8Array });
+  const sheet = await opened.sheet();
+  await sheet.locator(".file-roles summary").click();
+  assert.deepEqual(await opened.violations(), []);
+});
 
 test("all controls are reachable by keyboard and show their focus", async ({ page }) => {
   const reached = new Set<string>();
@@ -70,42 +67,24 @@ const controlsInSight = `[...document.querySelectorAll("a[href], button, input, 
     return [one.id || one.getAttribute("aria-label") || one.textContent, Math.min(width, height)];
   })`;
 
-const laptop = { viewport: { width: 1440, height: 900 } };
-
-for (const [name, context, least] of [
-  ["a laptop", laptop, 24],
-  ["a phone", phone, 44],
-] as const) {
-  test(`all targets are large enough on ${name}`, { address: "", ...context }, async (opened, page) => {
-    for (const summary of await page.locator("details:not([open]) > summary").all()) {
-      if (await summary.isVisible()) await summary.click();
-    }
-    const measure = async () => {
-      const found = (await page.evaluate(controlsInSight)) as [string, number][];
-      assert.deepEqual(
-        found.filter(([, side]) => side < least - 0.5),
-        [],
-      );
-    };
-    await measure();
-    for (const menu of await page.locator("button.menu").all()) {
-      await menu.click();
-      await page.locator(".menu-box:popover-open").waitFor(PATIENCE);
-      await measure();
-      assert.deepEqual(await opened.violations(), []);
-      await page.keyboard.press("Escape");
-    }
-  });
-}
-
-test("nothing is cut on any screen, nor are lengths above a metre", { address: "" }, async (_, page) => {
-  for (const [width, height] of screens) {
-    await page.setViewportSize({ width, height });
-    assert.deepEqual(await page.evaluate(cutParts), [], `${width} × ${height}`);
-    const rows = await page.evaluate(() =>
-      [...document.querySelectorAll(".view-head")].map((one) => one.getBoundingClientRect().height),
+test("all targets are large enough on a phone", { address: "", ...phone }, async (opened, page) => {
+  for (const summary of await page.locator("details:not([open]) > summary").all()) {
+    if (await summary.isVisible()) await summary.click();
+  }
+  const measure = async () => {
+    const found = (await page.evaluate(controlsInSight)) as [string, number][];
+    assert.deepEqual(
+      found.filter(([, side]) => side < 43.5),
+      [],
     );
-    for (const row of rows) assert.ok(row < 60, `a toolbar of ${row} pixels at ${width} × ${height}`);
+  };
+  await measure();
+  for (const menu of await page.locator("button.menu").all()) {
+    await menu.click();
+    await page.locator(".menu-box:popover-open").waitFor(PATIENCE);
+    await measure();
+    assert.deepEqual(await opened.violations(), []);
+    await page.keyboard.press("Escape");
   }
 });
 
@@ -127,29 +106,4 @@ test("keys open the help, which lists them, and Escape closes it", async ({ page
   for (const [title, isThere, first] of guides) assert.ok(isThere && first === `# ${title}`, `${title}: ${first}`);
   await page.keyboard.press("Escape");
   await page.locator("dialog.help").waitFor({ state: "hidden", ...PATIENCE });
-});
-
-const first = { address: "", isLoading: true };
-test("the layout does not shift while the page loads and aligns twice", first, async (opened, page) => {
-  await page.evaluate(() => {
-    const shifts: number[] = [];
-    Object.assign(globalThis, { shifts });
-    const add = (entries: PerformanceEntryList) => {
-      for (const entry of entries) shifts.push((entry as unknown as { value: number }).value);
-    };
-    const observer = new PerformanceObserver((list) => add(list.getEntries()));
-    observer.observe({ type: "layout-shift", buffered: true });
-    const flush = () => add(observer.takeRecords());
-    Object.assign(globalThis, { flush });
-  });
-  await opened.aligned();
-  await page.click("#align-all");
-  await opened.aligned();
-  await page.locator('.space:not([data-state="loading"])').waitFor(PATIENCE);
-  // The second callback runs after the frame with the last changes, whose shifts are then recorded.
-  const shifts = (await page.evaluate(`new Promise((resolve) =>
-  requestAnimationFrame(() => requestAnimationFrame(() => resolve((flush(), shifts)))))`)) as number[];
-  const sum = shifts.reduce((total, shift) => total + shift, 0);
-  // Google's limit for "good" is 0.1.
-  assert.ok(sum < 0.05, `cumulative layout shift ${sum}: ${shifts}`);
 });

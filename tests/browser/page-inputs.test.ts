@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import { otherPose } from "../support/case-folder.js";
 import { cocoRle, obj, png } from "../support/files.js";
+import { depthInUnits, farther } from "../support/page-cases.js";
 import {
   cameraFile,
-  depthNpy,
   drop,
   dropFolder,
   type Files,
@@ -13,34 +13,20 @@ import {
   inFolder,
   jsonFile,
   maskPng,
-  pinhole,
   seen,
   WIDTH,
 } from "../support/page-files.js";
-import { mesh, render, truth } from "../support/scene.js";
+import { mesh, pinhole, render } from "../support/scene.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
 
 /** A second object beside the first. */
 const other = render(mesh, otherPose(2), pinhole, WIDTH, HEIGHT);
-const depthPng = png(
-  Uint16Array.from(seen.depth, (z) => Math.round(1000 * z)),
-  WIDTH,
-  HEIGHT,
-);
+const depthPng = depthInUnits(1000)["depth.png"] as Uint8Array;
 const meshFile = obj(mesh);
 
 const namesOf = (opened: SitePage) => opened.page.locator(".objects .name").allTextContents();
-
-test("dropped files make a scene, which is aligned to its true size by itself", async (opened) => {
-  await drop(opened, files);
-  await opened.shows("Own files");
-  assert.ok((await opened.metric("iou")) > 0.9);
-  const scale = Number.parseFloat((await opened.page.textContent("#scale")) ?? "");
-  assert.ok(Math.abs(scale / truth.scale - 1) < 0.05, `${scale}`);
-  assert.ok(!opened.page.url().includes("sample="), "a link that shows others another scene");
-});
 
 test("masks and meshes are paired by name, in any order", async (opened) => {
   await dropFolder(opened, {
@@ -133,11 +119,7 @@ test("an image of a BOP data set is a scene of its own", async (opened, page) =>
 });
 
 test("case folders of one image are one scene, those of others are others", async (opened, page) => {
-  const farther = {
-    ...files,
-    "depth.npy": depthNpy(seen.depth.map((z) => z + 0.01)),
-  };
-  await dropFolder(opened, { ...inFolder("a", files), ...inFolder("b", farther) });
+  await dropFolder(opened, { ...inFolder("a", files), ...inFolder("b", farther(0.01)) });
   await opened.sheet();
   assert.equal(await page.locator("#scene-choice option").count(), 2);
   assert.equal(await page.locator(".pair").count(), 1);

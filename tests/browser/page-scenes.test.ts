@@ -3,18 +3,11 @@ import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
 import { four } from "../support/page-cases.js";
 import { drop, dropFolder, files } from "../support/page-files.js";
-import { PATIENCE, pageTests, SitePage, until } from "../support/site.js";
+import { PATIENCE, pageTests, SitePage } from "../support/site.js";
 
 const test = pageTests();
 
 const isShown = (page: Page, scene: string) => page.locator(`main[data-scene="${scene}"]`).waitFor(PATIENCE);
-
-/** Waits until the browser has kept everything. */
-const kept = (page: Page) =>
-  until(
-    () => page.evaluate(() => !dispatchEvent(new Event("beforeunload", { cancelable: true }))),
-    (asks) => !asks,
-  );
 
 const states = (page: Page) => page.locator(".scenes li").allTextContents();
 
@@ -49,7 +42,7 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   assert.deepEqual([first?.accepted, second?.accepted, second?.source], [true, true, "hand"]);
   assert.equal((100 * (first?.sizeM[0] ?? 0)).toFixed(1), size?.toFixed(1));
 
-  await kept(page);
+  await opened.kept();
   await page.reload();
   await isShown(page, "IMG_003");
   assert.equal(await page.locator(".scenes li").count(), 4);
@@ -83,12 +76,12 @@ test("a tab that does not answer is taken over, and stores nothing from then on"
   await opened.aligned();
   await drop(opened, files);
   await opened.shows("Own files");
-  await kept(page);
+  await opened.kept();
   const other = await secondTab(page);
   await other.press("Take over");
   await isShown(other.page, "Own files");
   await other.page.click("#accept");
-  await kept(other.page);
+  await other.kept();
   await opened.says(/Another tab has taken over Own files/);
   await other.page.reload();
   await isShown(other.page, "Own files");

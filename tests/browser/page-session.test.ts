@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { strFromU8, unzipSync } from "fflate";
 import { drop, dropFolder, files, inFolder } from "../support/page-files.js";
-import { PATIENCE, pageTests, SitePage, until } from "../support/site.js";
+import { PATIENCE, pageTests, SitePage } from "../support/site.js";
 
 const test = pageTests();
 
@@ -19,17 +19,6 @@ async function worked(opened: SitePage): Promise<string> {
   return (await page.textContent("#centre")) ?? "";
 }
 
-/** Whether leaving the page would ask. */
-const asks = ({ page }: SitePage) =>
-  page.evaluate(() => !dispatchEvent(new Event("beforeunload", { cancelable: true })));
-
-/** Waits until the browser has kept everything. */
-const kept = (opened: SitePage) =>
-  until(
-    () => asks(opened),
-    (isOpen) => !isOpen,
-  );
-
 /** That the scene is as `worked` has left it. */
 async function isAsLeft(opened: SitePage, centre: string): Promise<void> {
   const { page } = opened;
@@ -43,12 +32,12 @@ async function isAsLeft(opened: SitePage, centre: string): Promise<void> {
 
 test("a reload restores the scene, the pose and the decision; unstored work asks before it is left", async (opened, page) => {
   const centre = await worked(opened);
-  await kept(opened);
+  await opened.kept();
   // Changes of this moment are not stored yet.
   await opened.press("Move right");
   await page.click("#undo");
   await page.click("#accept");
-  await kept(opened);
+  await opened.kept();
   await page.reload();
   await isAsLeft(opened, centre);
   // The restored scene can be aligned, and its files can be changed.
@@ -117,7 +106,7 @@ test("a full disk is told, what was done can be saved, and room is used as soon 
   await session.send("Storage.overrideQuotaForOrigin", { origin, quotaSize: 1 });
   const centre = await worked(opened);
   await page.locator("#not-kept", { hasText: "storage is full: Own files is not kept" }).waitFor(PATIENCE);
-  assert.ok(await asks(opened));
+  assert.ok(await opened.asks());
   assert.deepEqual(await opened.violations(), []);
   const [download] = await Promise.all([page.waitForEvent("download"), opened.press("Save the project")]);
   assert.equal(download.suggestedFilename(), "own-files.sim3align.zip");
@@ -125,7 +114,7 @@ test("a full disk is told, what was done can be saved, and room is used as soon 
   await opened.press("Move right");
   await page.click("#undo");
   await page.locator("#not-kept").waitFor({ state: "detached", ...PATIENCE });
-  await kept(opened);
+  await opened.kept();
   await page.reload();
   await isAsLeft(opened, centre);
 });

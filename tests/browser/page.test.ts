@@ -1,24 +1,26 @@
-/** The page after opening: its sample is aligned, and display and numbers agree with the library. */
+/** The page after opening: its sample is aligned, and display, numbers and exports agree with the library. */
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { createAligner } from "sim3align";
-import { readMask } from "sim3align/formats";
+import { createAligner, type Sim3Like } from "sim3align";
+import { fromBop, fromFrame, toSim3 } from "sim3align/conventions";
+import { readMask, readMesh } from "sim3align/formats";
+import { WEBGL } from "../support/browser.js";
 import { pageTests, siteDir } from "../support/site.js";
 
 const test = pageTests();
 
-const sampleFile = (path: string) => Uint8Array.from(readFileSync(join(siteDir, "samples", path)));
+const sampleFile = (name: string) => Uint8Array.from(readFileSync(join(siteDir, "samples", "mug", name)));
+const sample = {
+  depth: sampleFile("depth.png"),
+  mask: sampleFile("mask.png"),
+  mesh: sampleFile("mesh.glb"),
+  cameraFile: sampleFile("camera.json"),
+};
 
 test("the page aligns its sample, as the library does", async (opened, page) => {
-  const input = {
-    depth: sampleFile("mug/depth.png"),
-    mask: sampleFile("mug/mask.png"),
-    mesh: sampleFile("mug/mesh.glb"),
-    cameraFile: sampleFile("mug/camera.json"),
-  };
   const quality = (await page.inputValue("#effort")) as "fast" | "balanced";
-  const { metrics, confidence } = await (await createAligner()).align(input, { quality });
+  const { metrics, confidence } = await (await createAligner()).align(sample, { quality });
   assert.equal(await opened.metric("iou"), metrics.iou);
   assert.equal(await opened.metric("depthMaeMm"), metrics.depthMaeMm);
   assert.match((await page.textContent("#confidence")) ?? "", new RegExp(`^${Math.round(100 * confidence)} %`));
@@ -27,7 +29,7 @@ test("the page aligns its sample, as the library does", async (opened, page) => 
 });
 
 test("the displayed silhouette has the measured IoU", async (opened) => {
-  const mask = await readMask(sampleFile("mug/mask.png"));
+  const mask = await readMask(sample.mask);
   // Without outlines, the two images differ by the silhouette only.
   await opened.showInImage("outline", false);
   const shown = await opened.imagePixels();
@@ -69,4 +71,36 @@ test("a link holds the sample and the options", link, async (opened, page) => {
   await page.reload();
   await opened.aligned();
   await isShown({ sample: "desk", effort: "best", "option-seed": "7", "option-symmetry": "none" });
+});
+
+/** The IoU that the library measures for a mesh at a pose. */
+async function iouOf(transform: Sim3Like, mesh = sample.mesh): Promise<number> {
+  return (await (await createAligner()).evaluate({ ...sample, mesh }, transform)).metrics.iou ?? -1;
+}
+
+const near = (a: number, b: number) => assert.ok(Math.abs(a - b) < 1e-3, `${a} and ${b}`);
+const still = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+pageTests(WEBGL)("JSON, BOP, GLB and PLY contain the pose", async (opened) => {
+  const iou = await opened.metric("iou");
+  const json = await opened.saved("JSON");
+  assert.equal(json.name, "mug.json");
+  const { Mug } = JSON.parse(json.bytes.toString()) as {
+    Mug: { scale: number; rotation: number[][]; matrix: number[] };
+  };
+  assert.equal(await iouOf(Mug.matrix), iou);
+  near(await iouOf(Mug as never), iou);
+  const bop = await opened.saved("BOP JSON");
+  const [entry] = (JSON.parse(bop.bytes.toString()) as Record<string, Parameters<typeof fromBop>[0][]>)["0"] ?? [];
+  assert.ok(entry !== undefined);
+  const perUnit = (entry as unknown as { model_mm_per_mesh_unit: number }).model_mm_per_mesh_unit;
+  near(await iouOf(fromBop(entry, { scale: perUnit / 1000 })), iou);
+  const glb = await opened.saved("GLB");
+  // GLB files are in OpenGL's camera frame.
+  const back = fromFrame(toSim3(still), "opengl");
+  near(await iouOf(back, Uint8Array.from(glb.bytes)), iou);
+  const ply = await opened.saved("PLY");
+  near(await iouOf(still, Uint8Array.from(ply.bytes)), iou);
+  const { positions } = await readMesh(Uint8Array.from(ply.bytes));
+  assert.ok(positions.length > 1000);
 });

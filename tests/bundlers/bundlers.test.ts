@@ -2,32 +2,30 @@
 import assert from "node:assert/strict";
 import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { before, test } from "node:test";
 import { build as esbuild } from "esbuild";
 import { createAligner } from "sim3align";
 import { createServer, build as vite } from "vite";
 import webpack from "webpack";
-import { PageTest } from "../support/browser.js";
+import { browserFor } from "../support/browser.js";
 import { installDir } from "../support/environment.js";
 import { type Found, work } from "./work.js";
 
 const folder = join(installDir, "apps");
 const appOf = (name: string) => join(installDir, "tests", "bundlers", `${name}.js`);
-const page = (script: string, head = "") =>
-  `<!doctype html><html><head><meta charset="utf-8"><link rel="icon" href="data:,">${head}</head>` +
-  `<body><script type="module" src="${script}"></script></body></html>`;
+const page =
+  `<!doctype html><html><head><meta charset="utf-8"><link rel="icon" href="data:,"></head>` +
+  `<body><script type="module" src="./main.js"></script></body></html>`;
 
-let browser: PageTest;
+const browser = browserFor(installDir);
 let expected: Found;
 before(async () => {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  browser = new PageTest(installDir);
   expected = await work(createAligner);
   const first = JSON.stringify(Object.values(expected)[0]);
   for (const matrix of Object.values(expected)) assert.equal(JSON.stringify(matrix), first, "workers change nothing");
 });
-after(() => browser?.stop());
 
 /** Opens a page of the installation, or of another server, and holds what it shows against Node's result. */
 async function check(path: string): Promise<void> {
@@ -39,31 +37,16 @@ async function check(path: string): Promise<void> {
 }
 
 /** A folder for one app, with its page. */
-function appFolder(name: string, html: string): string {
+function appFolder(name: string): string {
   const path = join(folder, name);
   mkdirSync(path, { recursive: true });
-  writeFileSync(join(path, "index.html"), html);
+  writeFileSync(join(path, "index.html"), page);
   return path;
 }
 
-test("a plain module script, with an import map", async () => {
-  const map = { imports: { sim3align: "/node_modules/sim3align/index.js" } };
-  appFolder("plain", page("/tests/bundlers/app.js", `<script type="importmap">${JSON.stringify(map)}</script>`));
-  await check("apps/plain/index.html");
-});
-
-test("a plain module script, in one piece", async () => {
-  const map = { imports: { "sim3align/inline": "/node_modules/sim3align/inline.js" } };
-  appFolder(
-    "plain-inline",
-    page("/tests/bundlers/app-inline.js", `<script type="importmap">${JSON.stringify(map)}</script>`),
-  );
-  await check("apps/plain-inline/index.html");
-});
-
 for (const name of ["app", "app-inline"]) {
   test(`Vite, built: ${name}`, async () => {
-    const root = appFolder(`vite-${name}`, page("./main.js"));
+    const root = appFolder(`vite-${name}`);
     writeFileSync(join(root, "main.js"), `import ${JSON.stringify(appOf(name))};\n`);
     await vite({ root, base: "./", logLevel: "error", configFile: false });
     await check(`apps/vite-${name}/dist/index.html`);
@@ -71,7 +54,7 @@ for (const name of ["app", "app-inline"]) {
 }
 
 test("Vite, as its development server serves it", async () => {
-  const root = appFolder("vite-dev", page("./main.js"));
+  const root = appFolder("vite-dev");
   writeFileSync(join(root, "main.js"), `import ${JSON.stringify(appOf("app"))};\n`);
   const server = await createServer({
     root,
@@ -89,7 +72,7 @@ test("Vite, as its development server serves it", async () => {
 
 for (const name of ["app", "app-inline"]) {
   test(`webpack: ${name}`, async () => {
-    const path = appFolder(`webpack-${name}`, page("./main.js"));
+    const path = appFolder(`webpack-${name}`);
     const stats = await new Promise<webpack.Stats | undefined>((resolve, reject) => {
       const config = {
         mode: "production",
@@ -106,7 +89,7 @@ for (const name of ["app", "app-inline"]) {
 }
 
 test("esbuild, in one piece, as one classic script", async () => {
-  const path = appFolder("esbuild", page("./main.js"));
+  const path = appFolder("esbuild");
   const { warnings } = await esbuild({
     entryPoints: [appOf("app-inline")],
     bundle: true,

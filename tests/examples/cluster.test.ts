@@ -1,7 +1,7 @@
 /** The example of a batch on a cluster: a queue, workers, and one that is killed. */
 import assert from "node:assert/strict";
 import { type ChildProcess, spawn } from "node:child_process";
-import { EventEmitter, once } from "node:events";
+import { once } from "node:events";
 import { renameSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -9,7 +9,6 @@ import { after, test } from "node:test";
 import { createAligner } from "sim3align";
 import { otherPose, writeCase } from "../support/case-folder.js";
 import { examplesDir, filesOf, newFolder, printedBy, program } from "../support/examples.js";
-import { RedisServer } from "../support/redis.js";
 
 const name = "07-batch-on-a-cluster";
 const CASES = 12;
@@ -21,40 +20,30 @@ after(async () => {
   for (const stop of started.reverse()) await stop();
 });
 
-/** A worker's process, and what it says. */
-class WorkerProcess extends EventEmitter<{ line: [string] }> {
-  readonly lines: string[] = [];
-  readonly child: ChildProcess;
+async function stop(child: ChildProcess, signal: NodeJS.Signals): Promise<void> {
+  if (child.exitCode !== null || child.signalCode !== null) return;
+  child.kill(signal);
+  await once(child, "exit");
+}
 
-  constructor(env: NodeJS.ProcessEnv) {
-    super();
-    this.child = spawn(process.execPath, ["worker.mjs"], {
-      cwd: join(examplesDir, name),
-      env: { ...process.env, ...env },
-      stdio: ["ignore", "pipe", "inherit"],
-    });
-    createInterface({ input: this.child.stdout as NodeJS.ReadableStream }).on("line", (line) => {
-      this.lines.push(line);
-      this.emit("line", line);
-    });
-    started.push(() => this.stop("SIGKILL"));
-  }
-
-  async stop(signal: NodeJS.Signals): Promise<void> {
-    if (this.child.exitCode !== null || this.child.signalCode !== null) return;
-    this.child.kill(signal);
-    await once(this.child, "exit");
-  }
-
-  /** What it said with this word in front, without the word. */
-  said(word: string): string[] {
-    return this.lines.filter((line) => line.startsWith(`${word} `)).map((line) => line.split(" ")[1] ?? "");
-  }
-
-  /** Waits until what it said with this word in front is enough. */
-  async untilSaid(word: string, isEnough: (said: string[]) => boolean): Promise<void> {
-    while (!isEnough(this.said(word))) await once(this, "line");
-  }
+/** Starts a program in the folder of the example, and collects the lines that it prints. */
+function start(program: string, args: string[], env: NodeJS.ProcessEnv = {}) {
+  const child = spawn(program, args, {
+    cwd: join(examplesDir, name),
+    env: { ...process.env, ...env },
+    stdio: ["ignore", "pipe", "inherit"],
+  });
+  started.push(() => stop(child, "SIGKILL"));
+  const lines: string[] = [];
+  const reader = createInterface({ input: child.stdout }).on("line", (line) => lines.push(line));
+  /** The second words of the lines with this first word. */
+  const said = (word: string) =>
+    lines.filter((line) => line.startsWith(`${word} `)).map((line) => line.split(" ")[1] ?? "");
+  /** Waits until the lines are as wanted. */
+  const until = async (isWanted: () => boolean) => {
+    while (!isWanted()) await once(reader, "line");
+  };
+  return { child, lines, said, until };
 }
 
 const redisProgram = program(
@@ -65,21 +54,20 @@ const redisProgram = program(
 
 interface Line {
   id: string;
-  kind: "case" | "scene" | "video";
   folder: string;
   matrix: number[];
   confidence: number;
-  objects: { name: string; matrix: number[] }[];
-  frames: { name: string; state: string; matrix: number[] }[];
   error?: string;
   attempts: number;
 }
 
-/** Starts Redis, and returns it with the environment of the example's programs. */
-async function startedRedis(): Promise<{ redis: RedisServer; env: NodeJS.ProcessEnv }> {
-  const redis = await RedisServer.start(redisProgram.path, newFolder());
-  started.push(() => redis.stop());
-  return { redis, env: { REDIS_URL: redis.url, THREADS: "1", LOCK_MS: "2000" } };
+/** Starts Redis, and returns the environment of the example's programs. */
+async function startedRedis(): Promise<NodeJS.ProcessEnv> {
+  const folder = newFolder();
+  const socket = join(folder, "redis");
+  const redis = start(redisProgram.path, ["--port", "0", "--unixsocket", socket, "--dir", folder, "--save", ""]);
+  await redis.until(() => redis.lines.some((line) => /ready to accept connections/i.test(line)));
+  return { REDIS_URL: socket, THREADS: "1", LOCK_MS: "2000" };
 }
 
 /** Runs a program of the example to its end, and returns what it prints. */
@@ -101,7 +89,7 @@ test("07: all results are there once, though a worker is killed in the middle of
   skip: redisProgram.skip,
   timeout: 240_000,
 }, async () => {
-  const { env } = await startedRedis();
+  const env = await startedRedis();
 
   const parent = newFolder();
   const folders = Array.from({ length: CASES }, (_, i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
@@ -116,15 +104,16 @@ test("07: all results are there once, though a worker is killed in the middle of
   // Storage that is away for a while.
   const [late = "", lateId = ""] = [folders.at(-1), ids[CASES - 1]];
   renameSync(late, `${late}-away`);
-  const [victim, survivor] = [new WorkerProcess(env), new WorkerProcess(env)];
-  await victim.untilSaid("active", ({ length }) => length === 2);
-  await victim.stop("SIGKILL");
+  const worker = () => start(process.execPath, ["worker.mjs"], env);
+  const [victim, survivor] = [worker(), worker()];
+  await victim.until(() => victim.said("active").length === 2);
+  await stop(victim.child, "SIGKILL");
   const lost = victim
     .said("active")
     .filter((id) => !victim.said("stored").includes(id) && !victim.said("failed").includes(id));
   assert.equal(lost.length, 1, `the worker was killed between jobs: ${victim.lines}`);
 
-  await survivor.untilSaid("failed", (failed) => failed.includes(lateId));
+  await survivor.until(() => survivor.said("failed").includes(lateId));
   renameSync(`${late}-away`, late);
 
   const { results, failures } = await collected(env);

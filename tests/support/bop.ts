@@ -1,6 +1,6 @@
 /**
  * The dataset of tests/fixtures/bop: three objects (an uneven one, a brick and a can) in four images, each of which hides a
- * part of another; results for it, and what the official toolkit says about them (make_bop.py).
+ * part of another; results for it, and the errors and scores that the official toolkit (bop_toolkit_lib) computes for them.
  */
 import { cpSync } from "node:fs";
 import { join } from "node:path";

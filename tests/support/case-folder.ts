@@ -1,11 +1,11 @@
 /** Case folders, written as their users have them. */
 import { join } from "node:path";
 import { obj, viewFiles, writeFiles } from "./files.js";
-import { mesh, type Pose, render, truth } from "./scene.js";
+import { mesh, type Pose, pinhole, render, truth } from "./scene.js";
 
 /** Writes a case of the test scene, and returns its folder; an empty mask is an error. */
 export function writeCase(parent: string, name: string, { pose = truth, isEmpty = false } = {}): string {
-  const view = render(mesh, pose, { fx: 300, fy: 301, cx: 79.5, cy: 60 }, 160, 120);
+  const view = render(mesh, pose, pinhole, 160, 120);
   if (isEmpty) view.mask.fill(0);
   return writeFiles(join(parent, name), { ...viewFiles(view), "mesh.obj": obj(mesh) });
 }

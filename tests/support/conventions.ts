@@ -1,4 +1,7 @@
-/** What other programs say, from tests/fixtures/make_conventions.py. */
+/**
+ * Values that other programs computed: pycocotools 2.0.11, label-studio-converter 0.0.59 and cvat-sdk 2.80.0 encoded the
+ * masks; NumPy computed the poses from each convention's own formula.
+ */
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { generatorFrames } from "sim3align/conventions";

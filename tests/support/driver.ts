@@ -1,7 +1,6 @@
 /** Chromium and Firefox, driven alike, with the built page from the point of view of a user. */
 
 import puppeteer, { type Browser, type BrowserContext, type Page } from "puppeteer-core";
-import { createAligner } from "sim3align";
 import type { Files } from "./page-files.js";
 import { PATIENCE } from "./site.js";
 
@@ -25,10 +24,6 @@ export function launch(name: BrowserName): Promise<Browser> {
     timeout: 120_000,
   });
 }
-
-/** The result of `align` in Node for arrays that a page gets as well. */
-export const inNode = async (input: Parameters<Awaited<ReturnType<typeof createAligner>>["align"]>[0]) =>
-  (await createAligner()).align(input);
 
 /** A tab, and the errors of its scripts, a list that grows. */
 export class Tab {

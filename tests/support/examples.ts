@@ -5,17 +5,12 @@ import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { required } from "./environment.js";
-import { greyJpeg, tiff } from "./exif.js";
 
 /** The folder of the examples, a copy of the repository's with its packages installed. */
 export const examplesDir = required("SIM3ALIGN_EXAMPLES");
 
 /** What a script printed, and how it ended. */
-export interface Outcome {
-  status: number;
-  stdout: string;
-  stderr: string;
-}
+type Outcome = { status: number; stdout: string; stderr: string };
 
 /**
  * Runs an example's script to its end, in its own folder.
@@ -45,10 +40,6 @@ export function filesOf(folder: string) {
   const mesh = read(existsSync(join(folder, "mesh.glb")) ? "mesh.glb" : "mesh.obj");
   return { depth: read("depth.npy"), mask: read("mask.png"), cameraFile: read("camera.json"), mesh };
 }
-
-/** A photo of the sample's camera: 32 mm on full frame. */
-export const samplePhoto = (width: number, height: number) =>
-  greyJpeg(tiff({}, { focal35: 32, pixelX: width, pixelY: height }, true), width, height);
 
 /** A new folder for what an example writes, gone when the test's process ends. */
 export function newFolder(): string {

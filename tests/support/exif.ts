@@ -1,6 +1,5 @@
 /** EXIF data, and photos with them, built byte by byte. */
-import { crc32 } from "./crc32.js";
-import { png } from "./files.js";
+import { png, pngChunk } from "./files.js";
 
 type Value = number | string | { rational: [number, number] };
 
@@ -23,18 +22,14 @@ export type ExifFields = Partial<Record<keyof typeof tags, Value>>;
 
 /** EXIF data: a TIFF header, the directory of the image and that of the camera. */
 export function tiff(image: ExifFields, camera: ExifFields, isLittle: boolean): Buffer {
-  const u16 = (n: number) => {
-    const bytes = Buffer.alloc(2);
-    if (isLittle) bytes.writeUInt16LE(n);
-    else bytes.writeUInt16BE(n);
-    return bytes;
+  const number = (value: number, bytes: number) => {
+    const found = Buffer.alloc(bytes);
+    if (isLittle) found.writeUIntLE(value, 0, bytes);
+    else found.writeUIntBE(value, 0, bytes);
+    return found;
   };
-  const u32 = (n: number) => {
-    const bytes = Buffer.alloc(4);
-    if (isLittle) bytes.writeUInt32LE(n);
-    else bytes.writeUInt32BE(n);
-    return bytes;
-  };
+  const u16 = (value: number) => number(value, 2);
+  const u32 = (value: number) => number(value, 4);
   const directory = (fields: ExifFields, start: number) => {
     const entries = Object.entries(fields).sort(
       ([a], [b]) => tags[a as keyof ExifFields] - tags[b as keyof ExifFields],
@@ -64,14 +59,9 @@ export function tiff(image: ExifFields, camera: ExifFields, isLittle: boolean): 
 
 /** A PNG of 3 × 2 pixels with EXIF data. */
 export function pngWith(exif: Buffer): Uint8Array {
-  const file = Buffer.from(png(Uint8Array.of(0, 50, 100, 150, 200, 250), 3, 2));
-  const typed = Buffer.concat([Buffer.from("eXIf"), exif]);
-  const frame = Buffer.alloc(8);
-  frame.writeUInt32BE(exif.length, 0);
-  frame.writeUInt32BE(crc32(typed), 4);
+  const file = png(Uint8Array.of(0, 50, 100, 150, 200, 250), 3, 2);
   const end = 8 + 12 + 13;
-  const chunk = Buffer.concat([frame.subarray(0, 4), typed, frame.subarray(4)]);
-  return new Uint8Array(Buffer.concat([file.subarray(0, end), chunk, file.subarray(end)]));
+  return new Uint8Array(Buffer.concat([file.subarray(0, end), pngChunk("eXIf", exif), file.subarray(end)]));
 }
 
 const segment = (marker: number, content: Uint8Array) => {
@@ -81,10 +71,6 @@ const segment = (marker: number, content: Uint8Array) => {
 };
 
 const exifSegment = (exif: Buffer) => segment(0xe1, Buffer.concat([Buffer.from("Exif\0\0", "latin1"), exif]));
-
-/** A JPEG with EXIF data after its first marker. */
-export const withExif = (jpeg: Uint8Array, exif: Buffer): Uint8Array =>
-  Buffer.concat([jpeg.subarray(0, 2), exifSegment(exif), jpeg.subarray(2)]);
 
 /** The start of a grey JPEG with EXIF data, up to the header of its pixels. */
 export function jpegHead(exif: Buffer, width = 24, height = 16): Uint8Array {

@@ -3,7 +3,6 @@
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { deflateSync } from "node:zlib";
-import { crc32 } from "./crc32.js";
 import { repository } from "./environment.js";
 import type { Mesh, View } from "./scene.js";
 
@@ -21,6 +20,25 @@ export function npy(data: Float32Array | Uint16Array | Uint8Array, height: numbe
   return Buffer.concat([Buffer.from("\x93NUMPY\x01\x00", "latin1"), length, Buffer.from(header, "latin1"), values]);
 }
 
+/** The checksum of PNG's chunks and of files in zip archives (zlib's is not in Node 20). */
+export function crc32(bytes: Uint8Array): number {
+  let crc = 0xffffffff;
+  for (const byte of bytes) {
+    crc ^= byte;
+    for (let bit = 0; bit < 8; bit++) crc = crc & 1 ? (crc >>> 1) ^ 0xedb88320 : crc >>> 1;
+  }
+  return (crc ^ 0xffffffff) >>> 0;
+}
+
+/** A chunk of a PNG. */
+export function pngChunk(type: string, content: Uint8Array): Uint8Array {
+  const typed = Buffer.concat([Buffer.from(type, "latin1"), content]);
+  const frame = Buffer.alloc(8);
+  frame.writeUInt32BE(content.length, 0);
+  frame.writeUInt32BE(crc32(typed), 4);
+  return Buffer.concat([frame.subarray(0, 4), typed, frame.subarray(4)]);
+}
+
 /** A PNG, grey or (with three channels) of colours, of 8 bits from a `Uint8Array`, of 16 from a `Uint16Array`. */
 export function png(data: Uint8Array | Uint16Array, width: number, height: number, channels: 1 | 3 = 1): Uint8Array {
   const bytes = data.BYTES_PER_ELEMENT;
@@ -36,16 +54,14 @@ export function png(data: Uint8Array | Uint16Array, width: number, height: numbe
   header.writeUInt32BE(height, 4);
   header.writeUInt8(8 * bytes, 8);
   header.writeUInt8(channels === 3 ? 2 : 0, 9);
-  const chunk = (type: string, content: Uint8Array) => {
-    const typed = Buffer.concat([Buffer.from(type, "latin1"), content]);
-    const frame = Buffer.alloc(8);
-    frame.writeUInt32BE(content.length, 0);
-    frame.writeUInt32BE(crc32(typed), 4);
-    return Buffer.concat([frame.subarray(0, 4), typed, frame.subarray(4)]);
-  };
   const signature = Buffer.from("\x89PNG\r\n\x1a\n", "latin1");
   const none = new Uint8Array();
-  return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(rows)), chunk("IEND", none)]);
+  return Buffer.concat([
+    signature,
+    pngChunk("IHDR", header),
+    pngChunk("IDAT", deflateSync(rows)),
+    pngChunk("IEND", none),
+  ]);
 }
 
 /** A mask as a PNG of 0 and 255. */

@@ -71,10 +71,11 @@ function mutated(random: Random, valid: Fields): Fields {
   return valid;
 }
 
+// The calls take what they must refuse, so the values have the type that every parameter accepts.
 const argument = (random: Random, valid: Fields) =>
-  random.between(0, 1) < 0.05 ? odd(random) : mutated(random, valid);
+  (random.between(0, 1) < 0.05 ? odd(random) : mutated(random, valid)) as never;
 
-function options(random: Random, method: keyof typeof OPTIONS): unknown {
+function options(random: Random, method: keyof typeof OPTIONS): never {
   const given: Fields = ["align", "alignViews", "track"].includes(method) ? { quality: "fast" } : {};
   if (method === "paper") Object.assign(given, { preset: "paper", ransacIterations: 200 });
   for (const { name, default: value, choices } of OPTIONS[method] as readonly OptionRow[]) {
@@ -83,38 +84,30 @@ function options(random: Random, method: keyof typeof OPTIONS): unknown {
   return argument(random, given);
 }
 
-const frame = (random: Random) => mutated(random, { ...scene(random), mesh: undefined });
-const pose = (random: Random) => pick(random, [{ ...truth }, { matrix: columnMajor(truth) }, odd(random)]);
-const cloud = (random: Random) => pick(random, [Float32Array.from(random.list(60, -1, 1)), odd(random)]);
+const frame = (random: Random) => mutated(random, { ...scene(random), mesh: undefined }) as never;
+const pose = (random: Random) => pick<unknown>(random, [truth, { matrix: columnMajor(truth) }, odd(random)]) as never;
+const cloud = (random: Random) => pick(random, [Float32Array.from(random.list(60, -1, 1)), odd(random)]) as never;
 const readers = [readDepth, readMask, readMesh, readCamera, readPose, readCase, readSam3d];
 
 /** The calls; each draws its arguments from the generator. */
-const calls: readonly ((aligner: never, random: Random) => unknown)[] = [
-  ...["align", "align", "paper"].map(
+const calls: readonly ((aligner: Aligner, random: Random) => unknown)[] = [
+  ...(["align", "align", "paper"] as const).map(
     (method) => (aligner: Aligner, random: Random) =>
-      aligner.align(argument(random, scene(random)) as never, options(random, method as "align") as never),
+      aligner.align(argument(random, scene(random)), options(random, method)),
   ),
-  (aligner: Aligner, random) =>
-    aligner.evaluate(
-      argument(random, scene(random)) as never,
-      pose(random) as never,
-      options(random, "evaluate") as never,
-    ),
-  (aligner: Aligner, random) =>
-    aligner.register(cloud(random) as never, cloud(random) as never, options(random, "register") as never),
-  (aligner: Aligner, random) =>
-    aligner.alignViews(
-      argument(random, { mesh: scene(random).mesh, views: [frame(random), frame(random)] }) as never,
-      options(random, "alignViews") as never,
-    ),
-  async (aligner: Aligner, random) => {
-    using tracker = await aligner.track(scene(random).mesh as never, options(random, "track") as never);
-    const frames = [frame(random), frame(random)];
-    return [await tracker.next(frames[0] as never), await tracker.next(frames[1] as never)];
+  (aligner, random) => aligner.evaluate(argument(random, scene(random)), pose(random), options(random, "evaluate")),
+  (aligner, random) => aligner.register(cloud(random), cloud(random), options(random, "register")),
+  (aligner, random) => {
+    const views = { mesh: scene(random).mesh, views: [frame(random), frame(random)] };
+    return aligner.alignViews(argument(random, views), options(random, "alignViews"));
   },
-  async (aligner: Aligner, random) => (await aligner.prepareMesh(argument(random, scene(random)) as never)).dispose(),
-  (_: Aligner, random) =>
-    (pick<unknown>(random, readers) as typeof readMesh)(pick(random, Object.values(scene(random))) as never),
+  async (aligner, random) => {
+    using tracker = await aligner.track(scene(random).mesh as never, options(random, "track"));
+    const frames = [frame(random), frame(random)] as const;
+    return [await tracker.next(frames[0]), await tracker.next(frames[1])];
+  },
+  async (aligner, random) => (await aligner.prepareMesh(argument(random, scene(random)))).dispose(),
+  (_, random) => pick<typeof readMesh>(random, readers as never)(pick(random, Object.values(scene(random))) as never),
 ];
 
 /** Makes an execution: it runs the call of a seed with each aligner, and compares the outcomes. */
@@ -126,7 +119,7 @@ export async function fuzzer(): Promise<{ run(seed: number): Promise<void>; end(
   async function outcome(aligner: Aligner, seed: number): Promise<string> {
     const random = new Random(seed);
     try {
-      await pick(random, calls)(aligner as never, random);
+      await pick(random, calls)(aligner, random);
       return "a result";
     } catch (error) {
       assert.ok(error instanceof Sim3AlignError, `seed ${seed}: ${(error as Error)?.stack}`);

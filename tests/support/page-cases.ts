@@ -9,11 +9,10 @@ import {
   inFolder,
   jsonFile,
   maskPng,
-  pinhole,
   seen,
   WIDTH,
 } from "./page-files.js";
-import { cuboid, mesh, type Pose, render, transformed, truth } from "./scene.js";
+import { cuboid, mesh, type Pose, pinhole, render, transformed, truth } from "./scene.js";
 
 /** The complete case with another depth map, mask or mesh. */
 const changed = (more: Files): Files => ({ ...files, ...more });
@@ -55,29 +54,6 @@ export function otherCamera(width: number, height: number): Files {
   const scaled = { fx: 2 * pinhole.fx, fy: 2 * pinhole.fy, cx: 2 * pinhole.cx + 0.5, cy: 2 * pinhole.cy + 0.5 };
   return changed({ "camera.json": jsonFile({ ...scaled, width, height }) });
 }
-
-/** Twice as large as the depth map, as photos are. */
-export const [ACROSS, DOWN] = [2 * WIDTH, 2 * HEIGHT];
-
-/** The object in orange on a grey-blue ground, with some texture. */
-const rgb = new Uint8Array(3 * ACROSS * DOWN);
-for (let y = 0; y < DOWN; y++) {
-  for (let x = 0; x < ACROSS; x++) {
-    const inside = seen.mask[Math.floor(y / 2) * WIDTH + Math.floor(x / 2)] !== 0;
-    const grain = 6 * ((x * 7 + y * 13) % 5);
-    rgb.set(inside ? [210 + grain, 120 + grain, 40] : [60 + grain, 80 + grain, 110], 3 * (y * ACROSS + x));
-  }
-}
-export const photoPng = png(rgb, ACROSS, DOWN, 3);
-
-/** A script of a page that encodes an image as JPEG: its bytes in base64. */
-export const jpegOf = (image: Uint8Array): string => `(async () => {
-  const bitmap = await createImageBitmap(await (await fetch("data:;base64,${Buffer.from(image).toString("base64")}")).blob());
-  const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
-  canvas.getContext("2d").drawImage(bitmap, 0, 0);
-  return canvas.toDataURL("image/jpeg", 0.9).split(",")[1];
-})()`;
 
 /** The number of frames of the video. */
 export const COUNT = 5;

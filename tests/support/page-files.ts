@@ -2,16 +2,15 @@
 import assert from "node:assert/strict";
 import { zipSync } from "fflate";
 import { maskPng as maskFile, npy, obj } from "./files.js";
-import { mesh, render, truth } from "./scene.js";
+import { mesh, pinhole, view } from "./scene.js";
 import type { SitePage } from "./site.js";
 
 /** Files by name. */
 export type Files = Record<string, Uint8Array>;
 
-export const pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
-/** The size of all images. */
-export const [WIDTH, HEIGHT] = [160, 120];
-export const seen = render(mesh, truth, pinhole, WIDTH, HEIGHT);
+/** The view of the object, and the size of all images. */
+export const seen = view;
+export const { width: WIDTH, height: HEIGHT } = view;
 
 /** A JSON file. */
 export const jsonFile = (content: unknown) => Buffer.from(JSON.stringify(content));

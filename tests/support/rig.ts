@@ -1,8 +1,7 @@
 /** Several views of the test scene, from cameras on a circle around the object. */
 import { viewFiles } from "./files.js";
-import { type Mesh, mesh, type Pose, poseJson, product, render, truth, type View } from "./scene.js";
+import { type Mesh, mesh, type Pose, pinhole, poseJson, product, render, truth, type View } from "./scene.js";
 
-const pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
 const size = { width: 160, height: 120 };
 
 /** A frame of the scene, and the true pose in it. */

@@ -168,7 +168,8 @@ function normalized(q: Pose["rotation"]): Pose["rotation"] {
 /** The blob. */
 export const mesh = blob();
 
-const pinhole: Pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
+/** The camera of {@link view}. */
+export const pinhole: Pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
 
 /** The blob at the truth, as a camera of 160 × 120 pixels sees it. */
 export const view = render(mesh, truth, pinhole, 160, 120);

@@ -22,52 +22,6 @@ export async function until<T>(measure: () => Promise<T>, isWanted: (found: T) =
   }
 }
 
-/** A gate for the messages of workers: while it is closed, they wait. */
-interface WorkerGate {
-  close(): void;
-  open(): void;
-}
-
-declare global {
-  var workerGate: WorkerGate;
-}
-
-/** Runs in the page: replaces `Worker` by one whose messages wait for the gate. */
-function installWorkerGate(): void {
-  let isOpen = true;
-  let isPassing = false;
-  const waiting: (() => void)[] = [];
-  const Plain = Worker;
-  globalThis.Worker = class extends Plain {
-    constructor(...parameters: ConstructorParameters<typeof Plain>) {
-      super(...parameters);
-      // The first listener of the worker, so that it can hold messages back from all others.
-      this.addEventListener("message", (event) => {
-        if (isPassing || (isOpen && waiting.length === 0)) return;
-        event.stopImmediatePropagation();
-        waiting.push(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })));
-      });
-    }
-  };
-  globalThis.workerGate = {
-    close() {
-      isOpen = false;
-    },
-    open() {
-      isOpen = true;
-      // Each message in its own task, in order, as without the gate.
-      const next = () => {
-        if (!isOpen || waiting.length === 0) return;
-        isPassing = true;
-        waiting.shift()?.();
-        isPassing = false;
-        setTimeout(next);
-      };
-      next();
-    },
-  };
-}
-
 /** How a test opens the page: an address, by default that of the sample of one object, and settings of the browser. */
 interface Visit extends BrowserContextOptions {
   address?: string;
@@ -87,11 +41,7 @@ export function pageTests(flags: readonly string[] = WITHOUT_3D) {
     const given = typeof visit === "string" ? { address: visit } : visit;
     const { address = "#sample=mug", isLoading = false, skip = false, ...context }: Visit = given;
     test(title, { skip }, async (t) => {
-      const { page, errors } = await browser.open(
-        `www/index.html${address}`,
-        { serviceWorkers: "block", ...context },
-        installWorkerGate,
-      );
+      const { page, errors } = await browser.open(`www/index.html${address}`, { serviceWorkers: "block", ...context });
       const opened = new SitePage(page, errors);
       if (!isLoading) await opened.aligned();
       await work(opened, page, t);
@@ -102,11 +52,7 @@ export function pageTests(flags: readonly string[] = WITHOUT_3D) {
 }
 
 /** The pixels of an image: red, green, blue, alpha. */
-export interface Pixels {
-  width: number;
-  height: number;
-  data: Buffer;
-}
+type Pixels = { width: number; height: number; data: Buffer };
 
 /** The page from the point of view of a user. */
 export class SitePage {
@@ -155,22 +101,13 @@ export class SitePage {
   }
 
   /** The origin of the current pose. */
-  source(): Promise<string | null> {
-    return this.page.getAttribute(".result", "data-source");
-  }
+  source = () => this.page.getAttribute(".result", "data-source");
 
   /** Waits for a pose of this origin. */
-  async isNow(source: string): Promise<void> {
-    await this.page.locator(`.result[data-source="${source}"]`).waitFor(PATIENCE);
-  }
-
-  /** Waits for the 3D view, drawn with this interface. */
-  has3d(backend: "webgpu" | "webgl"): Promise<void> {
-    return this.page.locator(`.view-host[data-backend="${backend}"] canvas`).waitFor(PATIENCE);
-  }
+  isNow = (source: string) => this.page.locator(`.result[data-source="${source}"]`).waitFor(PATIENCE);
 
   /** Shows a control that is behind a disclosure or in a menu, uses it, and closes the menu. */
-  private async reveal(control: Locator, use: () => Promise<void>): Promise<void> {
+  private async reveal(control: Locator, use: (control: Locator) => Promise<unknown>): Promise<void> {
     const menu = await control.evaluateHandle((one) => {
       for (let at = one.closest("details"); at != null; at = at.parentElement?.closest("details") ?? null)
         at.open = true;
@@ -178,51 +115,32 @@ export class SitePage {
       menu?.showPopover();
       return menu;
     });
-    await use();
+    await use(control);
     await menu.evaluate((menu) => menu?.hidePopover());
   }
 
   /** Shows or hides a layer of the image. */
-  async showInImage(layer: "outline" | "silhouette" | "zoom", isShown: boolean): Promise<void> {
-    const box = this.page.locator(`#layer-${layer}`);
-    await this.reveal(box, () => box.setChecked(isShown));
-  }
+  showInImage = (layer: "outline" | "silhouette", isShown: boolean) =>
+    this.reveal(this.page.locator(`#layer-${layer}`), (box) => box.setChecked(isShown));
 
   /** Chooses from a list, wherever it is. */
-  async choose(list: string, value: string): Promise<void> {
-    const found = this.page.locator(list);
-    await this.reveal(found, async () => void (await found.selectOption(value)));
-  }
-
-  /** Clicks the button with exactly this name, wherever it is. */
-  async press(button: string): Promise<void> {
-    const found = this.page.getByRole("button", { name: button, exact: true, includeHidden: true });
-    await this.reveal(found, () => found.click());
-  }
+  choose = (list: string, value: string) => this.reveal(this.page.locator(list), (found) => found.selectOption(value));
 
   /** Clicks a control, wherever it is. */
-  async click(control: string): Promise<void> {
-    const found = this.page.locator(control);
-    await this.reveal(found, () => found.click());
+  click = (control: string) => this.reveal(this.page.locator(control), (found) => found.click());
+
+  /** Clicks the button with exactly this name, wherever it is. */
+  press(name: string): Promise<void> {
+    const button = this.page.getByRole("button", { name, exact: true, includeHidden: true });
+    return this.reveal(button, () => button.click());
   }
 
   /** Enters a number in a field, wherever it is. */
-  async enter(field: string, value: string): Promise<void> {
-    const found = this.page.locator(field);
-    await this.reveal(found, async () => {
+  enter(field: string, value: string): Promise<void> {
+    return this.reveal(this.page.locator(field), async (found) => {
       await found.fill(value);
       await found.press("Enter");
     });
-  }
-
-  /** Holds back all messages of workers, so that a running alignment does not end. */
-  async closeWorkerGate(): Promise<void> {
-    await this.page.evaluate(() => workerGate.close());
-  }
-
-  /** Delivers the messages that were held back, and all later ones. */
-  async openWorkerGate(): Promise<void> {
-    await this.page.evaluate(() => workerGate.open());
   }
 
   /**
@@ -240,12 +158,14 @@ export class SitePage {
   }
 
   /** The pixels after all changes so far were drawn, which takes the page one frame. */
-  private capture(): Promise<Pixels> {
-    return pixelsOf(
-      this.page,
-      `new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)))
-        .then(() => document.querySelector(".image canvas").getContext("2d"))`,
-    );
+  private async capture(): Promise<Pixels> {
+    const { width, height, data } = (await this.page.evaluate(`new Promise((resolve) =>
+      requestAnimationFrame(() => requestAnimationFrame(resolve))).then(() => {
+        const context = document.querySelector(".image canvas").getContext("2d");
+        const { width, height, data } = context.getImageData(0, 0, context.canvas.width, context.canvas.height);
+        return { width, height, data };
+      })`)) as ImageData;
+    return { width, height, data: Buffer.from(data.buffer, data.byteOffset, data.byteLength) };
   }
 
   /** Clicks a button that saves a file, and returns the file. */
@@ -256,17 +176,19 @@ export class SitePage {
     return { name: download.suggestedFilename(), bytes: Buffer.concat(parts) };
   }
 
-  /** The violations that axe finds, one line per rule. */
-  violations(): Promise<string[]> {
-    return violations(this.page);
+  /** Whether leaving the page would ask, because some work is not stored yet. */
+  asks(): Promise<boolean> {
+    return this.page.evaluate(() => !dispatchEvent(new Event("beforeunload", { cancelable: true })));
   }
-}
 
-/** The pixels of a canvas. `context` is a script that resolves to its context. */
-async function pixelsOf(page: Page, context: string): Promise<Pixels> {
-  const { width, height, data } = (await page.evaluate(`(async () => {
-    const context = await ${context};
-    return context.getImageData(0, 0, context.canvas.width, context.canvas.height);
-  })().then(({ width, height, data }) => ({ width, height, data }))`)) as ImageData;
-  return { width, height, data: Buffer.from(data.buffer, data.byteOffset, data.byteLength) };
+  /** Waits until the browser has stored everything. */
+  async kept(): Promise<void> {
+    await until(
+      () => this.asks(),
+      (asks) => !asks,
+    );
+  }
+
+  /** The violations that axe finds, one line per rule. */
+  violations = () => violations(this.page);
 }

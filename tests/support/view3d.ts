@@ -16,7 +16,7 @@ export type ViewEvent =
   | { kind: "hover"; pixel: { x: number; y: number } | null };
 
 /** The global that tests/support/view3d-harness.mjs defines in the page. */
-export interface Harness {
+interface Harness {
   viewEvents: ViewEvent[];
   camera: { fx: number; fy: number; cx: number; cy: number };
   width: number;
@@ -26,15 +26,11 @@ export interface Harness {
   start(width: number, height: number, forceWebGL?: boolean): Promise<"webgpu" | "webgl">;
   show(display?: object): void;
   colours(places: Place[]): Promise<[number, number, number][]>;
-  idleFrames(): Promise<number>;
   view: {
-    readonly backend: "webgpu" | "webgl";
     setObjects(objects: object[]): Promise<void>;
-    setPose(id: string, pose: number[], animate?: object): Promise<void>;
+    setPose(id: string, pose: number[]): Promise<void>;
     select(id: string | null): void;
-    setDisplay(display: object): void;
     setGizmo(mode: string | null): void;
-    dispose(): void;
   };
 }
 declare global {

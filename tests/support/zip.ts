@@ -1,6 +1,6 @@
 /** Zip archives whose headers say what a test wants, which no program writes. */
 import { constants, deflateRawSync } from "node:zlib";
-import { crc32 } from "./crc32.js";
+import { crc32 } from "./files.js";
 
 /** A file in an archive, and what its headers say instead of the truth. */
 export interface ZipEntry {
