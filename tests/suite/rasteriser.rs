@@ -131,3 +131,57 @@ fn equals_ray_casting() {
     let all = 60 * WIDTH * HEIGHT;
     assert!(compared > all * 99 / 100 && covered > all / 5 && covered < compared / 2, "{compared} {covered} of {all}");
 }
+
+#[wasm_bindgen_test]
+fn edges_follow_the_top_left_rule() {
+    let camera = Pinhole::new(1.0, 1.0, 0.0, 0.0).unwrap();
+    // The pixels drawn, as rows of `#` and `.`.
+    let picture = |corners: &[[f32; 3]], size: usize| {
+        let mut rasteriser = Rasteriser::new();
+        let mesh = Mesh::from_flat(corners.as_flattened(), None).unwrap();
+        rasteriser.render_depth(&mesh, &Similarity::identity(), &camera, size, size);
+        let row = |row: &[f32]| row.iter().map(|z| if *z > 0.0 { '#' } else { '.' }).collect::<String>();
+        rasteriser.depth().chunks(size).map(row).collect::<Vec<_>>().join(" ")
+    };
+    let (a, b, c, d) = ([1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [3.0, 3.0, 1.0], [1.0, 3.0, 1.0]);
+    // A square on pixel centres: its left and top edges are in, its right and bottom ones out.
+    for square in [[a, b, c, a, c, d], [a, c, b, a, d, c], [b, c, d, b, d, a], [d, a, b, c, b, d]] {
+        assert_eq!(picture(&square, 5), "..... .##.. .##.. ..... .....");
+    }
+    // Its halves share the diagonal, and each pixel on it is in exactly one of them.
+    assert_eq!(picture(&[a, b, c], 4), ".... .##. ..#. ....");
+    assert_eq!(picture(&[a, c, d], 4), ".... .... .#.. ....");
+}
+
+/// A sheet of quads with corners on and between pixel centres, each cut along a random diagonal: no pixel is left out, and
+/// none is covered by two triangles.
+#[wasm_bindgen_test]
+fn triangles_that_share_edges_cover_every_pixel_once() {
+    let camera = Pinhole::new(40.0, 41.0, 23.5, 17.0).unwrap();
+    for seed in 0..12 {
+        let mut random = Random::new(seed, 913);
+        let cell = 4.0 + 4.0 * random.uniform();
+        let (columns, rows) = ((WIDTH as f64 / cell) as usize + 5, (HEIGHT as f64 / cell) as usize + 5);
+        let corner = |i: usize, random: &mut Random| {
+            let mut place = |k: usize| ((k as f64 - 1.9) + 0.6 * (random.uniform() - 0.5)) * cell;
+            let at = [place(i % columns), place(i / columns)];
+            let [u, v] = if seed % 2 == 0 { at.map(|x| (2.0 * x).round() / 2.0) } else { at };
+            camera.back_project(u, v, 1.0 + 3.0 * random.uniform())
+        };
+        let positions: Vec<Vec3> = (0..columns * rows).map(|i| corner(i, &mut random)).collect();
+        let mut rasteriser = Rasteriser::new();
+        let mut hits = vec![0; WIDTH * HEIGHT];
+        for (row, column) in (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |column| (row, column))) {
+            let [a, b, d, e] = [0, 1, columns, columns + 1].map(|step| (row * columns + column + step) as u32);
+            let halves = if random.below(2) == 0 { [[a, b, e], [a, d, e]] } else { [[a, b, d], [b, d, e]] };
+            for half in halves {
+                // All vertices stay, so that the near plane does.
+                let mesh = Mesh::new(positions.clone(), vec![half]).unwrap();
+                rasteriser.render_depth(&mesh, &Similarity::identity(), &camera, WIDTH, HEIGHT);
+                hits.iter_mut().zip(rasteriser.depth()).for_each(|(hits, z)| *hits += i32::from(*z > 0.0));
+            }
+        }
+        let wrong: Vec<usize> = (0..hits.len()).filter(|i| hits[*i] != 1).collect();
+        assert!(wrong.is_empty(), "seed {seed}, cells of {cell} pixels: {} pixels, first {}", wrong.len(), wrong[0]);
+    }
+}
