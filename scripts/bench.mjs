@@ -71,7 +71,8 @@ async function benchmark(options) {
   if (hasPeers) {
     await step("Other libraries", () => runPeers({ cases: [folder], out: answers, methods, python: options.python }));
   }
-  const imports = [...methods.map((method) => `${method}=${join(answers, method)}`), ...options.import];
+  const answered = methods.filter((method) => existsSync(join(answers, method)));
+  const imports = [...answered.map((method) => `${method}=${join(answers, method)}`), ...options.import];
   const threads = options.threads === undefined ? [] : ["--threads", `${options.threads}`];
   const file = (/** @type {string} */ of) => join(out, `${of}.jsonl`);
   for (const [each, cases] of Object.entries(folders)) {
@@ -92,7 +93,9 @@ async function benchmark(options) {
   const libraries = hasPeers ? Object.entries(versionsOf(answers)).map((library) => library.join(" ")) : [];
   const versions = [rustc, `Node ${node}`, ...libraries].join(", ");
   const run = `Commit ${commit}, ${date.slice(0, 10)}, ${machine}, ${system}; ${versions}. Set seed ${options.setSeed}, ${scenes} scenes.`;
-  const markdown = `# Benchmark\n\n${run}\n\n${notes}\n\n${sections.join("\n\n")}\n`;
+  const lost = methods.filter((method) => !answered.includes(method));
+  const left = lost.length === 0 ? "" : `Left out, because their library could not be loaded: ${lost.join(", ")}.\n\n`;
+  const markdown = `# Benchmark\n\n${run}\n\n${left}${notes}\n\n${sections.join("\n\n")}\n`;
   writeFileSync(join(out, "tables.md"), markdown);
   if (options.snapshot) writeFileSync(at("docs", "benchmark", "README.md"), markdown);
   console.log(`\n${markdown}\nThe tables are in ${out}.`);
@@ -163,7 +166,8 @@ async function registration({ id, title, data, every }, out, python) {
     const [pairs, answers] = [join(folder, "pairs.json"), join(folder, "answers")];
     await runLab([...args, "--pairs-json", pairs]);
     await step(`Other libraries, ${title}`, () => runPeers({ pairs, out: answers, methods: pairMethods, python }));
-    methods.push(...pairMethods.flatMap((name) => ["--method", `${name}=import:${join(answers, name)}`]));
+    const answered = pairMethods.filter((name) => existsSync(join(answers, name)));
+    methods.push(...answered.flatMap((name) => ["--method", `${name}=import:${join(answers, name)}`]));
   }
   const table = join(folder, "table.md");
   await step(`General registration, ${title}`, async () => {
