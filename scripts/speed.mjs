@@ -12,7 +12,7 @@ import { measureSizes } from "./speed/sizes.mjs";
 import { measureStages } from "./speed/stages.mjs";
 import { measureVideo } from "./speed/video.mjs";
 
-/** What can be measured; the other libraries only on request, for they need Python. */
+/** The measurements. Other libraries need Python and are measured on request only. */
 const parts = ["stages", "sizes", "video", "pool", "peers"];
 
 /** @typedef {{ only: string[], runs: number, quality: string, quick: boolean, python: string }} Options */

@@ -4,7 +4,7 @@ use crate::prelude::*;
 
 /// A value of an enumeration with names.
 pub trait Named: Copy + PartialEq + 'static {
-    /// What a value is called in errors.
+    /// The name of such a value in errors.
     const ARGUMENT: &'static str;
     /// All values.
     const ALL: &'static [Self];

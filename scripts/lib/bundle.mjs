@@ -4,7 +4,7 @@ import { dirname, join, normalize, relative, sep } from "node:path";
 import { refuseForeign } from "./notices.mjs";
 import { compiledDir, packageDir, skinDir } from "./paths.mjs";
 
-/** What several entries share; beside them, so that the same paths lead from there to the modules. */
+/** Chunks that several entries share: beside them, so that the same paths lead to the modules. */
 const PART = "part-[hash]";
 
 /** The names of the files in package.json that end in this way. @param {string} extension */

@@ -1,4 +1,4 @@
-/** What a release needs: a tag that names the version, a dated section of the changelog, and a citation of both. */
+/** Requirements of a release: a tag that names the version, a dated section of the changelog, and a citation of both. */
 
 /**
  * The section of a version in the changelog, with its heading.

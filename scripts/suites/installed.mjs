@@ -13,7 +13,7 @@ import { copySample } from "../lib/sample.mjs";
 import { buildSite } from "../lib/site.mjs";
 import { step } from "../lib/step.mjs";
 
-/** What the tests expect in their environment. */
+/** The environment of the tests. */
 export const testEnvironment = { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAMPLE: sampleDir };
 
 /** Tests that use the installed package, and what they share. */

@@ -19,7 +19,7 @@ interface Element extends HTMLElement {
   results: { name: string; confidence: number | null; isAccepted: boolean }[];
 }
 
-/** What the tests leave in the page. */
+/** Globals of the tests in the page. */
 declare global {
   interface Window {
     told: { of: string; type: string; detail: Record<string, unknown> }[];

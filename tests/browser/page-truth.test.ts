@@ -1,4 +1,4 @@
-/** What the page says is so: sizes along an object's own sides, and why mask and mesh differ. */
+/** Statements of the page: sizes along an object's own sides, and causes of differences between mask and mesh. */
 import assert from "node:assert/strict";
 import { depthInUnits, SIDES_M, tiltedBox } from "../support/page-cases.js";
 import { drop } from "../support/page-files.js";

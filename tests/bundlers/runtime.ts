@@ -1,4 +1,4 @@
-/** What any runtime prints: what comes of the package as it is, and in one piece. */
+/** A program for every runtime: prints the results of both entries of the package. */
 import { createAligner } from "sim3align";
 import { createAligner as createInline } from "sim3align/inline";
 import { work } from "./work.js";

@@ -1,8 +1,8 @@
-/** What the little apps do with the package, and how they tell what came of it. */
+/** The calls of the apps, and the report of their results. */
 import type { Aligner, AlignerOptions, AlignInput } from "sim3align";
 import { input, mesh } from "../support/scene.js";
 
-/** What came of it: the matrices, which are to be those of Node. */
+/** The matrices of all calls, which have to equal those of Node. */
 export type Found = Record<string, number[]>;
 
 /** Aligns arrays, a file and a scene of one object, without workers and with two. */

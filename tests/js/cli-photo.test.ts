@@ -15,7 +15,7 @@ const { "camera.json": _, ...uncalibrated } = files;
 const gt = poseJson(truth);
 const relative = "--depth-kind affine-invariant-disparity --quality fast";
 
-/** What a model of relative depth returns. */
+/** The output of a model of relative depth. */
 const disparity = ({ depth, width, height }: Pick<View, "depth" | "width" | "height">) =>
   npy(
     depth.map((z) => (z > 0 ? 2 / z + 0.3 : Number.NaN)),

@@ -75,7 +75,7 @@ test("MoGe's point map becomes ours: pixels where they were, and what is invalid
 
 type Camera = { fx: number; fy: number; cx: number; cy: number };
 
-/** Where a camera sees a point: the place in an image of width 1 and height 1, from edge to edge. */
+/** The projection of a point: its place in an image of width 1 and height 1, from edge to edge. */
 const place = (of: Camera, to: { width: number; height: number }, [x = 0, y = 0, z = 1]: readonly number[]) => [
   ((of.fx * x) / z + of.cx + 0.5) / to.width,
   ((of.fy * y) / z + of.cy + 0.5) / to.height,

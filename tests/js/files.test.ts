@@ -58,7 +58,7 @@ test("depth maps of every library: size, values, unit and camera, or the code of
   }
 });
 
-/** What a file holds, or why it is refused. */
+/** The content of a file, or its error. */
 interface Expected {
   data: (number | null)[];
   width: number;

@@ -13,7 +13,7 @@ const here = await createAligner();
 const quick = { quality: "fast" } as const;
 const { width, height, mask, camera } = view;
 
-/** What a model of each kind returns for a depth map. */
+/** The output of a model of each kind for a depth map. */
 const predicted: Record<DepthKind, (depth: Float32Array) => Float32Array> = {
   metric: (depth) => depth.slice(),
   "scale-invariant": (depth) => depth.map((z) => 3.7 * z),

@@ -110,7 +110,7 @@ test("what is no scene is an error, and flat or degenerate meshes are none", asy
   assert.doesNotMatch(Object.values(toMjcf(scene)).join("") + toUsd(scene), /NaN|Infinity/);
 });
 
-/** What the simulators return after a second of physics. */
+/** The results of the simulators after a second of physics. */
 interface Simulated {
   mujoco: { bodies: Rested[]; cameras: { position: number[]; axes: number[]; fovYDeg: number }[]; planes: number };
   pybullet: { bodies: Rested[]; ground: boolean };

@@ -11,7 +11,7 @@ use sim3align::pauses::{Pauses, finished};
 use crate::observations::{body, observe, orbit, quick, truth};
 use crate::prelude::*;
 
-/// What a model returns for depth z, and the shift t of that.
+/// The output of a model for depth z, and its shift t.
 fn predicted(kind: DepthKind, z: f64) -> f64 {
     match kind {
         DepthKind::Metric => z,

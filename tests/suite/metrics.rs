@@ -18,7 +18,7 @@ fn camera() -> Pinhole {
     Pinhole::new(200.0, 210.0, 80.0, 58.0).unwrap()
 }
 
-/// What the camera sees of the posed mesh, its depths moved by `offset` metres.
+/// The image of the posed mesh, its depths moved by `offset` metres.
 fn observe(mesh: &Mesh, offset: f32) -> Observation {
     rendered(mesh, &pose(), camera(), [WIDTH, HEIGHT], |z| if z > 0.0 { z + offset } else { 2.0 })
 }

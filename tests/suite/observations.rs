@@ -73,7 +73,7 @@ pub fn assert_right(mesh: &Mesh, found: &Similarity, truth: &Similarity, what: &
     assert!(is_right, "{what}: {errors:?}");
 }
 
-/// What cameras see that are turned about the object by these angles; the world is the frame of the camera at 0.
+/// The images of cameras that are turned about the object by these angles; the world is the frame of the camera at 0.
 pub fn views(mesh: &Mesh, angles: &[f64]) -> Vec<View> {
     let view = |angle: &f64| View {
         frame: frame_of(&observe(mesh, &orbit(*angle))),

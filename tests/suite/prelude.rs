@@ -1,4 +1,4 @@
-//! What most tests use.
+//! The vocabulary of the tests.
 
 pub use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 pub use nalgebra::{Rotation3, Vector3};

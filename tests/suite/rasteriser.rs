@@ -11,7 +11,7 @@ const EDGE_PX: f64 = 0.004;
 const WIDTH: usize = 48;
 const HEIGHT: usize = 36;
 
-/// What one ray meets.
+/// The intersections of one ray.
 struct Ray {
     /// Depth and triangle of each hit.
     hits: Vec<(f64, u32)>,

@@ -91,7 +91,7 @@ pub fn truth() -> Similarity {
     similarity(0.17, [0.9, -0.5, 2.1], [0.015, -0.01, 0.55])
 }
 
-/// What a camera sees of the body in front of a wall; depths in units of `unit_m` metres.
+/// The image of the body in front of a wall; depths in units of `unit_m` metres.
 pub fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
     let camera = Pinhole::new(420.0, 420.0, 119.5, 89.5).unwrap();
     rendered(mesh, &truth(), camera, [WIDTH, HEIGHT], |z| if z > 0.0 { z / unit_m } else { 1.0 / unit_m })

@@ -1,4 +1,4 @@
-//! What the tests share: seeded draws, random similarities, surfaces with known normals, pauses and fingerprints.
+//! Shared parts of the tests: seeded draws, random similarities, surfaces with known normals, pauses and fingerprints.
 
 use core::cell::RefCell;
 

@@ -5,7 +5,7 @@ import { repository } from "./environment.js";
 
 /** A fenced block. */
 export interface Example {
-  /** Where it begins: `docs/guides/frames.md:12`. */
+  /** The place of its first line: `docs/guides/frames.md:12`. */
   place: string;
   /** A name for its file. */
   name: string;

@@ -19,7 +19,7 @@ const input = { depth, width, height, mask, camera, mesh };
 
 /** The bytes of a photo of this camera: 65 mm on full frame, resized by a quarter. */
 const photo = greyJpeg(tiff({}, { focal35: 65, pixelX: 4 * width, pixelY: 4 * height }, true), width, height);
-/** What a model of relative depth returns. */
+/** The output of a model of relative depth. */
 const relative = { data: depth.map((z) => 2 / z + 0.3), width, height };
 
 const aligner = await createAligner();

@@ -9,7 +9,7 @@ import { required } from "./environment.js";
 /** The folder of the examples, a copy of the repository's with its packages installed. */
 export const examplesDir = required("SIM3ALIGN_EXAMPLES");
 
-/** What a script printed, and how it ended. */
+/** The output of a script, and its exit status. */
 type Outcome = { status: number; stdout: string; stderr: string };
 
 /**

@@ -75,7 +75,7 @@ export const maskPng = (mask: Uint8Array, width: number, height: number) =>
 /** The content of files by their paths; objects stand for JSON. */
 export type Files = Record<string, Uint8Array | string | object>;
 
-/** What a camera sees, as the files of a case folder. */
+/** A view as the files of a case folder. */
 export const viewFiles = ({ depth, mask, width, height, camera }: View) => ({
   "depth.npy": npy(depth, height, width),
   "mask.png": maskPng(mask, width, height),
@@ -113,7 +113,7 @@ const padded = (bytes: Uint8Array, filler: string) => {
 
 const bytesOf = (array: Float32Array | Uint32Array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
 
-/** What a `.gltf` says about a mesh whose arrays are one after the other in one buffer. */
+/** The JSON of a `.gltf` with a mesh whose arrays are one after the other in one buffer. */
 export function gltfJson({ positions, indices }: Mesh, node: object = {}, buffer: object = {}) {
   return {
     asset: { version: "2.0" },

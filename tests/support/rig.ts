@@ -12,7 +12,7 @@ export interface RigFrame {
   pose: Pose;
 }
 
-/** What a camera sees that is turned about the object, the blob by default, by this angle, degrees. */
+/** The view of a camera that is turned about the object, by default the blob, by this angle in degrees. */
 export function frameAt(degrees: number, object: Mesh = mesh as Mesh): RigFrame {
   const half = (degrees * Math.PI) / 360;
   const turn: Pose["rotation"] = [0, Math.sin(half), 0, Math.cos(half)];

@@ -3,7 +3,7 @@ import { Matrix4, Quaternion } from "three";
 import type { Files } from "./files.js";
 import { type Pinhole, type Pose, rotationRows } from "./scene.js";
 
-/** What the model is given, and what it returns: an object with its true pose from the vertices of its GLB. */
+/** Input and output of the model: an object with its true pose from the vertices of its GLB. */
 export interface Sam3dView {
   depth: Float32Array;
   width: number;
@@ -60,7 +60,7 @@ export interface Sam3dObject {
   /** The bytes of a PNG. */
   mask: Uint8Array;
   glb: Uint8Array;
-  /** Where the model puts it. */
+  /** The pose by the model. */
   pose: Pose;
 }
 

@@ -13,7 +13,7 @@ use crate::prelude::*;
 /// Voxel size of the baselines.
 pub const VOXEL_SIZE_M: f64 = 0.05;
 
-/// Where a scene's fragments and its ground truth are.
+/// The folders of a scene's fragments and of its ground truth.
 struct Scene {
     name: String,
     fragments: PathBuf,

@@ -21,7 +21,7 @@ const LEAST_PART: f64 = 0.12;
 const LEAST_BOTH: f64 = 0.97;
 
 named! {
-    /// What measures or predicts depth.
+    /// A source of depth: a sensor or a depth model.
     pub enum DepthSource: "source" {
         /// Stereo matching of blocks, with a projected texture.
         ActiveStereo = "active-stereo",

@@ -1,4 +1,4 @@
-//! What depth sensors and depth models do where the depth steps from an object to its background.
+//! Errors of depth sensors and depth models at steps between an object and its background.
 //!
 //! The true edge moves in or out by an offset that changes along it. Beside the moved edge, readings are missing or mixed.
 

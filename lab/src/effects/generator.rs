@@ -202,7 +202,7 @@ fn fitted(positions: &[DVec3], original: &[DVec3], mesh: &Mesh) -> Result<Vec<DV
     Ok(positions.iter().map(|p| DVec3::from_array(back.apply(vector(p)).into())).collect())
 }
 
-/// What was not seen becomes deeper or flatter along the line of sight, and bulges.
+/// Stretches and bulges the hidden side along the line of sight.
 fn invent(
     positions: &mut [DVec3],
     mesh: &Mesh,

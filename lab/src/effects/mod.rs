@@ -1,5 +1,5 @@
-//! What measurement and models do to images and meshes: the errors of sensors, depth models, segmentation, photos and mesh
-//! generators.
+//! Errors of measurement and of models in images and meshes: those of sensors, depth models, segmentation, photos and
+//! mesh generators.
 
 pub mod depth;
 pub mod edges;

@@ -21,7 +21,7 @@ enum Back {
     Other,
 }
 
-/// What a model makes of the colours of an object.
+/// The colours of a generated mesh, with the errors of a model.
 struct Painter<'a> {
     print: &'a Print,
     other: &'a Print,

@@ -22,7 +22,7 @@ impl Solid {
         self.part
     }
 
-    /// Where what follows is put; until the next call.
+    /// Sets the frame of the following shapes.
     pub fn at(&mut self, frame: DAffine3) -> &mut Self {
         self.frame = frame;
         self

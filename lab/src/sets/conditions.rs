@@ -44,7 +44,7 @@ impl Tier {
     }
 }
 
-/// What the image shows of an object.
+/// Visibility of an object in the image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Framing {
     /// All of it, or most.
@@ -94,7 +94,7 @@ pub enum MeshFault {
 #[derive(Debug)]
 pub struct Class {
     pub name: &'static str,
-    /// Where its objects come from; `None` for the pool of the tier.
+    /// The pool of its objects; `None` for that of the tier.
     pub pool: Option<Pool>,
     pub framing: Framing,
     /// Sources of depth, each of which is as likely; none for an ideal camera.
@@ -256,7 +256,7 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// Where objects come from: what is ambiguous is no easy case.
+    /// The pool of objects. Ambiguous ones are not easy.
     pub fn pool(&self) -> Pool {
         self.class.pool.unwrap_or(self.tier.pick(Pool::Common, Pool::Detailed, Pool::All))
     }

@@ -14,7 +14,7 @@ pub struct View {
     pub camera_from_world: Similarity,
 }
 
-/// What an ideal camera sees of one object among others.
+/// The ideal image of one object among others.
 #[derive(Debug, Clone)]
 pub struct Sight {
     pub view: View,
@@ -53,7 +53,7 @@ impl View {
         Ok(Self { camera_from_world, ..self })
     }
 
-    /// Where the camera is.
+    /// The pose of the camera.
     pub fn eye(&self) -> DVec3 {
         DVec3::from_array(self.camera_from_world.inverse().translation.into())
     }
@@ -94,7 +94,7 @@ impl View {
         rasteriser.depth().to_vec()
     }
 
-    /// What the camera sees of each object, and of all objects as one.
+    /// The images of each object, and of all objects as one.
     pub fn see(&self, world: &World) -> (Vec<Sight>, Sight) {
         let mut others = vec![0.0; self.pixels()];
         world.others.iter().for_each(|mesh| put_before(&mut others, &self.depth_of(mesh)));

@@ -49,7 +49,7 @@ struct Row {
     ts: String,
     /// The range, in words; empty where the type says it all.
     range: String,
-    /// What else the table says: least and most value, choices.
+    /// The rest of the entry: least and most value, choices.
     limits: Vec<(&'static str, Value)>,
     default: Value,
 }
@@ -58,7 +58,7 @@ struct Row {
 struct Call {
     /// Its name in the table of options.
     key: &'static str,
-    /// What the name of the constant with its defaults begins with.
+    /// The prefix of the constant with its defaults.
     constant: &'static str,
     /// The name of its options' type.
     interface: &'static str,
@@ -319,7 +319,7 @@ fn spaced(value: &Value) -> String {
     value.to_string().replace(',', ", ")
 }
 
-/// What the table of options says of one: a property per item.
+/// The entry of an option in the table, one property per item.
 fn properties(row: &Row) -> Vec<String> {
     let Row { name, doc, kind, ts, limits, default, .. } = row;
     let mut all = vec![format!("name: \"{name}\""), format!("kind: \"{kind}\"")];
