@@ -2,14 +2,14 @@
  * `npm run bench [-- --quick]`: the paper's tables: generated scenes (or case folders), our presets and their ablations,
  * other libraries beside them, general registration. An interrupted run is resumed.
  */
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { command, count } from "./bench/command.mjs";
 import { notes, ownRows, tableMarkdown, tables } from "./bench/paper.mjs";
 import { meshMethods, pairMethods, runPeers, versionsOf } from "./bench/peers.mjs";
 import { environment, openResults, readResults } from "./bench/results.mjs";
-import { digest } from "./lib/cache.mjs";
-import { buildLab, runLab } from "./lib/lab.mjs";
+import { cached } from "./lib/cache.mjs";
+import { buildLab, labCode, runLab, threadArguments } from "./lib/lab.mjs";
 import { at } from "./lib/paths.mjs";
 import { pythonWith } from "./lib/python.mjs";
 import { step } from "./lib/step.mjs";
@@ -36,7 +36,7 @@ const collect = (/** @type {string} */ value, /** @type {string[]} */ all) => [.
 await command("bench", (program) =>
   program
     .description("Runs the benchmark of the paper, and writes its tables. An interrupted run is resumed.")
-    .option("--quick", "a subset that takes about five minutes", false)
+    .option("--quick", "a subset that takes about three minutes", false)
     .option("--smallest", "one scene and a few pairs of clouds, without other libraries", false)
     .option("--scenes <n>", "generated scenes: 100 make 338 pairs of object and mesh (12 where --quick)", count)
     .option("--set-seed <s>", "seed of the generated scenes", Number, 0)
@@ -60,26 +60,24 @@ async function benchmark(options) {
   const hasPeers = options.peers && !options.smallest;
   await step("Programs", buildLab);
   if (hasPeers) await pythonWith("peers", options.python);
-  const code = digest(["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock"].map((path) => at(path)));
-  const clouds = await datasets(options);
+  const code = labCode();
+  const clouds = await datasets(options, code);
   openResults(out, { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null, clouds }, options.fresh);
-  const folders = options.cases === undefined ? await writeScenes(scenes, options.setSeed) : { given: options.cases };
+  const folders =
+    options.cases === undefined ? await writeScenes(scenes, options.setSeed, code) : { given: options.cases };
 
   const [[prior, folder] = ["", ""]] = Object.entries(folders);
   const answers = join(out, "answers");
   const methods = hasPeers ? meshMethods(options.quick) : [];
-  if (hasPeers) {
-    await step("Other libraries", () => runPeers({ cases: [folder], out: answers, methods, python: options.python }));
-  }
-  const answered = methods.filter((method) => existsSync(join(answers, method)));
+  const peers = { cases: [folder], out: answers, methods, python: options.python };
+  const answered = hasPeers ? await step("Other libraries", () => runPeers(peers)) : [];
   const imports = [...answered.map((method) => `${method}=${join(answers, method)}`), ...options.import];
-  const threads = options.threads === undefined ? [] : ["--threads", `${options.threads}`];
   const file = (/** @type {string} */ of) => join(out, `${of}.jsonl`);
   for (const [each, cases] of Object.entries(folders)) {
     const args = ownRows(each === prior).flatMap((row) => ["--row", row]);
     if (each === prior) args.push(...imports.flatMap((one) => ["--import", one]));
     await step(`Rows on ${each} meshes`, () =>
-      runLab(["bench", "--cases", cases, ...args, "--json", file(each), ...threads]),
+      runLab(["bench", "--cases", cases, ...args, "--json", file(each), ...threadArguments(options.threads)]),
     );
   }
   const results = new Map(Object.keys(folders).map((each) => [each, readResults(file(each))]));
@@ -105,22 +103,30 @@ async function benchmark(options) {
  * Case folders of both mesh priors, below target/.
  * @param {number} scenes
  * @param {number} seed
+ * @param {string} code
  */
-async function writeScenes(scenes, seed) {
+async function writeScenes(scenes, seed, code) {
   const folder = at("target", "bench", `scenes-${scenes}-seed-${seed}`);
   const folders = { detailed: join(folder, "detailed"), smooth: join(folder, "smooth") };
   await step("Scenes", async () => {
-    for (const [set, path] of [
-      ["clutter", folders.detailed],
-      ["clutter-smooth", folders.smooth],
-    ]) {
-      const done = `${path}.done`;
-      if (existsSync(done)) continue;
-      await runLab(["bench", "--set", `${set}`, "--count", `${scenes}`, "--seed", `${seed}`, "--write", `${path}`]);
-      writeFileSync(done, "");
-    }
+    const size = ["--count", `${scenes}`, "--seed", `${seed}`];
+    await generated(folders.detailed, code, ["bench", "--set", "clutter", ...size, "--write", folders.detailed]);
+    await generated(folders.smooth, code, ["bench", "--set", "clutter-smooth", ...size, "--write", folders.smooth]);
   });
   return folders;
+}
+
+/**
+ * Inputs that the lab writes to a folder; again if its code has changed.
+ * @param {string} folder
+ * @param {string} code
+ * @param {readonly string[]} args
+ */
+async function generated(folder, code, args) {
+  await cached(`${folder}.done`, code, [folder], async () => {
+    rmSync(folder, { recursive: true, force: true });
+    await runLab(args);
+  });
 }
 
 /** @typedef {{ id: string, title: string, data: string, every: number }} Dataset every n-th pair is taken */
@@ -128,9 +134,10 @@ async function writeScenes(scenes, seed) {
 /**
  * The pairs of clouds of a run: rooms and streets of its seed, and folders of the caller's.
  * @param {{ quick: boolean, smallest: boolean, setSeed: number, data: readonly string[] }} options
+ * @param {string} code
  * @returns {Promise<Dataset[]>}
  */
-async function datasets({ quick, smallest, setSeed, data }) {
+async function datasets({ quick, smallest, setSeed, data }, code) {
   const scenes = quick || smallest ? 1 : 2;
   /** @type {Dataset[]} */
   const made = [];
@@ -139,10 +146,8 @@ async function datasets({ quick, smallest, setSeed, data }) {
     ["lidar", "streets in KITTI's layout"],
   ]) {
     const folder = at("target", "bench", `${kind}-${scenes}-seed-${setSeed}`);
-    if (!existsSync(`${folder}.done`)) {
-      await runLab(["registration", "write", `${kind}`, folder, "--seed", `${setSeed}`, "--scenes", `${scenes}`]);
-      writeFileSync(`${folder}.done`, "");
-    }
+    const size = ["--seed", `${setSeed}`, "--scenes", `${scenes}`];
+    await generated(folder, code, ["registration", "write", `${kind}`, folder, ...size]);
     made.push({ id: `${kind}`, title: `generated ${title}`, data: folder, every: smallest ? 12 : quick ? 3 : 1 });
   }
   return [
@@ -165,8 +170,8 @@ async function registration({ id, title, data, every }, out, python) {
   if (python !== null) {
     const [pairs, answers] = [join(folder, "pairs.json"), join(folder, "answers")];
     await runLab([...args, "--pairs-json", pairs]);
-    await step(`Other libraries, ${title}`, () => runPeers({ pairs, out: answers, methods: pairMethods, python }));
-    const answered = pairMethods.filter((name) => existsSync(join(answers, name)));
+    const peers = { pairs, out: answers, methods: pairMethods, python };
+    const answered = await step(`Other libraries, ${title}`, () => runPeers(peers));
     methods.push(...answered.flatMap((name) => ["--method", `${name}=import:${join(answers, name)}`]));
   }
   const table = join(folder, "table.md");

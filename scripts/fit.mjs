@@ -8,7 +8,7 @@ import { join, resolve } from "node:path";
 import { command, count } from "./bench/command.mjs";
 import { readResults } from "./bench/results.mjs";
 import { fixed, markdownTable, mean } from "./bench/table.mjs";
-import { runLab } from "./lib/lab.mjs";
+import { runLab, threadArguments } from "./lib/lab.mjs";
 import { at } from "./lib/paths.mjs";
 import { reliability, summaries } from "./record/summary.mjs";
 
@@ -143,8 +143,7 @@ function solve(system) {
 async function samplesOf(name, cases, { threads, keep }) {
   mkdirSync(keep, { recursive: true });
   const json = join(resolve(keep), `${name}.jsonl`);
-  const more = threads === undefined ? [] : ["--threads", `${threads}`];
-  await runLab(["bench", ...cases, ...ROWS, "--json", json, ...more]);
+  await runLab(["bench", ...cases, ...ROWS, "--json", json, ...threadArguments(threads)]);
   const model = currentModel();
   return readResults(json).flatMap((result) => {
     const features = featuresOf(result, model);

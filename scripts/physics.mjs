@@ -1,8 +1,9 @@
 /** `npm run physics`: exports scenes for simulators and measures which bodies stay at rest there; see `--help`. */
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { basename, join, resolve } from "node:path";
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { basename, join } from "node:path";
 import { command } from "./bench/command.mjs";
 import { fixed, markdownTable, median } from "./bench/table.mjs";
+import { foldersOf } from "./lib/folders.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { at, packageDir } from "./lib/paths.mjs";
 import { runPython } from "./lib/python.mjs";
@@ -16,19 +17,6 @@ const stays = ({ movedM, turnedDeg }) => movedM <= 0.005 && turnedDeg <= 5;
 
 /** @param {string} folder */
 const isScene = (folder) => existsSync(join(folder, "objects"));
-
-/** Scene folders among folders and their subfolders. @param {readonly string[]} folders */
-const scenesIn = (folders) =>
-  folders
-    .map((folder) => resolve(folder))
-    .flatMap((folder) =>
-      isScene(folder)
-        ? folder
-        : readdirSync(folder)
-            .sort()
-            .map((name) => join(folder, name))
-            .filter(isScene),
-    );
 
 /**
  * Aligns and exports a scene with the command line of the package.
@@ -59,7 +47,7 @@ async function exportScene(scene, to) {
 /** @param {string[]} folders @param {{ seconds: string, python: string }} options */
 async function measure(folders, { seconds, python }) {
   await buildPackage();
-  const scenes = scenesIn(folders.length > 0 ? folders : [at("www", "samples", "table")]);
+  const scenes = foldersOf(folders.length > 0 ? folders : [at("www", "samples", "table")], isScene);
   const root = at("target", "bench", "physics");
   rmSync(root, { recursive: true, force: true });
   const exported = [];

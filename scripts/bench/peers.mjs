@@ -1,5 +1,5 @@
 /** Other libraries' registration on our cases, and on pairs of clouds: the Python package `peers`. */
-import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
@@ -7,19 +7,16 @@ import { at } from "../lib/paths.mjs";
 import { runPython } from "../lib/python.mjs";
 import { caseFolders, readTypedCase } from "../speed/inputs.mjs";
 
-/** @typedef {{ method: string, case: string, seconds: number | null, error?: string }} Answered */
-
 /**
  * @typedef {object} PeersRun
  * @property {readonly string[]} [cases] case folders, or folders of case folders
  * @property {string} [pairs] or a list of pairs of clouds, `[{ id, source, target, voxelSizeM }]`
  * @property {string} out answers go to `OUT/METHOD/NAME.json`; those that are there are kept
- * @property {readonly string[]} [methods] all that apply by default
+ * @property {readonly string[]} methods
  * @property {number} [jobs] processes; as many as there are cores by default
  * @property {number} [threads] of each process, 1 by default
  * @property {number} [seed]
  * @property {string} [python] the Python, 3.11 or 3.12, that makes the environment
- * @property {(answered: Answered) => void} [onAnswer]
  */
 
 const quick = ["open3d-fgr", "open3d-gicp", "open3d-icp-point-to-plane", "open3d-icp-point-to-point"];
@@ -34,19 +31,21 @@ export const pairMethods = ["open3d-ransac", "open3d-fgr", "kiss-matcher"];
 /**
  * Runs the methods; installs them first where that has not been done.
  * @param {PeersRun} options
+ * @returns {Promise<string[]>} the methods with answers: without those whose library cannot be loaded
  */
-export async function runPeers({ cases, pairs, out, methods, python, onAnswer, ...more }) {
+export async function runPeers({ cases, pairs, out, methods, python, ...more }) {
   const { jobs = availableParallelism(), threads = 1, seed = 0 } = more;
   const args = ["--out", resolve(out), "--jobs", `${jobs}`, "--threads", `${threads}`, "--seed", `${seed}`];
-  if (methods !== undefined) args.push("--methods", methods.join());
+  args.push("--methods", methods.join());
   if (pairs !== undefined) args.push("--pairs", resolve(pairs));
   const inputs = at("target", "bench", "inputs");
   if (pairs === undefined) {
     await writeInputs(caseFolders(cases ?? []), inputs);
     args.push("--cases", inputs);
   }
-  await runPython("peers", args, python, (line) => onAnswer?.(JSON.parse(line)));
+  await runPython("peers", args, python);
   rmSync(inputs, { recursive: true, force: true });
+  return methods.filter((method) => existsSync(join(out, method)));
 }
 
 /**

@@ -27,28 +27,6 @@ export function fixed(value, digits = 0) {
   return Number.isFinite(value) ? value.toFixed(digits) : "∞";
 }
 
-/** Bytes as MB of 10⁶ bytes. @param {number} bytes */
-export const megabytes = (bytes) => fixed(bytes / 1e6, 1);
-
-/**
- * Prints memory next to its limit.
- * @param {string} title
- * @param {readonly string[]} head of the measurements, the last of which has the limit
- * @param {readonly (readonly [name: string, ...bytes: number[]])[]} rows
- * @param {number} limit bytes
- * @returns whether all are within it
- */
-export function printWithin(title, head, rows, limit) {
-  const isWithin = (/** @type {readonly number[]} */ bytes) => (bytes.at(-1) ?? 0) <= limit;
-  const cells = rows.map(([name, ...bytes]) => [
-    name,
-    ...[...bytes, limit].map(megabytes),
-    isWithin(bytes) ? "yes" : "NO",
-  ]);
-  console.log(markdownTable([title, ...head.map((of) => `${of}, MB`), "limit, MB", "within"], cells));
-  return rows.every(([, ...bytes]) => isWithin(bytes));
-}
-
 /**
  * A share in per cent.
  * @param {number} value

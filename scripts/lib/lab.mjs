@@ -1,6 +1,6 @@
 /** The lab's program: generated cases and measurements, native. */
 import { join } from "node:path";
-import { once } from "./cache.mjs";
+import { digest, once } from "./cache.mjs";
 import { at } from "./paths.mjs";
 import { run } from "./run.mjs";
 import { rustToolchain } from "./setup.mjs";
@@ -17,6 +17,19 @@ export const buildLab = once(async () => {
   // Of the whole workspace, with the features of which the tests compile the dependencies.
   await run("cargo", ["build", "--quiet", "--profile", profile, "--workspace", "--bin", "sim3align-lab"]);
 });
+
+/**
+ * A digest of the sources of the program, and of other inputs of a result.
+ * @param {readonly string[]} [inputs] paths
+ * @param {readonly string[]} [facts]
+ */
+export function labCode(inputs = [], facts = []) {
+  const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock"];
+  return digest([...sources.map((path) => at(path)), ...inputs], facts);
+}
+
+/** Arguments that set the number of threads, as many as there are cores by default. @param {number} [threads] */
+export const threadArguments = (threads) => (threads === undefined ? [] : ["--threads", `${threads}`]);
 
 /**
  * @param {readonly string[]} args a subcommand and its arguments

@@ -35,9 +35,9 @@ export async function pythonWith(name, program = "python3") {
  * @param {string} name
  * @param {readonly string[]} args
  * @param {string | undefined} program the Python that makes the environment
- * @param {(line: string) => void} onLine
+ * @param {(line: string) => void} [onLine]
  */
-export async function runPython(name, args, program, onLine) {
+export async function runPython(name, args, program, onLine = () => {}) {
   const env = { PYTHONPATH: at("scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" };
   await run(await pythonWith(name, program), ["-m", name, ...args], { env, onLine, echo: "errors" });
 }

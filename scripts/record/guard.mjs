@@ -123,7 +123,7 @@ const odds = (/** @type {number} */ chance) => `, by chance in ${(100 * chance).
  * @param {number} lost
  * @param {number} won
  */
-export function signTest(lost, won) {
+function signTest(lost, won) {
   const all = lost + won;
   // Logarithms, because the coefficients of many cases overflow.
   let term = -all * Math.LN2;
@@ -140,7 +140,7 @@ export function signTest(lost, won) {
  * signed ranks, by the normal approximation, without the cases that did not change).
  * @param {readonly number[]} differences
  */
-export function signedRankTest(differences) {
+function signedRankTest(differences) {
   const changed = differences.filter((d) => d !== 0).sort((a, b) => Math.abs(a) - Math.abs(b));
   const n = changed.length;
   if (n === 0) return 1;

@@ -1,5 +1,6 @@
 /** The history in the repository: of each version its run, and a line for each row of a set. */
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
+import { jsonLines } from "../bench/results.mjs";
 import { at } from "../lib/paths.mjs";
 
 const file = at("docs", "record", "history.jsonl");
@@ -23,22 +24,13 @@ const file = at("docs", "record", "history.jsonl");
 export function extendHistory(run, rows) {
   const { version } = run;
   const own = rows.filter(({ set }) => set !== "given").map((row) => ({ kind: "row", version, ...row }));
-  const lines = [...linesOfAll().filter((line) => line.version !== version), { kind: "run", ...run }, ...own];
+  const lines = [...jsonLines(file).filter((line) => line.version !== version), { kind: "run", ...run }, ...own];
   writeFileSync(file, lines.map((line) => `${JSON.stringify(line)}\n`).join(""));
 }
 
-/** @returns {any[]} */
-const linesOfAll = () =>
-  existsSync(file)
-    ? readFileSync(file, "utf8")
-        .split("\n")
-        .filter((line) => line !== "")
-        .map((line) => JSON.parse(line))
-    : [];
-
 /** All versions, the oldest first. @returns {Version[]} */
 export function history() {
-  const all = linesOfAll();
+  const all = jsonLines(file);
   const runs = all.filter(({ kind }) => kind === "run");
   return runs.map((run) => ({ run, rows: all.filter((line) => line.kind === "row" && line.version === run.version) }));
 }

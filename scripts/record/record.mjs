@@ -7,8 +7,8 @@ import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node
 import { join, resolve } from "node:path";
 import { environment } from "../bench/results.mjs";
 import { markdownTable } from "../bench/table.mjs";
-import { digest } from "../lib/cache.mjs";
-import { runLab } from "../lib/lab.mjs";
+import { cached } from "../lib/cache.mjs";
+import { labCode, runLab, threadArguments } from "../lib/lab.mjs";
 import { packageVersion } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
@@ -38,11 +38,7 @@ export async function record({ quick = false, check, save, out, fresh = false, o
     throw new Error("Found --only with --save or --check. Remedy: leave it out; a record is whole.");
   }
   const given = quick ? undefined : process.env.SIM3ALIGN_CASES;
-  const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock", "scripts/record/sets.mjs"];
-  const code = digest(
-    sources.map((name) => at(name)),
-    given === undefined ? [] : [given],
-  );
+  const code = labCode([at("scripts", "record", "sets.mjs")], given === undefined ? [] : [given]);
   // Results of other code, or of other cases, stay, and are not taken for those of this one.
   const folder = resolve(out ?? at("target", "bench", "record"), `${quick ? "quick" : "whole"}-${code.slice(0, 12)}`);
   if (fresh) rmSync(folder, { recursive: true, force: true });
@@ -53,13 +49,12 @@ export async function record({ quick = false, check, save, out, fresh = false, o
     if (count === 0 || !(only?.includes(set.name) ?? true)) continue;
     const file = join(folder, `${set.name}.jsonl`);
     await step(set.title, async (say) => {
-      if (existsSync(`${file}.done`)) return say("done before");
-      const prepared = await set.prepare?.(join(folder, set.name));
-      const keep = set.name === "registration" ? "--records" : "--json";
-      const args = [...set.args(count), ...(prepared ?? []), keep, file];
-      if (threads !== undefined) args.push("--threads", `${threads}`);
-      await runLab(args);
-      writeFileSync(`${file}.done`, "");
+      const ran = await cached(`${file}.done`, code, [file], async () => {
+        const prepared = await set.prepare?.(join(folder, set.name));
+        const keep = set.name === "registration" ? "--records" : "--json";
+        await runLab([...set.args(count), ...(prepared ?? []), keep, file, ...threadArguments(threads)]);
+      });
+      if (!ran) say("done before");
     });
     if (existsSync(file)) found.push({ set: set.name, results: resultsOf(set, file) });
   }

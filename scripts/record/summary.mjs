@@ -18,7 +18,7 @@ import { fixed, mean, median, percent, share } from "../bench/table.mjs";
  */
 
 /** Number of bins of the confidence. */
-export const BINS = 10;
+const BINS = 10;
 
 /** Four digits, which are more than any set can tell. @param {number} value */
 export const rounded = (value) => Number(value.toPrecision(4));

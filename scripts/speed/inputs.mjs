@@ -1,7 +1,8 @@
 /** Inputs of speed measurements as typed arrays: case folders, and a synthetic object of any size. */
-import { existsSync, readdirSync, readFileSync } from "node:fs";
-import { join, resolve } from "node:path";
+import { existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
 import { pathToFileURL } from "node:url";
+import { foldersOf } from "../lib/folders.mjs";
 import { compiledDir } from "../lib/paths.mjs";
 
 /**
@@ -10,24 +11,14 @@ import { compiledDir } from "../lib/paths.mjs";
  */
 export const compiledModule = (file) => import(pathToFileURL(join(compiledDir, file)).href);
 
-/**
- * The case folders among folders and their subfolders, in the order of their names.
- * @param {readonly string[]} folders
- */
-export function caseFolders(folders) {
-  const isCase = (/** @type {string} */ folder) =>
-    existsSync(join(folder, "camera.json")) && existsSync(join(folder, "mask.png"));
-  return folders
-    .map((folder) => resolve(folder))
-    .flatMap((folder) =>
-      isCase(folder)
-        ? folder
-        : readdirSync(folder)
-            .sort()
-            .map((name) => join(folder, name))
-            .filter(isCase),
-    );
-}
+/** @param {object} [options] */
+export const createAligner = async (options) => (await compiledModule("index.js")).createAligner(options);
+
+/** @param {string} folder */
+const isCase = (folder) => existsSync(join(folder, "camera.json")) && existsSync(join(folder, "mask.png"));
+
+/** The case folders among folders and their subfolders. @param {readonly string[]} folders */
+export const caseFolders = (folders) => foldersOf(folders, isCase);
 
 /**
  * @typedef {object} TypedCase
@@ -79,7 +70,6 @@ function declaredSymmetry(folder) {
 
 /** An aligner, and the memory of the core, in a new instance. */
 export async function freshCore() {
-  const { createAligner } = await compiledModule("index.js");
   const aligner = await createAligner();
   return { aligner, memory: await freshMemory("core") };
 }

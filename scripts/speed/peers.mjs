@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { runPeers } from "../bench/peers.mjs";
 import { fixed, markdownTable, median } from "../bench/table.mjs";
 import { at } from "../lib/paths.mjs";
-import { compiledModule, readTypedCase } from "./inputs.mjs";
+import { createAligner, readTypedCase } from "./inputs.mjs";
 
 /** Open3D's tutorial; RANSAC that estimates the scale too; ICP on thinned clouds. */
 const peers = ["open3d-ransac", "open3d-ransac-scale", "open3d-ransac-thinned"];
@@ -15,7 +15,6 @@ const peers = ["open3d-ransac", "open3d-ransac-scale", "open3d-ransac-thinned"];
  * @param {{ runs: number, python: string }} options
  */
 export async function measurePeers(folders, { runs, python }) {
-  const { createAligner } = await compiledModule("index.js");
   const aligner = await createAligner();
   const cases = await Promise.all(folders.map(readTypedCase));
   const out = at("target", "bench", "speed");
@@ -43,7 +42,7 @@ export async function measurePeers(folders, { runs, python }) {
     }
     if (run === 0) continue;
     rmSync(out, { recursive: true, force: true });
-    await runPeers({
+    const answered = await runPeers({
       cases: folders,
       out,
       methods: peers,
@@ -53,7 +52,7 @@ export async function measurePeers(folders, { runs, python }) {
       python,
     });
     for (const each of cases) {
-      for (const method of peers) {
+      for (const method of answered) {
         const answer = JSON.parse(readFileSync(join(out, method, `${each.name}.json`), "utf8"));
         await add(each, method, 1000 * answer.seconds, answer.cameraFromMesh);
       }

@@ -1,7 +1,7 @@
 /** Alignments per second and the time of a hard case by the number of workers, and the duration of an abort. */
 import { availableParallelism } from "node:os";
 import { fixed, markdownTable, median, quantile } from "../bench/table.mjs";
-import { bumpyRing, compiledModule, pictureOf, readTypedCase } from "./inputs.mjs";
+import { bumpyRing, createAligner, pictureOf, readTypedCase } from "./inputs.mjs";
 
 /** @param {() => Promise<unknown>} action */
 async function timed(action) {
@@ -16,7 +16,6 @@ async function timed(action) {
  * @param {number} runs
  */
 async function byWorkers(action, runs) {
-  const { createAligner } = await compiledModule("index.js");
   const numbers = [0, 1, 2].filter((workers) => workers <= availableParallelism());
   const aligners = await Promise.all(numbers.map((workers) => createAligner({ workers })));
   /** @type {number[][]} */
@@ -61,7 +60,6 @@ export async function measurePool(folders, { runs, quick }) {
 
 /** @param {object | undefined} input @param {number} count */
 async function measureAborts(input, count) {
-  const { createAligner } = await compiledModule("index.js");
   const aligner = await createAligner({ workers: 1 });
   /** @type {number[]} */
   const latencies = [];

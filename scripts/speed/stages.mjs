@@ -2,7 +2,7 @@
 
 import { fixed, markdownTable, median } from "../bench/table.mjs";
 import { runLab } from "../lib/lab.mjs";
-import { compiledModule, readTypedCase } from "./inputs.mjs";
+import { createAligner, readTypedCase } from "./inputs.mjs";
 
 /** @typedef {{ matrix: number[], diagnostics: { timingsMs: Record<string, number> } }} Result */
 
@@ -15,7 +15,6 @@ const milliseconds = (results, stage) => median(results.map(({ diagnostics }) =>
  * @param {{ runs: number, quality: string }} options
  */
 export async function measureStages(folders, { runs, quality }) {
-  const { createAligner } = await compiledModule("index.js");
   const aligner = await createAligner();
   for (const folder of folders) {
     const { name, input } = await readTypedCase(folder);

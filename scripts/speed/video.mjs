@@ -1,7 +1,7 @@
 /** CPU time of a tracked frame as WebAssembly on this thread. */
 import { basename, join } from "node:path";
 import { fixed, markdownTable, quantile } from "../bench/table.mjs";
-import { bumpyRing, compiledModule, pictureOf } from "./inputs.mjs";
+import { bumpyRing, compiledModule, createAligner, pictureOf } from "./inputs.mjs";
 
 /** @typedef {{ name: string, mesh: any, frames: any[] }} Video frames are inputs of `Tracker.next`, as typed arrays */
 
@@ -48,7 +48,6 @@ function turningRing(count) {
  * @param {{ runs: number, quick: boolean }} options
  */
 export async function measureVideo(folders, { runs, quick }) {
-  const { createAligner } = await compiledModule("index.js");
   const aligner = await createAligner();
   const videos = folders.length > 0 ? await Promise.all(folders.map(readVideo)) : [turningRing(quick ? 8 : 60)];
   const rows = [];
