@@ -6,6 +6,9 @@ use crate::prelude::*;
 use sim3align::scene::plane::Plane;
 use sim3align::views::View;
 
+/// Class of objects without a right pose.
+pub const MISFIT: &str = "misfit";
+
 /// Images of objects. A single object, a scene, several views and a video differ in the numbers of both.
 #[derive(Debug, Clone)]
 pub struct Case {
@@ -59,10 +62,17 @@ pub struct CaseFrame {
     pub masks: Vec<Option<Mask>>,
     /// The true pose of each object, `camera_from_mesh`, if it is known.
     pub truths: Vec<Option<Similarity>>,
-    /// Fraction of the first object that the image shows, 0 to 1.
+    /// Fraction of the object that the image shows, 0 to 1; of several objects, the smallest.
     pub visible: f64,
     /// Whether the pose of the camera is wrong on purpose.
     pub is_wrong: bool,
+}
+
+impl Case {
+    /// Name of an object, where there are several.
+    pub fn name_of(&self, k: usize) -> String {
+        format!("{}-{}", self.name, self.objects[k].name)
+    }
 }
 
 impl CaseObject {
@@ -83,7 +93,7 @@ impl CaseFrame {
         let mask = mask.unwrap_or_else(|| Mask::filled(self.depth.width(), self.depth.height(), 0));
         let observation = Observation::new(self.depth.clone(), mask, self.camera)?;
         match &self.photo {
-            Some(photo) if with_color => observation.with_photo(photo.as_ref().clone()),
+            Some(photo) if with_color => observation.with_photo(photo.clone()),
             _ => Ok(observation),
         }
     }

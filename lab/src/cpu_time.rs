@@ -20,12 +20,13 @@ impl CpuTimer {
         Self { began: cpu_seconds(), wall: Instant::now() }
     }
 
-    /// CPU seconds since the start, or elapsed seconds if the system does not count CPU time.
-    pub fn seconds(&self) -> f64 {
-        match self.began.zip(cpu_seconds()) {
+    /// CPU time since the start, or elapsed time if the system does not count CPU time.
+    pub fn milliseconds(&self) -> f64 {
+        let seconds = match self.began.zip(cpu_seconds()) {
             Some((began, now)) => now - began,
             None => self.wall.elapsed().as_secs_f64(),
-        }
+        };
+        1000.0 * seconds
     }
 }
 
@@ -36,16 +37,7 @@ fn cpu_seconds() -> Option<f64> {
 
     let mut text = [0; 64];
     let length = SCHEDSTAT.with(|file| file.as_ref()?.read_at(&mut text, 0).ok())?;
-    seconds_in(&text[..length])
-}
-
-/// CPU seconds of the main thread, on Linux.
-pub fn of_main_thread() -> Option<f64> {
-    seconds_in(&std::fs::read("/proc/self/schedstat").ok()?)
-}
-
-fn seconds_in(schedstat: &[u8]) -> Option<f64> {
-    let nanoseconds = schedstat.split(|byte| *byte == b' ').next()?;
+    let nanoseconds = text[..length].split(|byte| *byte == b' ').next()?;
     let nanoseconds: f64 = core::str::from_utf8(nanoseconds).ok()?.parse().ok()?;
     Some(nanoseconds * 1e-9)
 }

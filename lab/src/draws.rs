@@ -1,6 +1,5 @@
 //! Random draws of the generators.
 
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::random::Random;
 
 /// A number in [`low`, `high`).
@@ -31,14 +30,5 @@ pub(crate) fn mixed<const N: usize>(numbers: [u64; N]) -> u64 {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
-    })
-}
-
-/// The first of at most `draws` draws that fits. `what` is drawn, for the error.
-pub(crate) fn first_fit<T>(what: &str, draws: u64, draw: impl FnMut(u64) -> Result<Option<T>>) -> Result<T> {
-    let fit = (0..draws).map(draw).find_map(Result::transpose);
-    fit.unwrap_or_else(|| {
-        let found = format!("no fitting draw of {what}");
-        Err(Error::new(ErrorCode::Internal, "draw", found, "one in a few", "Please report the seed."))
     })
 }

@@ -20,7 +20,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 /// [`ErrorCode::InvalidArgument`] if the folder cannot be read.
-pub fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
+pub(crate) fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
     let entries = fs::read_dir(folder).map_err(|error| unreadable(folder, error))?;
     let mut entries: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
     entries.sort();

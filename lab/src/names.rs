@@ -36,7 +36,7 @@ macro_rules! named {
         $($(#[$doc:meta])* $value:ident = $text:literal,)+
     }) => {
         $(#[$about])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum $name {
             $($(#[$doc])* $value,)+
         }

@@ -7,7 +7,7 @@ pub use std::path::{Path, PathBuf};
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, Vec3};
 pub use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-pub(crate) use crate::draws::{between, chance, first_fit, mixed, normal, sign};
+pub(crate) use crate::draws::{between, chance, mixed, normal, sign};
 pub use crate::names::Named;
 pub(crate) use crate::names::named;
 pub use sim3align::evidence::frame::Frame;

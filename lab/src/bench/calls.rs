@@ -3,7 +3,7 @@
 use super::imported::imported;
 use super::options::{Call, Row};
 use super::result::{ResultRow, by_name, codes, three};
-use crate::case::{Case, CaseFrame, CaseObject};
+use crate::case::{Case, CaseFrame, CaseObject, MISFIT};
 use crate::cpu_time::CpuTimer;
 use crate::effects::monocular::DepthModel;
 use crate::prelude::*;
@@ -23,12 +23,10 @@ use sim3align::track::tracker::Tracker;
 use sim3align::views::align_views;
 use sim3align::views::options::ViewsOptions;
 
-/// The angle by which the up direction of `up=true` is off, degrees: a generator's objects stand about so.
+/// Error of the up direction of `up=true`, degrees: about the tilt of a generator's objects.
 const UP_ERROR_DEG: f64 = 5.0;
 /// Fraction of the object that a frame of a video must show for it to count.
 const SHOWN: f64 = 0.4;
-/// Name of the class of cases without a right pose.
-const MISFIT: &str = "misfit";
 
 /// The results of a row for a case.
 pub fn run(case: &Case, row: &Row) -> Vec<ResultRow> {
@@ -43,10 +41,7 @@ pub fn run(case: &Case, row: &Row) -> Vec<ResultRow> {
 
 /// The result of a failure.
 fn blank(case: &Case, frame: usize, k: usize) -> ResultRow {
-    let mut name = case.name.clone();
-    if case.objects.len() > 1 {
-        name = format!("{name}-{}", case.objects[k].name);
-    }
+    let mut name = if case.objects.len() > 1 { case.name_of(k) } else { case.name.clone() };
     if case.frames.len() > 1 {
         name = format!("{name}/{}", case.frames[frame].name);
     }
@@ -85,7 +80,7 @@ fn options_of(case: &Case, k: usize, row: &Row) -> AlignOptions {
     options
 }
 
-/// Each object alone.
+/// One object alone.
 fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
     let (frame, object, result) = (&case.frames[0], &case.objects[k], blank(case, 0, k));
     if let Some(model) = row.model {
@@ -126,7 +121,7 @@ fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
             align_paper(&observation, mesh, &options, &mut Silent).map(Into::into)
         }
     };
-    let result = ResultRow { ms: Some(1000.0 * timer.seconds()), ..result };
+    let result = ResultRow { ms: Some(timer.milliseconds()), ..result };
     Ok(match outcome {
         Ok(alignment) => {
             let pose = similarity(alignment.camera_from_mesh())?;
@@ -149,10 +144,10 @@ fn modelled(case: &Case, k: usize, row: &Row, model: &DepthModel) -> Result<Resu
     let mut observation =
         Observation::new(depth, mask, calibration.camera)?.with_relief_deviation(calibration.uncertainty.relief());
     if let Some(photo) = frame.photo.as_ref().filter(|_| row.color) {
-        observation = observation.with_photo(photo.as_ref().clone())?;
+        observation = observation.with_photo(photo.clone())?;
     }
     let alignment = align_prepared(&observation, &mesh, Request::new(options.clone())?, &mut Silent)?;
-    let result = ResultRow { ms: Some(1000.0 * timer.seconds()), ..result };
+    let result = ResultRow { ms: Some(timer.milliseconds()), ..result };
     let pose = similarity(&alignment.camera_from_mesh)?;
     let result = result.with_alignment(&alignment.into());
     let Some(truth) = &frame.truths[k] else { return Ok(result) };
@@ -205,7 +200,7 @@ fn scene(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
     };
     let timer = CpuTimer::start();
     let aligned = align_scene(&scene, &mut Silent)?;
-    let ms = Some(1000.0 * timer.seconds() / case.objects.len() as f64);
+    let ms = Some(timer.milliseconds() / case.objects.len() as f64);
     let result = |(k, placed): (usize, Result<PlacedObject>)| {
         let result = ResultRow { ms, ..blank(case, 0, k) };
         let placed = match placed {
@@ -232,7 +227,7 @@ fn views(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
     let options = ViewsOptions { metrics: false, symmetry, quality, seed, ..ViewsOptions::default() };
     let timer = CpuTimer::start();
     let found = align_views(views, &object.prepared(row.color), &options, &mut Silent)?;
-    let ms = Some(1000.0 * timer.seconds());
+    let ms = Some(timer.milliseconds());
     let mut results = Vec::new();
     for (k, (view, frame)) in found.views.iter().zip(frames).enumerate() {
         // With known cameras, the pose in a wrong view follows from the wrong pose of its camera.
@@ -260,7 +255,7 @@ fn track(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
         }
         let timer = CpuTimer::start();
         let found = tracker.next(&seen, &mut Silent);
-        let result = ResultRow { ms: Some(1000.0 * timer.seconds()), ..blank(case, k, 0) };
+        let result = ResultRow { ms: Some(timer.milliseconds()), ..blank(case, k, 0) };
         let found = match found {
             Ok(found) => found,
             Err(error) => {

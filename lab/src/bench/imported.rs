@@ -4,6 +4,7 @@ use std::io::ErrorKind;
 
 use serde::Deserialize;
 
+use super::result::described;
 use crate::case_folder::{PoseFile, parsed};
 use crate::prelude::*;
 
@@ -27,14 +28,13 @@ pub fn imported(case: &str, folder: &Path) -> (Result<Similarity, String>, Optio
         Err(error) if error.kind() == ErrorKind::NotFound => return (Err("no answer file".into()), None),
         Err(error) => return (Err(format!("{argument}: {error}")), None),
     };
-    let described = |error: Error| format!("{}: {error}", error.code.as_str());
     let file: AnswerFile = match parsed(&argument, &bytes) {
         Ok(file) => file,
-        Err(error) => return (Err(described(error)), None),
+        Err(error) => return (Err(described(&error)), None),
     };
     let seconds = file.seconds.filter(|seconds| seconds.is_finite() && *seconds >= 0.0);
     let pose = match (file.camera_from_mesh, file.error) {
-        (Some(pose), None) => pose.similarity(&argument).map_err(described),
+        (Some(pose), None) => pose.similarity(&argument).map_err(|error| described(&error)),
         (None, Some(error)) => Err(format!("the method's own error: {error}")),
         _ => Err(format!("{argument}: expected one of cameraFromMesh, targetFromSource and error")),
     };

@@ -6,5 +6,4 @@ pub mod option_text;
 pub mod options;
 pub mod records;
 pub mod result;
-pub mod statistics;
 pub mod table;

@@ -25,8 +25,8 @@ named! {
     }
 }
 
-/// A row of the benchmark: a call and its options. Besides options of the calls by their JavaScript names, its text takes
-/// the names of the fields that say so.
+/// A row of the benchmark: a call and its options. Its text takes the JavaScript names of options, and the names in
+/// backquotes below.
 #[derive(Debug, Clone)]
 pub struct Row {
     /// Its name in tables.
@@ -35,9 +35,9 @@ pub struct Row {
     pub call: Call,
     /// `preset`.
     pub preset: Preset,
-    /// The options of `precise`.
+    /// The options of the precise preset.
     pub precise: AlignOptions,
-    /// The options of `paper`.
+    /// The options of the paper preset.
     pub paper: PaperOptions,
     /// The folder of another program's answers, which are the poses of the row.
     pub import: Option<PathBuf>,

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom, Write};
 use std::sync::Mutex;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::files::{corrupt, unwritable};
+use crate::files::{corrupt, read, unwritable};
 use crate::prelude::*;
 
 /// The unique key of a record: the row, its options as written, and the case.
@@ -47,23 +47,25 @@ impl<T: DeserializeOwned> RecordFile<T> {
     /// line that is no record.
     pub fn open(path: &Path) -> Result<Self> {
         let failed = |error| unwritable(path, error);
-        let mut options = OpenOptions::new();
-        let mut file = options.read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        let mut done = BTreeMap::new();
-        let mut whole = 0;
-        let mut reader = BufReader::new(&file);
-        let mut line = Vec::new();
-        while reader.read_until(b'\n', &mut line).map_err(failed)? > 0 && line.ends_with(b"\n") {
-            let Line { key, record } = serde_json::from_slice(&line).map_err(|_| {
-                corrupt(path, format!("another line after {} records", done.len()), "one record a line")
-            })?;
-            done.insert(key, record);
-            whole += line.len() as u64;
-            line.clear();
-        }
-        file.set_len(whole).map_err(failed)?;
+        let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(path).map_err(failed)?;
+        let done = Self::records(path)?.into_iter().collect();
+        file.set_len(whole_lines(path)?.len() as u64).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
         Ok(Self { file: Mutex::new(file), path: path.to_owned(), done })
+    }
+
+    /// All records of a file, several of one key included, but for a truncated last line.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] where the file can't be read; [`ErrorCode::CorruptFile`] for a whole line that is
+    /// no record.
+    pub fn records(path: &Path) -> Result<Vec<(RecordKey, T)>> {
+        let bytes = whole_lines(path)?;
+        let record = |(i, line)| {
+            let read = serde_json::from_slice(line).map(|Line { key, record }| (key, record));
+            read.map_err(|_| corrupt(path, format!("another line after {i} records"), "one record a line"))
+        };
+        bytes.split_inclusive(|byte| *byte == b'\n').enumerate().map(record).collect()
     }
 
     /// Whether a record was there when the file was opened.
@@ -99,4 +101,10 @@ impl<T: DeserializeOwned> RecordFile<T> {
         let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         file.write_all(lines.as_bytes()).map_err(|error| unwritable(&self.path, error))
     }
+}
+
+fn whole_lines(path: &Path) -> Result<Vec<u8>> {
+    let mut bytes = read(path)?;
+    bytes.truncate(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1));
+    Ok(bytes)
 }

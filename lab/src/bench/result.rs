@@ -33,9 +33,10 @@ pub struct ResultRow {
     pub tier: String,
     /// The group of the object.
     pub class: String,
-    /// Whether the errors are within 5 %, 10° and 5 % of the diameter; `None` if the true pose is unknown. No pose is not right.
+    /// Whether the errors are within 5 %, 10° and 5 % of the diameter; `None` if the true pose is unknown, `false` without
+    /// a pose.
     pub strict: Option<bool>,
-    /// Whether the errors are within twice that.
+    /// Whether the errors are within 10 %, 20° and 10 % of the diameter; `None` as for `strict`.
     pub loose: Option<bool>,
     /// See [`Errors`].
     pub errors: Option<Errors>,
@@ -49,13 +50,13 @@ pub struct ResultRow {
     pub renders: Option<usize>,
     /// Agreement of the pose with the image.
     pub metrics: Option<MetricsByName>,
-    /// That of the true pose.
+    /// Agreement of the true pose with the image.
     pub truth_metrics: Option<MetricsByName>,
     /// Codes of the warnings.
     pub warnings: Vec<String>,
-    /// Whether the scale collapsed, and whether it was held at a bound.
+    /// Whether the scale collapsed.
     pub collapsed: bool,
-    /// See `collapsed`.
+    /// Whether the scale stands at a bound.
     pub clamped: bool,
     /// The evidence from which the confidence follows.
     pub features: Option<Features>,
@@ -122,8 +123,13 @@ impl ResultRow {
 
     /// The row of a failure.
     pub fn with_error(self, error: &Error) -> Self {
-        Self { error: Some(format!("{}: {error}", error.code.as_str())), ..self }
+        Self { error: Some(described(error)), ..self }
     }
+}
+
+/// An error in words, after its code.
+pub fn described(error: &Error) -> String {
+    format!("{}: {error}", error.code.as_str())
 }
 
 /// The three errors of a pose.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::result::ResultRow;
-use super::statistics::{cell, mean, median};
+use crate::statistics::{cell, mean, median};
 
 /// Confidence from which on callers trust a pose.
 const TRUSTED: f64 = 0.9;
@@ -47,17 +47,14 @@ fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 
 fn cells(results: &[&ResultRow]) -> Vec<String> {
     let share = |of: fn(&ResultRow) -> Option<bool>| {
-        let known: Vec<f64> = results.iter().filter_map(|r| of(r)).map(|right| 100.0 * f64::from(right)).collect();
-        cell(mean(&known), 1)
+        cell(mean(results.iter().filter_map(|r| of(r)).map(|right| 100.0 * f64::from(right))), 1)
     };
     let error = |k: usize, unit: f64| {
         cell(median(results.iter().filter_map(|r| r.errors).map(|errors| unit * errors[k]).collect()), 2)
     };
     let trusted: Vec<_> = results.iter().filter(|r| r.confidence.is_some_and(|c| c >= TRUSTED)).collect();
     let right = trusted.iter().filter(|r| r.strict == Some(true)).count();
-    let iou = |of: &dyn Fn(&ResultRow) -> Option<f64>| {
-        cell(mean(&results.iter().filter_map(|r| of(r)).collect::<Vec<_>>()), 3)
-    };
+    let iou = |of: &dyn Fn(&ResultRow) -> Option<f64>| cell(mean(results.iter().filter_map(|r| of(r))), 3);
     let unanswered = results.iter().filter(|r| r.error.is_some()).count();
     let count = if unanswered == 0 { String::new() } else { format!(" ({unanswered} unanswered)") };
     vec![
@@ -73,7 +70,7 @@ fn cells(results: &[&ResultRow]) -> Vec<String> {
     ]
 }
 
-/// How often a warning comes with a wrong pose: it is worth its place if poses with it are wrong far more often.
+/// How often poses with a warning are wrong, compared with poses without it.
 fn warnings(out: &mut String, name: &str, results: &[ResultRow]) {
     let known: Vec<&ResultRow> = results.iter().filter(|r| r.strict.is_some() && r.error.is_none()).collect();
     for code in distinct(known.iter().flat_map(|r| &r.warnings).map(String::as_str)) {

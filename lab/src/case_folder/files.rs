@@ -5,7 +5,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::prelude::*;
 
-/// `camera.json`.
+/// Names of the files of a case folder, and of the folder of the objects of a scene.
+pub const CAMERA: &str = "camera.json";
+pub const TRUTH: &str = "gt.json";
+pub const CAMERA_POSE: &str = "pose.json";
+pub const PLANE: &str = "plane.json";
+pub const META: &str = "meta.json";
+pub const INITIAL: &str = "initial.json";
+pub const OBJECTS: &str = "objects";
+
+/// The content of [`CAMERA`].
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct CameraFile {
@@ -39,7 +48,7 @@ enum RotationFile {
     Quaternion([f64; 4]),
 }
 
-/// `gt.json`: the true pose and the symmetry, in words that all readers understand and, exactly, as axes.
+/// The content of [`TRUTH`]: the true pose and the symmetry, in words that all readers understand and, exactly, as axes.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct TruthFile {
@@ -57,7 +66,7 @@ pub struct AxisFile {
     pub fold: Option<u32>,
 }
 
-/// `meta.json` of a generated case.
+/// The content of [`META`] of a generated case.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct MetaFile {
@@ -66,14 +75,14 @@ pub struct MetaFile {
     pub tags: Vec<String>,
 }
 
-/// `pose.json` of a frame.
+/// The content of [`CAMERA_POSE`] of a frame.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct CameraPoseFile {
     /// 4 × 4, by rows.
     pub camera_to_world: [[f64; 4]; 4],
 }
 
-/// `plane.json`: n·x + d = 0 in the camera frame.
+/// The content of [`PLANE`]: n·x + d = 0 in the camera frame.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct PlaneFile {
     pub normal: [f64; 3],

@@ -2,6 +2,6 @@
 
 mod files;
 pub mod read;
-pub mod write;
+pub(crate) mod write;
 
 pub use files::{PoseFile, parsed};

@@ -6,7 +6,10 @@ use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
 
-use super::files::{CameraFile, CameraPoseFile, MetaFile, PlaneFile, PoseFile, TruthFile, parsed};
+use super::files::{
+    CAMERA, CAMERA_POSE, CameraFile, CameraPoseFile, INITIAL, META, MetaFile, OBJECTS, PLANE, PlaneFile, PoseFile,
+    TRUTH, TruthFile, parsed,
+};
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::files::{entries, listed};
 use crate::prelude::*;
@@ -22,7 +25,7 @@ const MASK_FILES: &[&str] = &["mask.png", "mask.npy"];
 const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
 const PHOTO_FILES: &[&str] = &["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"];
 /// The files with a generator's placement.
-const PLACEMENT_FILES: &[&str] = &["initial.json", "sam3d.json"];
+const PLACEMENT_FILES: &[&str] = &[INITIAL, "sam3d.json"];
 
 /// The kind of a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,9 +41,9 @@ pub enum FolderKind {
 impl FolderKind {
     /// The kind of a folder; `None` if it is no case.
     pub fn of(folder: &Path) -> Option<Self> {
-        if folder.join("objects").is_dir() {
+        if folder.join(OBJECTS).is_dir() {
             Some(Self::Scene)
-        } else if folder.join("camera.json").is_file() {
+        } else if folder.join(CAMERA).is_file() {
             Some(Self::Case)
         } else {
             entries(folder).iter().any(|path| is_frame(path)).then_some(Self::Frames)
@@ -67,13 +70,13 @@ pub fn read(folder: &Path) -> Result<Case> {
     let kind = FolderKind::of(folder);
     let within = |path: PathBuf| entries(&path).into_iter().filter(|path| path.is_dir());
     let (objects, frames): (Vec<PathBuf>, Vec<PathBuf>) = match kind {
-        Some(FolderKind::Scene) => (within(folder.join("objects")).collect(), vec![folder.into()]),
+        Some(FolderKind::Scene) => (within(folder.join(OBJECTS)).collect(), vec![folder.into()]),
         Some(FolderKind::Frames) => {
             (vec![folder.into()], within(folder.into()).filter(|path| is_frame(path)).collect())
         }
         _ => (vec![folder.into()], vec![folder.into()]),
     };
-    let meta: MetaFile = json(folder, "meta.json")?.unwrap_or_default();
+    let meta: MetaFile = json(folder, META)?.unwrap_or_default();
     let class = meta.class.unwrap_or_else(|| "given".into());
     let read_frame = |path: &PathBuf| {
         let owners = if kind == Some(FolderKind::Scene) { objects.as_slice() } else { core::slice::from_ref(path) };
@@ -86,7 +89,7 @@ pub fn read(folder: &Path) -> Result<Case> {
         tags: meta.tags,
         objects: objects.iter().map(|path| object(path, frames.first(), &class)).collect::<Result<_>>()?,
         frames: frames.iter().map(read_frame).collect::<Result<_>>()?,
-        plane: json(folder, "plane.json")?.and_then(|PlaneFile { normal, d }| Plane::new(normal.into(), d)),
+        plane: json(folder, PLANE)?.and_then(|PlaneFile { normal, d }| Plane::new(normal.into(), d)),
     })
 }
 
@@ -100,15 +103,14 @@ fn last_name(path: &Path) -> String {
 
 fn frame(folder: &Path, owners: &[PathBuf]) -> Result<CaseFrame> {
     let (depth_path, depth_bytes) = required(folder, DEPTH_FILES)?;
-    let camera: CameraFile =
-        json(folder, "camera.json")?.ok_or_else(|| missing(folder, &["camera.json"], "no such file"))?;
+    let camera: CameraFile = json(folder, CAMERA)?.ok_or_else(|| missing(folder, &[CAMERA], "no such file"))?;
     let options = DepthReadOptions { depth_scale: None, integer_depth_scale: camera.depth_scale };
     let depth = read_depth(&depth_bytes, &options).map_err(in_file(&depth_path))?;
     let size = [depth.width(), depth.height()];
     let stated = [camera.width.unwrap_or(size[0]), camera.height.unwrap_or(size[1])];
     if stated != size {
         let (found, expected) = (format!("intrinsics for {stated:?} pixels"), format!("those of the image, {size:?}"));
-        let argument = folder.join("camera.json").display().to_string();
+        let argument = folder.join(CAMERA).display().to_string();
         return Err(Error::new(ErrorCode::SizeMismatch, argument, found, expected, "Scale the intrinsics."));
     }
     let mask = |folder: &PathBuf| {
@@ -117,11 +119,11 @@ fn frame(folder: &Path, owners: &[PathBuf]) -> Result<CaseFrame> {
     };
     let truth = |folder: &PathBuf| -> Result<Option<Similarity>> {
         let file = truth_file(folder)?;
-        file.map(|file| file.pose.similarity(&folder.join("gt.json").display().to_string())).transpose()
+        file.map(|file| file.pose.similarity(&folder.join(TRUTH).display().to_string())).transpose()
     };
     let photo = found(folder, PHOTO_FILES)?;
     let photo = photo.map(|(path, bytes)| read_photo(&bytes).map_err(in_file(&path))).transpose()?;
-    let pose: Option<CameraPoseFile> = json(folder, "pose.json")?;
+    let pose: Option<CameraPoseFile> = json(folder, CAMERA_POSE)?;
     Ok(CaseFrame {
         name: last_name(folder),
         camera: Pinhole::new(camera.fx, camera.fy, camera.cx, camera.cy)?,
@@ -162,7 +164,7 @@ fn object(folder: &Path, frame: Option<&PathBuf>, class: &str) -> Result<CaseObj
 
 /// `gt.json`, unless it says that the true pose is not available.
 fn truth_file(folder: &Path) -> Result<Option<TruthFile>> {
-    let file: Option<TruthFile> = json(folder, "gt.json")?;
+    let file: Option<TruthFile> = json(folder, TRUTH)?;
     Ok(file.filter(|file| file.available != Some(false)))
 }
 

@@ -8,7 +8,10 @@ use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use serde::Serialize;
 use serde_json::json;
 
-use super::files::{CameraFile, CameraPoseFile, MetaFile, PlaneFile, PoseFile, TruthFile};
+use super::files::{
+    CAMERA, CAMERA_POSE, CameraFile, CameraPoseFile, INITIAL, META, MetaFile, OBJECTS, PLANE, PlaneFile, PoseFile,
+    TRUTH, TruthFile,
+};
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::files::write;
 use crate::prelude::*;
@@ -24,10 +27,10 @@ impl Case {
     pub fn write(&self, folder: &Path) -> Result<()> {
         let is_scene = self.objects.len() > 1;
         for (k, object) in self.objects.iter().enumerate() {
-            let own = if is_scene { folder.join("objects").join(&object.name) } else { folder.to_owned() };
+            let own = if is_scene { folder.join(OBJECTS).join(&object.name) } else { folder.to_owned() };
             write(&own.join("mesh.glb"), &glb(&object.mesh))?;
             if let Some(initial) = &object.initial {
-                write_json(&own.join("initial.json"), &PoseFile::from(initial))?;
+                write_json(&own.join(INITIAL), &PoseFile::from(initial))?;
             }
             for frame in &self.frames {
                 let own = if self.frames.len() > 1 { folder.join(&frame.name) } else { own.clone() };
@@ -40,11 +43,11 @@ impl Case {
         }
         if let Some(plane) = &self.plane {
             let file = PlaneFile { normal: plane.normal.to_array(), d: plane.d };
-            write_json(&folder.join("plane.json"), &file)?;
+            write_json(&folder.join(PLANE), &file)?;
         }
         let class = self.objects.first().map(|object| object.class.clone());
         let meta = MetaFile { tier: Some(self.tier.clone()), class, tags: self.tags.clone() };
-        write_json(&folder.join("meta.json"), &meta)
+        write_json(&folder.join(META), &meta)
     }
 
     /// Each object as a case of its own.
@@ -53,7 +56,7 @@ impl Case {
             let frame = self.frames[0].clone();
             let (masks, truths) = (vec![frame.masks[k].clone()], vec![frame.truths[k]]);
             Self {
-                name: format!("{}-{}", self.name, object.name),
+                name: self.name_of(k),
                 objects: vec![object.clone()],
                 frames: vec![CaseFrame { masks, truths, ..frame }],
                 ..self.clone()
@@ -69,7 +72,7 @@ fn write_of_object(folder: &Path, object: &CaseObject, frame: &CaseFrame, k: usi
         write(&folder.join("mask.png"), &mask_png(mask)?)?;
     }
     match &frame.truths[k] {
-        Some(truth) => write_json(&folder.join("gt.json"), &TruthFile::new(truth, &object.symmetry)),
+        Some(truth) => write_json(&folder.join(TRUTH), &TruthFile::new(truth, &object.symmetry)),
         None => Ok(()),
     }
 }
@@ -83,7 +86,7 @@ impl CaseFrame {
         let Pinhole { fx, fy, cx, cy } = self.camera;
         let (width, height) = (Some(width), Some(height));
         let camera = CameraFile { fx, fy, cx, cy, width, height, depth_scale: Some(depth_scale) };
-        write_json(&folder.join("camera.json"), &camera)?;
+        write_json(&folder.join(CAMERA), &camera)?;
         if let Some(photo) = &self.photo {
             write(&folder.join("rgb.png"), &rgb_png(photo)?)?;
         }
@@ -91,7 +94,7 @@ impl CaseFrame {
             let (r, t) = (&pose.rotation, &pose.translation);
             let row = |i: usize| [r[(i, 0)], r[(i, 1)], r[(i, 2)], t[i]];
             let camera_to_world = [row(0), row(1), row(2), [0.0, 0.0, 0.0, 1.0]];
-            write_json(&folder.join("pose.json"), &CameraPoseFile { camera_to_world })?;
+            write_json(&folder.join(CAMERA_POSE), &CameraPoseFile { camera_to_world })?;
         }
         Ok(())
     }

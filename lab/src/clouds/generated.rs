@@ -27,11 +27,11 @@ pub fn write_pairs(root: &Path, is_lidar: bool, seed: u64, scenes: u32) -> Resul
     write(&root.join("pairs.json"), serde_json::json!(listed).to_string().as_bytes())
 }
 
-/// Points of two fragments that are this near to each other show the same surface.
+/// Largest distance of two points of the same surface, metres.
 const SAME_SURFACE_M: f32 = 0.0375;
 /// Fragments of a room.
 const FRAGMENTS: u32 = 16;
-/// Least overlaps of the kinds of pairs, of which the first that holds counts, and the most pairs of a kind.
+/// Lower bounds of the overlap of the kinds of pairs, descending, and the maximum number of pairs of a kind.
 const BINS: [f64; 3] = [0.6, 0.3, 0.1];
 const PAIRS_OF_A_KIND: usize = 8;
 

@@ -9,10 +9,10 @@ use crate::prelude::*;
 use sim3align_formats::text::{lines, number, quoted, words};
 
 /// Voxel size of the baselines.
-pub const VOXEL_SIZE_M: f64 = 0.3;
+const VOXEL_SIZE_M: f64 = 0.3;
 
 /// The sequences that are tested on.
-pub const SEQUENCES: [&str; 3] = ["08", "09", "10"];
+const SEQUENCES: [&str; 3] = ["08", "09", "10"];
 
 /// The sweeps of a pair are the last ones that are no further apart.
 const APART_M: f64 = 10.0;
@@ -87,7 +87,7 @@ fn sequence_folders(root: &Path) -> Vec<PathBuf> {
 }
 
 /// Frame i, the one before the first later one more than 10 m away, and on from the frame after it.
-pub fn ten_metres_apart(poses: &[Similarity]) -> Vec<[usize; 2]> {
+fn ten_metres_apart(poses: &[Similarity]) -> Vec<[usize; 2]> {
     let mut pairs = Vec::new();
     let mut i = 0;
     while let Some(from) = poses.get(i) {

@@ -9,4 +9,4 @@ pub mod pair;
 mod places;
 mod sensors;
 pub mod three_d_match;
-pub mod trajectory;
+mod trajectory;

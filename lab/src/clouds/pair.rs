@@ -8,16 +8,16 @@ use crate::files::{corrupt, read};
 use crate::prelude::*;
 
 /// Largest root mean squared error of a success on 3DMatch and 3DLoMatch, in metres.
-pub const RMSE_M: f64 = 0.2;
+const RMSE_M: f64 = 0.2;
 
 /// Largest error of a free scale, relative: at 4 m, the range of a depth camera, as far as [`RMSE_M`].
-pub const SCALE: f64 = 0.05;
+const SCALE: f64 = 0.05;
 
 /// Largest rotation error of a success on KITTI, in degrees.
-pub const ROTATION_DEG: f64 = 5.0;
+const ROTATION_DEG: f64 = 5.0;
 
 /// Largest translation error of a success on KITTI, in metres.
-pub const TRANSLATION_M: f64 = 2.0;
+const TRANSLATION_M: f64 = 2.0;
 
 /// Success criterion of an estimate.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,7 +11,7 @@ use crate::files::{corrupt, entries};
 use crate::prelude::*;
 
 /// Voxel size of the baselines.
-pub const VOXEL_SIZE_M: f64 = 0.05;
+const VOXEL_SIZE_M: f64 = 0.05;
 
 /// The folders of a scene's fragments and of its ground truth.
 struct Scene {

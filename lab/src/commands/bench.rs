@@ -1,8 +1,6 @@
 //! `bench`: runs rows of calls over generated cases and case folders, and prints tables of the results.
 
-use std::fs;
-
-use serde_json::{Map, Value};
+use serde::de::IgnoredAny;
 use sim3align_lab::bench::calls::run as run_row;
 use sim3align_lab::bench::options::Row;
 use sim3align_lab::bench::records::{RecordFile, RecordKey};
@@ -111,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rows_of = |source: &Source| -> Result<Vec<Row>, String> {
         if given.is_empty() { source.rows().iter().map(|text| Row::parse(text)).collect() } else { Ok(given.clone()) }
     };
-    let file = arguments.json.as_deref().map(RecordFile::<Map<String, Value>>::open).transpose()?;
+    let file = arguments.json.as_deref().map(RecordFile::<IgnoredAny>::open).transpose()?;
     let work = |source: &Source| -> Result<Vec<(String, Vec<ResultRow>)>, Failure> {
         let key = |row: &Row| RecordKey { row: row.name.clone(), options: row.text.clone(), case: source.id() };
         let mut rows = rows_of(source)?;
@@ -130,8 +128,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Ok(all)
     };
     let found = parallel_map(threads, &sources, work, progress)?.into_iter().flatten();
-    let all = match &arguments.json {
-        Some(path) => kept(path)?,
+    let all: Vec<(String, Vec<ResultRow>)> = match &arguments.json {
+        Some(path) => {
+            let kept = RecordFile::<ResultRow>::records(path)?;
+            kept.into_iter().map(|(key, result)| (key.row, vec![result])).collect()
+        }
         None => found.collect(),
     };
     let mut rows: Vec<(String, Vec<ResultRow>)> = Vec::new();
@@ -145,21 +146,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     rows.iter_mut().for_each(|(_, results)| results.sort_by(|a, b| a.name.cmp(&b.name)));
     print!("{}", report(&rows, arguments.failures));
     Ok(())
-}
-
-/// The results in a file, with the names of their rows.
-fn kept(path: &Path) -> Result<Vec<(String, Vec<ResultRow>)>, Failure> {
-    #[derive(serde::Deserialize)]
-    struct Line {
-        row: String,
-        #[serde(flatten)]
-        result: ResultRow,
-    }
-    let text = fs::read_to_string(path)?;
-    text.lines()
-        .map(|line| serde_json::from_str(line).map(|Line { row, result }| (row, vec![result])))
-        .collect::<Result<_, _>>()
-        .map_err(Failure::from)
 }
 
 fn sources(arguments: &Arguments) -> Result<Vec<Source>, Failure> {

@@ -41,5 +41,5 @@ fn print_progress(done: usize, all: usize) {
 
 /// Number of threads: by default, one for each processor.
 fn thread_count(given: Option<usize>) -> usize {
-    given.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from)).max(1)
+    given.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }

@@ -51,7 +51,7 @@ impl Profiler {
 
 impl Host for Profiler {
     fn now_ms(&mut self) -> f64 {
-        1000.0 * self.timer.seconds()
+        self.timer.milliseconds()
     }
 
     fn progress(&mut self, stage: Stage, _fraction: f64) {

@@ -5,13 +5,14 @@ use super::noise::{Noise, disc};
 use crate::objects::mesh::face;
 use crate::prelude::*;
 use crate::sets::conditions::{Conditions, DepthFault, Tier};
+use crate::statistics::mean;
 use crate::world::Placed;
 use crate::world::view::Sight;
 use sim3align_geometry::components::{Component, components};
 use sim3align_geometry::order::{median, quantile};
 
 /// Farthest reading of a sensor, metres.
-const FARTHEST_M: f64 = 12.0;
+pub const FARTHEST_M: f64 = 12.0;
 /// Ratio of a wide shadow's distance between camera and projector to the usual one.
 const WIDE: f64 = 4.0;
 /// Largest step of quantised depth at the object, as a share of its diagonal.
@@ -43,11 +44,12 @@ pub struct Readings {
     pub bias: f64,
     /// Names of the simulated errors.
     pub tags: Vec<&'static str>,
-    /// By what share a depth model's warp moves each object along its rays; its true pose follows.
+    /// Relative shift of each object along its rays by a depth model's warp; the true pose includes it.
     pub drifts: Vec<f64>,
 }
 
-/// Reads a scene, in which `sight` shows all objects as one, and `things` the pixels of each. Their diagonal is in metres.
+/// Reads a scene, in which `sight` shows all objects as one, and `things` the pixels of each; `diagonal` is the median
+/// diagonal of the objects, metres.
 pub fn read(
     sight: &Sight,
     things: &[&[bool]],
@@ -130,8 +132,8 @@ impl Readings {
 }
 
 /// A depth model's smooth errors: waves no shorter than the objects, because models get the parts of an object right
-/// relative to each other; and hardly any noise. The warp has no part that moves all objects: that is the bias. Returns by
-/// what share it moves each object.
+/// relative to each other; and hardly any noise. The warp has no part that moves all objects: that is the bias. Returns the
+/// relative shift of each object.
 fn warp(
     depth: &mut [f32],
     sight: &Sight,
@@ -143,7 +145,7 @@ fn warp(
     let view = &sight.view;
     let amplitude = between(random, 0.3, 1.0) * tier.pick(0.003, 0.012, 0.025) * diagonal;
     let noise = between(random, 0.3, 1.0) * tier.pick(0.0007, 0.0015, 0.003) * diagonal;
-    let z_mean = mean(sight.object_depth.iter().filter(|z| **z > 0.0).map(|z| f64::from(*z)));
+    let z_mean = mean(sight.object_depth.iter().filter(|z| **z > 0.0).map(|z| f64::from(*z))).unwrap_or(0.0);
     let span = view.camera.fx * diagonal / z_mean;
     // cos(a + b) from tables along rows and columns: a wave costs two products a pixel.
     let tables: Vec<_> = (0..3)
@@ -160,7 +162,7 @@ fn warp(
         let sum: f64 = tables.iter().map(|(a, b)| a[u].1 * b[v].1 - a[u].0 * b[v].0).sum();
         sum * amplitude / (1.5f64.sqrt() * z_mean)
     };
-    let over = |shown: &[bool]| mean((0..shown.len()).filter(|i| shown[*i]).map(wave));
+    let over = |shown: &[bool]| mean((0..shown.len()).filter(|i| shown[*i]).map(wave)).unwrap_or(0.0);
     let offset = over(&sight.visible);
     for (i, z) in depth.iter_mut().enumerate() {
         let grain = (random.uniform() + random.uniform() - 1.0) * noise;
@@ -172,7 +174,7 @@ fn warp(
 /// Noise and steps of a sensor: as published for RealSense D400, PrimeSense and Kinect 2, and smooth noise as measured on
 /// real cases (the design history has the table).
 fn roughen(depth: &mut [f32], sight: &Sight, source: DepthSource, diagonal: f64, tier: Tier, random: &mut Random) {
-    // By z²: white noise, smooth noise, and steps; of time of flight, the noise hardly grows.
+    // Coefficients of z²: white noise, smooth noise, steps; for time of flight, of z.
     let [white, smooth, step] = match source {
         DepthSource::ActiveStereo => [0.0008, 0.014, 0.0005],
         DepthSource::StructuredLight => [0.0008, 0.004, 0.0028],
@@ -279,9 +281,4 @@ pub fn in_two(region: &[bool], width: usize) -> bool {
     let total = parts.iter().map(|part| part.count()).sum::<usize>() as f64;
     let [first, second] = [0, 1].map(|k| parts.get(k).map_or(0.0, |part| part.count() as f64));
     second >= LEAST_PART * total && first + second >= LEAST_BOTH * total
-}
-
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
-    if count > 0.0 { sum / count } else { 0.0 }
 }

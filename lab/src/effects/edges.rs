@@ -94,9 +94,10 @@ pub fn edges(source: DepthSource, sight: &Sight, tier: Tier, wide: f64, random: 
     let mean = resolution * (mean + deviation * normal(random));
     let wobble = Noise::new(&sight.view, errors.place * resolution, random);
     let filling = Noise::new(&sight.view, 6.0 * resolution, random);
-    let near = Beside::all(sight, REACH * resolution);
+    let reach = REACH * resolution;
+    let near = Beside::all(sight, reach);
     let mut depth = sight.depth.clone();
-    let (ramp, gap, reach) = (of_tier(errors.ramp), of_tier(errors.gap), REACH * resolution);
+    let (ramp, gap) = (of_tier(errors.ramp), of_tier(errors.gap));
     let wobbling = of_tier(errors.wobble);
     for (i, beside) in near.iter().enumerate() {
         let Some(beside) = beside else { continue };
@@ -142,7 +143,7 @@ struct Beside {
 }
 
 impl Beside {
-    /// Of the pixels within `reach` pixels of an edge.
+    /// For each pixel, its nearest edge, if one is within `reach` pixels.
     fn all(sight: &Sight, reach: f64) -> Vec<Option<Self>> {
         let (width, height) = (sight.view.width, sight.view.height);
         let mut all: Vec<Option<Self>> = vec![None; width * height];
@@ -167,7 +168,7 @@ impl Beside {
     }
 }
 
-/// Tells the pixels about an edge of it, unless they know a closer one.
+/// Records an edge at the pixels around it that have no nearer one.
 fn spread(all: &mut [Option<Beside>], sight: &Sight, [u, v]: [f64; 2], reach: f64, [near, far]: [f32; 2]) {
     let range = |x: f64, side: usize| (x - reach).max(0.0).ceil() as usize..=((x + reach) as usize).min(side - 1);
     for y in range(v, sight.view.height) {

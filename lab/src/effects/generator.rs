@@ -1,8 +1,7 @@
 //! Simulates generative models that reconstruct an object from one photo: two styles of being wrong.
 
-use crate::objects::Axis;
 use crate::objects::mesh::{
-    box_of, clustered, compact, corners_of, joined, mapped, neighbors, normals, paths, with_vertices,
+    bounds, box_of, clustered, compact, corners_of, face, joined, mapped, neighbors, normals, paths, with_vertices,
 };
 use crate::objects::solid::Solid;
 use crate::prelude::*;
@@ -12,9 +11,9 @@ use crate::world::view::Sight;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
 use sim3align_geometry::decimate::decimate;
 
-/// Random streams of the meshes of scenes.
+/// Random streams of a mesh, and of the quality of the meshes of scenes.
+pub const MESH_STREAM: u64 = 3;
 const QUALITY_STREAM: u64 = 19;
-const MESH_STREAM: u64 = 3;
 /// Pixels over which the smooth prior's best fit is taken, at most.
 const FITTED_PIXELS: usize = 4000;
 /// Passes of smoothing that melt details.
@@ -45,8 +44,6 @@ named! {
 #[derive(Debug)]
 pub struct Generated {
     pub mesh: Mesh,
-    /// The symmetry that the mesh has.
-    pub symmetry: Vec<Axis>,
     /// Names of the simulated errors.
     pub tags: Vec<&'static str>,
 }
@@ -148,12 +145,12 @@ pub fn generate(placed: &Placed, sight: &Sight, conditions: Conditions, random: 
         mesh = clustered(&mesh, strength.cell * diagonal, offset)?;
         tags.push("decimated");
     }
-    Ok(Generated { mesh, symmetry: placed.symmetry.clone(), tags })
+    Ok(Generated { mesh, tags })
 }
 
 /// Stretched along the axes at the same volume, bent along the longest, and warped by long waves.
 fn deform(original: &[DVec3], strength: &Strength, diagonal: f64, random: &mut Random) -> Vec<DVec3> {
-    let (low, high) = original.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let (low, high) = bounds(original.iter().copied());
     let (centre, extent) = ((low + high) * 0.5, high - low);
     let drawn = DVec3::new(random.uniform(), random.uniform(), random.uniform());
     let even = drawn - DVec3::splat(drawn.element_sum() / 3.0);
@@ -190,9 +187,8 @@ fn smoothed(positions: &[DVec3], around: &[Vec<u32>]) -> Vec<DVec3> {
 /// deformation does to the size and pose of the whole is no fault but a matter of the mesh's frame.
 fn fitted(positions: &[DVec3], original: &[DVec3], mesh: &Mesh) -> Result<Vec<DVec3>> {
     let mut weights = vec![0.0; original.len()];
-    for &t in mesh.triangles() {
-        let [a, b, c] = t.map(|i| original[i as usize]);
-        let area = (b - a).cross(c - a).length();
+    for (k, t) in mesh.triangles().iter().enumerate() {
+        let area = face(mesh, k).length();
         t.iter().for_each(|&i| weights[i as usize] += area);
     }
     let vector = |p: &DVec3| Vector3::from(p.to_array());
@@ -267,11 +263,7 @@ fn smooth(placed: &Placed, sight: &Sight, random: &mut Random) -> Result<Generat
     let flatten = Matrix3::identity() - away * away.transpose() * (1.0 - flattened);
     let flat = |p: Vector3<f64>| middle + flatten * (p - middle);
     let back = best_fit(&seen, flat, middle, away)?;
-    Ok(Generated {
-        mesh: mapped(&mesh, |p| vec3(&back.apply(flat(vector3(*p)))))?,
-        symmetry: placed.symmetry.clone(),
-        tags: vec!["melted", "flattened"],
-    })
+    Ok(Generated { mesh: mapped(&mesh, |p| vec3(&back.apply(flat(vector3(*p)))))?, tags: vec!["melted", "flattened"] })
 }
 
 /// A mesh whose details melt and whose thin parts thicken: inflated by a share of its longest side, and smoothed over about

@@ -1,8 +1,8 @@
 //! Depth maps as depth models give them for a photo, made from depth with a known truth.
 
 use super::noise::{convolved, gaussian};
-use crate::bench::statistics::median;
 use crate::prelude::*;
+use crate::statistics::median;
 use sim3align::calibrate::raw_view::{Focal, RawView};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::image::bounds_of;
@@ -20,7 +20,7 @@ const FOCAL_DOUBT: f64 = 0.1;
 const GUESSED_VIEW: (f64, f64) = (60.0, 0.25);
 /// Range of the factors of maps in an unknown unit.
 const ANY_FACTOR: [f64; 2] = [0.3, 3.0];
-/// Lengths of the waves of a bend, in widths of the objects. Their amplitudes are as their lengths, so that all are as
+/// Lengths of the waves of a bend, in widths of the objects. Amplitudes are proportional to lengths, so all waves are equally
 /// steep: errors of networks are smooth.
 const WAVES: [f64; 2] = [4.0, 1.0];
 
@@ -33,7 +33,7 @@ enum FocalFault {
     Unknown,
 }
 
-/// A kind of depth model: the statement of the kind of its maps, and their errors. Shares have a random sign.
+/// A kind of depth model: the kind that its maps state, and their errors. Shares have a random sign.
 #[derive(Debug)]
 pub struct DepthModel {
     pub name: &'static str,

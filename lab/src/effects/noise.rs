@@ -12,7 +12,7 @@ pub struct Noise {
 }
 
 impl Noise {
-    /// Noise over an image that varies over cells of so many pixels.
+    /// Noise over an image, with lattice cells of `cell` pixels.
     pub fn new(view: &View, cell: f64, random: &mut Random) -> Self {
         let [columns, rows] = [view.width, view.height].map(|n| (n as f64 / cell) as usize + 2);
         let values = (0..columns * rows).map(|_| between(random, -1.0, 1.0)).collect();

@@ -6,6 +6,7 @@ use crate::case_folder::write::rgb_jpeg;
 use crate::objects::mesh::face;
 use crate::prelude::*;
 use crate::sets::conditions::{Conditions, Tier};
+use crate::world::unit;
 use crate::world::view::Sight;
 use sim3align_formats::photo::read_photo;
 
@@ -32,23 +33,20 @@ struct Look {
 }
 
 impl Look {
-    fn draw(random: &mut Random, tier: Tier, width: usize) -> Self {
-        let azimuth = TAU * random.uniform();
-        let (sine, cosine) = libm::sincos(azimuth);
-        let light = DVec3::new(cosine, sine, between(random, 0.3, 2.0)).normalize();
+    fn draw(random: &mut Random, tier: Tier, resolution: f64) -> Self {
+        let light = unit(TAU * random.uniform()).extend(between(random, 0.3, 2.0)).normalize();
         let warmth = between(random, -1.0, 1.0) * tier.pick(0.08, 0.2, 0.35);
         let exposure = libm::exp(between(random, -1.0, 1.0) * tier.pick(0.2, 0.4, 0.7));
         let tint = between(random, -1.0, 1.0) * tier.pick(0.03, 0.06, 0.1);
         let angle = TAU * random.uniform();
         let depth = if chance(random, tier.pick(0.0, 0.3, 0.5)) { between(random, 0.3, 0.8) } else { 1.0 };
-        let size = width as f64 / 640.0;
-        let shift = tier.pick(1.0, 3.0, 6.0) * size;
+        let shift = tier.pick(1.0, 3.0, 6.0) * resolution;
         Self {
             light,
             ambient: between(random, 0.35, 0.8),
             highlight: between(random, 0.0, tier.pick(0.05, 0.2, 0.4)),
             gain: exposure * DVec3::new(1.0 + warmth, 1.0 + tint, 1.0 - warmth),
-            shadow: (DVec3::new(libm::cos(angle), libm::sin(angle), 0.0), between(random, -0.5, 0.5), depth),
+            shadow: (unit(angle).extend(0.0), between(random, -0.5, 0.5), depth),
             noise: between(random, 0.2, 1.0) * tier.pick(0.01, 0.02, 0.035),
             blur: random.below(tier.pick(1, 2, 3) + 1),
             shift: [between(random, -shift, shift), between(random, -shift, shift)],
@@ -67,13 +65,13 @@ pub fn take(
     random: &mut Random,
 ) -> Result<Photo> {
     let (tier, is_grey) = (conditions.tier, conditions.class.is_grey);
-    let look = Look::draw(random, tier, sight.view.width);
+    let look = Look::draw(random, tier, sight.view.resolution());
     let [width, height] = [sight.view.width, sight.view.height].map(|side| (look.size * side as f64).round() as usize);
     let camera = resized(&sight.view.camera, look.size);
     let mut rasteriser = Rasteriser::new();
     rasteriser.render(placed, &sight.view.camera_from_world, &camera, width, height);
     let world_from_camera = sight.view.camera_from_world.inverse();
-    let eye = DVec3::from_array(world_from_camera.translation.into());
+    let eye = sight.view.eye();
     let (ground, other) = (color(random), color(random));
     let lit = |albedo: DVec3, point: DVec3, normal: DVec3, at: DVec3| {
         let diffuse = normal.dot(look.light).max(0.0);

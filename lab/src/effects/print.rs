@@ -1,7 +1,7 @@
 //! Prints: the colour of an object's surface, as a function of the position on it.
 
 use crate::objects::Axis;
-use crate::objects::mesh::face;
+use crate::objects::mesh::{bounds, face};
 use crate::prelude::*;
 use crate::world::Placed;
 use crate::world::view::Sight;
@@ -83,9 +83,7 @@ impl Print {
     /// Draws the print of an object with these symmetries.
     pub fn draw(mesh: &Mesh, symmetry: &[Axis], kind: PrintKind, random: &mut Random) -> Self {
         let (axes, is_round) = axes_of(mesh, symmetry);
-        let turned = mesh.positions().iter().map(|p| axes * p.as_dvec3());
-        let (low, high) =
-            turned.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+        let (low, high) = bounds(mesh.positions().iter().map(|p| axes * p.as_dvec3()));
         let half = (0.5 * (high - low)).max(DVec3::splat(1e-9));
         let base = color(random);
         let pattern = match kind {

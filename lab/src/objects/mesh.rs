@@ -49,7 +49,11 @@ pub fn declared(axes: &[Axis], object_from_mesh: &Similarity) -> Symmetry {
 
 /// The lowest and the highest corner of the box of a mesh.
 pub fn box_of(mesh: &Mesh) -> (DVec3, DVec3) {
-    let points = mesh.positions().iter().map(|p| p.as_dvec3());
+    bounds(mesh.positions().iter().map(|p| p.as_dvec3()))
+}
+
+/// The lowest and the highest corner of the box of points.
+pub fn bounds(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
@@ -76,6 +80,11 @@ pub fn with_vertices(mesh: &Mesh, positions: impl Iterator<Item = Vec3>) -> Resu
 /// A mesh whose vertices a function has moved.
 pub fn mapped(mesh: &Mesh, moved: impl FnMut(&Vec3) -> Vec3) -> Result<Mesh> {
     with_vertices(mesh, mesh.positions().iter().map(moved))
+}
+
+/// A translated mesh.
+pub fn shifted(mesh: &Mesh, by: DVec3) -> Result<Mesh> {
+    mapped(mesh, |p| (p.as_dvec3() + by).as_vec3())
 }
 
 /// Meshes as one.
@@ -137,7 +146,7 @@ pub fn paths(mesh: &Mesh, neighbors: &[Vec<u32>], seen: &[bool]) -> Vec<f64> {
     paths
 }
 
-/// Without vertices that no triangle uses.
+/// The mesh of these triangles, without unused vertices.
 pub fn compact(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Mesh> {
     let mut new = vec![u32::MAX; positions.len()];
     let mut kept = Vec::new();

@@ -34,7 +34,7 @@ impl Tier {
         }
     }
 
-    /// How good one output of a model is among many.
+    /// Draws the tier of one output of a model.
     pub fn draw(random: &mut Random) -> Self {
         match random.uniform() {
             u if u < 0.35 => Self::Easy,
@@ -97,7 +97,7 @@ pub struct Class {
     /// The pool of its objects; `None` for that of the tier.
     pub pool: Option<Pool>,
     pub framing: Framing,
-    /// Sources of depth, each of which is as likely; none for an ideal camera.
+    /// Sources of depth, equally likely; empty for exact depth.
     pub depth: &'static [DepthSource],
     pub depth_fault: DepthFault,
     /// The source of its masks; `None` for any.

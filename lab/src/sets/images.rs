@@ -9,16 +9,18 @@ use crate::effects::generator::Generated;
 use crate::effects::mask::mask_of;
 use crate::effects::painter::paint;
 use crate::effects::photo::take;
-use crate::objects::mesh::{canonicalise, declared};
+use crate::objects::mesh::{canonicalise, declared, mapped};
 use crate::prelude::*;
 use crate::world::view::{Sight, View};
 use crate::world::{Placed, World};
 use sim3align_geometry::order::median;
 
-/// Random streams of the parts of a case: a change to one part leaves the others unchanged.
+/// Image size of scenes, views and videos.
+pub const SIZE: [usize; 2] = [640, 480];
+
+/// Random streams of the parts of a case, besides that of the mesh: a change to one part leaves the others unchanged.
 pub const OBJECT_STREAM: u64 = 1;
 pub const SCENE_STREAM: u64 = 2;
-pub const MESH_STREAM: u64 = 3;
 const DEPTH_STREAM: u64 = 4;
 const MASK_STREAM: u64 = 5;
 const FAULT_STREAM: u64 = 6;
@@ -34,8 +36,8 @@ pub struct Made {
     pub missing: Vec<f64>,
 }
 
-/// The image that a view shows. `sights` has the objects, and all of them as one; `conditions` are those of depth and,
-/// for each object, of its mask.
+/// The image that a view shows. `sights` has the image of each object, `together` that of all as one; `of_depth` has the
+/// conditions of depth, `of_masks` those of the mask of each object.
 pub fn image(
     name: String,
     world: &World,
@@ -99,8 +101,7 @@ pub fn object(
         MeshFault::Surplus(kind) => {
             let mesh_from_world = world_from_mesh.inverse();
             let with_parts = kind.added_to(&generated.mesh, random)?;
-            let moved = with_parts.positions().iter().map(|p| vec3(&mesh_from_world.apply(vector3(*p))));
-            Some(Mesh::new(moved.collect(), with_parts.triangles().to_vec())?)
+            Some(mapped(&with_parts, |p| vec3(&mesh_from_world.apply(vector3(*p))))?)
         }
         _ => None,
     };
@@ -108,7 +109,7 @@ pub fn object(
     let colors =
         placed.print.as_ref().map(|print| paint(&mesh, &world_from_mesh, (placed, print), eye, conditions, random));
     let needs_color = conditions.class.needs_color;
-    let symmetry = if needs_color { Symmetry::None } else { declared(&generated.symmetry, &world_from_mesh) };
+    let symmetry = if needs_color { Symmetry::None } else { declared(&placed.symmetry, &world_from_mesh) };
     let colors = colors.transpose()?;
     Ok((CaseObject { name, class, mesh, surplus, colors, symmetry, initial: None }, world_from_mesh))
 }

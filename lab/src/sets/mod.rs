@@ -6,7 +6,7 @@ mod scenes;
 mod sequences;
 mod single;
 
-use crate::case::Case;
+use crate::case::{Case, CaseObject, MISFIT};
 use crate::effects::generator::Prior;
 use crate::prelude::*;
 use conditions::{COLORS, Class, Conditions, GENERAL, MONOCULAR, SENSORS, SURPLUS, Tier};
@@ -35,7 +35,7 @@ named! {
         Arranged = "arranged",
         /// The objects of [`Set::Scenes`], each alone: 338 of 100 scenes.
         Clutter = "clutter",
-        /// The same with the smooth mesh prior.
+        /// [`Set::Clutter`] with meshes of the smooth prior.
         ClutterSmooth = "clutter-smooth",
         /// Scenes whose meshes a generator has placed.
         Placements = "placements",
@@ -98,15 +98,15 @@ impl Set {
         if self == Self::Misfits {
             let other = Self::General.case(seed, index + 1, frames)?.objects.remove(0);
             let mut case = Self::General.case(seed, index, frames)?;
-            case.name = format!("misfit-{}", case.name);
-            case.objects[0] = crate::case::CaseObject { class: "misfit".into(), ..other };
+            case.name = format!("{MISFIT}-{}", case.name);
+            case.objects[0] = CaseObject { class: MISFIT.into(), ..other };
             return Ok(case);
         }
-        let drawn_as = if matches!(self, Self::Clutter | Self::ClutterSmooth) { Self::Scenes } else { self };
+        let drawn_as = if self.is_of_objects() { Self::Scenes } else { self };
         let tier = Tier::of(index);
-        // Other sets leave the cases of this one as they are.
+        // Each set has random streams of its own.
         let stream = u64::from(crc32fast::hash(drawn_as.as_str().as_bytes()));
-        first_fit(&format!("case {index} of {}", self.as_str()), DRAWS, |draw| {
+        first_fit(&format!("case {index} of {}", self.as_str()), |draw| {
             let seed = mixed([seed, stream, index as u64, draw]);
             match self {
                 Self::Scenes | Self::Clutter => scenes::draw(index, seed, false, Prior::Detailed),
@@ -131,4 +131,13 @@ impl Set {
         };
         &classes[index / 3 % classes.len()]
     }
+}
+
+/// The first draw that fits. `what` is drawn, for the error.
+fn first_fit<T>(what: &str, draw: impl FnMut(u64) -> Result<Option<T>>) -> Result<T> {
+    let fit = (0..DRAWS).map(draw).find_map(Result::transpose);
+    fit.unwrap_or_else(|| {
+        let found = format!("no fitting draw of {what}");
+        Err(Error::new(ErrorCode::Internal, "draw", found, "one in a few", "Please report the seed."))
+    })
 }

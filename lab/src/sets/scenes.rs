@@ -1,7 +1,7 @@
 //! Scenes of several objects on a desk, among clutter, in front of one camera.
 
 use super::conditions::{Conditions, PLAIN, RAGGED_MASK, Tier};
-use super::images::{OBJECT_STREAM, SCENE_STREAM, image, object};
+use super::images::{OBJECT_STREAM, SCENE_STREAM, SIZE, image, object};
 use super::single::MIN_MASK_PX;
 use crate::case::Case;
 use crate::effects::generator::Prior;
@@ -10,8 +10,6 @@ use crate::world::view::{Sight, View};
 use crate::world::{World, unit};
 use sim3align::scene::plane::Plane;
 
-/// Image size.
-const SIZE: [usize; 2] = [640, 480];
 /// Range of the distance of the middle of the objects, metres.
 const DISTANCE_M: [f64; 2] = [0.5, 1.6];
 /// Cameras that are tried before each arrangement.
@@ -84,7 +82,7 @@ fn misplaced(mesh: &Mesh, truth: &Similarity, random: &mut Random) -> Result<Sim
     Similarity::from_parts(scale, *rotation.matrix(), moved - rotation * vector3(middle) * scale)
 }
 
-/// A camera at a desk, that has the objects about in the middle of its picture, or so near that the border may cut them.
+/// A camera that looks at the objects on a desk, so close in some cases that the border may cut them.
 fn camera(world: &World, too_near: bool, random: &mut Random) -> Result<View> {
     let mut camera = Pinhole::from_vertical_fov(between(random, 38.0, 60.0), SIZE[0], SIZE[1])?;
     camera.cx += between(random, -6.0, 6.0);
@@ -100,7 +98,7 @@ fn camera(world: &World, too_near: bool, random: &mut Random) -> Result<View> {
     View::at(SIZE, camera, eye, target - eye, between(random, -4.0, 4.0).to_radians())
 }
 
-/// Whether an image shows enough of each object to determine how it lies.
+/// For each object, whether the image shows enough of it to determine its pose.
 fn shown_enough(world: &World, sights: &[Sight], most_cut: f64, random: &mut Random) -> Vec<bool> {
     let is_shown = |(sight, placed): (&Sight, _)| {
         sight.visible_px() >= MIN_MASK_PX

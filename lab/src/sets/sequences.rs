@@ -1,9 +1,9 @@
 //! Several images of one object on a table: cameras around it, and videos.
 
 use super::conditions::{Conditions, SPARSE_SENSOR, Tier};
-use super::images::{MESH_STREAM, OBJECT_STREAM, SCENE_STREAM, image, object};
+use super::images::{OBJECT_STREAM, SCENE_STREAM, SIZE, image, object};
 use crate::case::{Case, CaseFrame, CaseObject};
-use crate::effects::generator::generate;
+use crate::effects::generator::{MESH_STREAM, generate};
 use crate::effects::noise::disc;
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
@@ -11,8 +11,6 @@ use crate::prelude::*;
 use crate::world::view::{Sight, View};
 use crate::world::{Placed, World, unit};
 
-/// Image size.
-const SIZE: [usize; 2] = [640, 480];
 /// Distance of the wall: too far for a reading.
 const WALL_M: f64 = 50.0;
 /// Fewest visible pixels of the object in a view and in the first frame of a video, and the smallest visible fraction.
@@ -151,7 +149,7 @@ pub fn views(index: usize, seed: u64) -> Result<Option<Case>> {
     for (k, seen) in sights.iter().enumerate() {
         let mut frame = stage.frame(format!("frame_{k:02}"), seen, &world_from_mesh, mixed([seed, k as u64]))?;
         frame.is_wrong = wrong == Some(k);
-        // A wrong pose is that of a camera that was moved since.
+        // A camera that was moved after its pose was measured.
         let error = if frame.is_wrong { [between(random, 25.0, 90.0), 0.5 * stage.distance] } else { NOISE };
         if is_noisy || frame.is_wrong {
             frame.world_from_camera = frame.world_from_camera.map(|pose| jittered(&pose, error, random));

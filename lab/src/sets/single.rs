@@ -1,23 +1,21 @@
 //! Cases with one object on a table in front of a wall, with occluders and neighbours.
 
 use super::conditions::{Conditions, DepthFault, Framing, Tier};
-use super::images::{MESH_STREAM, OBJECT_STREAM, SCENE_STREAM, image, object};
+use super::images::{OBJECT_STREAM, SCENE_STREAM, image, object};
 use crate::case::Case;
-use crate::effects::depth::in_two;
-use crate::effects::generator::generate;
+use crate::effects::depth::{FARTHEST_M, in_two};
+use crate::effects::generator::{MESH_STREAM, generate};
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
 use crate::world::view::{Sight, View, count, shown};
 use crate::world::{Placed, World, things, unit};
 
-/// Minimum number of pixels in a mask, and those with a reading.
+/// Minimum number of pixels of a mask, and of those with a reading.
 pub const MIN_MASK_PX: usize = 350;
 const LEAST_READINGS: usize = 250;
 /// Maximum number of pixels of a tiny object.
 const TINY_PX: usize = 1600;
-/// Maximum distance of the object.
-const FARTHEST_M: f32 = 12.0;
 /// Maximum number of occluders tried for the required occlusion.
 const OCCLUDERS: usize = 12;
 
@@ -78,7 +76,7 @@ fn shows_enough(sight: &Sight, placed: &Placed, Conditions { tier, class }: Cond
         && sight.visible_px() >= MIN_MASK_PX
         && sight.visible_share() >= least
         && sight.shows_shape(placed, tier)
-        && sight.object_depth.iter().all(|z| *z <= FARTHEST_M)
+        && sight.object_depth.iter().all(|z| f64::from(*z) <= FARTHEST_M)
 }
 
 /// The world about an object, and a camera.

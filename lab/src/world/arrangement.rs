@@ -1,8 +1,8 @@
 //! Arrangements of objects on a desk: they stand close to each other without intersection, stand on each other, lean and
 //! hang.
 
-use super::{Placed, Stance, World, things, unit};
-use crate::objects::mesh::{box_of, mapped, random_rotation, turned_axes};
+use super::{Placed, Stance, World, center_of, things, unit};
+use crate::objects::mesh::{box_of, mapped, random_rotation, shifted, turned_axes};
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
@@ -52,8 +52,8 @@ impl Footprint {
         Self(directions().map(reach).collect())
     }
 
-    /// The widest strip between two footprints, at most as wide as they are far from each other; negative where they
-    /// may overlap.
+    /// Width of the widest strip between two footprints, a lower bound of their distance; negative where they may
+    /// overlap.
     fn gap(&self, other: &Self, offset: DVec2) -> f64 {
         let strips = directions().enumerate().map(|(k, d)| {
             let opposite = (k + DIRECTIONS / 2) % DIRECTIONS;
@@ -64,7 +64,7 @@ impl Footprint {
 }
 
 impl Floor {
-    /// Any of the places taken; the origin if there is none.
+    /// One of the occupied places, at random; the origin if there is none.
     fn any_place(&self, random: &mut Random) -> DVec2 {
         if self.0.is_empty() { DVec2::ZERO } else { self.0[random.below(self.0.len())].1 }
     }
@@ -130,7 +130,7 @@ impl World {
             };
             objects.push(floor.place(stance, placed, &objects, front, random)?);
         }
-        let middle = Self::new(objects.clone(), Vec::new(), front, 0.0).center.truncate();
+        let middle = center_of(&objects).truncate();
         let mut others = Vec::new();
         let things = if is_bare { 0 } else { 1 + random.below(5) };
         for _ in 0..things {
@@ -148,10 +148,6 @@ impl World {
         }
         Ok(world)
     }
-}
-
-fn shifted(mesh: &Mesh, by: DVec3) -> Result<Mesh> {
-    mapped(mesh, |p| (p.as_dvec3() + by).as_vec3())
 }
 
 /// An object that is tilted, or turned and lifted.

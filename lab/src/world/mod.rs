@@ -7,13 +7,13 @@ pub mod view;
 use std::sync::Arc;
 
 use crate::effects::print::{Print, PrintKind};
-use crate::objects::mesh::{box_of, mapped, random_rotation, turned_axes};
+use crate::objects::mesh::{bounds, box_of, mapped, random_rotation, shifted, turned_axes};
 use crate::objects::{Axis, Object};
 use crate::prelude::*;
 use crate::sets::conditions::Tier;
 
 named! {
-    /// How an object is held.
+    /// How an object is supported.
     pub enum Stance: "stance" {
         /// It stands on the desk.
         Stands = "stands",
@@ -47,11 +47,11 @@ pub struct World {
     pub others: Vec<Mesh>,
     /// At which height the depth map shows the table, metres; `None` if it shows nothing but objects and things.
     pub table: Option<f64>,
-    /// The wall: what it faces, and how far behind the origin it is.
+    /// The wall: its normal, and its distance behind the origin.
     pub wall: (Vector3<f64>, f64),
     /// The middle of the box of the objects.
     pub center: DVec3,
-    /// Their farthest distance from there.
+    /// Distance from `center` to the farthest vertex of an object.
     pub reach: f64,
     /// The angle about z from which cameras look.
     pub front: f64,
@@ -63,7 +63,7 @@ impl Placed {
         let turned = mapped(&object.mesh, |p| vec3(&(rotation * vector3(*p))))?;
         let (low, high) = box_of(&turned);
         let down = ((low + high) * 0.5).with_z(low.z);
-        let mesh = mapped(&turned, |p| (p.as_dvec3() - down).as_vec3())?;
+        let mesh = shifted(&turned, -down)?;
         let symmetry = turned_axes(rotation, &object.symmetry);
         Ok(Self { object: Arc::new(object), mesh, symmetry, print: None, stance: Stance::Stands })
     }
@@ -88,9 +88,9 @@ impl Placed {
         Self { print, ..self }
     }
 
-    /// Moves it.
+    /// Translates the object.
     pub fn shift(&mut self, by: DVec3) -> Result<()> {
-        self.mesh = mapped(&self.mesh, |p| (p.as_dvec3() + by).as_vec3())?;
+        self.mesh = shifted(&self.mesh, by)?;
         Ok(())
     }
 }
@@ -99,22 +99,28 @@ impl World {
     /// A world of objects. `front` is the angle about z from which cameras look, and `behind` how far the wall is behind
     /// objects and things.
     pub fn new(objects: Vec<Placed>, others: Vec<Mesh>, front: f64, behind: f64) -> Self {
-        let (low, high) = objects
-            .iter()
-            .map(|placed| box_of(&placed.mesh))
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), (a, b)| (low.min(a), high.max(b)));
-        let center = (low + high) * 0.5;
-        let points = || objects.iter().flat_map(|placed| placed.mesh.positions()).map(|p| p.as_dvec3());
-        let reach = points().fold(0.0f64, |far, p| far.max(p.distance(center)));
+        let center = center_of(&objects);
+        let reach = points(&objects).fold(0.0f64, |far, p| far.max(p.distance(center)));
         let faces = unit(front).extend(0.0);
-        let all = points().chain(others.iter().flat_map(|mesh| mesh.positions()).map(|p| p.as_dvec3()));
+        let all = points(&objects).chain(others.iter().flat_map(|mesh| mesh.positions()).map(|p| p.as_dvec3()));
         let depth = all.fold(0.0f64, |far, p| far.max(-p.dot(faces)));
         let wall = (Vector3::from(faces.to_array()), depth + behind);
         Self { objects, others, table: Some(0.0), wall, center, reach, front }
     }
 }
 
-/// A direction on the plane.
+/// The vertices of objects.
+fn points(objects: &[Placed]) -> impl Iterator<Item = DVec3> {
+    objects.iter().flat_map(|placed| placed.mesh.positions()).map(|p| p.as_dvec3())
+}
+
+/// The middle of the box of objects.
+fn center_of(objects: &[Placed]) -> DVec3 {
+    let (low, high) = bounds(points(objects));
+    (low + high) * 0.5
+}
+
+/// The unit vector in the plane at an angle, radians.
 pub fn unit(angle: f64) -> DVec2 {
     let (sine, cosine) = libm::sincos(angle);
     DVec2::new(cosine, sine)

@@ -5,7 +5,8 @@ use crate::prelude::*;
 
 use super::view::View;
 
-/// Adds a cylinder, a box or a ball of a half width and a height, standing on a spot or leaning about it.
+/// Adds a random cylinder, box or ellipsoid of this half width and height, which stands on `spot`, tilted by `lean`
+/// radians.
 pub fn block(solid: &mut Solid, spot: DVec3, lean: f64, half_width: f64, height: f64, random: &mut Random) {
     let heading = DAffine3::from_rotation_z(TAU * random.uniform());
     let frame = DAffine3::from_translation(spot) * heading * DAffine3::from_rotation_x(lean);

@@ -53,12 +53,12 @@ impl View {
         Ok(Self { camera_from_world, ..self })
     }
 
-    /// The pose of the camera.
+    /// The position of the camera in the world frame.
     pub fn eye(&self) -> DVec3 {
         DVec3::from_array(self.camera_from_world.inverse().translation.into())
     }
 
-    /// The ratio of its width to 640 pixels.
+    /// The width relative to 640 pixels.
     pub fn resolution(&self) -> f64 {
         self.width as f64 / 640.0
     }
@@ -138,7 +138,7 @@ impl View {
         Sight { view: *self, depth, visible, silhouette_px, cut, hidden, object_depth, object_triangles }
     }
 
-    /// Pixels of an object, were the image larger.
+    /// Number of pixels that the object would have in an unbounded image.
     fn silhouette_px(&self, mesh: &Mesh, depth: &[f32]) -> usize {
         let is_rim = |i: usize| {
             let [u, v] = self.place(i);
@@ -228,7 +228,7 @@ fn in_front(z: f32, other: f32) -> bool {
     z > 0.0 && (other == 0.0 || z <= other)
 }
 
-/// Pixels that show the object, before and behind the others.
+/// For each pixel, whether it shows the object rather than the others.
 pub fn shown(object: &[f32], others: &[f32]) -> Vec<bool> {
     object.iter().zip(others).map(|(&z, &other)| in_front(z, other)).collect()
 }

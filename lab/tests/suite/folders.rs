@@ -6,7 +6,7 @@ use sim3align_lab::case_folder::read::read;
 use sim3align_lab::prelude::*;
 use sim3align_lab::sets::Set;
 
-/// A path of its own for a test of this process; nothing is there.
+/// An empty folder for a test of this process.
 fn fresh(name: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("sim3align-{}-{name}", std::process::id()));
     let _ = std::fs::remove_dir_all(&path);

@@ -38,12 +38,9 @@ pub struct Arguments {
     /// Measures the overlap where it is not listed, for the table's bins
     #[arg(long)]
     measure_overlap: bool,
-    /// One JSON line for each pair and method; those that are there are not run again
+    /// One JSON line for each pair and method; pairs that the file already has are skipped
     #[arg(long)]
     records: Option<PathBuf>,
-    /// Everything about every pair
-    #[arg(long)]
-    json: Option<PathBuf>,
     /// Writes [{ id, source, target, voxelSizeM }] for other programs, and runs nothing
     #[arg(long)]
     pairs_json: Option<PathBuf>,
@@ -82,9 +79,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let all: Vec<Record> = made.into_iter().flatten().collect();
     let names: Vec<&str> = methods.iter().map(Method::name).collect();
     print!("{}", table::report(&all, &names));
-    if let Some(path) = &arguments.json {
-        write_file(path, format!("{}\n", json!(all)))?;
-    }
     Ok(())
 }
 
@@ -94,7 +88,10 @@ fn run_pair(
     measures_overlap: bool,
     records: Option<&RecordFile<Record>>,
 ) -> Result<Vec<Record>> {
-    let known = |method: &Method| records?.get(&method.key(pair)?).cloned();
+    let known: Vec<Option<Record>> = methods.iter().map(|method| records?.get(&method.key(pair)?).cloned()).collect();
+    if known.iter().all(Option::is_some) {
+        return Ok(known.into_iter().flatten().collect());
+    }
     let (source, target) = (read_cloud(&pair.source)?, read_cloud(&pair.target)?);
     let measured = |size: f32| {
         let voxels = |points: &[Vec3]| voxel_downsample(&Cloud::from_points(points.to_vec()), 0.5 * size).points;
@@ -102,8 +99,8 @@ fn run_pair(
     };
     let share = pair.overlap.or_else(|| measures_overlap.then(|| measured(pair.voxel_size_m as f32)));
     let mut made = Vec::new();
-    for method in methods {
-        if let Some(record) = known(method) {
+    for (method, known) in methods.iter().zip(known) {
+        if let Some(record) = known {
             made.push(record);
             continue;
         }

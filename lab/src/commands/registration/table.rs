@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
-use sim3align_lab::bench::statistics::{cell, mean, median};
+use sim3align_lab::statistics::{cell, mean, median};
 
 /// Lower bounds of the overlap bins, with names.
 const OVERLAPS: [(f64, &str); 4] =
@@ -85,24 +85,23 @@ fn line(out: &mut String, group: &str, method: &str, records: &[&Record]) {
     let by_scene = scenes
         .iter()
         .map(|scene| recall(&records.iter().copied().filter(|record| record.group == *scene).collect::<Vec<_>>()));
-    let by_scene: Vec<f64> = by_scene.collect();
     let successes = |of: fn(&Record) -> Option<f64>| -> Vec<f64> {
         records.iter().filter(|record| record.success).filter_map(|record| of(record)).collect()
     };
     let (rotation, translation) = (successes(|r| r.rotation_deg), successes(|r| r.translation_m));
-    let seconds: Vec<f64> = records.iter().filter_map(|record| record.seconds).collect();
+    let seconds = records.iter().filter_map(|record| record.seconds);
     let _ = writeln!(
         out,
         "| {group} | {method} | {} | {:.1} % | {} % | {} | {} | {} | {} | {} | {} | {} |",
         records.len(),
         recall(records),
-        cell(mean(&by_scene), 1),
-        cell(mean(&rotation), 2),
-        cell(mean(&translation), 3),
-        cell(median(rotation.clone()), 2),
-        cell(median(translation.clone()), 3),
-        cell(mean(&successes(|r| r.rmse_m)), 3),
-        cell(mean(&successes(|r| r.scale.map(|scale| 100.0 * scale))), 2),
-        cell(mean(&seconds), 2),
+        cell(mean(by_scene), 1),
+        cell(mean(rotation.iter().copied()), 2),
+        cell(mean(translation.iter().copied()), 3),
+        cell(median(rotation), 2),
+        cell(median(translation), 3),
+        cell(mean(successes(|r| r.rmse_m)), 3),
+        cell(mean(successes(|r| r.scale.map(|scale| 100.0 * scale))), 2),
+        cell(mean(seconds), 2),
     );
 }
