@@ -172,7 +172,8 @@ test("read-only, nothing can be changed, and tokens and parts style the element"
     });
   const before = await state();
   const press = async () => {
-    await page.locator("#a canvas").first().focus();
+    // The canvas of the image takes no focus.
+    await page.locator("#a .space[data-state=ready] canvas").first().focus(PATIENCE);
     for (const key of ["g", "ArrowLeft", "PageUp", "l", "Control+Enter"]) await page.keyboard.press(key);
   };
   await press();
@@ -261,11 +262,14 @@ test("an iframe is controlled by messages of its parent's origin, and of no othe
     await framed("");
     const frame = page.frames().find((one) => one.url().startsWith(other.url));
     await frame?.waitForSelector("sim3-align");
+    const next = await frame?.evaluateHandle(() => ({
+      came: new Promise((resolve) => addEventListener("message", resolve, { once: true })),
+    }));
     await page.evaluate((origin) => {
       const { contentWindow } = document.querySelector("iframe") as HTMLIFrameElement;
       contentWindow?.postMessage({ type: "sim3align:load", readonly: true }, origin);
     }, from);
-    await frame?.evaluate(() => new Promise((resolve) => setTimeout(resolve, 0)));
+    await next?.evaluate(({ came }) => came.then(() => {}));
     assert.equal(await frame?.evaluate(() => document.querySelector("sim3-align")?.hasAttribute("readonly")), false);
     assert.deepEqual(await page.evaluate(() => window.told), []);
   } finally {

@@ -11,6 +11,10 @@ import { input } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
 import { type Server, serve } from "../support/static-server.js";
 
+/** In Node. */
+const expected = await work(createAligner);
+const direct = await (await createAligner()).align(input);
+
 for (const name of browserNames) {
   describe(name, { skip: skipped(name) }, () => {
     let browser: Browser;
@@ -28,7 +32,6 @@ for (const name of browserNames) {
     const open = async (path: string) => Tab.open(await browser.createBrowserContext(), new URL(path, server.url).href);
 
     test("the package has the bits of Node, in both entries, with and without workers", async () => {
-      const expected = await work(createAligner);
       const { page, errors } = await open(`${elementFolder}/frame.html`);
       for (const entry of ["index", "inline"]) {
         const found = (await page.evaluate(`(async () => {
@@ -52,7 +55,7 @@ for (const name of browserNames) {
         element.scene = { ...view, objects: [{ mask, mesh }] };
         return (await aligned).objects[0].pose.matrix;
       })()`);
-      assert.deepEqual(found, [...(await (await createAligner()).align(input)).matrix]);
+      assert.deepEqual(found, [...direct.matrix]);
       const area = await page.evaluate(() => {
         const panel = document.querySelector("sim3-align")?.shadowRoot?.querySelector(".result");
         return (panel?.clientWidth ?? 0) * (panel?.clientHeight ?? 0);

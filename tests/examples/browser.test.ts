@@ -10,6 +10,8 @@ import { readMask } from "sim3align/formats";
 import { PageTest, WEBGL } from "../support/browser.js";
 import { sampleDir } from "../support/environment.js";
 import { examplesDir, filesOf, program } from "../support/examples.js";
+import { maskIou } from "../support/results.js";
+import { until } from "../support/site.js";
 
 const { skip } = program("CHROMIUM_PATH", "Chromium", "install it (Debian and Ubuntu: apt-get install chromium)");
 const started: PageTest[] = [];
@@ -64,11 +66,8 @@ async function colours(page: Page, address: string): Promise<[red: number, blue:
   return Array.from(mask.data, (_, i) => [data[4 * i] ?? 0, data[4 * i + 2] ?? 0]);
 }
 
-/** The overlap of what is drawn with the mask. */
-function overlap(isDrawn: readonly boolean[]): number {
-  const both = isDrawn.filter((drawn, i) => drawn && mask.data[i] !== 0).length;
-  return both / isDrawn.filter((drawn, i) => drawn || mask.data[i] !== 0).length;
-}
+/** The overlap of the drawn pixels with the mask. */
+const overlap = (isDrawn: readonly boolean[]) => maskIou(isDrawn.map(Number), mask.data);
 
 test("03-vite-three draws the mesh where the mask is, and the points of the depth", { skip }, async () => {
   const { page, errors } = await opened(built("03-vite-three"), "");
@@ -97,13 +96,11 @@ test("10-react draws the mesh where the photo shows it, at any size, and follows
   // Where Chromium cannot have WebGPU, a page that asks for it takes the graphics process of all canvases with it.
   const { page, errors } = await opened(built("10-react"), "", WEBGL);
   const settled = async (test: (iou: number) => boolean) => {
-    let iou = Number.NaN;
-    for (let i = 0; i < 20 && !test(iou); i++) {
+    await until(async () => {
       const shown = (await page.locator(".photo canvas").screenshot()).toString("base64");
       // The mesh is orange on the screen.
-      iou = overlap((await colours(page, `data:image/png;base64,${shown}`)).map(([red, blue]) => red > blue + 60));
-    }
-    assert.ok(test(iou), `IoU of the drawn mesh and the mask: ${iou}`);
+      return overlap((await colours(page, `data:image/png;base64,${shown}`)).map(([red, blue]) => red > blue + 60));
+    }, test);
   };
   await settled((iou) => iou > 0.85);
   await page.setViewportSize({ width: 420, height: 900 });

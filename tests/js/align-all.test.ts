@@ -1,16 +1,13 @@
 /** `alignAll`: many inputs, few at a time. */
 import assert from "node:assert/strict";
-import { after, test } from "node:test";
-import { type Aligner, type AlignInput, createAligner, Sim3AlignError } from "sim3align";
+import { test } from "node:test";
+import { type AlignInput, createAligner, Sim3AlignError } from "sim3align";
+import { pools } from "../support/aligners.js";
 import { withoutTimes } from "../support/results.js";
 import { brick, input } from "../support/scene.js";
 
 const here = await createAligner();
-const pools = await Promise.all([1, 3].map((workers) => createAligner({ workers })));
-const pool = pools[0] as Aligner;
-after(() => {
-  for (const each of pools) each.dispose();
-});
+const [pool, large] = await pools(1, 3);
 
 const quick = { quality: "fast" } as const;
 const alone = await Promise.all([brick, input].map(async (one) => withoutTimes(await here.align(one, quick))));
@@ -41,7 +38,7 @@ async function drain(results: AsyncIterable<unknown>): Promise<void> {
 for (const [name, aligner, workers] of [
   ["without workers", here, 0.5],
   ["with one worker", pool, 1],
-  ["with three workers", pools[1] as Aligner, 3],
+  ["with three workers", large, 3],
 ] as const) {
   test(`${name}: all are yielded, no more are pulled than there is room for, a bad input is an error of its own`, async () => {
     for (const ordered of [true, false]) {

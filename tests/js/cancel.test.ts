@@ -1,16 +1,16 @@
 /** Cancelling and listeners of progress, with workers and without. */
 import assert from "node:assert/strict";
 import { getEventListeners } from "node:events";
-import { after, test } from "node:test";
+import { test } from "node:test";
 import { type Aligner, createAligner, type Progress } from "sim3align";
+import { pools } from "../support/aligners.js";
 import { rejectsWith } from "../support/errors.js";
 import { withoutTimes } from "../support/results.js";
 import { input, truth } from "../support/scene.js";
 import { Gate, slowInput, Workers } from "../support/workers.js";
 
 const here = await createAligner();
-const pool = await createAligner({ workers: 2 });
-after(() => pool.dispose());
+const [pool] = await pools(2);
 
 const quick = { quality: "fast" } as const;
 const slow = { quality: "best" } as const;

@@ -13,6 +13,7 @@ import {
   refusesUsage,
   results,
   run,
+  shell,
   succeeds,
   writeCase,
 } from "../support/command-line.js";
@@ -218,10 +219,9 @@ test("- is stdout, whose table then goes to stderr; pipes that end early end the
   assert.deepEqual(jsonl.stdout.match(/(?<=^{"case":")\w+/gm)?.sort(), ["a", "a1"]);
   assert.match(jsonl.stderr, /^a +\d/m);
   assert.match(run("align a cases/a1 --csv -", ...quick).stdout, /^case,error,confidence,.*\n.*\n.*\n$/);
-  const sh = (command: string) => spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" }).stdout;
   const program = `"${process.execPath}" "${commandLine}" align cases/a1 cases/a2 cases/b1 --workers 1`;
-  assert.match(sh(`${program} | head -n 1`), /^case .*\n$/);
-  sh(`${program} --json closed.json | head -n 1`);
+  assert.match(shell(`${program} | head -n 1`).stdout, /^case .*\n$/);
+  shell(`${program} --json closed.json | head -n 1`);
   assert.equal(Object.keys(results("closed.json")).length, 3);
   succeeds("align a --jsonl begun.jsonl --resume", ...quick);
 });

@@ -1,11 +1,10 @@
 /** The examples of the help texts, and the commands of the documents: each runs as written, on data of the names that it uses. */
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
 import { chmodSync, cpSync, readdirSync, readFileSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { before, test } from "node:test";
 import { bopResults, segmentation, writeBop } from "../support/bop.js";
-import { files, folder, pixels, run, writeCase } from "../support/command-line.js";
+import { files, folder, pixels, run, shell, writeCase } from "../support/command-line.js";
 import { commandLine, repository } from "../support/environment.js";
 import { glb, npy, obj, png, writeFiles } from "../support/files.js";
 import { frameAt, frameFiles } from "../support/rig.js";
@@ -94,7 +93,7 @@ test("every help text has examples of its command", () => {
 for (const [command, place] of commands) {
   test(`${place}: ${command}`, { skip }, () => {
     const env = { ...process.env, PATH: `${join(folder, "bin")}${delimiter}${process.env.PATH}` };
-    const { status, stdout, stderr } = spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8", env });
+    const { status, stdout, stderr } = shell(command, env);
     assert.equal(status, 0, stderr);
     assert.ok((stdout + stderr).trim() !== "", "it prints something");
     if (command.includes("jq")) assert.ok(Number(stdout) > 0, stdout);

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { pageModule } from "../support/page-module.js";
 import { forSeeds } from "../support/random.js";
+import { maskIou } from "../support/results.js";
 
 interface Size {
   width: number;
@@ -113,17 +114,12 @@ function ballOnTable(hasColour: boolean) {
   return { view: { width, height, rgba, depth }, truth };
 }
 
-function iou(mask: Uint8Array, truth: Uint8Array): number {
-  const both = mask.filter((inside, i) => inside & (truth[i] ?? 0)).length;
-  return both / mask.filter((inside, i) => inside | (truth[i] ?? 0)).length;
-}
-
 const click: Stroke = { points: [[70, 60]], radius: 1.5, adds: true };
 
 test("one click finds an object by its colour, and by its depth where the colours are the same", () => {
   const [coloured, grey] = [ballOnTable(true), ballOnTable(false)];
-  assert.ok(iou(regionOf({ ...coloured.view, depth: null }, [click]), coloured.truth) > 0.95);
-  assert.ok(iou(regionOf(grey.view, [click]), grey.truth) > 0.9);
+  assert.ok(maskIou(regionOf({ ...coloured.view, depth: null }, [click]), coloured.truth) > 0.95);
+  assert.ok(maskIou(regionOf(grey.view, [click]), grey.truth) > 0.9);
 });
 
 test("strokes are obeyed: what they cover is, or is not, in the region", () => {

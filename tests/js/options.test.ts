@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createAligner, OPTIONS } from "sim3align";
+import { bits } from "../support/results.js";
 import { frameAt } from "../support/rig.js";
 import { brick, input, mesh, product, transformed, truth } from "../support/scene.js";
 
@@ -74,21 +75,14 @@ const values: Record<Method, Record<string, unknown>> = {
 /** A budget that only a call without end shows (cancel.test.ts), and a seed that no frame of this video depends on. */
 const others = ["estimateSim3 workBudget", "track seed"];
 
-/** The result without its times, or the code of its error. */
-const outcome = (call: Promise<unknown>) =>
-  call.then(
-    (result) => JSON.stringify(result, (key, value) => (key === "timingsMs" ? undefined : value)),
-    (error: { code: string }) => error.code,
-  );
-
 for (const [method, call] of Object.entries(calls) as [Method, (typeof calls)[Method]][]) {
   test(`every option of ${method} changes the outcome`, async () => {
     const names = OPTIONS[method].map(({ name }) => name).filter((name) => !others.includes(`${method} ${name}`));
     assert.deepEqual(Object.keys(values[method]).sort(), names.sort());
-    const plain = await outcome(call({}));
+    const plain = bits(await call({}));
     for (const [name, value] of Object.entries(values[method])) {
       const isSet = typeof value === "object" && value !== null && name in value;
-      assert.ok((await outcome(call(isSet ? value : { [name]: value }))) !== plain, name);
+      assert.ok(bits(await call(isSet ? value : { [name]: value })) !== plain, name);
     }
   });
 }

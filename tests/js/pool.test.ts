@@ -1,29 +1,24 @@
 /** Workers: the same bits, whoever does the work; moved arrays; and what becomes of workers that are lost. */
 import assert from "node:assert/strict";
-import { after, test } from "node:test";
+import { test } from "node:test";
 import { Worker } from "node:worker_threads";
 import { type Aligner, type AlignInput, createAligner, type OptionsOf } from "sim3align";
+import { pools } from "../support/aligners.js";
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
-import { withoutTimes } from "../support/results.js";
+import { bits, withoutTimes } from "../support/results.js";
 import { brick, input, mesh, transformed, truth } from "../support/scene.js";
 import { tableScene } from "../support/table.js";
 import { Gate, slowInput, Workers } from "../support/workers.js";
 
 const here = await createAligner();
-const pools = await Promise.all([1, 3].map((workers) => createAligner({ workers })));
-const pool = pools[0] as Aligner;
-after(() => {
-  for (const each of pools) each.dispose();
-});
+const [pool, large] = await pools(1, 3);
 
 const quick = { quality: "fast" } as const;
 /** Hard, so that idle workers help. */
 const hard = { quality: "best" } as const;
 const expected = withoutTimes(await here.align(input, quick));
 const works = async (aligner: Aligner) => assert.deepEqual(withoutTimes(await aligner.align(input, quick)), expected);
-/** All that must be the same, of any result. */
-const bits = (result: unknown) => JSON.stringify(result, (key, value) => (key === "timingsMs" ? undefined : value));
 
 const source = Float64Array.from(mesh.positions.slice(0, 3000));
 const target = transformed(source, truth);
@@ -53,7 +48,7 @@ const calls: Record<string, (aligner: Aligner) => Promise<unknown>> = {
 for (const [name, call] of Object.entries(calls)) {
   test(`any number of workers gives the same bits: ${name}`, async () => {
     const alone = bits(await call(here));
-    for (const aligner of pools) {
+    for (const aligner of [pool, large]) {
       // Twice: the second time, all workers have started and may help.
       for (let i = 0; i < 2; i++) assert.ok(bits(await call(aligner)) === alone);
     }

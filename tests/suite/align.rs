@@ -25,7 +25,7 @@ fn pose(result: &Alignment) -> Similarity {
 }
 
 fn is_warned(found: &Alignment, code: WarningCode) -> bool {
-    found.warnings.iter().any(|warning| warning.code == code)
+    codes(&found.warnings).contains(&code)
 }
 
 #[wasm_bindgen_test]
@@ -119,13 +119,7 @@ fn pauses_and_a_prepared_mesh_change_nothing() {
         for (seed, one_in) in [(0, 0), (0, 1), (1, 50)] {
             let pauses = Pauses::new(pausing(seed, one_in), None);
             let mut task = align_task(observe(&mesh, &truth()), &prepared, options.clone(), Silent, pauses).unwrap();
-            let mut steps = 1;
-            let found = loop {
-                match task.step(0.0).unwrap() {
-                    Some(found) => break found,
-                    None => steps += 1,
-                }
-            };
+            let (found, steps) = stepped(&mut task, 0.0);
             assert_eq!(found, whole, "{quality:?}, seed {seed}, one pause in {one_in}");
             assert!(one_in != 1 || steps > 300, "{quality:?}: {steps} steps");
             assert_eq!(task.step(0.0).unwrap_err().code, ErrorCode::Internal, "the task is over");
@@ -186,11 +180,7 @@ fn an_alignment_with_helpers_has_the_same_bits() {
         let pauses = Pauses::none().with_helpers(Helpers::new(crowd.clone()));
         let prepared = PreparedMesh::borrowed(&mesh);
         let mut task = align_task(observe(&mesh, &truth()), prepared, options.clone(), Silent, pauses).unwrap();
-        let found = loop {
-            if let Some(found) = task.step(f64::INFINITY).unwrap() {
-                break found;
-            }
-        };
+        let (found, _) = stepped(&mut task, f64::INFINITY);
         assert_eq!(found, alone, "{count} helpers");
         assert!(crowd.0.borrow().answers > 20, "they helped: {}", crowd.0.borrow().answers);
     }
@@ -231,7 +221,7 @@ fn the_paper_finds_a_clean_object_near_its_pose() {
 fn a_scale_at_the_guard_of_the_paper_is_reported() {
     let clamped = solve_by_paper(&PaperOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() });
     assert!(clamped.diagnostics.common.clamped, "{:?}", clamped.diagnostics);
-    assert!(clamped.warnings.iter().any(|w| w.code == WarningCode::ScaleClamped), "{:?}", clamped.warnings);
+    assert!(codes(&clamped.warnings).contains(&WarningCode::ScaleClamped), "{:?}", clamped.warnings);
     // The refinement is stopped at the guard too, and says so.
     let stopped =
         solve_by_paper(&PaperOptions { lock_scale: false, guard: Some([0.999, 1.001]), ..paper() }).diagnostics;

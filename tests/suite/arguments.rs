@@ -16,7 +16,6 @@ use sim3align::paper::options::PaperOptions;
 use sim3align::pauses::{Pauses, finished};
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::{estimate_sim3, register};
-use sim3align::report::Warning;
 use sim3align::views::{View, align_views};
 
 use crate::calibrate::{calibrated, raw};
@@ -71,19 +70,16 @@ fn options_out_of_range_and_in_contradiction_are_refused() {
         (scaled(ScaleOption::Fixed(0.2), pose), "initial", "`scale`: 0.2."),
         (AlignOptions { initial: Some(behind), ..base() }, "initial", ""),
     ];
+    let (mesh, seen) = (body(), observe(&body(), &truth()));
     for (options, argument, words) in bad {
-        let error = align(&observe(&body(), &truth()), &body(), &options, &mut Silent).unwrap_err();
+        let error = align(&seen, &mesh, &options, &mut Silent).unwrap_err();
         assert!(error.to_string().contains(words), "{words}: {error}");
         refused::<()>(Err(error), ErrorCode::InvalidOption, &format!("options.{argument}"));
     }
     for axes in [vec![([0.0; 3], 2)], vec![([0.0, 0.0, 1.0], 0)], vec![([0.0, 0.0, 1.0], 7), ([0.0, 1.0, 1.0], 7)]] {
         let axes = axes.into_iter().map(|(axis, fold)| SymmetryAxis { axis: axis.into(), fold: Some(fold) });
         let options = AlignOptions { symmetry: Symmetry::Declared(axes.collect()), ..base() };
-        refused(
-            align(&observe(&body(), &truth()), &body(), &options, &mut Silent),
-            ErrorCode::InvalidOption,
-            "symmetry",
-        );
+        refused(align(&seen, &mesh, &options, &mut Silent), ErrorCode::InvalidOption, "symmetry");
     }
     let paper = PaperOptions::default;
     for (options, argument) in [
@@ -92,7 +88,7 @@ fn options_out_of_range_and_in_contradiction_are_refused() {
         (PaperOptions { surface_samples: 99, ..paper() }, "options.surfaceSamples"),
         (PaperOptions { ransac_confidence: 1.0, ..paper() }, "options.ransacConfidence"),
     ] {
-        let found = align_paper(&observe(&body(), &truth()), &body(), &options, &mut Silent);
+        let found = align_paper(&seen, &mesh, &options, &mut Silent);
         refused(found, ErrorCode::InvalidOption, argument);
     }
 }
@@ -274,10 +270,6 @@ fn depths_of_any_unit_and_with_odd_readings_are_aligned() {
         let alignment = align(&seen, &body(), &quick(), &mut Silent).unwrap();
         assert!((alignment.camera_from_mesh.scale / f64::from(unit) / truth().scale - 1.0).abs() < 0.05, "{unit}");
     }
-}
-
-fn codes(warnings: &[Warning]) -> Vec<WarningCode> {
-    warnings.iter().map(|warning| warning.code).collect()
 }
 
 #[wasm_bindgen_test]

@@ -50,6 +50,13 @@ fn relief_error(kind: DepthKind, found: f64) -> f64 {
     libm::log((value + found) / (value + shift(kind))).abs()
 }
 
+/// The median.
+fn middle(values: impl Iterator<Item = f32>) -> f64 {
+    let mut values: Vec<f32> = values.collect();
+    values.sort_by(f32::total_cmp);
+    f64::from(values[values.len() / 2])
+}
+
 #[wasm_bindgen_test]
 fn the_shift_of_relative_depth_is_found() {
     let (mesh, seen) = (body(), observe(&body(), &truth()));
@@ -98,9 +105,7 @@ fn a_known_length_makes_depth_metric() {
         assert!(calibration.is_metric, "{kind:?}");
         let is_object = |(_, mask): &(_, &u8)| **mask != 0;
         let ratios = depth.data().iter().zip(seen.depth().data()).zip(seen.mask().data()).filter(is_object);
-        let mut ratios: Vec<f32> = ratios.map(|((found, expected), _)| found / expected).collect();
-        ratios.sort_by(f32::total_cmp);
-        let median = f64::from(ratios[ratios.len() / 2]);
+        let median = middle(ratios.map(|((found, expected), _)| found / expected));
         assert!(libm::log(median).abs() < 0.04, "{kind:?}: {median}");
     }
 }
@@ -120,9 +125,7 @@ fn views_and_frames_share_a_camera_and_a_unit() {
     // The object is at about the same distance in both.
     let [a, b] = [0, 1].map(|k| {
         let pixels = found[k].depth.data().iter().zip(frames[k].mask.as_ref().unwrap().data());
-        let mut seen: Vec<f32> = pixels.filter(|(_, m)| **m != 0).map(|(z, _)| *z).collect();
-        seen.sort_by(f32::total_cmp);
-        f64::from(seen[seen.len() / 2])
+        middle(pixels.filter(|(_, m)| **m != 0).map(|(z, _)| *z))
     });
     assert!(libm::log(a / b).abs() < 0.08, "{a} and {b}");
 

@@ -11,7 +11,7 @@ use crate::observations::{errors, observe, quick};
 use crate::prelude::*;
 
 /// Colours as a function of position and outward normal, mesh frame.
-pub type Paint = fn(Vec3, Vec3) -> Vec3;
+type Paint = fn(Vec3, Vec3) -> Vec3;
 
 const EXTENT: Vec3 = Vec3::new(0.5, 0.9, 0.35);
 
@@ -34,12 +34,12 @@ pub fn label(p: Vec3, n: Vec3) -> Vec3 {
     }
 }
 
-pub fn uniform(_: Vec3, _: Vec3) -> Vec3 {
+fn uniform(_: Vec3, _: Vec3) -> Vec3 {
     Vec3::new(0.3, 0.6, 0.5)
 }
 
 /// Another object's print.
-pub fn other(p: Vec3, _: Vec3) -> Vec3 {
+fn other(p: Vec3, _: Vec3) -> Vec3 {
     if libm::sinf(23.0 * p.x + 9.0 * p.y) * libm::sinf(17.0 * p.z - 11.0 * p.y) > 0.0 {
         Vec3::new(0.7, 0.2, 0.6)
     } else {
@@ -55,6 +55,11 @@ pub fn painted(mesh: &Mesh, paint: Paint) -> SurfaceColors {
     let samples = sample_surface(mesh, COLOR_SAMPLES, 0).unwrap();
     let colors = samples.points.iter().zip(&samples.normals).map(|(p, n)| rgb(paint(*p, *n))).collect();
     SurfaceColors::new(samples, colors).unwrap()
+}
+
+/// The carton with its print.
+pub fn printed_mesh() -> PreparedMesh<'static> {
+    PreparedMesh::new(carton()).with_colors(painted(&carton(), label))
 }
 
 /// The photo that the camera of [`observe`] takes, with these gains, `light` on what faces the camera, and an offset.
@@ -90,7 +95,7 @@ fn solve(observation: Observation, mesh: &PreparedMesh<'_>) -> Alignment {
 #[wasm_bindgen_test]
 fn the_print_decides_which_side_of_a_box_faces_the_camera() {
     let mesh = carton();
-    let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
+    let prepared = printed_mesh();
     let turns = [Vector3::zeros(), Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * core::f64::consts::PI);
     let mut decided = 0;
     for (i, turn) in turns.into_iter().enumerate() {
@@ -113,11 +118,10 @@ fn the_print_decides_which_side_of_a_box_faces_the_camera() {
 fn without_photo_or_colours_the_answer_is_that_of_shape_to_the_bit() {
     let mesh = carton();
     let plain = PreparedMesh::borrowed(&mesh);
-    let colored = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
     let seen = observe(&mesh, &truth());
     let with_photo = seen.clone().with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.0), 0)).unwrap();
     let expected = solve(seen.clone(), &plain);
-    assert_eq!(solve(seen, &colored), expected);
+    assert_eq!(solve(seen, &printed_mesh()), expected);
     assert_eq!(solve(with_photo, &plain), expected);
 }
 

@@ -25,7 +25,7 @@ use sim3align_formats::mesh::{MeshReadOptions, read_colored_mesh};
 use sim3align_formats::photo::read_photo;
 use sim3align_formats::splats::read_splats;
 
-use crate::color::{carton, label, painted, photo};
+use crate::color::{carton, label, photo, printed_mesh};
 use crate::fixtures::fixture;
 use crate::observations::{WIDTH, body, frame_of, observe, quick, solve, truth, views};
 use crate::prelude::*;
@@ -45,6 +45,12 @@ fn of<T: Debug>(result: Result<T>) -> u64 {
     fingerprint(format!("{:?}", result.unwrap()).bytes().map(u64::from))
 }
 
+/// FNV-1a over the bytes of 64-bit words.
+fn fingerprint(words: impl IntoIterator<Item = u64>) -> u64 {
+    let bytes = words.into_iter().flat_map(u64::to_le_bytes);
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
 /// The body as a sensor and a network see it: with noise, holes, something nearer in front of one side, and specks.
 fn noisy() -> Observation {
     let (mut draw, seen) = (Draw::new(3), observe(&body(), &truth()));
@@ -57,10 +63,6 @@ fn noisy() -> Observation {
         *m ^= u8::from(draw.below(300) == 0);
     }
     Observation::new(depth, mask, seen.camera()).unwrap()
-}
-
-fn printed_mesh() -> PreparedMesh<'static> {
-    PreparedMesh::new(carton()).with_colors(painted(&carton(), label))
 }
 
 #[wasm_bindgen_test(unsupported = test)]

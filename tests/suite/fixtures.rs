@@ -1,4 +1,7 @@
-//! The fixtures that tests/fixtures/make_fixtures.py wrote, and what is common to the tests of readers.
+//! Files that other programs wrote, and the common parts of the tests of readers.
+
+use sim3align::error::Result;
+use sim3align_formats::mesh::{MeshReadOptions, read_mesh};
 
 use crate::prelude::*;
 
@@ -22,6 +25,11 @@ pub const MESHES: [(&str, &[u8]); 9] = [
     ("stl", fixture!("mesh-solid-header.stl")),
 ];
 
+/// A mesh from a file of any format.
+pub fn read(bytes: impl AsRef<[u8]>) -> Result<Mesh> {
+    read_mesh(bytes.as_ref(), &MeshReadOptions::default())
+}
+
 /// Corners in the order of the triangles, which no reader may change.
 pub fn corners(mesh: &Mesh) -> Vec<Vec3> {
     mesh.triangles().iter().flat_map(|&t| mesh.corners(t)).collect()
@@ -34,13 +42,6 @@ pub fn area(mesh: &Mesh) -> f64 {
         0.5 * (b - a).cross(c - a).length()
     };
     mesh.triangles().iter().map(triangle).sum()
-}
-
-/// The lowest and highest coordinates.
-pub fn bounds(mesh: &Mesh) -> [[f32; 3]; 2] {
-    let low = mesh.positions().iter().copied().fold(Vec3::INFINITY, Vec3::min);
-    let high = mesh.positions().iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-    [low.to_array(), high.to_array()]
 }
 
 /// A GLB of this JSON and binary chunk.

@@ -3,12 +3,8 @@
 use sim3align::error::Result;
 use sim3align_formats::mesh::{MeshReadOptions, external_resources, read_mesh};
 
-use crate::fixtures::{bounds, corners, fixture, floats, glb};
+use crate::fixtures::{corners, fixture, floats, glb, read};
 use crate::prelude::*;
-
-fn read(bytes: &[u8]) -> Result<Mesh> {
-    read_mesh(bytes, &MeshReadOptions::default())
-}
 
 /// A quad's four vertices, 48 bytes, then the indices 0 1 2 3 as u16, 8 bytes, then 2 1 3 0 as u8, 4 bytes.
 fn quad_bytes() -> Vec<u8> {
@@ -32,16 +28,16 @@ const ACCESSORS: &str = r#"{"bufferView":0,"componentType":5126,"count":4,"type"
     {"bufferView":1,"byteOffset":8,"componentType":5121,"count":3,"type":"SCALAR"}"#;
 
 fn primitive_of(primitive: &str) -> Result<Mesh> {
-    read(&scene_of(r#"{"mesh":0}"#, primitive, ACCESSORS, VIEWS, ""))
+    read(scene_of(r#"{"mesh":0}"#, primitive, ACCESSORS, VIEWS, ""))
 }
 
 fn nodes_of(nodes: &str, more: &str) -> Result<Mesh> {
-    read(&scene_of(nodes, r#"{"attributes":{"POSITION":0},"indices":2}"#, ACCESSORS, VIEWS, more))
+    read(scene_of(nodes, r#"{"attributes":{"POSITION":0},"indices":2}"#, ACCESSORS, VIEWS, more))
 }
 
 fn accessors_of(accessors: &str, views: &str) -> Result<Mesh> {
     let primitive = r#"{"attributes":{"POSITION":0},"indices":1,"mode":5}"#;
-    read(&scene_of(r#"{"mesh":0}"#, primitive, accessors, views, ""))
+    read(scene_of(r#"{"mesh":0}"#, primitive, accessors, views, ""))
 }
 
 #[wasm_bindgen_test]
@@ -102,7 +98,7 @@ fn node_transforms_compose_and_scenes_choose() {
         assert!((*a - *b).length() < 1e-5);
     }
     let two = r#"{"mesh":0},{"mesh":0,"translation":[5,0,0]}"#;
-    let highest = |more: &str| bounds(&nodes_of(two, more).unwrap())[1][0];
+    let highest = |more: &str| Bounds::of(nodes_of(two, more).unwrap().positions()).unwrap().max.x;
     assert_eq!(nodes_of(two, "").unwrap().triangles().len(), 2);
     assert_eq!(highest(r#","scenes":[{"nodes":[0]},{"nodes":[1]}],"scene":1"#), 6.0);
     assert_eq!(highest(r#","scenes":[{"nodes":[0]},{"nodes":[1]}]"#), 1.0);
@@ -129,7 +125,7 @@ fn quantised_interleaved_and_sparse_positions_are_decoded() {
             "bufferViews":[{{"buffer":0,"byteLength":16,"byteStride":4}},{{"buffer":0,"byteOffset":16,"byteLength":24}}],
             "extensionsRequired":["KHR_mesh_quantization"]}}"#
         );
-        read(&glb(&json, &bytes)).map(|mesh| mesh.positions().iter().map(|p| p.to_array()).collect::<Vec<_>>())
+        read(glb(&json, &bytes)).map(|mesh| mesh.positions().iter().map(|p| p.to_array()).collect::<Vec<_>>())
     };
     let quarter = 64.0 / 127.0;
     let expected = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [-1.0, 1.0, quarter]];

@@ -2,12 +2,11 @@
 
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
-use sim3align_formats::mesh::{MeshReadOptions, read_mesh};
 use sim3align_formats::photo::read_photo;
 use sim3align_formats::splats::read_splats;
 use wasm_bindgen_test::console_log;
 
-use crate::fixtures::{MESHES, fixture};
+use crate::fixtures::{MESHES, fixture, read};
 use crate::image_files::DEPTH_FILES;
 use crate::prelude::*;
 
@@ -27,7 +26,7 @@ fn checked(read: sim3align::error::Result<Mesh>) -> Result<(), ErrorCode> {
 }
 
 fn mesh(bytes: &[u8]) -> Result<(), ErrorCode> {
-    checked(read_mesh(bytes, &MeshReadOptions::default()))
+    checked(read(bytes))
 }
 
 fn splat(bytes: &[u8]) -> Result<(), ErrorCode> {

@@ -10,14 +10,14 @@ use sim3align_formats::photo::read_photo;
 use crate::fixtures::fixture;
 use crate::prelude::*;
 
-/// The depth of make_fixtures.py: 7 × 5 pixels, no reading at (0, 0) and (3, 2).
+/// The depth in the fixtures: 7 × 5 pixels, no reading at (0, 0) and (3, 2).
 fn expected_depth() -> Vec<f64> {
     let metres = |v: u32, u: u32| 0.5 + 0.01 * f64::from(u) + 0.1 * f64::from(v);
     let hole = |v, u| (v, u) == (0, 0) || (v, u) == (2, 3);
     (0..5).flat_map(|v| (0..7).map(move |u| if hole(v, u) { 0.0 } else { metres(v, u) })).collect()
 }
 
-/// The mask of make_fixtures.py.
+/// The mask in the fixtures.
 fn expected_mask() -> Vec<u8> {
     (0..5).flat_map(|v| (0..7).map(move |u| u8::from((u * u + 3 * v) % 5 < 2))).collect()
 }
@@ -201,7 +201,7 @@ fn cameras_in_files_are_in_pixels_of_the_depth() {
     assert_eq!(camera(DEPTH_FILES[3].1), None);
 }
 
-/// The colours of the quarters in make_fixtures.py.
+/// The colours of the quarters of the photos.
 const QUARTERS: [Rgb; 4] = [[200, 40, 30], [40, 170, 60], [30, 60, 190], [220, 200, 40]];
 
 fn check_photo(name: &str, bytes: &[u8], quarters: [Rgb; 4], tolerance: u8) {
@@ -238,6 +238,19 @@ fn photos_of_every_kind_show_the_same_picture() {
     let marker = ycck.windows(5).position(|word| word == b"Adobe").unwrap();
     ycck[marker + 11] = 2;
     check_photo("YCCK JPEG", &ycck, [[192, 0, 211], [255, 181, 141], [138, 246, 255], [158, 0, 0]], 6);
+}
+
+#[wasm_bindgen_test]
+fn large_photos_are_reduced_also_where_they_are_progressive() {
+    let [one, other] = [fixture!("photo-large.jpg"), fixture!("photo-large-progressive.jpg")].map(|bytes| {
+        let photo = read_photo(bytes).unwrap();
+        assert_eq!((photo.width(), photo.height()), (1300, 900), "half of 2600 × 1800");
+        photo
+    });
+    // The same image: the fixtures differ in their encoding only.
+    let off = one.data().as_flattened().iter().zip(other.data().as_flattened()).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(off.unwrap() <= 2, "{off:?}");
+    assert!(one.data().iter().any(|color| *color != one.data()[0]), "it shows something");
 }
 
 #[wasm_bindgen_test]

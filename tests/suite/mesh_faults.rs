@@ -111,7 +111,7 @@ fn the_alignment_is_that_of_the_object_and_the_warning_says_what_is_left_out() {
     let whole = joined(&object, &ground);
     let seen = align(&observe(&whole, &truth()), &whole, &quick(), &mut Silent).unwrap();
     assert!(seen.warnings.is_empty(), "{:?}", seen.warnings);
-    let pose = Similarity::from_column_major(&seen.camera_from_mesh.matrix).unwrap();
+    let pose = pose_of(&seen.camera_from_mesh);
     assert!((pose.scale / truth().scale - 1.0).abs() < 0.02, "{}", pose.scale);
     // `evaluate` leaves out the floater, too.
     let floating = joined(&object, &floater);

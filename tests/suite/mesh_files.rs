@@ -1,15 +1,10 @@
 //! Mesh files: one mesh in every format, what the text formats allow, and what is refused.
 
-use sim3align::error::Result;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
 use sim3align_formats::splats::read_splats;
 
-use crate::fixtures::{MESHES, area, bounds, corners, fixture};
+use crate::fixtures::{MESHES, area, corners, fixture, read};
 use crate::prelude::*;
-
-fn read(bytes: impl AsRef<[u8]>) -> Result<Mesh> {
-    read_mesh(bytes.as_ref(), &MeshReadOptions::default())
-}
 
 #[wasm_bindgen_test]
 fn every_format_gives_the_mesh_that_trimesh_wrote() {
@@ -18,12 +13,13 @@ fn every_format_gives_the_mesh_that_trimesh_wrote() {
         let format = MeshFormat::from_name(name).unwrap();
         assert_eq!(MeshFormat::sniff(bytes), Some(format), "fixture {i}");
         let mesh = read(bytes).unwrap_or_else(|error| panic!("fixture {i}, {name}: {error}"));
-        // Counts, area, volume and bounds as make_fixtures.py prints them; STL is a soup, welding restores the 42.
+        // Counts, area, volume and bounds as trimesh has them; STL is a soup, welding restores the 42.
         assert_eq!((mesh.positions().len(), mesh.triangles().len()), (42, 80), "fixture {i}");
         let off = [area(&mesh) - 45.410_752_848_592_61, mesh.signed_volume6() / 6.0 - 21.952_271_316_049_703];
         assert!(off.iter().all(|off| off.abs() < 4e-5), "fixture {i}: {off:?}");
-        let [low, high] = bounds(&mesh);
-        assert_eq!((low, high), ([-0.75, -2.5, 7.0], [1.25, 1.5, 13.0]), "fixture {i}");
+        let bounds = Bounds::of(mesh.positions()).unwrap();
+        let corners_of_box = (bounds.min.to_array(), bounds.max.to_array());
+        assert_eq!(corners_of_box, ([-0.75, -2.5, 7.0], [1.25, 1.5, 13.0]), "fixture {i}");
         // Text forms print eight decimals.
         let off = corners(&mesh).iter().zip(&expected).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
         assert!(off < 2e-6, "fixture {i}: corners off by {off}");
@@ -37,7 +33,8 @@ fn a_scene_of_gltf_is_what_trimesh_flattens_it_to() {
     assert_eq!((mesh.positions().len(), mesh.triangles().len()), (16, 24));
     // Positive: the mirrored box faces outward, too.
     assert!((mesh.signed_volume6() / 6.0 - 18.0).abs() < 1e-5, "{}", mesh.signed_volume6() / 6.0);
-    assert_eq!(bounds(&mesh), [[4.0, -1.0, -1.5], [11.0, 1.0, 1.5]]);
+    let bounds = Bounds::of(mesh.positions()).unwrap();
+    assert_eq!([bounds.min.to_array(), bounds.max.to_array()], [[4.0, -1.0, -1.5], [11.0, 1.0, 1.5]]);
 }
 
 #[wasm_bindgen_test]

@@ -10,11 +10,11 @@ use sim3align::precise::searched::refine::Refiner;
 use crate::prelude::*;
 use crate::score::{HEIGHT, WIDTH, facing, model, noisy_grid, pose, scoring};
 
-pub type Matrix = SMatrix<f64, 7, 7>;
-pub type Vector = SVector<f64, 7>;
+type Matrix = SMatrix<f64, 7, 7>;
+type Vector = SVector<f64, 7>;
 
 /// JᵀWJ and JᵀWr, which equations tell by their damped steps alone.
-pub fn unpacked(equations: &NormalEquations) -> (Matrix, Vector) {
+fn unpacked(equations: &NormalEquations) -> (Matrix, Vector) {
     const DAMPING: f64 = 1e-2;
     let inverse = equations.inverse(DAMPING).unwrap();
     let damped = Matrix::from_fn(|i, j| inverse[j][i]).try_inverse().unwrap();

@@ -196,13 +196,7 @@ fn a_registration_in_parts_is_the_whole_one() {
         let options = RegisterOptions { scale, ..RegisterOptions::default() };
         let whole = register(&source, &target, &options, &mut Silent).unwrap();
         let mut task = register_task(source.clone(), target.clone(), options, Silent, pausing(0, 1)).unwrap();
-        let mut steps = 1;
-        let found = loop {
-            match task.step(0.0).unwrap() {
-                Some(found) => break found,
-                None => steps += 1,
-            }
-        };
+        let (found, steps) = stepped(&mut task, 0.0);
         assert_eq!(found, whole, "{scale:?}");
         // What is done for a voxel or a match at once, and one pass over all points.
         let (longest, most) = (task.longest_block(), 12.0 + 6e-5 * points.len() as f64);

@@ -9,7 +9,7 @@ use crate::prelude::*;
 const WIDTH: usize = 200;
 const HEIGHT: usize = 150;
 
-pub fn camera() -> Pinhole {
+fn camera() -> Pinhole {
     Pinhole::new(220.0, 220.0, 99.5, 74.5).unwrap()
 }
 
@@ -32,7 +32,7 @@ pub struct Thing {
     world_from_mesh: Similarity,
 }
 
-pub fn thing(extent: [f32; 3], at: [f64; 3], turn: f64) -> Thing {
+fn thing(extent: [f32; 3], at: [f64; 3], turn: f64) -> Thing {
     let rotation = Rotation3::from_axis_angle(&Vector3::y_axis(), turn);
     let mesh = wedge(Vec3::from(extent));
     Thing { mesh, world_from_mesh: Similarity { scale: 1.0, rotation, translation: Vector3::from(at) } }

@@ -32,10 +32,10 @@ pub fn pose(draw: &mut Draw, off: f64) -> CropPose {
     }
 }
 
-pub const FOCAL: f64 = 60.0;
+const FOCAL: f64 = 60.0;
 
 /// A grid that holds no evidence.
-pub fn empty_grid(width: usize, height: usize) -> CropGrid {
+fn empty_grid(width: usize, height: usize) -> CropGrid {
     let cells = width * height;
     CropGrid {
         width,

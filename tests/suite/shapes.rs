@@ -74,8 +74,8 @@ pub fn mapped(mesh: &Mesh, f: impl Fn(Vec3) -> Vec3) -> Mesh {
     Mesh::new(mesh.positions().iter().map(|&p| f(p)).collect(), mesh.triangles().to_vec()).unwrap()
 }
 
-pub const WIDTH: usize = 240;
-pub const HEIGHT: usize = 180;
+const WIDTH: usize = 240;
+const HEIGHT: usize = 180;
 
 /// A body with bumps and dents at many places, so that no turn maps it onto itself.
 pub fn body() -> Mesh {

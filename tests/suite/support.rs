@@ -1,4 +1,4 @@
-//! Shared parts of the tests: seeded draws, random similarities, surfaces with known normals, pauses and fingerprints.
+//! Shared parts of the tests: seeded draws, random similarities, surfaces with known normals, pauses and warnings.
 
 use core::cell::RefCell;
 
@@ -6,8 +6,9 @@ use glam::Vec3;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::random::Random;
-use sim3align::geometry::similarity::{Similarity, vec3, vector3};
-use sim3align::report::Sim3;
+use sim3align::geometry::similarity::{Similarity, vec3};
+use sim3align::pauses::Task;
+use sim3align::report::{Sim3, Warning, WarningCode};
 
 thread_local! {
     /// Of what the clock of [`pausing`] draws whether to pause.
@@ -70,11 +71,6 @@ impl Draw {
         UnitQuaternion::from_quaternion(q.into()).to_rotation_matrix()
     }
 
-    /// By `angle` radians about a random axis.
-    pub fn rotation_by(&mut self, angle: f64) -> Rotation3<f64> {
-        Rotation3::new(self.direction() * angle)
-    }
-
     /// A scale between the two bounds (uniform in its logarithm), any rotation, a translation in [−offset, offset]³.
     pub fn similarity(&mut self, scales: [f64; 2], offset: f64) -> Similarity {
         let scale = libm::exp(self.between(libm::log(scales[0]), libm::log(scales[1])));
@@ -127,14 +123,6 @@ pub fn mug(draw: &mut Draw, count: usize) -> Cloud {
     })
 }
 
-/// The cloud under a similarity, computed in f64.
-pub fn transformed(cloud: &Cloud, by: &Similarity) -> Cloud {
-    Cloud {
-        points: cloud.points.iter().map(|&p| vec3(&by.apply(vector3(p)))).collect(),
-        normals: cloud.normals.iter().map(|&n| vec3(&(by.rotation * vector3(n)))).collect(),
-    }
-}
-
 /// A similarity of its scale, the vector of its rotation in radians, and its translation.
 pub fn similarity(scale: f64, rotation: [f64; 3], translation: [f64; 3]) -> Similarity {
     Similarity { scale, rotation: Rotation3::new(rotation.into()), translation: translation.into() }
@@ -148,12 +136,6 @@ pub fn pose_of(found: &Sim3) -> Similarity {
 /// Points as the interleaved numbers that `register` takes.
 pub fn flat(points: &[Vector3<f64>]) -> Vec<f64> {
     points.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
-}
-
-/// Furthest that a corner of the unit box lands from where `truth` takes it.
-pub fn pose_error(found: &Similarity, truth: &Similarity) -> f64 {
-    let corner = |i: usize| Vector3::from_fn(|axis, _| if i >> axis & 1 == 1 { 0.5 } else { -0.5 });
-    (0..8).map(|i| (found.apply(corner(i)) - truth.apply(corner(i))).norm()).fold(0.0, f64::max)
 }
 
 /// How far a matrix is from a proper rotation.
@@ -182,12 +164,17 @@ fn on_torus(draw: &mut Draw, turn: f64) -> (Vector3<f64>, Vector3<f64>) {
     (out + n * 0.35, n)
 }
 
-/// FNV-1a over the bytes of 64-bit words.
-pub fn fingerprint(words: impl IntoIterator<Item = u64>) -> u64 {
-    let bytes = words.into_iter().flat_map(u64::to_le_bytes);
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+/// The result of a task, and the number of its steps until this time.
+pub fn stepped<'a, T: 'a>(task: &mut Task<'a, T>, until: f64) -> (T, usize) {
+    for steps in 1.. {
+        if let Some(found) = task.step(until).unwrap() {
+            return (found, steps);
+        }
+    }
+    unreachable!()
 }
 
-pub fn of_pose(pose: &Similarity) -> u64 {
-    fingerprint(pose.to_column_major().map(f64::to_bits))
+/// The codes of warnings, in their order.
+pub fn codes(warnings: &[Warning]) -> Vec<WarningCode> {
+    warnings.iter().map(|warning| warning.code).collect()
 }

@@ -8,7 +8,7 @@ use sim3align::views::{View, align_views};
 
 use sim3align::evidence::frame::Frame;
 
-use crate::color::{carton, label, painted, photo};
+use crate::color::{carton, label, photo, printed_mesh};
 use crate::observations::{assert_right, body, frame_of, observe, orbit, truth, turn_deg, views};
 use crate::prelude::*;
 
@@ -67,7 +67,7 @@ fn views_without_a_mask_blind_ones_and_wrong_ones_have_their_roles() {
         let found = align(seen);
         assert_all_right(&found, (role != ViewRole::Used).then_some(2), &format!("{role:?}"));
         assert_eq!(found.views[2].role, role, "{found:?}");
-        let codes: Vec<_> = found.warnings.iter().map(|warning| warning.code).collect();
+        let codes = codes(&found.warnings);
         assert!(warning.is_none_or(|code| codes.contains(&code)), "{role:?}: {codes:?}");
     }
 }
@@ -103,7 +103,7 @@ pub fn printed(turn: Rotation3<f64>, are_cameras_known: bool) -> Vec<View> {
 
 #[wasm_bindgen_test]
 fn photos_of_several_views_tell_the_turn_that_shape_leaves_open() {
-    let mesh = PreparedMesh::new(carton()).with_colors(painted(&carton(), label));
+    let mesh = printed_mesh();
     let mut misled = 0;
     for axis in [Vector3::zeros(), Vector3::x(), Vector3::y()] {
         let turn = Rotation3::new(axis * core::f64::consts::PI);

@@ -21,6 +21,10 @@ export function run(...args: string[]): { status: number | null; stdout: string;
   return { status, stdout, stderr };
 }
 
+/** Runs a line of a POSIX shell in the folder of the cases. */
+export const shell = (line: string, env = process.env) =>
+  spawnSync("sh", ["-c", line], { cwd: folder, encoding: "utf8", env });
+
 /** Runs the command line, which has to succeed. */
 export function succeeds(...args: string[]): { stdout: string; stderr: string } {
   const { status, ...printed } = run(...args);

@@ -26,18 +26,17 @@ export async function assertValid(glb: Uint8Array): Promise<Report["info"]> {
 export const loadGlb = async (glb: Uint8Array) =>
   (await new GLTFLoader().parseAsync(Uint8Array.from(glb).buffer, "")).scene;
 
-/** All vertices of a GLB in its world, or in the frame of the node of this name; without those of the support. */
-export async function verticesOf(glb: Uint8Array, frame?: string): Promise<number[]> {
+/** All vertices of a GLB in its world; without those of the support. */
+export async function verticesOf(glb: Uint8Array): Promise<number[]> {
   const scene = await loadGlb(glb);
   scene.updateMatrixWorld(true);
-  const into = frame === undefined ? undefined : scene.getObjectByName(frame)?.matrixWorld.clone().invert();
   const found: number[] = [];
   scene.traverse((child) => {
     if (!(child instanceof Mesh) || child.name === "support") return;
     const { position } = (child.geometry as BufferGeometry).attributes;
     for (let i = 0; i < (position?.count ?? 0); i++) {
       const vertex = new Vector3().fromBufferAttribute(position as never, i).applyMatrix4(child.matrixWorld);
-      found.push(...(into === undefined ? vertex : vertex.applyMatrix4(into)).toArray());
+      found.push(...vertex.toArray());
     }
   });
   return found;

@@ -9,6 +9,20 @@ export function withoutTimes<T extends { diagnostics: { timingsMs: unknown } }>(
   return { ...result, diagnostics: others };
 }
 
+/** All that must be the same, of any result. */
+export const bits = (result: unknown) =>
+  JSON.stringify(result, (key, value) => (key === "timingsMs" ? undefined : value));
+
+/** Intersection over union of two regions: of the same size, outside 0. */
+export function maskIou(a: ArrayLike<number>, b: ArrayLike<number>): number {
+  let [both, either] = [0, 0];
+  for (let i = 0; i < a.length; i++) {
+    if (a[i] && b[i]) both++;
+    if (a[i] || b[i]) either++;
+  }
+  return both / either;
+}
+
 /** Checks that a transform comes in every promised form, all saying the same. */
 export function assertForms({ scale, rotation, rotationMatrix, translation, matrix }: Sim3): void {
   assert.ok(scale > 0);

@@ -19,10 +19,10 @@ export function frameAt(degrees: number, object: Mesh = mesh as Mesh): RigFrame 
   const pose: Pose = { ...truth, rotation: product(turn, truth.rotation) };
   const { depth, mask, camera } = render(object, pose, pinhole, size.width, size.height);
   const back: Pose["rotation"] = [0, -turn[1], 0, turn[3]];
-  const [x, y, z] = truth.translation;
+  const [x, , z] = truth.translation;
   // c − Rᵀ·c, about the object's origin c.
   const [sin, cos] = [Math.sin(2 * half), Math.cos(2 * half)];
-  const translation: [number, number, number] = [x - (cos * x - sin * z), y - y, z - (sin * x + cos * z)];
+  const translation: [number, number, number] = [x - (cos * x - sin * z), 0, z - (sin * x + cos * z)];
   return {
     frame: { depth, ...size, mask, camera },
     cameraToWorld: { scale: 1, rotation: back, translation },

@@ -27,8 +27,6 @@ interface Visit extends BrowserContextOptions {
   address?: string;
   /** Whether the test begins before the first alignment has ended. */
   isLoading?: boolean;
-  /** Why the test is skipped. */
-  skip?: string | false;
 }
 
 type Work = (opened: SitePage, page: Page, t: TestContext) => Promise<void>;
@@ -39,8 +37,8 @@ export function pageTests(flags: readonly string[] = WITHOUT_3D) {
   return (title: string, ...parameters: [Work] | [string | Visit, Work]) => {
     const [visit, work] = parameters.length === 1 ? [{}, ...parameters] : parameters;
     const given = typeof visit === "string" ? { address: visit } : visit;
-    const { address = "#sample=mug", isLoading = false, skip = false, ...context }: Visit = given;
-    test(title, { skip }, async (t) => {
+    const { address = "#sample=mug", isLoading = false, ...context }: Visit = given;
+    test(title, async (t) => {
       const { page, errors } = await browser.open(`www/index.html${address}`, { serviceWorkers: "block", ...context });
       const opened = new SitePage(page, errors);
       if (!isLoading) await opened.aligned();
