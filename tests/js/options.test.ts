@@ -69,7 +69,7 @@ const values: Record<Method, Record<string, unknown>> = {
     ...{ ...clouds, maxPoints: 200, voxelSize: 0.3, voxelDivisions: 10, fpfhRadiusVoxels: 3 },
     ...{ inlierDistanceVoxels: 0.5, icp: "none", icpIterations: 1, workBudget: 1 },
   },
-  estimateSim3: { ...clouds, inlierDistance: 0.005 },
+  estimateSim3: { ...clouds, edgeSimilarity: 0.999, inlierDistance: 0.005 },
 };
 
 /** A budget that only a call without end shows (cancel.test.ts), and a seed that no frame of this video depends on. */
