@@ -17,15 +17,14 @@ use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::similarity::Similarity;
 use crate::precise::drawn::pose::MeshFrame;
 use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::judged::alternatives::{add_rivals, alternatives};
 use crate::precise::judged::color::{Judgment, cells};
-use crate::precise::judged::confidence::confidence;
+use crate::precise::judged::verdict::{Reliability, reliability};
 use crate::precise::no_candidate;
 use crate::precise::observed::clean::CleanObservation;
 use crate::precise::options::Proportions;
 use crate::precise::scored::appearance::PhotoCells;
 use crate::precise::scored::conditioning::{Conditioning, covariance, deviation, fix_roll, widest};
-use crate::precise::scored::score::{NOISE, Score};
+use crate::precise::scored::score::Score;
 use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::{FINE, SURE};
 use crate::precise::searched::search::Search;
@@ -106,10 +105,8 @@ struct Verdict {
     best: Ranked,
     conditioning: Option<Conditioning>,
     color: Option<Judgment>,
-    /// Probability that the pose is right, by shape alone.
-    by_shape: f64,
-    /// Other poses, in the camera of the first view.
-    others: Vec<Alternative>,
+    /// In the camera of the first view.
+    reliability: Reliability,
 }
 
 /// The verdict on the `ranked` poses. `size_sd` is the standard deviation of the size, where it does not follow from the score.
@@ -139,24 +136,16 @@ fn verdict(
     }
     let color = judged.map(|(judgment, _)| judgment);
     let best = ranked.first().ok_or_else(no_candidate)?;
-    let mut others = other_poses(&ranked, &first);
-    let sum = Found {
-        pose: first.camera.see(&best.pose).ok_or_else(no_candidate)?,
-        score: mean_score(&score, best.score.total),
-        converged: best.converged,
-        renders: 0,
+    let in_first = |ranked: &Ranked| {
+        let score = Score { total: ranked.score.total, ..Score::default() };
+        Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
     };
-    let rivals = |are_turns: bool| {
-        let all = color.iter().flat_map(|color| &color.rivals);
-        all.filter(move |rival| rival.is_turn == are_turns)
-    };
-    add_rivals(&mut others, &sum, rivals(false), first.search);
-    let by_shape = confidence(&sum, &others, conditioning.as_ref());
-    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour tells them apart.
-    if color.as_ref().is_some_and(|color| color.is_used) {
-        add_rivals(&mut others, &sum, rivals(true), first.search);
+    let mut found: Vec<Found> = ranked.iter().filter_map(in_first).collect();
+    if let Some(first) = found.first_mut() {
+        first.score = mean_score(&score, best.score.total);
     }
-    Ok(Verdict { best: best.clone(), conditioning, color, by_shape, others })
+    let reliability = reliability(&found, color.as_ref(), conditioning.as_ref(), first.search)?;
+    Ok(Verdict { best: best.clone(), conditioning, color, reliability })
 }
 
 /// The result, with the role of each view and its score.
@@ -168,10 +157,10 @@ fn summary(
     roles: Vec<ViewRole>,
     shown: Vec<Score>,
 ) -> Result<Summary> {
-    let Verdict { best, conditioning, color, by_shape, others } = verdict;
+    let Verdict { best, conditioning, color, reliability: Reliability { by_shape, confidence, alternatives } } =
+        verdict;
     let first = used.parts.first().ok_or_else(no_candidate)?;
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
-    let confidence = by_shape * color.as_ref().map_or(1.0, |color| color.certainty);
     let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
         let world_from_camera = cameras[k].world_from_camera();
         SummaryView {
@@ -190,7 +179,7 @@ fn summary(
         world: WorldFrame::Given,
         confidence,
         is_sure: by_shape >= SURE,
-        alternatives: others.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
+        alternatives: alternatives.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
         proportions: None,
         uncertainty: conditioning.map(|own| WorldUncertainty {
             scale: own.scale,
@@ -277,15 +266,6 @@ fn mean_score(score: &JointScore, total: f32) -> Score {
         hidden: mean(|s| s.hidden),
         ..Score::default()
     }
-}
-
-/// The poses nearly as good as the best one, in the camera of the first view.
-fn other_poses(ranked: &[Ranked], first: &Part<'_>) -> Vec<Alternative> {
-    let found = ranked.iter().filter_map(|ranked| {
-        let score = Score { total: ranked.score.total, ..Score::default() };
-        Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
-    });
-    alternatives(&found.collect::<Vec<_>>(), first.search, NOISE)
 }
 
 /// An alternative in the world instead of a camera.

@@ -12,7 +12,7 @@ use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::judged::color::{Judgment, judgment};
 use crate::precise::options::AlignOptions;
 use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{FIRST_REFINEMENT, SearchSettings};
+use crate::precise::searched::recipe::{SearchSettings, Task};
 use crate::precise::searched::rounds::Rounds;
 use crate::precise::searched::search::Search;
 use crate::precise::searched::start;
@@ -53,9 +53,9 @@ impl SearchedView {
 
     /// Runs the search to its end.
     pub async fn run(&mut self, pauses: &Pauses) {
-        while self.rounds.round().is_some() {
+        while let Some(round) = self.rounds.round() {
             self.rounds.run(pauses).await;
-            if self.rounds.index() == FIRST_REFINEMENT + 1 {
+            if self.candidates.is_empty() && round.task == Task::Refine {
                 self.candidates = self.rounds.poses().to_vec();
             }
         }

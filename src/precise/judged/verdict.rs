@@ -7,9 +7,12 @@ use super::color::Judgment;
 use super::confidence::confidence;
 use crate::error::Result;
 use crate::precise::no_candidate;
+use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::score::NOISE;
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::SURE;
 use crate::precise::searched::rounds::Rounds;
+use crate::precise::searched::search::Search;
 use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Solution, Uncertainty};
 
 /// The reliability of the pose.
@@ -32,6 +35,41 @@ pub struct Certainty {
     pub color: Option<ColorReport>,
 }
 
+/// How likely the best of several poses is right, and the others that may be.
+pub struct Reliability {
+    /// Probability that the pose is right, by shape alone.
+    pub by_shape: f64,
+    /// The same, by shape and colour.
+    pub confidence: f64,
+    /// Other poses that explain the evidence nearly as well.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// The reliability of the first of these poses. `conditioning` is how sharply the images determine it.
+///
+/// # Errors
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) without a pose.
+pub fn reliability(
+    found: &[Found],
+    color: Option<&Judgment>,
+    conditioning: Option<&Conditioning>,
+    search: &Search,
+) -> Result<Reliability> {
+    let best = found.first().ok_or_else(no_candidate)?;
+    let listed = |margin: f32, with_turns: bool| {
+        let mut list = alternatives(found, search, margin);
+        let rivals = color.iter().flat_map(|color| &color.rivals).filter(|rival| with_turns || !rival.is_turn);
+        add_rivals(&mut list, best, rivals, search);
+        list
+    };
+    let by_shape = confidence(best, &listed(NOISE, false), conditioning);
+    let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
+    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour tells them apart.
+    let shows_turns = color.is_some_and(|color| color.is_used);
+    let alternatives = listed(if confidence < SURE { UNSURE } else { NOISE }, shows_turns);
+    Ok(Reliability { by_shape, confidence, alternatives })
+}
+
 /// The best pose of the search, or the one that colour chose, and its reliability.
 ///
 /// # Errors
@@ -43,14 +81,6 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
         found.to_mut().insert(0, chosen);
     }
     let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-    let listed = |margin: f32, with_turns: bool| {
-        let mut list = alternatives(&found, search, margin);
-        let rivals = color.iter().flat_map(|color| &color.rivals).filter(|rival| with_turns || !rival.is_turn);
-        add_rivals(&mut list, best, rivals, search);
-        list
-    };
-    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour tells them apart.
-    let shows_turns = color.is_some_and(|color| color.is_used);
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
@@ -61,13 +91,11 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
     // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
     // wrong; what it tells is which of several poses is the better one.
     let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
-    let confidence = confidence(best, &listed(NOISE, false), by_image.as_ref());
-    let confidence = confidence * color.map_or(1.0, |color| color.certainty);
-    let others = listed(if confidence < SURE { UNSURE } else { NOISE }, shows_turns);
+    let Reliability { confidence, alternatives, .. } = reliability(&found, color, by_image.as_ref(), search)?;
     let certainty = Certainty {
         confidence,
         turn_confidence: color.and_then(|color| color.turn),
-        alternatives: others,
+        alternatives,
         uncertainty: conditioning.map(|c| Uncertainty {
             scale: c.scale,
             rotation_deg: c.rotation.0.to_degrees(),

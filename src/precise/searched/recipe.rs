@@ -11,10 +11,6 @@ use crate::report::Effort;
 pub const ROUNDS: usize = 7;
 /// The first round that refines.
 pub const FIRST_REFINEMENT: usize = 2;
-/// The round that turns the best pose.
-pub const TURNING: usize = 4;
-/// The ranking round, whose scores are those of the result.
-pub const RANKING: usize = 5;
 
 /// The task of a round for each of its poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +23,8 @@ pub enum Task {
     Refine,
     /// Refines a half or quarter turn of the best pose.
     Turn,
-    /// Refines all seven parameters and the proportions of the mesh.
+    /// Refines all seven parameters and the proportions of the mesh. The scores of the first round of this task rank the
+    /// poses, and are those of the result.
     Fit,
 }
 
@@ -218,8 +215,9 @@ impl SearchSettings {
     /// do not depend on the machine.
     pub fn within(self, budget: f64) -> Self {
         let mut within = Self { max_load: MAX_LOAD[1], turned: 1, ..self };
-        let turn = &mut within.rounds[TURNING];
-        (turn.work, turn.keep) = (turn.work.min(LIMITED_TURNS[0]), turn.keep.min(LIMITED_TURNS[1]));
+        for turn in within.rounds.iter_mut().filter(|round| round.task == Task::Turn) {
+            (turn.work, turn.keep) = (turn.work.min(LIMITED_TURNS[0]), turn.keep.min(LIMITED_TURNS[1]));
+        }
         let turns = within.cost_of_turns();
         let share = ((budget - turns) / (within.cost() - turns)).clamp(SCALING[0], SCALING[1]);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);

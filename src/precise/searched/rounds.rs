@@ -7,7 +7,7 @@ use std::borrow::Cow;
 use glam::DQuat;
 
 use super::ranking::{Found, best_of, distinct_up_to};
-use super::recipe::{FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
+use super::recipe::{FINE, FIRST_REFINEMENT, MIN_ROTATIONS, ROUNDS, Round, Task};
 use super::search::Search;
 use super::tasks::{Outcome, RoundTasks};
 use crate::geometry::similarity::Similarity;
@@ -99,13 +99,12 @@ impl Rounds {
 
     /// Adds poses that another search has refined to the candidates of the grid.
     pub fn resume(&mut self, found: &[Found]) {
-        let list = if self.index < FIRST_REFINEMENT { &mut self.others } else { &mut self.poses };
-        list.extend(poses_of(found));
+        self.propose(poses_of(found));
     }
 
     /// Adds poses from another source to those of the first refinement.
     pub fn propose(&mut self, poses: impl IntoIterator<Item = CropPose>) {
-        let list = if self.index < FIRST_REFINEMENT { &mut self.others } else { &mut self.poses };
+        let list = if self.is_on_rotation_grid() { &mut self.others } else { &mut self.poses };
         list.extend(poses);
     }
 
@@ -132,12 +131,16 @@ impl Rounds {
     pub fn round(&self) -> Option<Round> {
         let round = self.search.settings.rounds.get(self.index).copied();
         // Poses from other sources are added after the rounds on the rotation grid, which may find none.
-        round.filter(|_| self.index < FIRST_REFINEMENT || self.tasks() > 0)
+        round.filter(|_| self.is_on_rotation_grid() || self.tasks() > 0)
     }
 
-    /// The index of the current round.
-    pub fn index(&self) -> usize {
-        self.index
+    fn is_on_rotation_grid(&self) -> bool {
+        matches!(self.task(), Some(Task::Rotate | Task::Place))
+    }
+
+    /// The task of the current round.
+    fn task(&self) -> Option<Task> {
+        self.search.settings.rounds.get(self.index).map(|round| round.task)
     }
 
     /// The poses with which the current round starts; empty in the first round.
@@ -147,9 +150,9 @@ impl Rounds {
 
     /// Number of tasks of the current round.
     fn tasks(&self) -> usize {
-        match self.index {
-            0 if !self.rotations.is_empty() => self.rotations.len(),
-            0 => self.search.settings.rotations(),
+        match self.task() {
+            Some(Task::Rotate) if !self.rotations.is_empty() => self.rotations.len(),
+            Some(Task::Rotate) => self.search.settings.rotations(),
             _ => self.poses.len(),
         }
     }
@@ -217,8 +220,8 @@ impl Rounds {
         let equivalence = &self.search.equivalence;
         self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
         let best = core::mem::replace(&mut self.best, best_of(&outcomes, 1));
-        match self.index {
-            TURNING => {
+        match round.task {
+            Task::Turn => {
                 // Of the same grid, so that their scores are comparable.
                 self.best = best_of(&[best.as_slice(), self.best.as_slice()].concat(), 1);
                 let near = if self.search.settings.turned > 1 { UNSURE } else { NEAR };
@@ -227,11 +230,11 @@ impl Rounds {
                 self.poses = core::mem::take(&mut self.unturned);
                 self.poses.extend(poses_of(&distinct_up_to(equivalence, alike, round.keep, round.apart)));
             }
-            RANKING => {
+            Task::Fit if self.found.is_empty() => {
                 self.found = distinct_up_to(equivalence, outcomes, usize::MAX, round.apart);
                 self.poses = poses_of(&self.found[..round.keep.min(self.found.len())]);
             }
-            index if index > RANKING => {
+            Task::Fit => {
                 // Keeps the scores of the ranking, because scores of different grids are not comparable.
                 for (best, polished) in self.found.iter_mut().zip(outcomes) {
                     best.pose = polished.pose;
@@ -254,11 +257,11 @@ impl Rounds {
             }
         }
         self.index += 1;
-        if self.index == TURNING {
+        if self.task() == Some(Task::Turn) {
             let turned = self.search.turned(&self.poses, &self.anchors);
             self.unturned = core::mem::replace(&mut self.poses, turned);
         }
-        if self.index == FIRST_REFINEMENT {
+        if round.task == Task::Place {
             self.poses.splice(0..0, core::mem::take(&mut self.others));
         }
     }
