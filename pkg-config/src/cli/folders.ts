@@ -6,9 +6,8 @@ import { text } from "node:stream/consumers";
 import { globSync, isDynamicPattern } from "tinyglobby";
 import { caseFiles } from "../case-files.js";
 import { viewNames } from "../scene/sam3d-files.js";
-import { absolutePath, namesIn } from "./case-identity.js";
-import type { CaseKey } from "./jsonl-file.js";
-import { UsageError } from "./usage-error.js";
+import { namesIn, UsageError } from "./files.js";
+import { absolutePath, type CaseKey } from "./record.js";
 
 /** What the folders of a command are. */
 export interface FolderKind {

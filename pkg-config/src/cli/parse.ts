@@ -1,10 +1,8 @@
 /** Parsers for flag values. Invalid values are usage errors. */
-import { readFileSync } from "node:fs";
 import { InvalidArgumentError } from "commander";
 import { MAX_WORKERS } from "../aligner-options.js";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
 import { isRecord } from "../values.js";
-import { UsageError } from "./usage-error.js";
 
 /** Parses a number. */
 export function number(text: string): number {
@@ -94,16 +92,4 @@ export function camera(text: string): string | { value: CameraInput } {
 function looksLikeNumbers(text: string): boolean {
   const isNumber = (part: string) => part.trim() !== "" && !Number.isNaN(Number(part));
   return text.split(",").filter(isNumber).length >= 2;
-}
-
-/**
- * The text of the file that a flag names.
- * @throws {@link UsageError} if it cannot be read
- */
-export function textOf(flag: string, path: string): string {
-  try {
-    return readFileSync(path, "utf8");
-  } catch (error) {
-    throw new UsageError(`${flag} ${path}: the file cannot be read: ${(error as Error).message}.`);
-  }
 }

@@ -1,73 +1,94 @@
-/** The columns of the table. */
-import { decimals } from "./dom.js";
-import type { ReportRow } from "./types.js";
+/** The columns of tables, on a terminal and in a report: the model of a row, and how its numbers are shown. */
 
-/** A column: its heading, the text of a cell, and what it is sorted by. */
+/** A column: its headings on a terminal and in a report, which shows those with a long one. */
 export interface Column {
-  id: string;
-  heading: string;
+  short: string;
+  heading?: string;
   /** What the heading means, as a tooltip. */
   title?: string;
-  text(row: ReportRow): string;
-  /** Missing values come last in either order; a failure has no number. */
-  key(row: ReportRow): number | string | null;
+  digits: number;
+  /** Of what is shown, relative to the number of the row. */
+  factor?: number;
+  /** Whether `digits` are significant ones. */
+  isSignificant?: boolean;
 }
 
-const number = (
-  id: string,
-  heading: string,
-  title: string,
-  read: (row: ReportRow) => number | null | undefined,
-  digits: number,
-): Column => ({ id, heading, title, text: (row) => decimals(read(row), digits), key: (row) => read(row) ?? null });
+const truth = "Against the true pose";
 
-const common: readonly Column[] = [
-  number("confidence", "Confidence", "Probability that the pose is right", (row) => row.confidence, 2),
-  { id: "name", heading: "Case", text: (row) => row.name, key: (row) => row.name },
-  number(
-    "alternatives",
-    "Alternatives",
-    "Other poses that explain the image nearly as well",
-    (row) => (row.error === undefined ? row.alternatives : null),
-    0,
-  ),
-  number("scale", "Scale", "Metres, or units of the result's own, per unit of the mesh", (row) => row.scale, 4),
-  number("iou", "IoU", "Overlap of silhouette and mask", (row) => row.iou, 3),
-  number("boundaryF", "Boundary F", "Agreement of the outlines", (row) => row.boundaryF, 3),
-  number(
-    "depthMaeMm",
-    "Depth, mm",
-    "Mean absolute difference of depth, if it is metric",
-    (row) => (row.isMetric ? row.depthMaeMm : null),
-    2,
-  ),
-];
-
-const errors: readonly Column[] = [
-  number("scaleError", "Δ scale, %", "Against the true pose", (row) => row.errors && 100 * row.errors.scale, 1),
-  number("rotationError", "Δ rotation, °", "Against the true pose", (row) => row.errors?.rotationDeg, 1),
-  number(
-    "translationError",
-    "Δ place, %",
-    "Against the true pose, of the diameter",
-    (row) => row.errors && 100 * row.errors.translation,
-    1,
-  ),
-];
-
-const last: readonly Column[] = [
-  {
-    id: "warnings",
-    heading: "Warnings",
-    text: (row) => row.error?.code ?? row.warnings.map(({ code }) => code).join(", "),
-    key: (row) => row.error?.code ?? (row.warnings.map(({ code }) => code).join() || null),
+/** The columns by the names of their numbers. */
+export const columns = {
+  confidence: { short: "conf.", heading: "Confidence", title: "Probability that the pose is right", digits: 2 },
+  alternatives: {
+    ...{ short: "alt.", heading: "Alternatives", digits: 0 },
+    title: "Other poses that explain the image nearly as well",
   },
-  number("timeMs", "Time, s", "Time of the alignment", (row) => (row.timeMs === null ? null : row.timeMs / 1000), 2),
-];
+  scale: {
+    ...{ short: "scale", heading: "Scale", digits: 4, isSignificant: true },
+    title: "Metres, or units of the result's own, per unit of the mesh",
+  },
+  scaleRatio: { short: "s/s_init", digits: 3 },
+  iou: { short: "IoU", heading: "IoU", title: "Overlap of silhouette and mask", digits: 3 },
+  boundaryF: { short: "bound. F", heading: "Boundary F", title: "Agreement of the outlines", digits: 3 },
+  centerDriftPx: { short: "drift px", digits: 1 },
+  chamferMm: { short: "Chamfer mm", digits: 2 },
+  fitness: { short: "fitness", digits: 3 },
+  depthMaeMm: {
+    ...{ short: "MAE mm", heading: "Depth, mm", digits: 2 },
+    title: "Mean absolute difference of depth, if it is metric",
+  },
+  scaleError: { short: "Δscale %", heading: "Δ scale, %", title: truth, digits: 1, factor: 100 },
+  rotationErrorDeg: { short: "Δrot °", heading: "Δ rotation, °", title: truth, digits: 1 },
+  translationErrorM: { short: "Δtrans mm", digits: 1, factor: 1000 },
+  translationErrorRelative: {
+    ...{ short: "Δtrans %", heading: "Δ place, %", digits: 1, factor: 100 },
+    title: `${truth}, of the diameter`,
+  },
+  timeMs: { short: "time s", heading: "Time, s", title: "Time of the alignment", digits: 2, factor: 0.001 },
+} as const satisfies Record<string, Column>;
 
-/** The columns that the rows fill. */
-export const columnsOf = (rows: readonly ReportRow[]): readonly Column[] => [
-  ...common,
-  ...(rows.some((row) => row.errors !== undefined) ? errors : []),
-  ...last,
-];
+export type ColumnName = keyof typeof columns;
+
+/** A code, and a text for people. */
+export interface Message {
+  code: string;
+  message: string;
+}
+
+/** What tables tell of a pose, or of a failure. */
+export interface Row extends Readonly<Partial<Record<ColumnName, number | null>>> {
+  error?: Message;
+  warnings: readonly Message[];
+  /** Whether lengths are metric; otherwise, their unit is unknown. */
+  isMetric: boolean;
+}
+
+/** Whether a number is one of metres or millimetres. */
+export const isLength = (name: string) => /M(m)?$/.test(name);
+
+/** The number in a column; `null` for lengths without a unit, and for what is unknown. */
+export function numberIn(row: Row, name: ColumnName): number | null {
+  if (isLength(name) && !row.isMetric) return null;
+  // What has no confidence looks for no alternatives.
+  if (name === "alternatives" && (row.confidence ?? null) === null) return null;
+  return row[name] ?? null;
+}
+
+/** The text in a column. */
+export function cellOf(row: Row, name: ColumnName): string {
+  const { digits, factor = 1, isSignificant = false }: Column = columns[name];
+  const value = numberIn(row, name);
+  return (isSignificant ? significant : fixed)(value === null ? null : factor * value, digits);
+}
+
+/** Formats a number with a fixed number of decimals; a missing one is a dash. */
+export const fixed = (value: number | null | undefined, digits: number): string => value?.toFixed(digits) ?? "–";
+
+/** Formats a number with the given significant digits, without an exponent if a few zeros suffice. */
+export function significant(value: number | null | undefined, digits: number): string {
+  if (value === null || value === undefined) return "–";
+  if (value === 0 || !Number.isFinite(value)) return String(value);
+  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  return magnitude < -5 || magnitude > 8
+    ? value.toExponential(digits - 1)
+    : value.toFixed(Math.max(0, digits - 1 - magnitude));
+}

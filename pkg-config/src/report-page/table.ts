@@ -1,5 +1,5 @@
 /** The table: sorted, filtered, and with elements for the rows in sight only. */
-import { type Column, columnsOf } from "./columns.js";
+import { type Column, type ColumnName, cellOf, columns, numberIn } from "./columns.js";
 import { byId, element } from "./dom.js";
 import type { ReportRow } from "./types.js";
 
@@ -7,6 +7,32 @@ import type { ReportRow } from "./types.js";
 const ROW = 48;
 /** Rows beyond those in sight, above and below. */
 const SPARE = 6;
+
+/** A column of the page, in its order. */
+type Id = "name" | "warnings" | ColumnName;
+
+/** The columns that the rows fill: those of numbers have long headings, and those of errors need true poses. */
+function idsOf(rows: readonly ReportRow[]): Id[] {
+  const numbers = (Object.keys(columns) as ColumnName[]).filter((id) => "heading" in columns[id]);
+  const hasTruth = rows.some((row) => typeof row.scaleError === "number");
+  const wanted = numbers.filter((id) => hasTruth || !id.includes("Error"));
+  return ["confidence", "name", ...wanted.filter((id) => id !== "confidence" && id !== "timeMs"), "warnings", "timeMs"];
+}
+
+/** The heading of a column, and what it means. */
+const headingOf = (id: Id): Column => {
+  if (id !== "name" && id !== "warnings") return columns[id];
+  return { short: "", heading: id === "name" ? "Case" : "Warnings", digits: 0 };
+};
+
+const codesOf = ({ error, warnings }: ReportRow) => error?.code ?? warnings.map(({ code }) => code).join(", ");
+
+const textIn = (row: ReportRow, id: Id) =>
+  id === "name" ? row.name : id === "warnings" ? codesOf(row) : cellOf(row, id);
+
+/** What a column is sorted by. Missing values come last in either order; a failure has no number. */
+const keyIn = (row: ReportRow, id: Id) =>
+  id === "name" ? row.name : id === "warnings" ? codesOf(row) || null : numberIn(row, id);
 
 /** Which rows are shown. */
 export interface Filter {
@@ -19,20 +45,19 @@ export interface Filter {
 
 /** The table, whose rows can be selected. */
 export class Table {
-  readonly #all: readonly ReportRow[];
-  readonly #columns: readonly Column[];
-  readonly #onSelect: (row: ReportRow) => void;
+  readonly #ids: readonly Id[];
   readonly #scroller = byId("scroller");
   readonly #body = byId("rows");
   #rows: ReportRow[] = [];
   #selected: ReportRow | undefined;
-  #sort = { id: "confidence", isDescending: false };
+  #sort: { id: Id; isDescending: boolean } = { id: "confidence", isDescending: false };
   #filter: Filter = { text: "", upTo: 1, only: "all" };
 
-  constructor(rows: readonly ReportRow[], onSelect: (row: ReportRow) => void) {
-    this.#all = rows;
-    this.#columns = columnsOf(rows);
-    this.#onSelect = onSelect;
+  constructor(
+    private readonly all: readonly ReportRow[],
+    private readonly onSelect: (row: ReportRow) => void,
+  ) {
+    this.#ids = idsOf(all);
     this.#drawHead();
     this.#scroller.addEventListener("scroll", () => this.#draw(), { passive: true });
     new ResizeObserver(() => this.#draw()).observe(this.#scroller);
@@ -67,7 +92,7 @@ export class Table {
     if (row === undefined) return;
     this.#selected = row;
     this.#draw();
-    this.#onSelect(row);
+    this.onSelect(row);
   }
 
   #update(): void {
@@ -81,31 +106,30 @@ export class Table {
       (row.confidence ?? 0) <= upTo &&
       (only !== "failures" || row.error !== undefined) &&
       (only !== "warnings" || row.warnings.length > 0) &&
-      (only !== "alternatives" || row.alternatives > 0);
+      (only !== "alternatives" || (row.alternatives ?? 0) > 0);
     const { id, isDescending } = this.#sort;
-    const key = (this.#columns.find((column) => column.id === id) ?? (this.#columns[0] as Column)).key;
-    this.#rows = this.#all.filter(passes).sort((a, b) => compared(key(a), key(b), isDescending));
+    this.#rows = this.all.filter(passes).sort((a, b) => compared(keyIn(a, id), keyIn(b, id), isDescending));
     // Failures are the least certain of all.
     if (id === "confidence" && !isDescending) {
       this.#rows.sort((a, b) => Number(b.error !== undefined) - Number(a.error !== undefined));
     }
-    byId("count").textContent = `${this.#rows.length} of ${this.#all.length} cases`;
+    byId("count").textContent = `${this.#rows.length} of ${this.all.length} cases`;
     byId("table").setAttribute("aria-rowcount", String(this.#rows.length + 1));
     this.#draw();
   }
 
   #drawHead(): void {
-    const cells = this.#columns.map((column) => {
-      const button = element("button", { type: "button", title: column.title }, column.heading);
+    const cells = this.#ids.map((id) => {
+      const { heading = "", title } = headingOf(id);
+      const button = element("button", { type: "button", title }, heading);
       button.addEventListener("click", () => {
-        const isSame = this.#sort.id === column.id;
-        this.#sort = { id: column.id, isDescending: isSame ? !this.#sort.isDescending : false };
+        this.#sort = { id, isDescending: this.#sort.id === id && !this.#sort.isDescending };
         this.#drawHead();
         this.#update();
-        byId("head").querySelector<HTMLElement>(`[data-id="${column.id}"] button`)?.focus();
+        byId("head").querySelector<HTMLElement>(`[data-id="${id}"] button`)?.focus();
       });
-      const order = this.#sort.id !== column.id ? "none" : this.#sort.isDescending ? "descending" : "ascending";
-      return element("th", { scope: "col", "data-id": column.id, "aria-sort": order }, button);
+      const order = this.#sort.id !== id ? "none" : this.#sort.isDescending ? "descending" : "ascending";
+      return element("th", { scope: "col", "data-id": id, "aria-sort": order }, button);
     });
     byId("head").replaceChildren(
       element("tr", { "aria-rowindex": 1 }, element("th", { scope: "col" }, "Picture"), ...cells),
@@ -127,7 +151,7 @@ export class Table {
     const first = Math.max(0, Math.floor(this.#scroller.scrollTop / ROW) - SPARE);
     const count = Math.ceil(this.#scroller.clientHeight / ROW) + 2 * SPARE;
     const end = Math.min(this.#rows.length, first + count);
-    const width = this.#columns.length + 1;
+    const width = this.#ids.length + 1;
     const spacer = (rows: number) => {
       const cell = element("td", { colspan: width, class: "spacer", style: `height:${rows * ROW}px` });
       return rows > 0 ? [element("tr", { "aria-hidden": "true" }, cell)] : [];
@@ -137,13 +161,11 @@ export class Table {
   }
 
   #row(row: ReportRow, index: number): HTMLTableRowElement {
-    const cells = this.#columns.map((column) => {
-      const text = column.text(row);
-      if (column.id === "name") {
+    const cells = this.#ids.map((id) => {
+      const text = textIn(row, id);
+      if (id === "name")
         return element("th", { scope: "row", title: text }, element("button", { type: "button", tabindex: -1 }, text));
-      }
-      if (column.id !== "confidence")
-        return element("td", { class: column.id === "warnings" ? "words" : "", title: text }, text);
+      if (id !== "confidence") return element("td", { class: id === "warnings" ? "words" : "", title: text }, text);
       if (row.error !== undefined) return element("td", {}, element("span", { class: "failed" }, "failed"));
       const bar = element("span", { class: "bar", style: `--share:${row.confidence ?? 0}` });
       return element("td", {}, bar, text);

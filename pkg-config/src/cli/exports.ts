@@ -1,85 +1,81 @@
-/** Files of a whole scene: GLB, and the formats of simulators. */
+/** Objects in files: meshes as a result holds them, a scene as one GLB, and scenes for simulators. */
 import { mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
-import type { Command } from "commander";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
+import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
+import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
 import { fileReaders } from "../file-readers.js";
 import { parseCameraFile } from "../formats/camera-file.js";
-import type { SceneInput, SceneResult } from "../index.js";
+import type { SceneInput, SceneResult, Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
-import type { MeshArrays } from "../input/types.js";
+import type { MeshArrays, MeshInput } from "../input/types.js";
+import { fixed } from "../report-page/columns.js";
 import type { SceneOnDisk } from "../scene-folder.js";
+import type { Sim3Like } from "../sim3.js";
 import { toMjcf } from "../simulators/mjcf.js";
-import { SIMULATOR_DEFAULTS, type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
+import { type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
-import { withoutUndefined } from "../values.js";
-import { type ExportedAs, exportedArrays, exportedMesh } from "./exported-mesh.js";
-import { number } from "./parse.js";
-import { fixed } from "./table.js";
-import { UsageError } from "./usage-error.js";
-import { checkWritable, makeFolder } from "./writable.js";
+import { isRecord, withoutUndefined } from "../values.js";
+import type { Flags } from "./flags.js";
 
-/** Values of the flags. */
-export interface SceneFileFlags {
-  sceneGlb?: string;
-  mjcf?: string;
-  urdf?: string;
-  usd?: string;
-  density?: number;
-  parts?: number;
-  rest?: boolean;
-  upright?: boolean;
+/** A mesh for a file, with its transform. */
+export interface ExportedMesh<M> {
+  mesh: M;
+  transform: Sim3Like;
 }
 
-/** Adds the flags to a command. */
-export const addSceneFileFlags = (command: Command): Command =>
-  command
-    .option("--scene-glb <file>", "write the scene as one GLB file")
-    .option("--mjcf <folder>", "write the scene for MuJoCo: scene.xml and meshes")
-    .option("--urdf <folder>", "write the scene as URDF: a file per object, scene.json, load.py for PyBullet")
-    .option("--usd <file>", "write the scene as USD with physics (.usda)")
-    .option("--density <kg/m³>", `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`, number)
-    .option(
-      "--parts <n>",
-      `most convex parts of an object for simulators; 1 is its hull (default ${SIMULATOR_DEFAULTS.maxParts})`,
-      number,
-    )
-    .option("--no-rest", "keep all objects for simulators where they were found: they are not put at rest");
+/** How an object is exported. */
+export interface ExportedAs {
+  /** The `proportions` of its result, if these were asked for. */
+  proportions: Pick<Stretch, "matrix" | "stretch"> | undefined;
+  /** In an upright frame, if that is asked for. */
+  upright: UprightOptions | undefined;
+}
 
-/**
- * Checks the flags before the first scene.
- * @param isMetric whether lengths will be metric, as simulators need them
- * @throws {@link UsageError}
- */
-export function checkSceneFiles(
-  { sceneGlb, mjcf, urdf, usd }: SceneFileFlags,
-  scenes: number,
-  isMetric: boolean,
-): void {
-  const outputs = [
-    ["--scene-glb", sceneGlb, checkWritable, false],
-    ["--mjcf", mjcf, makeFolder, true],
-    ["--urdf", urdf, makeFolder, true],
-    ["--usd", usd, checkWritable, true],
-  ] as const;
-  for (const [flag, path, check, needsMetres] of outputs) {
-    if (path === undefined) continue;
-    if (needsMetres && !isMetric)
-      throw new UsageError(
-        `${flag} needs metres, which depth of this kind has not: pass --known-extent, or a number as --scale; or --depth-kind metric, if it is in metres.`,
-      );
-    if (scenes > 1) throw new UsageError(`${flag} takes a single scene.`);
-    check(flag, path);
-  }
+/** Arrays, for an export. `pose` is the result, whose facts are kept. */
+export function exportedArrays<M extends MeshArrays>(
+  mesh: M,
+  pose: Sim3Like,
+  { proportions, upright }: ExportedAs,
+): ExportedMesh<M> {
+  const stretched = inProportion(mesh, pose, proportions);
+  if (upright === undefined) return { ...stretched, transform: withFacts(stretched.transform, pose) };
+  const straight = uprightMesh(stretched.mesh, stretched.transform, upright);
+  return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
+}
+
+/** The file of a GLB, whose materials are kept, or the arrays of another mesh, for an export. */
+export async function exportedMesh(
+  given: MeshInput,
+  pose: Sim3Like,
+  as: ExportedAs,
+): Promise<ExportedMesh<Uint8Array | MeshArrays>> {
+  const { bytes, format } = (isRecord(given) ? given : {}) as { bytes?: Uint8Array; format?: string };
+  const read = async () => (await readMesh(given, fileReaders, false)).mesh as MeshArrays;
+  if (format !== "glb" || bytes === undefined) return exportedArrays(await read(), pose, as);
+  const { proportions, upright } = as;
+  const glb = proportions === undefined ? bytes : stretchGlb(bytes, proportions);
+  if (upright === undefined) return { mesh: glb, transform: withFacts(proportions ?? pose, pose) };
+  const stretched = inProportion(await read(), pose, proportions);
+  const straight = uprightGlb(glb, stretched.mesh, stretched.transform, upright);
+  return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
+}
+
+const inProportion = <M extends MeshArrays>(mesh: M, pose: Sim3Like, proportions: ExportedAs["proportions"]) =>
+  proportions === undefined
+    ? { mesh, transform: pose }
+    : { mesh: stretchMesh(mesh, proportions), transform: proportions as Sim3Like };
+
+/** Another transform of an object, with the metrics and the confidence of its result. */
+function withFacts(transform: Sim3Like, result: Sim3Like): Sim3Like {
+  if (transform === result || !isRecord(result) || !isRecord(transform)) return transform;
+  const { metrics, confidence } = result as Record<string, unknown>;
+  return { ...transform, ...withoutUndefined({ metrics, confidence }) } as Sim3Like;
 }
 
 /** Writes the files. Returns lines that say which bodies are fixed, and how far others were moved. */
-export async function writeSceneFiles(
-  scene: SceneOnDisk,
-  result: SceneResult,
-  flags: SceneFileFlags,
-): Promise<string[]> {
+export async function writeSceneFiles(scene: SceneOnDisk, result: SceneResult, flags: Flags): Promise<string[]> {
   const { sceneGlb, mjcf, urdf, usd, density, parts, rest, upright } = flags;
   const camera = cameraOf(scene.input, result);
   if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera, upright));
