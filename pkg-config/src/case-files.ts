@@ -62,19 +62,30 @@ const CAMERA_POSE_FILE = "pose.json";
  * @internal
  */
 export async function frameFrom(files: CaseFiles, settings: ReadCaseOptions, place: string): Promise<FrameFiles> {
-  const { find, required, read, optional } = filesOf(files, settings, place);
-  const names = { depth: required("depth"), camera: find("camera"), mask: find("mask"), image: find("image") };
-  const [depth, cameraFile, mask, image, pose, truth] = await Promise.all([
-    ...[read(names.depth), optional(names.camera), optional(names.mask), optional(names.image)],
-    ...[optional(CAMERA_POSE_FILE), optional("gt.json")],
+  const own = filesOf(files, settings, place);
+  const { names, ...frame } = await viewFrom(own, { depth: own.required("depth"), mask: own.find("mask") }, settings);
+  const pose = await own.optional(CAMERA_POSE_FILE);
+  if (pose !== undefined) frame.input.cameraToWorld = cameraPose(pose);
+  return { ...frame, files: names };
+}
+
+/**
+ * Reads the view in files, with a mask if it has one, and its true pose.
+ * @internal
+ */
+export async function viewFrom<N extends { depth: string; mask?: string | undefined }>(
+  { find, read, optional }: ReturnType<typeof filesOf>,
+  named: N,
+  { image: _, ...settings }: ReadCaseOptions,
+) {
+  const names = withoutUndefined({ ...named, camera: find("camera"), image: find("image") });
+  const [depth, mask, cameraFile, image, truth] = await Promise.all([
+    ...[read(named.depth), optional(named.mask), optional(find("camera")), optional(find("image"))],
+    optional("gt.json"),
   ]);
-  const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
-  const { image: _, ...more } = settings;
-  const parts = { depth, cameraFile, mask, image, cameraToWorld };
-  const input = withoutUndefined({ ...parts, ...more }) as ViewInput;
   return {
-    input,
-    files: withoutUndefined(names) as FrameFiles["files"],
+    names: names as Record<keyof N, string> & { camera?: string; image?: string },
+    input: withoutUndefined({ depth, mask, cameraFile, image, ...settings }) as ViewInput,
     truth: truth === undefined ? null : parsePoseFile("truth", truth),
   };
 }
@@ -126,21 +137,12 @@ export async function caseFrom(
   formats: LoadFormats,
   place = "the files",
 ): Promise<Case> {
-  const { find, required, read, optional, beside } = filesOf(files, settings, place);
-  const parts = {
-    depth: required("depth"),
-    mask: required("mask"),
-    mesh: required("mesh"),
-    ...withoutUndefined({ camera: find("camera"), image: find("image") }),
-  };
-  const [depth, mask, meshBytes, cameraFile, image, truth] = await Promise.all([
-    ...[read(parts.depth), read(parts.mask), read(parts.mesh)],
-    ...[optional(parts.camera), optional(parts.image), optional("gt.json")],
-  ]);
-  const mesh = await meshFile(parts.mesh, meshBytes as Uint8Array, formats, beside);
-  const { image: _, ...more } = settings;
-  const input = withoutUndefined({ depth, mask, mesh, cameraFile, image, ...more }) as AlignInput;
-  return { input, files: parts, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+  const own = filesOf(files, settings, place);
+  const { required } = own;
+  const named = { depth: required("depth"), mask: required("mask"), mesh: required("mesh") };
+  const { names, input, truth } = await viewFrom(own, named, settings);
+  const mesh = await meshFile(named.mesh, await own.read(named.mesh), formats, own.beside);
+  return { input: { ...input, mesh } as AlignInput, files: names, truth };
 }
 
 /**

@@ -2,8 +2,8 @@
 import { readdir, stat } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { BopScene, bopModels, isBopScene, readBopModel } from "./bop/dataset.js";
-import { type CaseFiles, fileNotFound, type ReadCaseOptions } from "./case-files.js";
-import { loadFormats, read } from "./case-folder.js";
+import { fileNotFound, type ReadCaseOptions } from "./case-files.js";
+import { filesIn, loadFormats } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -46,10 +46,8 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
 async function readFolder(folder: string, { models, sam3d, ...settings }: SceneSettings): Promise<SceneOnDisk> {
   const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
   if (!sam3d) paths.push(...(await filesBelow(folder, "objects/", LEVELS)));
-  const files: CaseFiles = Object.fromEntries(paths.map((path) => [path, () => read("scene", join(folder, path))]));
-  const found = sam3d
-    ? await sam3dFrom(files, settings, loadFormats, folder)
-    : await sceneFrom(files, settings, loadFormats, folder);
+  const from = sam3d ? sam3dFrom : sceneFrom;
+  const found = await from(filesIn("scene", folder, paths), settings, loadFormats, folder);
   return { ...found, name: basename(resolve(folder)) };
 }
 

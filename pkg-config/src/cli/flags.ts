@@ -36,53 +36,30 @@ export interface FlagGroup {
   flags: readonly Flag[];
 }
 
-/** Values of the flags of all commands. */
-export interface Flags extends Readonly<Record<string, unknown>> {
-  // Cases, and what is written of them.
-  list?: string;
-  json?: string;
-  jsonl?: string;
-  csv?: string;
-  resume?: boolean;
-  workers?: number | "auto";
-  report?: string;
-  overlay?: string;
-  glb?: string;
-  upright?: boolean;
-  // How a case is read.
-  depthScale?: number;
-  depthKind?: DepthKind;
-  imageId?: string;
-  resizeMask?: "nearest";
+type Texts =
+  | ("list" | "json" | "jsonl" | "csv" | "report" | "overlay" | "glb" | "sceneGlb" | "mjcf" | "urdf" | "usd" | "scores")
+  | ("imageId" | "depth" | "mask" | "mesh" | "transform" | "support" | "models")
+  | ("split" | "masks" | "targets" | "method");
+
+/** Values of the flags of all commands; those of options are unknown here. */
+export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Partial<Record<Texts, string>>> {
+  readonly resume?: boolean;
+  readonly workers?: number | "auto";
+  readonly upright?: boolean;
+  readonly depthScale?: number;
+  readonly depthKind?: DepthKind;
+  readonly resizeMask?: "nearest";
   /** The photo, or whether to use that of a case folder. */
-  image?: string | boolean;
-  depth?: string;
-  mask?: string;
-  mesh?: string;
-  camera?: string | { value: CameraInput };
-  // How it is aligned.
-  preset?: Preset;
-  options?: Record<string, unknown>;
-  transform?: string;
-  // Scenes.
-  snap?: boolean;
-  support?: string;
-  models?: string;
-  sam3d?: boolean;
-  sceneGlb?: string;
-  mjcf?: string;
-  urdf?: string;
-  usd?: string;
-  density?: number;
-  parts?: number;
-  rest?: boolean;
-  // Datasets of BOP.
-  split?: string;
-  masks?: string;
-  targets?: string;
-  method?: string;
-  evaluate?: string | true;
-  scores?: string;
+  readonly image?: string | boolean;
+  readonly camera?: string | { value: CameraInput };
+  readonly preset?: Preset;
+  readonly options?: Record<string, unknown>;
+  readonly snap?: boolean;
+  readonly sam3d?: boolean;
+  readonly density?: number;
+  readonly parts?: number;
+  readonly rest?: boolean;
+  readonly evaluate?: string | true;
 }
 
 /** What is written, and how many cases are worked on at a time. */
