@@ -28,7 +28,7 @@ const paths = {
   scene: (split: string, scene: number) => join(split, padded(scene)),
   model: (object: string | number) => `obj_${padded(object)}.ply`,
   info: "models_info.json",
-  /** What a test split has to find, by default. */
+  /** The targets of test splits. */
   targets: "test_targets_bop19.json",
 };
 
@@ -57,7 +57,7 @@ export const targetKey = (target: BopPlace) => `${imageKey(target)}/${target.obj
 /** Whether a folder with these names is a scene of BOP. */
 export const isBopScene = (names: readonly string[]) => names.includes(paths.masks) && names.includes(paths.poses);
 
-/** A scene: what its JSON files say of all its images, and the files of each. */
+/** A scene: its JSON files, and the files of each image. */
 export class BopScene {
   private constructor(
     readonly folder: string,
@@ -177,7 +177,7 @@ export async function bopModels(folder: string, places: readonly string[]): Prom
   throw fileNotFound("models", `no folder of models at ${folder}`, "models beside the scene, or --models");
 }
 
-/** What `models_info.json` says, in millimetres. */
+/** An entry of `models_info.json`, in millimetres. */
 export interface BopModelInfo {
   diameterMm: number;
   /** Discrete symmetries: 16 numbers each, row by row. */
@@ -235,7 +235,7 @@ export class BopDataset {
     return entries.map(targetOf);
   }
 
-  /** What `models_info.json` says, by the id of the object. */
+  /** The entries of `models_info.json`, by the id of the object. */
   async info(): Promise<ReadonlyMap<number, BopModelInfo>> {
     const json = parsedJson(paths.info, await read(paths.info, join(await this.modelsOfErrors(), paths.info)));
     const entries = isRecord(json) ? Object.entries(json) : [];

@@ -93,7 +93,7 @@ export interface BopInstance extends BopPlace {
   detectionSeconds: number;
 }
 
-/** What is read of the entry of a case. */
+/** The properties of an entry that a results file needs. */
 interface PoseEntry {
   timingsMs?: { total: number };
   confidence?: number | null;

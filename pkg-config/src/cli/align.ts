@@ -1,4 +1,4 @@
-/** `sim3align align`: cases, their options, and what is found of them. */
+/** `sim3align align`: reads cases, aligns them, and prints the results. */
 import { readFileSync, statSync } from "node:fs";
 import { basename, join } from "node:path";
 import {
@@ -24,7 +24,7 @@ import {
   type ViewsOptions,
 } from "../index.js";
 import { withoutUndefined } from "../values.js";
-import { type Doing, failedLine, type Job } from "./batch.js";
+import { type CaseRun, failedLine, type Job } from "./batch.js";
 import { correctedInput } from "./corrected-input.js";
 import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
 import {
@@ -59,7 +59,7 @@ export interface CaseToDo extends CaseKey {
   read(): Promise<Pick<CaseOnDisk, "input" | "truth" | "files">>;
 }
 
-/** The work on the cases of a command line. */
+/** The job of a command line. */
 export async function alignJob(args: readonly string[], flags: Flags): Promise<Job<CaseToDo>> {
   const settings = caseSettings(flags);
   const only = caseOfFiles(flags, args, settings);
@@ -123,7 +123,7 @@ const errors = ["scaleError", "rotationErrorDeg", "translationErrorM", "translat
 /** The columns of several evaluations. */
 export const evaluationColumns = [...metrics, ...errors];
 
-/** The work on cases: each is aligned, and printed. */
+/** The job for a list of cases. */
 export function caseJob(tasks: readonly CaseToDo[], flags: Flags): Job<CaseToDo> {
   const row = caseTable(
     tasks.map(({ name }) => name),
@@ -137,8 +137,8 @@ export function caseJob(tasks: readonly CaseToDo[], flags: Flags): Job<CaseToDo>
   );
   return {
     tasks,
-    run: (aligner, task, doing) => alignCase(aligner, task, flags, doing),
-    printed: ({ name }, entry, isOnly, style) =>
+    run: (aligner, task, caseRun) => alignCase(aligner, task, flags, caseRun),
+    lines: ({ name }, entry, isOnly, style) =>
       isOnly
         ? { remarks: isFailure(entry) ? [failedLine(name, entry, style)] : details(name, entry, style) }
         : { rows: row(name, withMeans(entry), style), remarks: notes(name, entry, style) },
@@ -160,7 +160,7 @@ const notes = (name: string, entry: Entry, style: Style) =>
     ? [failedLine(name, entry, style)]
     : warningsOf(entry).map((warning) => `${name}: ${warningLine(warning, style)}`);
 
-/** What shows the object of a case alone: the case, or one of its frames. */
+/** A view of the object of a case: the case itself, or one of its frames. */
 export interface CaseView extends Pick<CaseOnDisk, "input" | "truth" | "files"> {
   frame?: string;
 }
@@ -175,25 +175,25 @@ export async function viewsOf(folder: string, settings: ReadCaseOptions): Promis
   });
 }
 
-async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, doing: Doing): Promise<Entry> {
+async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun: CaseRun): Promise<Entry> {
   const { name, folder } = task;
   if (folder !== undefined && (await frameNames(folder)).length > 0)
-    return alignFrames(aligner, name, folder, flags, doing);
+    return alignFrames(aligner, name, folder, flags, caseRun);
   const { input, truth, files } = await task.read();
-  doing.files = files;
+  caseRun.files = files;
   const options = await alignOptions(flags, name);
-  const alignment = await aligner.align(input, withoutUndefined({ ...options, onProgress: doing.onProgress }));
+  const alignment = await aligner.align(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
   return alignEntry(alignment, await errorsOf(aligner, input, alignment, truth));
 }
 
 /** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
-async function alignFrames(aligner: Aligner, name: string, folder: string, flags: Flags, doing: Doing) {
+async function alignFrames(aligner: Aligner, name: string, folder: string, flags: Flags, caseRun: CaseRun) {
   const { mesh, frames } = await readFrames(folder, caseSettings(flags));
   const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
   const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
   const { preset, ...options } = await alignOptions(flags, name);
   if (preset === "paper") throw new UsageError(`${name} has several frames, for which --preset paper has no method.`);
-  const { onProgress } = doing;
+  const { onProgress } = caseRun;
   const alignment = await aligner.alignViews(
     { mesh, views },
     withoutUndefined({ ...(options as ViewsOptions), onProgress }),

@@ -1,4 +1,4 @@
-/** The loop of all commands: cases in, an entry for each, written when it is done; resumed, and interrupted cleanly. */
+/** Runs a batch of cases and records each result. A batch can be interrupted and resumed. */
 import { availableParallelism } from "node:os";
 import { MAX_WORKERS } from "../aligner-options.js";
 import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
@@ -10,47 +10,47 @@ import { BatchProgress, StatusLine } from "./progress.js";
 import { type CaseKey, resumedEntries } from "./record.js";
 import { noUnitNote, type Style } from "./table.js";
 
-/** A case while it is worked on. */
-export interface Doing {
-  /** The files of its arguments, as far as they are known: a failure names them. */
+/** The context in which a command works on a case. */
+export interface CaseRun {
+  /** The file of each argument, set by the command once it has found them; the entry of a failure has them. */
   files: Readonly<Record<string, string>>;
   readonly style: Style;
-  /** Whether nobody reads any more what is printed. */
+  /** Whether the reader of the output has closed it. */
   isClosed(): boolean;
-  /** Shows the progress, where it is the only case. */
+  /** Shows the progress; only for a single case. */
   onProgress?: (progress: Progress) => void;
-  /** Prints lines: at once, if it is the only case, or else when it is done. */
+  /** Prints lines: at once for a single case, otherwise when the case is done. */
   print(...lines: string[]): void;
   /** Writes the entry so far. */
   partial(entry: Entry): void;
 }
 
-/** What is printed of an entry. */
-export interface Printed {
-  /** In the table of several cases. */
+/** Lines for people about an entry. */
+export interface CaseLines {
+  /** Rows in the table of several cases. */
   rows?: readonly string[];
-  /** At the end: details of the only case, or warnings and failures. */
+  /** Printed at the end: details of a single case, or warnings and failures. */
   remarks?: readonly string[];
 }
 
-/** What a command does with its cases. */
+/** The cases of a command, and the functions that work on them. */
 export interface Job<T extends CaseKey> {
   tasks: readonly T[];
-  /** Returns the entry. Only errors that concern all cases are thrown as `UsageError`; others are those of the case. */
-  run(aligner: Aligner, task: T, doing: Doing): Promise<Entry>;
-  /** What is printed besides; without it, only failures. */
-  printed?(task: T, entry: Entry, isOnly: boolean, style: Style): Printed;
-  /** What the poses of an entry were found in, by their names. */
+  /** Works on a case and returns its entry. A `UsageError` ends the batch; other errors make the case a failure. */
+  run(aligner: Aligner, task: T, caseRun: CaseRun): Promise<Entry>;
+  /** Lines about an entry; by default, those of failures. */
+  lines?(task: T, entry: Entry, isOnly: boolean, style: Style): CaseLines;
+  /** Reads the inputs of the poses of an entry, by their names, for pictures. */
   inputs?(task: T, entry: Entry): Promise<ReadonlyMap<string, AlignInput>>;
-  /** What gets the entries besides. */
+  /** Further outputs. */
   sinks?: EntrySink[];
   /** The flags of the batch, if these are not all of the command line. */
   flags?: Flags;
-  /** What follows the batch. */
+  /** Runs after the batch. */
   after?(): Promise<void>;
 }
 
-/** What is printed of a failure. */
+/** The line of a failure. */
 export function failedLine(name: string, entry: Entry, style: Style): string {
   if (!isFailure(entry)) return "";
   const { code, message, file } = entry.error;
@@ -63,8 +63,8 @@ const READ_AHEAD = 2;
 const NAMED = 10;
 
 /**
- * Does the work for each case that is not in the record, and writes and prints the results.
- * @returns whether all cases are done
+ * Works on each case that is not in the record, and writes and prints the results.
+ * @returns whether all cases succeeded
  */
 export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flags): Promise<boolean> {
   const { tasks, flags = commandLine } = job;
@@ -74,15 +74,15 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
   const isOnly = tasks.length === 1;
   const remarks: string[] = [];
   const failedBefore: string[] = [];
-  const count = { done: 0, failed: 0 };
+  let [done, failed] = [0, 0];
   let hasNoUnit = false;
   let progress: BatchProgress | undefined;
 
   /** Counts a case, and adds its rows to the report. Returns its errors. */
-  const counted = (name: string, entry: Entry): string[] => {
+  const count = (name: string, entry: Entry): string[] => {
     const errors = errorsIn(entry);
-    count.done += 1;
-    if (errors.length > 0) count.failed += 1;
+    done += 1;
+    if (errors.length > 0) failed += 1;
     hasNoUnit ||= !isMetric(entry);
     pictures.record(name, entry);
     return errors;
@@ -101,22 +101,22 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
       if (task === undefined) continue;
       resumed.add(task);
       await draw(task, entry, true);
-      const [error] = counted(name, entry);
+      const [error] = count(name, entry);
       if (error !== undefined) failedBefore.push(`${name} (${error})`);
     }
     if (recorded > 0) console.error(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
     return tasks.filter((task) => !resumed.has(task));
   };
-  const printed = (task: T, entry: Entry): Printed => {
-    if (job.printed !== undefined) return job.printed(task, entry, isOnly, style);
+  const linesOf = (task: T, entry: Entry): CaseLines => {
+    if (job.lines !== undefined) return job.lines(task, entry, isOnly, style);
     return isFailure(entry) ? { [isOnly ? "remarks" : "rows"]: [failedLine(task.name, entry, style)] } : {};
   };
-  /** Does the work of a case. Returns what writes its result. */
+  /** Works on a case. Returns a function that writes the result. */
   const run = async (aligner: Aligner, task: T): Promise<() => void> => {
     const early: string[] = [];
     const line = isOnly ? new StatusLine(process.stderr) : undefined;
     const show = (state: string) => line?.show(`[1/1] ${task.name}  ${state}`);
-    const doing: Doing = {
+    const caseRun: CaseRun = {
       ...{ files: {}, style, isClosed: () => output.isClosed },
       print(...lines) {
         line?.clear();
@@ -126,17 +126,18 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
       partial: (entry) => line && output.addToOthers(task.name, entry, false),
     };
     if (isOnly)
-      doing.onProgress = ({ stage, fraction }) => show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`);
+      caseRun.onProgress = ({ stage, fraction }) =>
+        show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`);
     show("reading");
-    const work = job.run(aligner, task, doing).catch((error) => failureEntry(error, doing.files));
+    const work = job.run(aligner, task, caseRun).catch((error) => failureEntry(error, caseRun.files));
     const entry = await work.finally(() => line?.clear());
     // Before the record: what is there needs no other pictures.
     await draw(task, entry, false);
     return () => {
-      const isFailure = counted(task.name, entry).length > 0;
+      const isFailure = count(task.name, entry).length > 0;
       output.add(task, entry);
-      const { rows = [], remarks: own = [] } = printed(task, entry);
-      remarks.push(...own);
+      const { rows = [], remarks: more = [] } = linesOf(task, entry);
+      remarks.push(...more);
       progress?.clear();
       output.lines([...early, ...rows]);
       progress?.add(isFailure);
@@ -159,7 +160,7 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
     const { json, jsonl = "-", csv } = flags;
     const files = [jsonl, json, csv].filter((path) => path !== undefined && path !== "-");
     const place = files.length === 0 ? "" : `; they are in ${files.join(", ")}`;
-    console.error(`interrupted: ${count.done} of ${tasks.length} cases are done${place}`);
+    console.error(`interrupted: ${done} of ${tasks.length} cases are done${place}`);
     const remedy = "With --jsonl FILE, a batch can be resumed: --resume skips the cases in the file.";
     if (!isOnly) console.error(jsonl === "-" ? remedy : "To go on, run the same command with --resume.");
   };
@@ -188,7 +189,7 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
   }
   end();
   await job.after?.();
-  return count.failed === 0;
+  return failed === 0;
 }
 
 /** Runs a task for each item, at most `limit` at a time, and yields the results as the tasks finish. */

@@ -1,4 +1,4 @@
-/** `sim3align bop`: the targets of a BOP dataset, the results file of its leaderboard, and scores. */
+/** `sim3align bop`: aligns the targets of a BOP dataset, writes the results file of the leaderboard, and scores it. */
 import { basename, resolve } from "node:path";
 import { BopDataset, type BopModelInfo, type BopTarget, METRES_PER_UNIT, targetKey } from "../bop/dataset.js";
 import { type BopInstance, BopResults, readDetections, readResults } from "../bop/files.js";
@@ -6,7 +6,7 @@ import { type BopEvaluation, best, bopModelsIn, evaluateBop, grouped } from "../
 import { fromBop } from "../conventions/bop.js";
 import type { KnownPose } from "../conventions/pose-file.js";
 import type { AlignInput } from "../index.js";
-import { fixed } from "../report-page/columns.js";
+import { fixed } from "../report-page/row.js";
 import { type CaseToDo, caseJob, precise, shared } from "./align.js";
 import type { Job } from "./batch.js";
 import { OutputFile, textOf, UsageError } from "./files.js";
@@ -14,7 +14,7 @@ import type { Flags, NamedFile } from "./flags.js";
 import { StatusLine } from "./progress.js";
 import { pairs } from "./table.js";
 
-/** The options that make sense for targets whose size is known. */
+/** The options of `align` that apply to targets of known size. */
 export const bopOptions = [...shared, ...precise].filter(({ name }) =>
   ["quality", "workBudget", "seed"].includes(name),
 );
@@ -36,7 +36,7 @@ export function resultsFile([dataset = ""]: readonly string[], flags: Flags): Na
   return [{ flag: "the results file", path: `${name}${csv === undefined ? "" : `_${csv}`}.csv`, isFolder: false }];
 }
 
-/** The work on the targets of a dataset; only the scores of a file, if `--evaluate` names one. */
+/** The job of a command line; none if `--evaluate` names a file, which is only scored. */
 export async function bopJob(args: readonly string[], flags: Flags): Promise<Job<CaseToDo> | undefined> {
   const [folder = ""] = args;
   const dataset = new BopDataset(folder, flags.split ?? "");
@@ -67,7 +67,7 @@ export async function bopJob(args: readonly string[], flags: Flags): Promise<Job
   };
 }
 
-/** A case for each instance of each target; and what they are, by their names. */
+/** A case for each instance of each target, and the instances by the names of the cases. */
 async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags: Flags) {
   const { masks = "gt" } = flags;
   const detections = masks === "gt" ? undefined : grouped(readDetections(textOf("--masks", masks)), targetKey);

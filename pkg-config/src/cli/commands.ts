@@ -1,4 +1,4 @@
-/** The table of commands: their arguments, flags, and what they do. What they read and write follows from it. */
+/** The table of commands. Parsing, help, and the lists of inputs and outputs of a run follow from it. */
 import { statSync } from "node:fs";
 import { OPTIONS } from "../index.js";
 import { alignJob, paper, precise, shared } from "./align.js";
@@ -32,14 +32,14 @@ export interface CommandRow {
   name: string;
   summary: string;
   description: string;
-  /** What its arguments are called, and what they are. */
+  /** The name and the meaning of its arguments. */
   argument: readonly [name: string, meaning: string];
   flags: readonly FlagGroup[];
-  /** What follows the flags in its help. */
+  /** The text after the flags in the help. */
   help: string;
-  /** The files that it writes, but that no flag names. */
+  /** Outputs that no flag names. */
   writes?(args: readonly string[], flags: Flags): NamedFile[];
-  /** Finds the cases of a command line. Returns what works on them, and tells whether all are done. */
+  /** Finds the cases. Returns a function that works on them and returns whether all succeeded. */
   prepare(args: readonly string[], flags: Flags): Promise<() => Promise<boolean>>;
 }
 
@@ -191,8 +191,8 @@ export const commands: readonly CommandRow[] = [
 ];
 
 /**
- * Runs a command: checks all that it reads and writes, finds its cases, and works on them.
- * @returns whether all cases are done
+ * Runs a command: checks its inputs and outputs, finds its cases, and works on them.
+ * @returns whether all cases succeeded
  * @throws {@link UsageError}
  */
 export async function runCommand(command: CommandRow, args: readonly string[], flags: Flags): Promise<boolean> {

@@ -1,22 +1,22 @@
-/** The JSON entry of a case: what is written of it, and what tables, details, pictures and reports are made of. */
+/** The JSON entry of a case: the model of a result for files, tables, pictures and reports. */
 import { describe, failure, Sim3AlignError } from "../error.js";
 import type { AlignResult, InputInfo, PoseErrors, SceneResult, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
-import type { Message, Row } from "../report-page/columns.js";
+import type { Message, Row } from "../report-page/row.js";
 import { isRecord, withoutUndefined } from "../values.js";
 import { UsageError } from "./files.js";
 
 /** An entry of any kind. */
 export type Entry = Readonly<Record<string, unknown>>;
 
-/** The entry of what failed. `file` is the invalid one, if it is known. */
+/** The entry of a failure. `file` is the invalid file, if known. */
 export interface FailureEntry extends Entry {
   error: Pick<Sim3AlignError, "code" | "argument" | "found" | "expected" | "remedy" | "message"> & { file?: string };
 }
 
 /**
  * The entry of a failure.
- * @param files maps arguments to the known files
- * @throws {@link UsageError} for what concerns all cases
+ * @param files the file of each argument
+ * @throws {@link UsageError} for errors that concern all cases
  */
 export function failureEntry(thrown: unknown, files: Readonly<Record<string, string>> = {}): FailureEntry {
   if (thrown instanceof UsageError) throw thrown;
@@ -118,7 +118,7 @@ export function sceneEntry(result: SceneResult, errors: readonly (PoseErrors | n
   return { objects: Object.fromEntries(objects), support, metrics, warnings, ...inputEntry(result) };
 }
 
-/** The poses in an entry: its own, or those of its frames or objects. */
+/** The poses in an entry: those of its frames or objects, otherwise the entry itself. */
 export function posesIn(name: string, entry: Entry): { name: string; entry: Entry }[] {
   const { frames, objects = frames, ...own } = entry;
   if (!isRecord(objects)) return [{ name, entry: own }];
@@ -130,7 +130,7 @@ export function posesIn(name: string, entry: Entry): { name: string; entry: Entr
   }));
 }
 
-/** The codes of the errors in an entry: its own, and those of its frames or objects. */
+/** The codes of the errors of an entry, or of its frames or objects. */
 export const errorsIn = (entry: Entry): string[] =>
   isFailure(entry)
     ? [entry.error.code]
@@ -162,8 +162,8 @@ const messageOf = ({ code, message }: Entry): Message => ({ code: String(code), 
 export const warningsOf = ({ warnings }: Entry): Message[] =>
   Array.isArray(warnings) ? warnings.filter(isRecord).map(messageOf) : [];
 
-/** What a row tells, in the order of a table with all of them; they do not depend on the results. */
-export const facts: readonly (readonly [name: string, read: (entry: Entry) => unknown])[] = [
+/** The fields of a row, in the order of CSV files. They do not depend on the results. */
+export const rowFields: readonly (readonly [name: string, read: (entry: Entry) => unknown])[] = [
   ["error", at("error", "code")],
   ["confidence", at("confidence")],
   ["alternatives", ({ alternatives }) => (Array.isArray(alternatives) ? alternatives.length : undefined)],
@@ -189,7 +189,7 @@ export const facts: readonly (readonly [name: string, read: (entry: Entry) => un
 
 /** The row of an entry in a table. */
 export function rowOf(entry: Entry): Row {
-  const { error, ...numbers } = Object.fromEntries(facts.map(([name, read]) => [name, read(entry)]));
+  const { error, ...numbers } = Object.fromEntries(rowFields.map(([name, read]) => [name, read(entry)]));
   const failed = isFailure(entry) ? { error: messageOf(entry.error as Entry) } : {};
   return { ...numbers, ...failed, warnings: warningsOf(entry), isMetric: isMetric(entry) };
 }

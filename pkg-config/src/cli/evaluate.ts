@@ -1,4 +1,4 @@
-/** `sim3align evaluate`: the metrics of transforms on cases. */
+/** `sim3align evaluate`: computes the metrics of transforms on cases. */
 import { failure } from "../error.js";
 import { OPTIONS, type OptionRow } from "../index.js";
 import { evaluationColumns, viewsOf } from "./align.js";
@@ -16,7 +16,7 @@ export const evaluateOptions: readonly OptionRow[] = OPTIONS.evaluate.filter(
   ({ name }) => name !== "truth" && name !== "symmetry",
 );
 
-/** The work on the cases of a command line: the metrics of each, or of each of its frames with a mask. */
+/** The job of a command line: the metrics of each case, or of each of its frames with a mask. */
 export async function evaluateJob(args: readonly string[], flags: Flags): Promise<Job<FolderToDo>> {
   const tasks = await foldersToDo(caseKind, args, flags.list);
   const { transform = "gt", depthKind = "metric" } = flags;
@@ -44,7 +44,7 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
       }
       return { frames: Object.fromEntries(frames) };
     },
-    printed(task, entry, isOnly, style) {
+    lines(task, entry, isOnly, style) {
       const poses = posesIn(task.name, entry);
       return {
         rows: isOnly ? [] : poses.flatMap((pose) => row(pose.name, pose.entry, style)),

@@ -1,4 +1,4 @@
-/** Objects in files: meshes as a result holds them, a scene as one GLB, and scenes for simulators. */
+/** Exports of results: posed meshes, a scene as one GLB, and scenes for simulators. */
 import { mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
@@ -9,7 +9,7 @@ import { parseCameraFile } from "../formats/camera-file.js";
 import type { SceneInput, SceneResult, Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import type { MeshArrays, MeshInput } from "../input/types.js";
-import { fixed } from "../report-page/columns.js";
+import { fixed } from "../report-page/row.js";
 import type { SceneOnDisk } from "../scene-folder.js";
 import type { Sim3Like } from "../sim3.js";
 import { toMjcf } from "../simulators/mjcf.js";

@@ -1,4 +1,4 @@
-/** Files and folders that flags name: checked before the work whose results they get, and written as it is done. */
+/** Files and folders on the command line: checks before a run, and output during it. */
 import {
   accessSync,
   closeSync,

@@ -1,4 +1,4 @@
-/** Flags: the rows of the table of commands, and which files a command line reads and writes. */
+/** Flags of the table of commands, and the inputs and outputs that they name. */
 import { resolve } from "node:path";
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
@@ -9,23 +9,23 @@ import { withoutUndefined } from "../values.js";
 import { checkWritable, makeFolder, UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
 
-/** What is known of a flag besides its name and its meaning. */
-interface FlagFacts {
+/** Settings of a flag. */
+interface FlagSettings {
   parse?: (text: string) => unknown;
   choices?: readonly string[];
   default?: string;
   isRequired?: boolean;
-  /** What is done with the file or folder that its value names, unless that is one of `words`. */
+  /** Whether its value names an input or an output; values in `words` name no file. */
   use?: "reads" | "writes";
   words?: readonly string[];
   /** Whether the file is read whole before it may be written. */
   isReplaceable?: boolean;
-  /** Another flag that has to be given, and how the error names it. */
+  /** Another flag that it needs, and the name of that flag in the error. */
   needs?: readonly [flag: string, what: string];
 }
 
-/** A flag: its name with that of its value, its meaning, and more. */
-export type Flag = readonly [flag: string, meaning: string, facts?: FlagFacts];
+/** A flag: its name with the name of its value, its meaning, and its settings. */
+export type Flag = readonly [flag: string, meaning: string, facts?: FlagSettings];
 
 export const reads = { use: "reads" } as const;
 export const writes = { use: "writes" } as const;
@@ -41,7 +41,7 @@ type Texts =
   | ("imageId" | "depth" | "mask" | "mesh" | "transform" | "support" | "models")
   | ("split" | "masks" | "targets" | "method");
 
-/** Values of the flags of all commands; those of options are unknown here. */
+/** Values of the flags of all commands. */
 export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Partial<Record<Texts, string>>> {
   readonly resume?: boolean;
   readonly workers?: number | "auto";
@@ -62,7 +62,7 @@ export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Parti
   readonly evaluate?: string | true;
 }
 
-/** What is written, and how many cases are worked on at a time. */
+/** The record of a batch, and the number of workers. */
 export const recordFlags = (noun: string): Flag[] => [
   ["--json <file>", 'write the results as JSON; "-" is stdout', writes],
   ["--jsonl <file>", `write a line of JSON for each ${noun} when it is done; "-" is stdout`, writes],

@@ -9,11 +9,11 @@ import { viewNames } from "../scene/sam3d-files.js";
 import { namesIn, UsageError } from "./files.js";
 import { absolutePath, type CaseKey } from "./record.js";
 
-/** What the folders of a command are. */
+/** A kind of folders. */
 export interface FolderKind {
-  /** What one of them is called. */
+  /** The name of one folder. */
   noun: string;
-  /** What makes a folder one, for errors. */
+  /** The mark of such a folder, for errors. */
   mark: string;
   /** Whether a folder is one. */
   is(folder: string): boolean;

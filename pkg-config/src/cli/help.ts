@@ -46,7 +46,7 @@ const status = `
 Exit status: 0 all cases done, 1 some case failed (the others are done), 2 the command line is wrong, 130 interrupted
 by Ctrl-C.`;
 
-/** What --list, --workers and the outputs do, for folders of a kind. */
+/** Lists, workers and outputs, for folders of a kind. */
 const batches = (noun: string, mark: string) => `
 Batches
   The ${noun}s are worked on side by side; the results do not depend on --workers. Each is read when its turn comes: memory

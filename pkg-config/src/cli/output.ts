@@ -1,12 +1,12 @@
-/** What a batch writes: JSON, a record, a table of comma-separated values, and text for people. */
-import { isLength } from "../report-page/columns.js";
-import { type Entry, facts, isMetric, posesIn } from "./entry.js";
+/** The outputs of a batch: JSON, a record, comma-separated values, and text for people. */
+import { isLength } from "../report-page/row.js";
+import { type Entry, isMetric, posesIn, rowFields } from "./entry.js";
 import { checkReplaceable, isOrdinary, OutputFile } from "./files.js";
 import type { Flags } from "./flags.js";
 import { type CaseKey, JsonlFile, type RecordedEntry } from "./record.js";
 import { Style } from "./table.js";
 
-/** What gets the entries of cases, in another format. */
+/** An output for the entries of cases. */
 export interface EntrySink {
   /** @param isFinal whether no other entry will replace it */
   add(name: string, entry: Entry, isFinal: boolean): void;
@@ -55,7 +55,7 @@ class ResultsFile implements EntrySink {
 }
 
 /** The headings of a table of comma-separated values. */
-export const csvHeadings: readonly string[] = ["case", ...facts.map(([name]) => name)];
+export const csvHeadings: readonly string[] = ["case", ...rowFields.map(([name]) => name)];
 
 /**
  * A row for each case, or for each frame or object of one, after a row of headings (RFC 4180 with line feeds). What a case
@@ -75,7 +75,7 @@ class CsvFile implements EntrySink {
     // A case of several views has a pose of its own; a scene or a video only has those of its parts.
     const poses = "confidence" in entry ? [{ name, entry }] : posesIn(name, entry);
     const rows = poses.map((pose) =>
-      [pose.name, ...facts.map(([fact, read]) => (isLength(fact) && !isMetric(pose.entry) ? "" : read(pose.entry)))]
+      [pose.name, ...rowFields.map(([fact, read]) => (isLength(fact) && !isMetric(pose.entry) ? "" : read(pose.entry)))]
         .map(csvCell)
         .join(","),
     );

@@ -74,7 +74,7 @@ export class Pictures {
   }
 }
 
-/** What is read of an entry of a posed mesh. */
+/** The properties of an entry that a posed mesh needs. */
 interface PosedEntry extends Partial<ExportedAs>, Pick<UprightOptions, "support"> {
   matrix: number[];
 }

@@ -1,5 +1,4 @@
 /** Progress on a terminal: a line that is overwritten. */
-
 const eraseLine = "\r\u001b[2K";
 
 /** The part of a stream that a line needs. */

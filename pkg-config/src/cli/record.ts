@@ -19,13 +19,13 @@ import type { Entry } from "./entry.js";
 import { isOrdinary, namesIn, OutputFile, UsageError } from "./files.js";
 import { lockRecord } from "./record-lock.js";
 
-/** What a case is: its name, and where it is. */
+/** The identity of a case. */
 export interface CaseKey {
   /** For people, and for the other files. It depends on the other cases of a batch. */
   name: string;
-  /** Its absolute path, by which a record knows it; without one, it is known by its name. */
+  /** Its absolute path, the key in a record; without a path, the name is the key. */
   path?: string | undefined;
-  /** Its folder, if it is one: its content tells it where it has moved. */
+  /** Its folder, if it is one: a case that has moved is recognised by the content. */
   folder?: string | undefined;
 }
 
@@ -197,12 +197,12 @@ async function* withLast(lines: AsyncIterable<string>) {
   if (line !== undefined) yield { line, isLast: true };
 }
 
-/** What reads a record. */
+/** A reader of a record. */
 interface Recorded {
   recorded(): AsyncIterable<RecordedEntry> | readonly RecordedEntry[];
 }
 
-/** An entry of the record, with the case of this batch that it belongs to, and its name in this batch or its own. */
+/** An entry of the record, with the case of this batch and the name of that case. */
 export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" | "entry"> {
   task: T | undefined;
 }

@@ -4,13 +4,12 @@ import { existsSync } from "node:fs";
 import { mkdir, readFile, rename, writeFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import type { CasePictures } from "../pictures/case-pictures.js";
-import { columns } from "../report-page/columns.js";
-import type { ReportDetails, ReportRow } from "../report-page/types.js";
+import { columns, type ReportDetails, type ReportRow } from "../report-page/row.js";
 import { alternativesOf, type Entry, rowOf } from "./entry.js";
 import { namesIn, OutputFile, UsageError } from "./files.js";
 
-/** What the page reads of a row. */
-const shown: readonly string[] = [...Object.keys(columns), "error", "warnings", "isMetric"];
+/** The fields of a row on the page. */
+const pageFields: readonly string[] = [...Object.keys(columns), "error", "warnings", "isMetric"];
 
 /** The files of a report. */
 export class ReportFolder {
@@ -41,13 +40,13 @@ export class ReportFolder {
 
   /** Adds a row to the table; its pictures are shown if they are there. */
   add(name: string, entry: Entry): void {
-    const facts = Object.entries(rowOf(entry)).filter(([fact]) => shown.includes(fact));
+    const fields = Object.entries(rowOf(entry)).filter(([field]) => pageFields.includes(field));
     const folder = this.has(name) ? { folder: fileName(name) } : {};
-    const row = { name, ...folder, ...Object.fromEntries(facts) } as ReportRow;
+    const row = { name, ...folder, ...Object.fromEntries(fields) } as ReportRow;
     this.#rows.lines([`sim3align.rows.push(${JSON.stringify(row)});`]);
   }
 
-  /** Writes the pictures of a case: `details.js` last, so that its presence tells that all are there. */
+  /** Writes the pictures of a case: `details.js` last, its presence means that all are there. */
   async write(name: string, entry: Entry, { files, ...known }: CasePictures): Promise<void> {
     const folder = join(this.folder, "cases", fileName(name));
     await mkdir(folder, { recursive: true });

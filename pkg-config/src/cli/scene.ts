@@ -1,19 +1,20 @@
-/** `sim3align scene`: the objects of scenes, and what stands where. */
+/** `sim3align scene`: aligns the objects of scenes. */
 import { read } from "../case-folder.js";
 import { parsedJson } from "../formats/json.js";
 import {
   type Aligner,
   type AlignInput,
+  type Contact,
   OPTIONS,
   type OptionRow,
   type SceneInput,
   type SceneOptions,
 } from "../index.js";
-import { cellOf, fixed } from "../report-page/columns.js";
+import { cellOf, fixed } from "../report-page/row.js";
 import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values.js";
 import { errorsOf } from "./align.js";
-import { type Doing, failedLine, type Job } from "./batch.js";
+import { type CaseRun, failedLine, type Job } from "./batch.js";
 import { depthRows, proportionsRows, warningLine } from "./details.js";
 import {
   type AlignEntry,
@@ -41,7 +42,7 @@ interface SceneToDo extends Omit<FolderToDo, "folder"> {
   folder?: string;
 }
 
-/** The work on the scenes of a command line. */
+/** The job of a command line. */
 export async function sceneJob(args: readonly string[], flags: Flags): Promise<Job<SceneToDo>> {
   const { models, sam3d } = flags;
   const tasks = await scenesIn(await foldersToDo(sam3d ? sam3dKind : sceneKind, args, flags.list), flags.imageId);
@@ -50,7 +51,7 @@ export async function sceneJob(args: readonly string[], flags: Flags): Promise<J
   const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models, sam3d });
   return {
     tasks,
-    run: (aligner, task, doing) => alignScene(aligner, task, flags, settings, support, doing),
+    run: (aligner, task, caseRun) => alignScene(aligner, task, flags, settings, support, caseRun),
     async inputs({ name, scene }) {
       const onDisk = await readSceneFolder(scene, settings);
       const inputs = new Map<string, AlignInput>();
@@ -74,7 +75,7 @@ async function scenesIn(folders: readonly FolderToDo[], imageId: string | undefi
   return scenes;
 }
 
-/** @throws {@link UsageError} for files of one scene, if there are several, and for files in metres, if there are none */
+/** @throws {@link UsageError} for files of a single scene, if there are several, and for files that need metres */
 function checkSceneFiles(flags: Flags, scenes: number): void {
   const { sam3d, depthKind = sam3d ? "scale-invariant" : "metric", knownExtent, scale } = flags;
   const isMetric = depthKind === "metric" || knownExtent !== undefined || typeof scale === "number";
@@ -93,14 +94,14 @@ async function alignScene(
   flags: Flags,
   settings: SceneSettings,
   support: SceneInput["support"],
-  doing: Doing,
+  caseRun: CaseRun,
 ): Promise<Entry> {
   const scene = await readSceneFolder(task.scene, settings);
   const options: SceneOptions = { ...givenOptions(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
   // A scale that is given goes before the first poses of files.
   const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
   const input = { ...scene.input, objects, support } as SceneInput;
-  const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress: doing.onProgress }));
+  const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
   const { depthUnit, cameraSource, depthCalibration } = result;
   const read = withoutUndefined({ depthUnit, cameraSource, depthCalibration });
   const errors = result.objects.map((object, i) => {
@@ -111,7 +112,7 @@ async function alignScene(
   const entry = sceneEntry(result, await Promise.all(errors));
   const written = await writeSceneFiles(scene, result, flags);
   const names = result.objects.map(({ name }, i) => name ?? `${i}`);
-  doing.print(...linesOf(task.name, entry, names), ...written);
+  caseRun.print(...linesOf(task.name, entry, names), ...written);
   return entry;
 }
 
@@ -150,7 +151,7 @@ function linesOf(name: string, entry: SceneEntry, names: readonly string[]): str
   const rows = names.flatMap((object) => {
     const own = entry.objects[object] as Entry;
     if (isFailure(own)) return [failedLine(object, own, plain)];
-    const { contact, scale, ...aligned } = own as unknown as AlignEntry & { contact: SceneContact };
+    const { contact, scale, ...aligned } = own as unknown as AlignEntry & { contact: Contact };
     const { restsOn, gapM, sharedVolume } = contact;
     const row = rowOf(own);
     const cells = [
@@ -166,11 +167,4 @@ function linesOf(name: string, entry: SceneEntry, names: readonly string[]): str
   });
   const notes = warningsOf({ warnings }).map((warning) => warningLine(warning, plain));
   return [`${name}: ${plane}`, ...pairs(depthRows(entry)), headings(columns), ...rows, ...notes];
-}
-
-/** What an object stands on. */
-interface SceneContact {
-  restsOn: string | number | null;
-  gapM: number | null;
-  sharedVolume: number;
 }

@@ -1,7 +1,7 @@
-/** Text on a terminal: styles, tables, and lengths that are metric or in a unit that nobody knows. */
+/** Text on a terminal: styles, tables, and lengths with or without a unit. */
 import type { WriteStream } from "node:tty";
 import { stripVTControlCharacters } from "node:util";
-import { type ColumnName, cellOf, columns, fixed } from "../report-page/columns.js";
+import { type ColumnName, cellOf, columns, fixed } from "../report-page/row.js";
 import { type Entry, isFailure, rowOf } from "./entry.js";
 
 /** Bold and coloured text, if the terminal supports it and NO_COLOR is not set. */
@@ -84,7 +84,7 @@ export function pairs(entries: readonly Pair[]): string[] {
   return entries.map(([name, value]) => `  ${pad(name, longest, false)}  ${value}`);
 }
 
-/** What is said once of results whose lengths have no unit. */
+/** The note on results whose lengths have no unit. */
 export const noUnitNote =
   "Lengths have no unit, because nothing metric is known: --known-extent, or a number as --scale, makes them metric.";
 

@@ -1,9 +1,9 @@
-/** `sim3align track`: an object through the frames of videos. */
+/** `sim3align track`: tracks an object through the frames of videos. */
 import { join } from "node:path";
 import { frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
 import { type Aligner, OPTIONS, type TrackOptions } from "../index.js";
-import { fixed, significant } from "../report-page/columns.js";
-import type { Doing, Job } from "./batch.js";
+import { fixed, significant } from "../report-page/row.js";
+import type { CaseRun, Job } from "./batch.js";
 import { depthRows } from "./details.js";
 import { type Entry, failureEntry, frameEntry, trackEntry } from "./entry.js";
 import { UsageError } from "./files.js";
@@ -19,24 +19,29 @@ const columns = [
   ...["conf.", "scale", "± %", "time ms"].map((heading) => numeric(heading, 9)),
 ];
 
-/** The work on the videos of a command line. */
+/** The job of a command line. */
 export async function trackJob(args: readonly string[], flags: Flags): Promise<Job<FolderToDo>> {
   const tasks = await foldersToDo(videoKind, args, flags.list);
   for (const { folder } of tasks) {
     if ((await frameNames(folder)).length === 0) throw new UsageError(`${folder} has no folder frame_*.`);
   }
-  return { tasks, run: (aligner, video, doing) => trackVideo(aligner, video, flags, doing) };
+  return { tasks, run: (aligner, video, caseRun) => trackVideo(aligner, video, flags, caseRun) };
 }
 
-async function trackVideo(aligner: Aligner, { name, folder }: FolderToDo, flags: Flags, doing: Doing): Promise<Entry> {
+async function trackVideo(
+  aligner: Aligner,
+  { name, folder }: FolderToDo,
+  flags: Flags,
+  caseRun: CaseRun,
+): Promise<Entry> {
   const names = await frameNames(folder);
   const given = givenOptions(flags, OPTIONS.track);
   if (typeof given.initial === "string") given.initial = await readTransform("initial", given.initial, name);
   const mesh = meshIn(folder);
-  doing.files = { mesh };
+  caseRun.files = { mesh };
   const tracker = await aligner.track(await readMeshFile(mesh), given as TrackOptions);
   try {
-    doing.print(doing.style.bold(name), headings(columns));
+    caseRun.print(caseRun.style.bold(name), headings(columns));
     const read = (frame: string) => readFrame(join(folder, frame), caseSettings(flags));
     const frames = new Map<string, Entry>();
     // How the last frame was read stands for the others.
@@ -68,11 +73,11 @@ async function trackVideo(aligner: Aligner, { name, folder }: FolderToDo, flags:
         frames.set(frame, failed);
         cells = [failed.error.code, "–", "–", "–"];
       }
-      doing.partial(trackEntry(frames));
-      doing.print(tableLine(columns, [frame, ...cells, fixed(performance.now() - began, 0)]));
-      if (doing.isClosed()) break;
+      caseRun.partial(trackEntry(frames));
+      caseRun.print(tableLine(columns, [frame, ...cells, fixed(performance.now() - began, 0)]));
+      if (caseRun.isClosed()) break;
     }
-    if (last !== undefined) doing.print(...pairs(depthRows(last)));
+    if (last !== undefined) caseRun.print(...pairs(depthRows(last)));
     return trackEntry(frames);
   } finally {
     tracker.close();

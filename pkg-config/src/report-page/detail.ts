@@ -1,8 +1,7 @@
 /** The details of a case: pictures with layers, alternatives, numbers, and the view in 3D. */
-import { fixed, significant } from "./columns.js";
 import { byId, element } from "./dom.js";
+import { fixed, type ReportDetails, type ReportHost, type ReportRow, significant } from "./row.js";
 import { SpaceView } from "./space-view.js";
-import type { ReportDetails, ReportHost, ReportRow } from "./types.js";
 
 /** The layers over the picture, from below, and whether each is shown at first. */
 const layers = [

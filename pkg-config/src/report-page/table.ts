@@ -1,7 +1,6 @@
 /** The table: sorted, filtered, and with elements for the rows in sight only. */
-import { type Column, type ColumnName, cellOf, columns, numberIn } from "./columns.js";
 import { byId, element } from "./dom.js";
-import type { ReportRow } from "./types.js";
+import { type Column, type ColumnName, cellOf, columns, numberIn, type ReportRow } from "./row.js";
 
 /** Height of a row, pixels; the style sheet has the same. */
 const ROW = 48;
@@ -11,7 +10,7 @@ const SPARE = 6;
 /** A column of the page, in its order. */
 type Id = "name" | "warnings" | ColumnName;
 
-/** The columns that the rows fill: those of numbers have long headings, and those of errors need true poses. */
+/** The columns of a report. Errors have columns only if a row has a true pose. */
 function idsOf(rows: readonly ReportRow[]): Id[] {
   const numbers = (Object.keys(columns) as ColumnName[]).filter((id) => "heading" in columns[id]);
   const hasTruth = rows.some((row) => typeof row.scaleError === "number");
@@ -19,7 +18,7 @@ function idsOf(rows: readonly ReportRow[]): Id[] {
   return ["confidence", "name", ...wanted.filter((id) => id !== "confidence" && id !== "timeMs"), "warnings", "timeMs"];
 }
 
-/** The heading of a column, and what it means. */
+/** The heading of a column, and its tooltip. */
 const headingOf = (id: Id): Column => {
   if (id !== "name" && id !== "warnings") return columns[id];
   return { short: "", heading: id === "name" ? "Case" : "Warnings", digits: 0 };
@@ -30,11 +29,11 @@ const codesOf = ({ error, warnings }: ReportRow) => error?.code ?? warnings.map(
 const textIn = (row: ReportRow, id: Id) =>
   id === "name" ? row.name : id === "warnings" ? codesOf(row) : cellOf(row, id);
 
-/** What a column is sorted by. Missing values come last in either order; a failure has no number. */
+/** The sort key of a column. Missing values come last in either order; a failure has no number. */
 const keyIn = (row: ReportRow, id: Id) =>
   id === "name" ? row.name : id === "warnings" ? codesOf(row) || null : numberIn(row, id);
 
-/** Which rows are shown. */
+/** A filter of rows. */
 export interface Filter {
   text: string;
   /** Only cases of a confidence up to this; failures count as 0. */

@@ -1,13 +1,14 @@
-/** The columns of tables, on a terminal and in a report: the model of a row, and how its numbers are shown. */
+/** The row of a pose in tables, on a terminal and in a report: its values, and the format of each column. */
+import type { CasePictures } from "../pictures/case-pictures.js";
 
-/** A column: its headings on a terminal and in a report, which shows those with a long one. */
+/** A column: its headings on a terminal and in a report. A column without the second is not in reports. */
 export interface Column {
   short: string;
   heading?: string;
-  /** What the heading means, as a tooltip. */
+  /** The tooltip of the heading. */
   title?: string;
   digits: number;
-  /** Of what is shown, relative to the number of the row. */
+  /** From the value in the row to the number in the cell. */
   factor?: number;
   /** Whether `digits` are significant ones. */
   isSignificant?: boolean;
@@ -15,7 +16,7 @@ export interface Column {
 
 const truth = "Against the true pose";
 
-/** The columns by the names of their numbers. */
+/** The columns by the names of their values. */
 export const columns = {
   confidence: { short: "conf.", heading: "Confidence", title: "Probability that the pose is right", digits: 2 },
   alternatives: {
@@ -54,7 +55,7 @@ export interface Message {
   message: string;
 }
 
-/** What tables tell of a pose, or of a failure. */
+/** The row of a pose or of a failure. */
 export interface Row extends Readonly<Partial<Record<ColumnName, number | null>>> {
   error?: Message;
   warnings: readonly Message[];
@@ -62,13 +63,32 @@ export interface Row extends Readonly<Partial<Record<ColumnName, number | null>>
   isMetric: boolean;
 }
 
+/** A case in the table. */
+export interface ReportRow extends Row {
+  name: string;
+  /** The folder of its pictures; missing where there are none. */
+  folder?: string;
+}
+
+/** The details of a case, which the page loads on demand. */
+export interface ReportDetails extends Omit<CasePictures, "files"> {
+  alternatives: { file: string; turnDeg: number; score: number }[];
+  matrix: number[];
+}
+
+/** The global object that the scripts of a report call. */
+export interface ReportHost {
+  rows: ReportRow[];
+  details: Record<string, ReportDetails>;
+}
+
 /** Whether a number is one of metres or millimetres. */
 export const isLength = (name: string) => /M(m)?$/.test(name);
 
-/** The number in a column; `null` for lengths without a unit, and for what is unknown. */
+/** The value in a column; `null` for lengths without a unit, and for missing values. */
 export function numberIn(row: Row, name: ColumnName): number | null {
   if (isLength(name) && !row.isMetric) return null;
-  // What has no confidence looks for no alternatives.
+  // Only a search that finds a confidence looks for alternatives.
   if (name === "alternatives" && (row.confidence ?? null) === null) return null;
   return row[name] ?? null;
 }
