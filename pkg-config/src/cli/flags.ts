@@ -30,11 +30,10 @@ export type Flag = readonly [flag: string, meaning: string, facts?: FlagSettings
 export const reads = { use: "reads" } as const;
 export const writes = { use: "writes" } as const;
 
-/** Flags under a title of the help; those without one are under "Options". */
-export interface FlagGroup {
-  title?: string;
-  flags: readonly Flag[];
-}
+/** Flags, and titles in the help of the flags that follow. */
+export type FlagList = readonly (Flag | string)[];
+
+const withoutTitles = (list: FlagList): Flag[] => list.filter((row) => typeof row !== "string");
 
 type Texts =
   | ("list" | "json" | "jsonl" | "csv" | "report" | "overlay" | "glb" | "sceneGlb" | "mjcf" | "urdf" | "usd" | "scores")
@@ -118,16 +117,18 @@ export const caseSettings = ({ depthScale, depthKind, imageId, resizeMask, image
   withoutUndefined({ depthScale, depthKind, imageId, resizeMask, image: image === false ? false : undefined });
 
 /** Adds flags to a command. */
-export function addFlags(command: Command, groups: readonly FlagGroup[]): void {
-  for (const { title, flags } of groups) {
-    if (title !== undefined) command.optionsGroup(title);
-    for (const [flag, meaning, facts = {}] of flags) {
-      const option = new Option(flag, meaning);
-      if (facts.choices !== undefined) option.choices(facts.choices);
-      if (facts.parse !== undefined) option.argParser(facts.parse);
-      if (facts.default !== undefined) option.default(facts.default);
-      command.addOption(option.makeOptionMandatory(facts.isRequired === true));
+export function addFlags(command: Command, list: FlagList): void {
+  for (const row of list) {
+    if (typeof row === "string") {
+      command.optionsGroup(row);
+      continue;
     }
+    const [flag, meaning, { choices, parse, default: value, isRequired = false } = {}] = row;
+    const option = new Option(flag, meaning).makeOptionMandatory(isRequired);
+    if (choices !== undefined) option.choices(choices);
+    if (parse !== undefined) option.argParser(parse);
+    if (value !== undefined) option.default(value);
+    command.addOption(option);
   }
 }
 
@@ -150,34 +151,25 @@ const valueName = (flag: string) =>
     .replace(/-(.)/g, (_, letter: string) => letter.toUpperCase());
 
 /** The files and folders that the flags read or write, in the order of the flags. */
-export function filesOf(groups: readonly FlagGroup[], flags: Flags, what: "reads" | "writes"): NamedFile[] {
-  return groups.flatMap((group) =>
-    group.flags.flatMap(([flag, , facts = {}]) => {
-      const value = flags[valueName(flag)];
-      if (facts.use !== what || typeof value !== "string" || facts.words?.includes(value)) return [];
-      return [
-        {
-          flag: nameOf(flag),
-          path: value,
-          isFolder: flag.includes("<folder>"),
-          isReplaceable: facts.isReplaceable === true,
-        },
-      ];
-    }),
-  );
-}
+export const filesOf = (list: FlagList, flags: Flags, use: "reads" | "writes"): NamedFile[] =>
+  withoutTitles(list).flatMap(([flag, , settings = {}]) => {
+    const path = flags[valueName(flag)];
+    if (settings.use !== use || typeof path !== "string" || settings.words?.includes(path)) return [];
+    const isReplaceable = settings.isReplaceable === true;
+    return [{ flag: nameOf(flag), path, isFolder: flag.includes("<folder>"), isReplaceable }];
+  });
 
 /**
  * Checks flags before anything is read: flags that need others, and outputs that cannot be written or are one file.
  * @throws {@link UsageError}
  */
 export function checkFlags(
-  groups: readonly FlagGroup[],
+  list: FlagList,
   flags: Flags,
   inputs: readonly NamedFile[],
   outputs: readonly NamedFile[],
 ): void {
-  for (const [flag, , { needs } = {}] of groups.flatMap((group) => group.flags)) {
+  for (const [flag, , { needs } = {}] of withoutTitles(list)) {
     if (needs !== undefined && flags[valueName(flag)] !== undefined && flags[needs[0]] === undefined)
       throw new UsageError(`${nameOf(flag)} needs ${needs[1]}.`);
   }

@@ -79,7 +79,7 @@ async function scenesIn(folders: readonly FolderToDo[], imageId: string | undefi
 function checkSceneFiles(flags: Flags, scenes: number): void {
   const { sam3d, depthKind = sam3d ? "scale-invariant" : "metric", knownExtent, scale } = flags;
   const isMetric = depthKind === "metric" || knownExtent !== undefined || typeof scale === "number";
-  for (const { flag } of filesOf([{ flags: sceneFileFlags }], flags, "writes")) {
+  for (const { flag } of filesOf(sceneFileFlags, flags, "writes")) {
     if (flag !== "--scene-glb" && !isMetric)
       throw new UsageError(
         `${flag} needs metres, which depth of this kind has not: pass --known-extent, or a number as --scale; or --depth-kind metric, if it is in metres.`,
