@@ -262,21 +262,15 @@ function infoOf(id: string, entry: unknown): BopModelInfo {
     failure("CORRUPT_FILE", `${paths.info}: ${id}`, shown(found), expected, remedy);
   const { diameter, symmetries_discrete = [], symmetries_continuous = [] } = isRecord(entry) ? entry : {};
   if (!isNumber(diameter) || diameter <= 0) throw invalid(diameter, "a diameter in millimetres");
-  const list = (value: unknown, name: string) => {
-    if (!Array.isArray(value)) throw invalid(value, `a list of ${name}`);
-    return value as unknown[];
+  const numbers = (list: unknown, name: string, count: number, flat = (row: unknown) => row) => {
+    const rows = Array.isArray(list) ? list.map((row) => numbersIn(flat(row), count)) : [null];
+    if (rows.includes(null)) throw invalid(list, `a list of ${count} numbers each as ${name}`);
+    return Float64Array.from(rows.flat() as number[]);
   };
-  const numbers = (value: unknown, count: number, name: string) => {
-    const found = numbersIn(value, count);
-    if (found === null) throw invalid(value, `${count} numbers in ${name}`);
-    return found;
+  const axis = (row: unknown) => (isRecord(row) ? [row.axis, row.offset] : null);
+  return {
+    diameterMm: diameter,
+    discrete: numbers(symmetries_discrete, "symmetries_discrete", 16),
+    continuous: numbers(symmetries_continuous, "symmetries_continuous", 6, axis),
   };
-  const discrete = list(symmetries_discrete, "symmetries_discrete").flatMap((symmetry) =>
-    numbers(symmetry, 16, "symmetries_discrete"),
-  );
-  const continuous = list(symmetries_continuous, "symmetries_continuous").flatMap((symmetry) => {
-    const { axis, offset } = isRecord(symmetry) ? symmetry : {};
-    return [...numbers(axis, 3, "axis"), ...numbers(offset, 3, "offset")];
-  });
-  return { diameterMm: diameter, discrete: Float64Array.from(discrete), continuous: Float64Array.from(continuous) };
 }

@@ -25,7 +25,6 @@ import {
 } from "../index.js";
 import { withoutUndefined } from "../values.js";
 import { type CaseRun, failedLine, type Job } from "./batch.js";
-import { correctedInput } from "./corrected-input.js";
 import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
 import {
   type AlignEntry,
@@ -37,10 +36,11 @@ import {
   viewsEntry,
   warningsOf,
 } from "./entry.js";
+import { correctedInput } from "./exports.js";
 import { UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { caseKind, foldersToDo } from "./folders.js";
-import { givenOptions } from "./option-flags.js";
+import { optionValues } from "./option-flags.js";
 import { absolutePath, type CaseKey } from "./record.js";
 import { caseTable, type Style } from "./table.js";
 import { readTransform } from "./transform-file.js";
@@ -53,7 +53,7 @@ export const paper: readonly OptionRow[] = OPTIONS.paper.filter((row) => !isShar
 
 /** A case to read and align. */
 export interface CaseToDo extends CaseKey {
-  /** Whether its true pose is known. */
+  /** Whether it has a true pose. */
   readonly hasTruth: boolean;
   /** Reads a case of one view. */
   read(): Promise<Pick<CaseOnDisk, "input" | "truth" | "files">>;
@@ -206,7 +206,7 @@ async function alignFrames(aligner: Aligner, name: string, folder: string, flags
   return viewsEntry(alignment, names, await Promise.all(errors));
 }
 
-/** The errors of a pose relative to the true one, if that is known and the pose is metric. */
+/** The errors of a metric pose relative to the true one; `null` without a true pose. */
 export async function errorsOf(
   aligner: Aligner,
   input: AlignInput,
@@ -221,11 +221,11 @@ export async function errorsOf(
 
 /** The options set by `--options` and by flags. */
 async function alignOptions(flags: Flags, name: string): Promise<OptionsOf<Preset, boolean>> {
-  const given: Record<string, unknown> = {
+  const options: Record<string, unknown> = {
     ...flags.options,
-    ...givenOptions(flags, [...shared, ...precise, ...paper]),
+    ...optionValues(flags, [...shared, ...precise, ...paper]),
     ...withoutUndefined({ preset: flags.preset }),
   };
-  if (typeof given.initial === "string") given.initial = await readTransform("initial", given.initial, name);
-  return given as unknown as OptionsOf<Preset, boolean>;
+  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
+  return options as unknown as OptionsOf<Preset, boolean>;
 }

@@ -174,10 +174,10 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
   let aligner: Aligner | undefined;
   try {
     if (left.length > 0) {
-      const own = await createAligner({ workers: size });
-      aligner = own;
+      const created = await createAligner({ workers: size });
+      aligner = created;
       if (!isOnly) progress = new BatchProgress(process.stderr, left.length);
-      for await (const write of concurrently(left, size > 1 ? size + READ_AHEAD : 1, (task) => run(own, task))) {
+      for await (const write of concurrently(left, size > 1 ? size + READ_AHEAD : 1, (task) => run(created, task))) {
         write();
         if (output.isClosed) break;
       }

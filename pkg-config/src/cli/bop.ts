@@ -96,8 +96,8 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
   for (const target of targets) {
     const { imageId, objectId, count } = target;
     if (detections !== undefined) {
-      const own = best(detections.get(targetKey(target)) ?? [], count);
-      for (const [i, detection] of own.entries()) add(target, i, detection, () => detection.mask, null);
+      const chosen = best(detections.get(targetKey(target)) ?? [], count);
+      for (const [i, detection] of chosen.entries()) add(target, i, detection, () => detection.mask, null);
       continue;
     }
     const scene = await dataset.scene(target.sceneId);

@@ -81,8 +81,8 @@ export function viewsEntry(alignment: ViewsAlignment, frames: readonly string[],
   const { scale, world, confidence, alternatives, uncertainty, proportions, warnings } = alignment;
   const { timingsMs, ...diagnostics } = alignment.diagnostics;
   const views = alignment.views.map(({ camera, ...view }, k) => {
-    const own = errors[k] ?? null;
-    return { ...poseEntry(view), camera: poseEntry(camera), ...(own === null ? {} : { errors: own }) };
+    const rest = errors[k] ?? null;
+    return { ...poseEntry(view), camera: poseEntry(camera), ...(rest === null ? {} : { errors: rest }) };
   });
   return {
     // Without camera poses, there is no world: the poses are those of the frames.
@@ -120,10 +120,10 @@ export function sceneEntry(result: SceneResult, errors: readonly (PoseErrors | n
 
 /** The poses in an entry: those of its frames or objects, otherwise the entry itself. */
 export function posesIn(name: string, entry: Entry): { name: string; entry: Entry }[] {
-  const { frames, objects = frames, ...own } = entry;
-  if (!isRecord(objects)) return [{ name, entry: own }];
+  const { frames, objects = frames, ...rest } = entry;
+  if (!isRecord(objects)) return [{ name, entry: rest }];
   // The objects of a scene are in one depth map.
-  const { depthCalibration, support } = own;
+  const { depthCalibration, support } = rest;
   return Object.entries(objects).map(([part, pose]) => ({
     name: `${name}/${part}`,
     entry: { ...withoutUndefined({ depthCalibration, support }), ...(pose as Entry) },
@@ -142,10 +142,10 @@ export const alternativesOf = ({ alternatives }: Entry): Entry[] =>
 
 /** Whether the lengths of a result, or of its entry, are metres. */
 export function isMetric(result: object): boolean {
-  const { depthCalibration, frames, views = frames, ...own } = result as Entry;
+  const { depthCalibration, frames, views = frames, ...rest } = result as Entry;
   if (isRecord(depthCalibration)) return depthCalibration.isMetric !== false;
   if (typeof views === "object" && views !== null) return Object.values(views).every(isMetric);
-  return own.isMetric !== false;
+  return rest.isMetric !== false;
 }
 
 /** Follows property names and indices into a JSON value. */

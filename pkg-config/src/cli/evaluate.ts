@@ -7,7 +7,7 @@ import { evaluationDetails } from "./details.js";
 import { type Entry, failureEntry, isFailure, posesIn } from "./entry.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { caseKind, type FolderToDo, foldersToDo } from "./folders.js";
-import { givenOptions } from "./option-flags.js";
+import { optionValues } from "./option-flags.js";
 import { caseTable } from "./table.js";
 import { readTransform } from "./transform-file.js";
 
@@ -20,7 +20,7 @@ export const evaluateOptions: readonly OptionRow[] = OPTIONS.evaluate.filter(
 export async function evaluateJob(args: readonly string[], flags: Flags): Promise<Job<FolderToDo>> {
   const tasks = await foldersToDo(caseKind, args, flags.list);
   const { transform = "gt", depthKind = "metric" } = flags;
-  const given = givenOptions(flags, evaluateOptions);
+  const options = optionValues(flags, evaluateOptions);
   const row = caseTable(
     tasks.map(({ name }) => name),
     evaluationColumns,
@@ -31,11 +31,11 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
       const frames = new Map<string, Entry>();
       for (const { frame, input, truth, files } of await viewsOf(folder, caseSettings(flags))) {
         const evaluate = async (): Promise<Entry> => {
-          const known = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
+          const target = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
           if (transform === "gt" && truth === null) throw noTruth(frame === undefined ? folder : `${folder}/${frame}`);
           const matrix =
             transform === "gt" ? truth?.transform.matrix : await readTransform("transform", transform, name, frame);
-          const evaluation = await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...given, ...known });
+          const evaluation = await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...options, ...target });
           return { ...evaluation, ...(depthKind === "metric" ? {} : { isMetric: false }) };
         };
         const entry = await evaluate().catch((error) => failureEntry(error, files));

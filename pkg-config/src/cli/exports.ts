@@ -1,13 +1,15 @@
-/** Exports of results: posed meshes, a scene as one GLB, and scenes for simulators. */
+/** Inputs and meshes in the lengths of a result; files of posed meshes, of scenes, and of scenes for simulators. */
 import { mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
+import { correctDepth } from "../conventions/corrected-depth.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
 import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
 import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
 import { fileReaders } from "../file-readers.js";
 import { parseCameraFile } from "../formats/camera-file.js";
-import type { SceneInput, SceneResult, Stretch } from "../index.js";
+import type { AlignInput, DepthCalibration, SceneInput, SceneResult, Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
+import { readView } from "../input/resolve.js";
 import type { MeshArrays, MeshInput } from "../input/types.js";
 import { fixed } from "../report-page/row.js";
 import type { SceneOnDisk } from "../scene-folder.js";
@@ -18,6 +20,20 @@ import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
 import { isRecord, withoutUndefined } from "../values.js";
 import type { Flags } from "./flags.js";
+
+/** An input in the lengths of a result. Results without a calibration leave the depth as it is. */
+export async function correctedInput(
+  input: AlignInput,
+  calibration: DepthCalibration | undefined,
+): Promise<AlignInput> {
+  if (calibration === undefined) return input;
+  const { image, mask, mesh, resizeMask } = input;
+  // The photo is not needed to read the depth.
+  const { view } = await readView({ ...input, image: undefined }, fileReaders);
+  const depthMap = { data: view.depth as Float32Array, width: Number(view.width), height: Number(view.height) };
+  const depth = correctDepth(depthMap, calibration);
+  return { depth, camera: calibration.camera, mask, mesh, image, resizeMask };
+}
 
 /** A mesh for a file, with its transform. */
 export interface ExportedMesh<M> {
@@ -47,12 +63,12 @@ export function exportedArrays<M extends MeshArrays>(
 
 /** The file of a GLB, whose materials are kept, or the arrays of another mesh, for an export. */
 export async function exportedMesh(
-  given: MeshInput,
+  input: MeshInput,
   pose: Sim3Like,
   as: ExportedAs,
 ): Promise<ExportedMesh<Uint8Array | MeshArrays>> {
-  const { bytes, format } = (isRecord(given) ? given : {}) as { bytes?: Uint8Array; format?: string };
-  const read = async () => (await readMesh(given, fileReaders, false)).mesh as MeshArrays;
+  const { bytes, format } = (isRecord(input) ? input : {}) as { bytes?: Uint8Array; format?: string };
+  const read = async () => (await readMesh(input, fileReaders, false)).mesh as MeshArrays;
   if (format !== "glb" || bytes === undefined) return exportedArrays(await read(), pose, as);
   const { proportions, upright } = as;
   const glb = proportions === undefined ? bytes : stretchGlb(bytes, proportions);
@@ -120,13 +136,13 @@ async function simulatorObjects(
   for (const [i, object] of objects.entries()) if (object.error === undefined) places.set(i, places.size);
   const found: SimulatorObject[] = [];
   for (const [i, object] of objects.entries()) {
-    const given = input.objects[i]?.mesh;
-    if (object.error !== undefined || given === undefined) continue;
-    const { mesh } = await readMesh(given, fileReaders, true);
+    const mesh = input.objects[i]?.mesh;
+    if (object.error !== undefined || mesh === undefined) continue;
+    const { mesh: arrays } = await readMesh(mesh, fileReaders, true);
     const { restsOn } = object.contact;
     const on = typeof restsOn === "number" ? (places.get(restsOn) ?? null) : restsOn;
     const as = exportedAs(object.proportions, support, upright, "z");
-    found.push({ name: object.name, ...exportedArrays(mesh as MeshArrays, object, as), restsOn: on });
+    found.push({ name: object.name, ...exportedArrays(arrays as MeshArrays, object, as), restsOn: on });
   }
   return found;
 }
@@ -153,10 +169,10 @@ async function glbOf(
 ): Promise<Uint8Array> {
   const placed: SceneGlbObject[] = [];
   for (const [i, object] of objects.entries()) {
-    const given = input.objects[i]?.mesh;
-    if (object.error !== undefined || given === undefined) continue;
+    const mesh = input.objects[i]?.mesh;
+    if (object.error !== undefined || mesh === undefined) continue;
     const as = exportedAs(object.proportions, support, upright, "y");
-    placed.push({ name: object.name, ...(await exportedMesh(given, object, as)) });
+    placed.push({ name: object.name, ...(await exportedMesh(mesh, object, as)) });
   }
   return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
 }

@@ -24,16 +24,16 @@ export const optionFlags = (rows: readonly OptionRow[]): Flag[] =>
     return [`${flag}${value(row.name)}`, meaning(row, rows), { ...file, ...parsed }];
   });
 
-/** The options whose flags were given. The value of a transform is the path of its file. */
-export function givenOptions(flags: Flags, rows: readonly OptionRow[]): Record<string, unknown> {
-  const given: Record<string, unknown> = {};
+/** The values of the options whose flags are set. The value of a transform is the path of its file. */
+export function optionValues(flags: Flags, rows: readonly OptionRow[]): Record<string, unknown> {
+  const values: Record<string, unknown> = {};
   for (const row of rows) {
     const value = flags[flagName(row).replace(/-(.)/g, (_, letter: string) => letter.toUpperCase())];
-    // Commander sets `true` for a --no flag that was not given.
+    // Commander sets `true` for a --no flag that was not values.
     if (value === undefined || (isNegated(row) && value === true)) continue;
-    given[row.name] = value === "none" && row.isNullable ? null : value;
+    values[row.name] = value === "none" && row.isNullable ? null : value;
   }
-  return given;
+  return values;
 }
 
 /** The summary of an option with its values and default. Option names in it are replaced by flags. */

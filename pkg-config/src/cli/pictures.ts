@@ -7,9 +7,8 @@ import type { AlignInput, InputInfo } from "../index.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
 import { withoutUndefined } from "../values.js";
-import { correctedInput } from "./corrected-input.js";
 import { alternativesOf, type Entry, posesIn } from "./entry.js";
-import { type ExportedAs, exportedMesh } from "./exports.js";
+import { correctedInput, type ExportedAs, exportedMesh } from "./exports.js";
 import type { Flags } from "./flags.js";
 import { fileName, ReportFolder } from "./report.js";
 

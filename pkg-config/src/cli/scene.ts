@@ -30,7 +30,7 @@ import { writeSceneFiles } from "./exports.js";
 import { UsageError } from "./files.js";
 import { caseSettings, type Flags, filesOf, sceneFileFlags } from "./flags.js";
 import { type FolderToDo, foldersToDo, sam3dKind, sceneKind } from "./folders.js";
-import { givenOptions } from "./option-flags.js";
+import { optionValues } from "./option-flags.js";
 import { headings, Lengths, numeric, pairs, Style, tableLine } from "./table.js";
 
 /** The options of `align`, for every object; a first pose is that of one. */
@@ -97,7 +97,7 @@ async function alignScene(
   caseRun: CaseRun,
 ): Promise<Entry> {
   const scene = await readSceneFolder(task.scene, settings);
-  const options: SceneOptions = { ...givenOptions(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
+  const options: SceneOptions = { ...optionValues(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
   // A scale that is given goes before the first poses of files.
   const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
   const input = { ...scene.input, objects, support } as SceneInput;

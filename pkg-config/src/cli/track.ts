@@ -9,7 +9,7 @@ import { type Entry, failureEntry, frameEntry, trackEntry } from "./entry.js";
 import { UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
-import { givenOptions } from "./option-flags.js";
+import { optionValues } from "./option-flags.js";
 import { headings, numeric, pairs, tableLine } from "./table.js";
 import { readTransform } from "./transform-file.js";
 
@@ -35,11 +35,11 @@ async function trackVideo(
   caseRun: CaseRun,
 ): Promise<Entry> {
   const names = await frameNames(folder);
-  const given = givenOptions(flags, OPTIONS.track);
-  if (typeof given.initial === "string") given.initial = await readTransform("initial", given.initial, name);
+  const options = optionValues(flags, OPTIONS.track);
+  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
   const mesh = meshIn(folder);
   caseRun.files = { mesh };
-  const tracker = await aligner.track(await readMeshFile(mesh), given as TrackOptions);
+  const tracker = await aligner.track(await readMeshFile(mesh), options as TrackOptions);
   try {
     caseRun.print(caseRun.style.bold(name), headings(columns));
     const read = (frame: string) => readFrame(join(folder, frame), caseSettings(flags));
