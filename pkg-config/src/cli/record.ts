@@ -212,12 +212,12 @@ export async function* resumedEntries<T extends CaseKey>(
   output: Recorded,
   tasks: readonly T[],
 ): AsyncGenerator<Resumed<T>, void, undefined> {
-  const known = new Map(tasks.map((task) => [keyOf(task), task]));
-  const moved = await movedEntries(output, known);
+  const byKey = new Map(tasks.map((task) => [keyOf(task), task]));
+  const moved = await movedEntries(output, byKey);
   const names = new Set(tasks.map(({ name }) => name));
   for await (const recorded of output.recorded()) {
     const key = keyOf(recorded);
-    const task = known.get(key) ?? moved.get(key);
+    const task = byKey.get(key) ?? moved.get(key);
     const { name, entry } = recorded;
     // Another batch may have called another case so.
     yield { task, entry, name: task?.name ?? (names.has(name) ? key : name) };
@@ -227,9 +227,9 @@ export async function* resumedEntries<T extends CaseKey>(
 /** The cases that an entry does not find at its path, by the key of the entry: those of the same content. */
 async function movedEntries<T extends CaseKey>(
   output: Recorded,
-  known: ReadonlyMap<string, T>,
+  byKey: ReadonlyMap<string, T>,
 ): Promise<Map<string, T>> {
-  const left = new Map(known);
+  const left = new Map(byKey);
   const lost = new Map<string, string[]>();
   for await (const recorded of output.recorded()) {
     const { path, content } = recorded;
