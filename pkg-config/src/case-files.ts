@@ -62,32 +62,26 @@ const CAMERA_POSE_FILE = "pose.json";
  * @internal
  */
 export async function frameFrom(files: CaseFiles, settings: ReadCaseOptions, place: string): Promise<FrameFiles> {
-  const own = filesOf(files, settings, place);
-  const { names, ...frame } = await viewFrom(own, { depth: own.required("depth"), mask: own.find("mask") }, settings);
-  const pose = await own.optional(CAMERA_POSE_FILE);
-  if (pose !== undefined) frame.input.cameraToWorld = cameraPose(pose);
-  return { ...frame, files: names };
+  const reader = filesOf(files, settings, place);
+  const names = { depth: reader.required("depth"), mask: reader.find("mask"), ...reader.viewNames() };
+  const { input, truth } = await viewFrom(reader, names, settings);
+  const pose = await reader.optional(CAMERA_POSE_FILE);
+  if (pose !== undefined) input.cameraToWorld = cameraPose(pose);
+  return { input, files: withoutUndefined(names) as FrameFiles["files"], truth };
 }
 
-/**
- * Reads the view in files, with a mask if it has one, and its true pose.
- * @internal
- */
-export async function viewFrom<N extends { depth: string; mask?: string | undefined }>(
-  { find, read, optional }: ReturnType<typeof filesOf>,
-  named: N,
+/** Reads the view in files of these names, and its true pose. */
+async function viewFrom(
+  { read, optional }: ReturnType<typeof filesOf>,
+  names: { depth: string; mask: string | undefined; camera?: string; image?: string },
   { image: _, ...settings }: ReadCaseOptions,
 ) {
-  const names = withoutUndefined({ ...named, camera: find("camera"), image: find("image") });
   const [depth, mask, cameraFile, image, truth] = await Promise.all([
-    ...[read(named.depth), optional(named.mask), optional(find("camera")), optional(find("image"))],
+    ...[read(names.depth), optional(names.mask), optional(names.camera), optional(names.image)],
     optional("gt.json"),
   ]);
-  return {
-    names: names as Record<keyof N, string> & { camera?: string; image?: string },
-    input: withoutUndefined({ depth, mask, cameraFile, image, ...settings }) as ViewInput,
-    truth: truth === undefined ? null : parsePoseFile("truth", truth),
-  };
+  const input = withoutUndefined({ depth, mask, cameraFile, image, ...settings }) as ViewInput;
+  return { input, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
 }
 
 /**
@@ -104,6 +98,7 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
     if (name !== undefined) return name;
     throw fileNotFound(owner ?? part, `no such file in ${place}`, caseFiles[part].join(" or "));
   };
+  const viewNames = () => withoutUndefined({ camera: find("camera"), image: find("image") });
   const read = async (name: string) => {
     const file = files[name];
     return requiredBytes(name, typeof file === "function" ? await file() : file);
@@ -114,7 +109,7 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
     if (path in files) return read(path);
     throw fileNotFound("mesh", `no ${path} in ${place}`, "the files that the mesh refers to");
   };
-  return { find, required, read, optional, beside };
+  return { find, required, viewNames, read, optional, beside };
 }
 
 function cameraPose(bytes: Uint8Array): number[] {
@@ -137,11 +132,11 @@ export async function caseFrom(
   formats: LoadFormats,
   place = "the files",
 ): Promise<Case> {
-  const own = filesOf(files, settings, place);
-  const { required } = own;
-  const named = { depth: required("depth"), mask: required("mask"), mesh: required("mesh") };
-  const { names, input, truth } = await viewFrom(own, named, settings);
-  const mesh = await meshFile(named.mesh, await own.read(named.mesh), formats, own.beside);
+  const reader = filesOf(files, settings, place);
+  const { required, viewNames } = reader;
+  const names = { depth: required("depth"), mask: required("mask"), mesh: required("mesh"), ...viewNames() };
+  const { input, truth } = await viewFrom(reader, names, settings);
+  const mesh = await meshFile(names.mesh, await reader.read(names.mesh), formats, reader.beside);
   return { input: { ...input, mesh } as AlignInput, files: names, truth };
 }
 
