@@ -7,7 +7,7 @@ import type { Flags } from "./flags.js";
 import { type EntrySink, Output } from "./output.js";
 import { Pictures } from "./pictures.js";
 import { BatchProgress, StatusLine } from "./progress.js";
-import { type CaseKey, resumedEntries } from "./record.js";
+import type { CaseKey } from "./record.js";
 import { noUnitNote, type Style } from "./table.js";
 
 /** The context in which a command works on a case. */
@@ -95,7 +95,7 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
   const resume = async (): Promise<T[]> => {
     const resumed = new Set<T>();
     let recorded = 0;
-    for await (const { task, name, entry } of resumedEntries(output, tasks)) {
+    for await (const { task, name, entry } of output.resumed(tasks)) {
       recorded += 1;
       output.addToOthers(name, entry);
       if (task === undefined) continue;

@@ -3,7 +3,7 @@ import { isLength } from "../report-page/row.js";
 import { type Entry, isMetric, posesIn, rowFields } from "./entry.js";
 import { checkReplaceable, isOrdinary, OutputFile } from "./files.js";
 import type { Flags } from "./flags.js";
-import { type CaseKey, JsonlFile, type RecordedEntry } from "./record.js";
+import { type CaseKey, JsonlFile, type Resumed } from "./record.js";
 import { Style } from "./table.js";
 
 /** An output for the entries of cases. */
@@ -125,9 +125,9 @@ export class Output {
     return this.#isClosed && this.#record === undefined && this.#sinks.length === 0;
   }
 
-  /** The entries of the record, before it is written. */
-  recorded(): AsyncIterable<RecordedEntry> | readonly RecordedEntry[] {
-    return this.#record?.entries() ?? [];
+  /** The entries of the record, before it is written, each with its case. */
+  resumed<T extends CaseKey>(tasks: readonly T[]): AsyncIterable<Resumed<T>> | readonly Resumed<T>[] {
+    return this.#record?.resumed(tasks) ?? [];
   }
 
   /** Adds the entry of a case to all files. */

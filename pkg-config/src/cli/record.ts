@@ -30,12 +30,17 @@ export interface CaseKey {
 }
 
 /** The entry of a case in a record. */
-export interface RecordedEntry {
+interface RecordedEntry {
   name: string;
   /** Its absolute path, and the checksum of its inputs. */
   path?: string | undefined;
   content?: string | undefined;
   entry: Entry;
+}
+
+/** An entry of the record of a batch, with the case of the batch and the name of that case. */
+export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" | "entry"> {
+  task: T | undefined;
 }
 
 const keyOf = ({ path, name }: Pick<CaseKey, "path" | "name">) => path ?? name;
@@ -126,7 +131,7 @@ export class JsonlFile {
    * The entries in the file, each case once. A last line that was not written to its end is removed.
    * @throws {@link UsageError} for a file with other content, which stays as it is
    */
-  async *entries(): AsyncGenerator<RecordedEntry, void, undefined> {
+  async *#entries(): AsyncGenerator<RecordedEntry, void, undefined> {
     const size = sizeOf(this.path);
     if (size === 0) return;
     const isCutOff = !endsWithNewline(this.path, size);
@@ -150,6 +155,38 @@ export class JsonlFile {
       if (!seen.has(key)) yield found;
       seen.add(key);
     }
+  }
+
+  /** The entries in the file, each with its case. The file is read twice, and not kept. */
+  async *resumed<T extends CaseKey>(tasks: readonly T[]): AsyncGenerator<Resumed<T>, void, undefined> {
+    const byKey = new Map(tasks.map((task) => [keyOf(task), task]));
+    const moved = await this.#moved(byKey);
+    const names = new Set(tasks.map(({ name }) => name));
+    for await (const recorded of this.#entries()) {
+      const key = keyOf(recorded);
+      const task = byKey.get(key) ?? moved.get(key);
+      const { name, entry } = recorded;
+      // Another batch may have called another case so.
+      yield { task, entry, name: task?.name ?? (names.has(name) ? key : name) };
+    }
+  }
+
+  /** The cases that have moved, by the keys of their entries: nothing is at the recorded path, and the content is the same. */
+  async #moved<T extends CaseKey>(byKey: ReadonlyMap<string, T>): Promise<Map<string, T>> {
+    const left = new Map(byKey);
+    const lost = new Map<string, string[]>();
+    for await (const recorded of this.#entries()) {
+      const { path, content } = recorded;
+      if (left.delete(keyOf(recorded)) || path === undefined || content === undefined || existsSync(path)) continue;
+      lost.set(content, [...(lost.get(content) ?? []), keyOf(recorded)]);
+    }
+    const moved = new Map<string, T>();
+    for (const task of lost.size === 0 ? [] : left.values()) {
+      const content = task.folder === undefined ? undefined : contentHash(task.folder);
+      const key = content === undefined ? undefined : lost.get(content)?.shift();
+      if (key !== undefined) moved.set(key, task);
+    }
+    return moved;
   }
 
   #foreign(line: number): UsageError {
@@ -195,52 +232,4 @@ async function* withLast(lines: AsyncIterable<string>) {
     line = next;
   }
   if (line !== undefined) yield { line, isLast: true };
-}
-
-/** A reader of a record. */
-interface Recorded {
-  recorded(): AsyncIterable<RecordedEntry> | readonly RecordedEntry[];
-}
-
-/** An entry of the record, with the case of this batch and the name of that case. */
-export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" | "entry"> {
-  task: T | undefined;
-}
-
-/** The entries of the record of a batch, each with its case. The record is read twice, and not kept. */
-export async function* resumedEntries<T extends CaseKey>(
-  output: Recorded,
-  tasks: readonly T[],
-): AsyncGenerator<Resumed<T>, void, undefined> {
-  const byKey = new Map(tasks.map((task) => [keyOf(task), task]));
-  const moved = await movedEntries(output, byKey);
-  const names = new Set(tasks.map(({ name }) => name));
-  for await (const recorded of output.recorded()) {
-    const key = keyOf(recorded);
-    const task = byKey.get(key) ?? moved.get(key);
-    const { name, entry } = recorded;
-    // Another batch may have called another case so.
-    yield { task, entry, name: task?.name ?? (names.has(name) ? key : name) };
-  }
-}
-
-/** The cases that an entry does not find at its path, by the key of the entry: those of the same content. */
-async function movedEntries<T extends CaseKey>(
-  output: Recorded,
-  byKey: ReadonlyMap<string, T>,
-): Promise<Map<string, T>> {
-  const left = new Map(byKey);
-  const lost = new Map<string, string[]>();
-  for await (const recorded of output.recorded()) {
-    const { path, content } = recorded;
-    if (left.delete(keyOf(recorded)) || path === undefined || content === undefined || existsSync(path)) continue;
-    lost.set(content, [...(lost.get(content) ?? []), keyOf(recorded)]);
-  }
-  const moved = new Map<string, T>();
-  for (const task of lost.size === 0 ? [] : left.values()) {
-    const content = task.folder === undefined ? undefined : contentHash(task.folder);
-    const key = content === undefined ? undefined : lost.get(content)?.shift();
-    if (key !== undefined) moved.set(key, task);
-  }
-  return moved;
 }

@@ -46,7 +46,7 @@ export class ReportFolder {
     this.#rows.lines([`sim3align.rows.push(${JSON.stringify(row)});`]);
   }
 
-  /** Writes the pictures of a case: `details.js` last, its presence means that all are there. */
+  /** Writes the pictures of a case: `details.js` last: its presence means that all are there. */
   async write(name: string, entry: Entry, { files, ...known }: CasePictures): Promise<void> {
     const folder = join(this.folder, "cases", fileName(name));
     await mkdir(folder, { recursive: true });
