@@ -57,20 +57,14 @@ const LEVELS = 4;
 /** The paths of the files in a folder below `root`, down to so many levels; links are followed. */
 async function filesBelow(root: string, folder: string, levels: number): Promise<string[]> {
   const paths: string[] = [];
-  for (const entry of await readdir(join(root, folder), { withFileTypes: true }).catch(() => [])) {
-    const path = `${folder}${entry.name}`;
-    const isFolder = entry.isSymbolicLink() ? await isFolderAt(join(root, path)) : entry.isDirectory();
-    if (!isFolder) paths.push(path);
+  for (const name of await readdir(join(root, folder)).catch(() => [])) {
+    const path = `${folder}${name}`;
+    const entry = await stat(join(root, path)).catch(() => undefined);
+    if (!entry?.isDirectory()) paths.push(path);
     else if (levels > 1) paths.push(...(await filesBelow(root, `${path}/`, levels - 1)));
   }
   return paths;
 }
-
-const isFolderAt = (path: string) =>
-  stat(path).then(
-    (entry) => entry.isDirectory(),
-    () => false,
-  );
 
 /** Reads one image of a scene of BOP. */
 async function readBop(folder: string, { models, imageId, sam3d: _, ...settings }: SceneSettings) {
