@@ -42,7 +42,7 @@ export const loadFormats = () => formatsModule.load();
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
-  const found = await caseFrom(filesIn("case", folder, await namesIn(folder)), settings, loadFormats, folder);
+  const found = await caseFrom(filesIn("case", folder, await pathsIn(folder)), settings, loadFormats, folder);
   return { ...found, name: basename(resolve(folder)), files: pathsOf(folder, found.files) };
 }
 
@@ -103,17 +103,23 @@ export async function readFrame(folder: string, settings: ReadCaseOptions): Prom
   return { ...frame, files: pathsOf(folder, frame.files) };
 }
 
-/** Names of the files in a case folder; includes subfolders only if the mesh may refer to them. */
-async function namesIn(folder: string): Promise<string[]> {
-  const list = (recursive: boolean) =>
-    readdir(folder, { recursive }).catch((cause) => {
-      throw unreadable("case", folder, "a folder with depth, mask and mesh", cause);
-    });
-  const names = await list(false);
+/** Paths of the files in a case folder; includes subfolders only if the mesh may refer to them. */
+async function pathsIn(folder: string): Promise<string[]> {
+  const names = await namesIn("case", folder, "a folder with depth, mask and mesh");
   const mesh = caseFiles.mesh.find((name) => names.includes(name));
-  return mesh === "mesh.gltf" || mesh === "mesh.obj"
-    ? (await list(true)).map((name) => name.replaceAll("\\", "/"))
-    : names;
+  if (mesh !== "mesh.gltf" && mesh !== "mesh.obj") return names;
+  return (await readdir(folder, { recursive: true })).map((path) => path.replaceAll("\\", "/"));
+}
+
+/**
+ * The names in a folder.
+ * @param argument the name of the folder in errors
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` if it cannot be read
+ */
+export async function namesIn(argument: string, folder: string, expected: string): Promise<string[]> {
+  return readdir(folder).catch((cause) => {
+    throw unreadable(argument, folder, expected, cause);
+  });
 }
 
 /** Reads a case from individual files. */

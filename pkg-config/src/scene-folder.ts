@@ -2,8 +2,8 @@
 import { readdir, stat } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { BopScene, bopModels, isBopScene, readBopModel } from "./bop/dataset.js";
-import { fileNotFound, type ReadCaseOptions } from "./case-files.js";
-import { filesIn, loadFormats } from "./case-folder.js";
+import type { ReadCaseOptions } from "./case-files.js";
+import { filesIn, loadFormats, namesIn } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -29,14 +29,14 @@ export interface SceneSettings extends ReadCaseOptions {
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readSceneFolder(folder: string, settings: SceneSettings = {}): Promise<SceneOnDisk> {
-  const names = await namesIn(folder);
+  const names = await namesIn("scene", folder, "a folder with depth and objects");
   return isBopScene(names) ? readBop(folder, settings) : readFolder(folder, settings);
 }
 
 /** The name of the image that would be read of a scene of BOP; `undefined` for other folders, and where none can be. */
 export async function bopImageIn(folder: string, imageId: string | undefined): Promise<string | undefined> {
   try {
-    if (!isBopScene(await namesIn(folder))) return undefined;
+    if (!isBopScene(await readdir(folder))) return undefined;
     return BopScene.imageName((await BopScene.open(folder)).imageId(imageId));
   } catch {
     return undefined;
@@ -87,10 +87,4 @@ async function readBop(folder: string, { models, imageId, sam3d: _, ...settings 
   }
   const input = { ...(await scene.image(id, withImage)), objects, ...view } as SceneInput;
   return { name: `${basename(resolve(folder))}/${BopScene.imageName(id)}`, input, truths };
-}
-
-async function namesIn(folder: string): Promise<string[]> {
-  return readdir(folder).catch((cause) => {
-    throw fileNotFound("scene", `nothing to read at ${folder}`, "a folder with depth and objects", cause);
-  });
 }
