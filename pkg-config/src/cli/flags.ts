@@ -145,7 +145,7 @@ export interface NamedFile {
 const nameOf = (flag: string) => flag.split(" ")[0] as string;
 
 /** The name under which Commander stores the value of a flag. */
-const valueName = (flag: string) =>
+export const valueName = (flag: string) =>
   nameOf(flag)
     .replace(/^--(no-)?/, "")
     .replace(/-(.)/g, (_, letter: string) => letter.toUpperCase());

@@ -1,7 +1,7 @@
 /** Flags for the options in the generated option tables. */
 import { InvalidArgumentError } from "commander";
 import type { OptionRow } from "../options.js";
-import { type Flag, type Flags, reads } from "./flags.js";
+import { type Flag, type Flags, reads, valueName } from "./flags.js";
 import { direction, guard, number, scale, symmetry } from "./parse.js";
 
 /** Flags that are shorter than their option's name. */
@@ -28,7 +28,7 @@ export const optionFlags = (rows: readonly OptionRow[]): Flag[] =>
 export function optionValues(flags: Flags, rows: readonly OptionRow[]): Record<string, unknown> {
   const values: Record<string, unknown> = {};
   for (const row of rows) {
-    const value = flags[flagName(row).replace(/-(.)/g, (_, letter: string) => letter.toUpperCase())];
+    const value = flags[valueName(`--${flagName(row)}`)];
     // Commander sets `true` for a --no flag that was not values.
     if (value === undefined || (isNegated(row) && value === true)) continue;
     values[row.name] = value === "none" && row.isNullable ? null : value;
