@@ -134,13 +134,13 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
     // Before the record: what is there needs no other pictures.
     await draw(task, entry, false);
     return () => {
-      const isFailure = count(task.name, entry).length > 0;
+      const hasErrors = count(task.name, entry).length > 0;
       output.add(task, entry);
       const { rows = [], remarks: more = [] } = linesOf(task, entry);
       remarks.push(...more);
       progress?.clear();
       output.lines([...early, ...rows]);
-      progress?.add(isFailure);
+      progress?.add(hasErrors);
     };
   };
   /** Closes the files and prints the remarks. */

@@ -37,6 +37,17 @@ export function textOf(flag: string, path: string): string {
   }
 }
 
+/** The bytes of a file at a position, at most `length`. */
+export function bytesOf(path: string, position: number, length: number): Buffer {
+  const file = openSync(path, "r");
+  try {
+    const bytes = Buffer.alloc(length);
+    return bytes.subarray(0, readSync(file, bytes, 0, length, position));
+  } finally {
+    closeSync(file);
+  }
+}
+
 /** Whether a path is, or will be, an ordinary file; not stdout ("-"), a pipe or a device. */
 export const isOrdinary = (path: string) =>
   path !== "-" && statSync(path, { throwIfNoEntry: false })?.isFile() !== false;
@@ -79,20 +90,13 @@ export function makeFolder(flag: string, path: string): void {
  */
 export function checkReplaceable(flag: string, path: string, isOwn: (beginning: string) => boolean): void {
   if (!isOrdinary(path)) return;
-  const bytes = Buffer.alloc(4096);
-  let length: number;
+  let beginning = "";
   try {
-    const file = openSync(path, "r");
-    try {
-      length = readSync(file, bytes, 0, bytes.length, 0);
-    } finally {
-      closeSync(file);
-    }
+    beginning = bytesOf(path, 0, 4096).toString();
   } catch {
-    // There is none, or it cannot be read, and so is no input.
-    return;
+    // There is no file, or it cannot be read and so is no input.
   }
-  if (length === 0 || isOwn(bytes.toString("utf8", 0, length))) return;
+  if (beginning === "" || isOwn(beginning)) return;
   throw new UsageError(`${flag} ${path}: this file was not written by ${flag}. Remove it, or pass another name.`);
 }
 

@@ -2,12 +2,9 @@
 import { createHash } from "node:crypto";
 import {
   appendFileSync,
-  closeSync,
   createReadStream,
   existsSync,
-  openSync,
   readFileSync,
-  readSync,
   realpathSync,
   statSync,
   truncateSync,
@@ -16,7 +13,7 @@ import { basename, dirname, join, relative, resolve, sep } from "node:path";
 import { createInterface } from "node:readline";
 import { caseFiles } from "../case-files.js";
 import type { Entry } from "./entry.js";
-import { isOrdinary, namesIn, OutputFile, UsageError } from "./files.js";
+import { bytesOf, isOrdinary, namesIn, OutputFile, UsageError } from "./files.js";
 import { lockRecord } from "./record-lock.js";
 
 /** The identity of a case. */
@@ -134,7 +131,7 @@ export class JsonlFile {
   async *#entries(): AsyncGenerator<RecordedEntry, void, undefined> {
     const size = sizeOf(this.path);
     if (size === 0) return;
-    const isCutOff = !endsWithNewline(this.path, size);
+    const isCutOff = bytesOf(this.path, size - 1, 1)[0] !== NEWLINE;
     const seen = new Set<string>();
     let number = 0;
     // A character of Latin-1 is a byte: the last line may end within a longer one.
@@ -213,16 +210,6 @@ export class JsonlFile {
 }
 
 const sizeOf = (path: string) => statSync(path, { throwIfNoEntry: false })?.size ?? 0;
-
-function endsWithNewline(path: string, size: number): boolean {
-  const file = openSync(path, "r");
-  try {
-    const last = Buffer.alloc(1);
-    return readSync(file, last, 0, 1, size - 1) === 1 && last[0] === NEWLINE;
-  } finally {
-    closeSync(file);
-  }
-}
 
 /** Lines, and whether each is the last one. */
 async function* withLast(lines: AsyncIterable<string>) {

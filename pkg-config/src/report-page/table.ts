@@ -7,31 +7,28 @@ const ROW = 48;
 /** Rows beyond those in sight, above and below. */
 const SPARE = 6;
 
-/** A column of the page, in its order. */
-type Id = "name" | "warnings" | ColumnName;
-
-/** The columns of a report. Errors have columns only if a row has a true pose. */
-function idsOf(rows: readonly ReportRow[]): Id[] {
-  const numbers = (Object.keys(columns) as ColumnName[]).filter((id) => "heading" in columns[id]);
-  const hasTruth = rows.some((row) => typeof row.scaleError === "number");
-  const wanted = numbers.filter((id) => hasTruth || !id.includes("Error"));
-  return ["confidence", "name", ...wanted.filter((id) => id !== "confidence" && id !== "timeMs"), "warnings", "timeMs"];
+/** A column of the page. Missing sort keys come last in either order; a failure has no number. */
+interface PageColumn extends Pick<Column, "heading" | "title"> {
+  id: string;
+  text(row: ReportRow): string;
+  key(row: ReportRow): number | string | null;
 }
 
-/** The heading of a column, and its tooltip. */
-const headingOf = (id: Id): Column => {
-  if (id !== "name" && id !== "warnings") return columns[id];
-  return { short: "", heading: id === "name" ? "Case" : "Warnings", digits: 0 };
-};
-
+const number = (id: ColumnName): PageColumn => ({
+  ...{ ...(columns[id] as Column), id },
+  ...{ text: (row) => cellOf(row, id), key: (row) => numberIn(row, id) },
+});
 const codesOf = ({ error, warnings }: ReportRow) => error?.code ?? warnings.map(({ code }) => code).join(", ");
+const name: PageColumn = { id: "name", heading: "Case", text: (row) => row.name, key: (row) => row.name };
+const warnings: PageColumn = { id: "warnings", heading: "Warnings", text: codesOf, key: (row) => codesOf(row) || null };
 
-const textIn = (row: ReportRow, id: Id) =>
-  id === "name" ? row.name : id === "warnings" ? codesOf(row) : cellOf(row, id);
-
-/** The sort key of a column. Missing values come last in either order; a failure has no number. */
-const keyIn = (row: ReportRow, id: Id) =>
-  id === "name" ? row.name : id === "warnings" ? codesOf(row) || null : numberIn(row, id);
+/** The columns of a report. Errors have columns only if a row has a true pose. */
+function columnsOf(rows: readonly ReportRow[]): PageColumn[] {
+  const metrics = (["alternatives", "scale", "iou", "boundaryF", "depthMaeMm"] as const).map(number);
+  const errors = (["scaleError", "rotationErrorDeg", "translationErrorRelative"] as const).map(number);
+  const hasTruth = rows.some((row) => typeof row.scaleError === "number");
+  return [number("confidence"), name, ...metrics, ...(hasTruth ? errors : []), warnings, number("timeMs")];
+}
 
 /** A filter of rows. */
 export interface Filter {
@@ -44,19 +41,20 @@ export interface Filter {
 
 /** The table, whose rows can be selected. */
 export class Table {
-  readonly #ids: readonly Id[];
+  readonly #columns: readonly PageColumn[];
   readonly #scroller = byId("scroller");
   readonly #body = byId("rows");
   #rows: ReportRow[] = [];
   #selected: ReportRow | undefined;
-  #sort: { id: Id; isDescending: boolean } = { id: "confidence", isDescending: false };
+  #sort: { column: PageColumn; isDescending: boolean };
   #filter: Filter = { text: "", upTo: 1, only: "all" };
 
   constructor(
     private readonly all: readonly ReportRow[],
     private readonly onSelect: (row: ReportRow) => void,
   ) {
-    this.#ids = idsOf(all);
+    this.#columns = columnsOf(all);
+    this.#sort = { column: this.#columns[0] as PageColumn, isDescending: false };
     this.#drawHead();
     this.#scroller.addEventListener("scroll", () => this.#draw(), { passive: true });
     new ResizeObserver(() => this.#draw()).observe(this.#scroller);
@@ -106,10 +104,10 @@ export class Table {
       (only !== "failures" || row.error !== undefined) &&
       (only !== "warnings" || row.warnings.length > 0) &&
       (only !== "alternatives" || (row.alternatives ?? 0) > 0);
-    const { id, isDescending } = this.#sort;
-    this.#rows = this.all.filter(passes).sort((a, b) => compared(keyIn(a, id), keyIn(b, id), isDescending));
+    const { column, isDescending } = this.#sort;
+    this.#rows = this.all.filter(passes).sort((a, b) => compared(column.key(a), column.key(b), isDescending));
     // Failures are the least certain of all.
-    if (id === "confidence" && !isDescending) {
+    if (column.id === "confidence" && !isDescending) {
       this.#rows.sort((a, b) => Number(b.error !== undefined) - Number(a.error !== undefined));
     }
     byId("count").textContent = `${this.#rows.length} of ${this.all.length} cases`;
@@ -118,16 +116,16 @@ export class Table {
   }
 
   #drawHead(): void {
-    const cells = this.#ids.map((id) => {
-      const { heading = "", title } = headingOf(id);
+    const cells = this.#columns.map((column) => {
+      const { id, heading = "", title } = column;
       const button = element("button", { type: "button", title }, heading);
       button.addEventListener("click", () => {
-        this.#sort = { id, isDescending: this.#sort.id === id && !this.#sort.isDescending };
+        this.#sort = { column, isDescending: this.#sort.column === column && !this.#sort.isDescending };
         this.#drawHead();
         this.#update();
         byId("head").querySelector<HTMLElement>(`[data-id="${id}"] button`)?.focus();
       });
-      const order = this.#sort.id !== id ? "none" : this.#sort.isDescending ? "descending" : "ascending";
+      const order = this.#sort.column !== column ? "none" : this.#sort.isDescending ? "descending" : "ascending";
       return element("th", { scope: "col", "data-id": id, "aria-sort": order }, button);
     });
     byId("head").replaceChildren(
@@ -150,7 +148,7 @@ export class Table {
     const first = Math.max(0, Math.floor(this.#scroller.scrollTop / ROW) - SPARE);
     const count = Math.ceil(this.#scroller.clientHeight / ROW) + 2 * SPARE;
     const end = Math.min(this.#rows.length, first + count);
-    const width = this.#ids.length + 1;
+    const width = this.#columns.length + 1;
     const spacer = (rows: number) => {
       const cell = element("td", { colspan: width, class: "spacer", style: `height:${rows * ROW}px` });
       return rows > 0 ? [element("tr", { "aria-hidden": "true" }, cell)] : [];
@@ -160,8 +158,9 @@ export class Table {
   }
 
   #row(row: ReportRow, index: number): HTMLTableRowElement {
-    const cells = this.#ids.map((id) => {
-      const text = textIn(row, id);
+    const cells = this.#columns.map((column) => {
+      const { id } = column;
+      const text = column.text(row);
       if (id === "name")
         return element("th", { scope: "row", title: text }, element("button", { type: "button", tabindex: -1 }, text));
       if (id !== "confidence") return element("td", { class: id === "warnings" ? "words" : "", title: text }, text);
