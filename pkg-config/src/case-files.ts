@@ -62,21 +62,26 @@ const CAMERA_POSE_FILE = "pose.json";
  * @internal
  */
 export async function frameFrom(files: CaseFiles, settings: ReadCaseOptions, place: string): Promise<FrameFiles> {
-  const { find, required, read, optional } = filesOf(files, settings, place);
-  const names = { depth: required("depth"), camera: find("camera"), mask: find("mask"), image: find("image") };
-  const [depth, cameraFile, mask, image, pose, truth] = await Promise.all([
-    ...[read(names.depth), optional(names.camera), optional(names.mask), optional(names.image)],
-    ...[optional(CAMERA_POSE_FILE), optional("gt.json")],
+  const reader = filesOf(files, settings, place);
+  const names = { depth: reader.required("depth"), mask: reader.find("mask"), ...reader.viewNames() };
+  const { input, truth } = await viewFrom(reader, names, settings);
+  const pose = await reader.optional(CAMERA_POSE_FILE);
+  if (pose !== undefined) input.cameraToWorld = cameraPose(pose);
+  return { input, files: withoutUndefined(names) as FrameFiles["files"], truth };
+}
+
+/** Reads the view in files of these names, and its true pose. */
+async function viewFrom(
+  { read, optional }: ReturnType<typeof filesOf>,
+  names: { depth: string; mask: string | undefined; camera?: string; image?: string },
+  { image: _, ...settings }: ReadCaseOptions,
+) {
+  const [depth, mask, cameraFile, image, truth] = await Promise.all([
+    ...[read(names.depth), optional(names.mask), optional(names.camera), optional(names.image)],
+    optional("gt.json"),
   ]);
-  const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
-  const { image: _, ...more } = settings;
-  const parts = { depth, cameraFile, mask, image, cameraToWorld };
-  const input = withoutUndefined({ ...parts, ...more }) as ViewInput;
-  return {
-    input,
-    files: withoutUndefined(names) as FrameFiles["files"],
-    truth: truth === undefined ? null : parsePoseFile("truth", truth),
-  };
+  const input = withoutUndefined({ depth, mask, cameraFile, image, ...settings }) as ViewInput;
+  return { input, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
 }
 
 /**
@@ -93,6 +98,7 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
     if (name !== undefined) return name;
     throw fileNotFound(owner ?? part, `no such file in ${place}`, caseFiles[part].join(" or "));
   };
+  const viewNames = () => withoutUndefined({ camera: find("camera"), image: find("image") });
   const read = async (name: string) => {
     const file = files[name];
     return requiredBytes(name, typeof file === "function" ? await file() : file);
@@ -103,7 +109,7 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
     if (path in files) return read(path);
     throw fileNotFound("mesh", `no ${path} in ${place}`, "the files that the mesh refers to");
   };
-  return { find, required, read, optional, beside };
+  return { find, required, viewNames, read, optional, beside };
 }
 
 function cameraPose(bytes: Uint8Array): number[] {
@@ -126,21 +132,12 @@ export async function caseFrom(
   formats: LoadFormats,
   place = "the files",
 ): Promise<Case> {
-  const { find, required, read, optional, beside } = filesOf(files, settings, place);
-  const parts = {
-    depth: required("depth"),
-    mask: required("mask"),
-    mesh: required("mesh"),
-    ...withoutUndefined({ camera: find("camera"), image: find("image") }),
-  };
-  const [depth, mask, meshBytes, cameraFile, image, truth] = await Promise.all([
-    ...[read(parts.depth), read(parts.mask), read(parts.mesh)],
-    ...[optional(parts.camera), optional(parts.image), optional("gt.json")],
-  ]);
-  const mesh = await meshFile(parts.mesh, meshBytes as Uint8Array, formats, beside);
-  const { image: _, ...more } = settings;
-  const input = withoutUndefined({ depth, mask, mesh, cameraFile, image, ...more }) as AlignInput;
-  return { input, files: parts, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+  const reader = filesOf(files, settings, place);
+  const { required, viewNames } = reader;
+  const names = { depth: required("depth"), mask: required("mask"), mesh: required("mesh"), ...viewNames() };
+  const { input, truth } = await viewFrom(reader, names, settings);
+  const mesh = await meshFile(names.mesh, await reader.read(names.mesh), formats, reader.beside);
+  return { input: { ...input, mesh } as AlignInput, files: names, truth };
 }
 
 /**

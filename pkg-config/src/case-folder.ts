@@ -4,6 +4,7 @@ import { readdir, readFile } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
 import {
   type Case,
+  type CaseFiles,
   caseFiles,
   caseFrom,
   type FrameFiles,
@@ -41,12 +42,16 @@ export const loadFormats = () => formatsModule.load();
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
-  const names = await namesIn(folder);
-  const entries = names.map((name) => [name, () => read("case", join(folder, name))] as const);
-  const found = await caseFrom(Object.fromEntries(entries), settings, loadFormats, folder);
-  const files = Object.fromEntries(Object.entries(found.files).map(([part, name]) => [part, join(folder, name)]));
-  return { ...found, name: basename(resolve(folder)), files };
+  const found = await caseFrom(filesIn("case", folder, await pathsIn(folder)), settings, loadFormats, folder);
+  return { ...found, name: basename(resolve(folder)), files: pathsOf(folder, found.files) };
 }
+
+/** Files of a folder, read on demand. */
+export const filesIn = (argument: string, folder: string, paths: readonly string[]): CaseFiles =>
+  Object.fromEntries(paths.map((path) => [path, () => read(argument, join(folder, path))]));
+
+const pathsOf = (folder: string, files: Readonly<Record<string, string>>) =>
+  Object.fromEntries(Object.entries(files).map(([part, name]) => [part, join(folder, name)]));
 
 /** Several frames of one object, on disk. */
 export interface FramesOnDisk {
@@ -94,23 +99,27 @@ export async function readMeshFile(path: string): Promise<MeshFile> {
 
 /** Reads a frame of a case. `files` contains paths. */
 export async function readFrame(folder: string, settings: ReadCaseOptions): Promise<FrameFiles> {
-  const entries = (await readdir(folder)).map((name) => [name, () => read("frame", join(folder, name))] as const);
-  const frame = await frameFrom(Object.fromEntries(entries), settings, folder);
-  const files = Object.fromEntries(Object.entries(frame.files).map(([part, name]) => [part, join(folder, name)]));
-  return { ...frame, files };
+  const frame = await frameFrom(filesIn("frame", folder, await readdir(folder)), settings, folder);
+  return { ...frame, files: pathsOf(folder, frame.files) };
 }
 
-/** Names of the files in a case folder; includes subfolders only if the mesh may refer to them. */
-async function namesIn(folder: string): Promise<string[]> {
-  const list = (recursive: boolean) =>
-    readdir(folder, { recursive }).catch((cause) => {
-      throw unreadable("case", folder, "a folder with depth, mask and mesh", cause);
-    });
-  const names = await list(false);
+/** Paths of the files in a case folder; includes subfolders only if the mesh may refer to them. */
+async function pathsIn(folder: string): Promise<string[]> {
+  const names = await namesIn("case", folder, "a folder with depth, mask and mesh");
   const mesh = caseFiles.mesh.find((name) => names.includes(name));
-  return mesh === "mesh.gltf" || mesh === "mesh.obj"
-    ? (await list(true)).map((name) => name.replaceAll("\\", "/"))
-    : names;
+  if (mesh !== "mesh.gltf" && mesh !== "mesh.obj") return names;
+  return (await readdir(folder, { recursive: true })).map((path) => path.replaceAll("\\", "/"));
+}
+
+/**
+ * The names in a folder.
+ * @param argument the name of the folder in errors
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` if it cannot be read
+ */
+export async function namesIn(argument: string, folder: string, expected: string): Promise<string[]> {
+  return readdir(folder).catch((cause) => {
+    throw unreadable(argument, folder, expected, cause);
+  });
 }
 
 /** Reads a case from individual files. */

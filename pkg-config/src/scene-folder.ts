@@ -1,15 +1,15 @@
 /** Scenes on disk (Node only): scene folders, and images in the layout of BOP. */
 import { readdir, stat } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
-import { bopImageId, bopMaskPath, bopModels, bopName, openBopScene, readBopImage, readBopModel } from "./bop-folder.js";
-import { type CaseFiles, fileNotFound, type ReadCaseOptions } from "./case-files.js";
-import { loadFormats, read } from "./case-folder.js";
+import { BopScene, bopModels, isBopScene, readBopModel } from "./bop/dataset.js";
+import type { ReadCaseOptions } from "./case-files.js";
+import { filesIn, loadFormats, namesIn } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
-import type { MeshFile } from "./input/types.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type { SceneInput, SceneObjectInput } from "./scene/types.js";
+import { oncePerKey, withoutUndefined } from "./values.js";
 
 /** A scene on disk. */
 export interface SceneOnDisk extends SceneCase {
@@ -29,16 +29,15 @@ export interface SceneSettings extends ReadCaseOptions {
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readSceneFolder(folder: string, settings: SceneSettings = {}): Promise<SceneOnDisk> {
-  const names = await namesIn(folder);
-  return isBop(names) ? readBop(folder, settings) : readFolder(folder, settings);
+  const names = await namesIn("scene", folder, "a folder with depth and objects");
+  return isBopScene(names) ? readBop(folder, settings) : readFolder(folder, settings);
 }
-
-const isBop = (names: readonly string[]) => names.includes("mask_visib") && names.includes("scene_gt.json");
 
 /** The name of the image that would be read of a scene of BOP; `undefined` for other folders, and where none can be. */
 export async function bopImageIn(folder: string, imageId: string | undefined): Promise<string | undefined> {
   try {
-    return isBop(await namesIn(folder)) ? bopName(bopImageId(await openBopScene(folder), imageId)) : undefined;
+    if (!isBopScene(await readdir(folder))) return undefined;
+    return BopScene.imageName((await BopScene.open(folder)).imageId(imageId));
   } catch {
     return undefined;
   }
@@ -47,10 +46,8 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
 async function readFolder(folder: string, { models, sam3d, ...settings }: SceneSettings): Promise<SceneOnDisk> {
   const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
   if (!sam3d) paths.push(...(await filesBelow(folder, "objects/", LEVELS)));
-  const files: CaseFiles = Object.fromEntries(paths.map((path) => [path, () => read("scene", join(folder, path))]));
-  const found = sam3d
-    ? await sam3dFrom(files, settings, loadFormats, folder)
-    : await sceneFrom(files, settings, loadFormats, folder);
+  const from = sam3d ? sam3dFrom : sceneFrom;
+  const found = await from(filesIn("scene", folder, paths), settings, loadFormats, folder);
   return { ...found, name: basename(resolve(folder)) };
 }
 
@@ -60,51 +57,34 @@ const LEVELS = 4;
 /** The paths of the files in a folder below `root`, down to so many levels; links are followed. */
 async function filesBelow(root: string, folder: string, levels: number): Promise<string[]> {
   const paths: string[] = [];
-  for (const entry of await readdir(join(root, folder), { withFileTypes: true }).catch(() => [])) {
-    const path = `${folder}${entry.name}`;
-    const isFolder = entry.isSymbolicLink() ? await isFolderAt(join(root, path)) : entry.isDirectory();
-    if (!isFolder) paths.push(path);
+  for (const name of await readdir(join(root, folder)).catch(() => [])) {
+    const path = `${folder}${name}`;
+    const entry = await stat(join(root, path)).catch(() => undefined);
+    if (!entry?.isDirectory()) paths.push(path);
     else if (levels > 1) paths.push(...(await filesBelow(root, `${path}/`, levels - 1)));
   }
   return paths;
 }
 
-const isFolderAt = (path: string) =>
-  stat(path).then(
-    (entry) => entry.isDirectory(),
-    () => false,
-  );
-
 /** Reads one image of a scene of BOP. */
 async function readBop(folder: string, { models, imageId, sam3d: _, ...settings }: SceneSettings) {
-  const scene = await openBopScene(folder);
-  const id = bopImageId(scene, imageId);
-  const masks = await namesIn(join(folder, "mask_visib"));
+  const scene = await BopScene.open(folder);
+  const id = scene.imageId(imageId);
   // The models of a data set are beside the scene, or beside the folder of its split.
   const places = ["models", "../models", "../../models", "../../models_eval"];
   const modelFolder = models ?? (await bopModels(folder, places));
-  const meshes = new Map<number | undefined, MeshFile>();
+  const modelOf = oncePerKey((objectId: string) => readBopModel(modelFolder, objectId));
+  const { resizeMask, image: withImage = true, ...view } = settings;
   const objects: SceneObjectInput[] = [];
   const truths: (KnownPose | null)[] = [];
-  for (const [i, entry] of (scene.truths.get(id) ?? []).entries()) {
-    const maskPath = bopMaskPath(scene, id, i);
-    // An object that the image does not show has no mask.
-    if (!masks.includes(basename(maskPath))) continue;
-    const mesh = meshes.get(entry.obj_id) ?? (await readBopModel(modelFolder, `${entry.obj_id}`));
-    meshes.set(entry.obj_id, mesh);
-    const mask = await read("mask", maskPath);
-    objects.push({ name: `${entry.obj_id}-${i}`, mask, mesh, ...resizeOf(settings) } as SceneObjectInput);
+  const poses = scene.posesIn(id);
+  for (const place of await scene.shown(id)) {
+    const entry = poses[place] as (typeof poses)[number];
+    const mesh = await modelOf(`${entry.obj_id}`);
+    const object = { name: `${entry.obj_id}-${place}`, mask: await scene.mask(id, place), mesh };
+    objects.push({ ...object, ...withoutUndefined({ resizeMask }) } as SceneObjectInput);
     truths.push({ transform: fromBop(entry), symmetry: "auto" });
   }
-  const { resizeMask: __, image: withImage = true, ...view } = settings;
-  const input = { ...(await readBopImage(scene, id, withImage)), objects, ...view } as SceneInput;
-  return { name: `${basename(resolve(folder))}/${bopName(id)}`, input, truths };
-}
-
-const resizeOf = ({ resizeMask }: ReadCaseOptions) => (resizeMask === undefined ? {} : { resizeMask });
-
-async function namesIn(folder: string): Promise<string[]> {
-  return readdir(folder).catch((cause) => {
-    throw fileNotFound("scene", `nothing to read at ${folder}`, "a folder with depth and objects", cause);
-  });
+  const input = { ...(await scene.image(id, withImage)), objects, ...view } as SceneInput;
+  return { name: `${basename(resolve(folder))}/${BopScene.imageName(id)}`, input, truths };
 }

@@ -69,8 +69,10 @@ const add = (command: string, place: string) => {
   const plain = command.replace(/ +#.*/, "").replace(/^npx /, "").trim();
   if (!commands.has(plain)) commands.set(plain, place);
 };
+const flags = new Set<string>();
 const helps = ["", "align", "scene", "track", "evaluate", "bop"].map((command) => {
   const help = run(...(command === "" ? [] : [command]), "--help").stdout;
+  for (const [, flag = ""] of help.matchAll(/^ {2}(?:-\w, )?(--[\w-]+)/gm)) flags.add(flag);
   const lines = (/\nExamples\n((?: {2}.*\n)+)/.exec(help)?.[1] ?? "").trimEnd().split("\n");
   // In the first text, explanations follow.
   const examples = lines.map((line) => line.trim().split(/ {3,}/)[0] as string);
@@ -78,8 +80,16 @@ const helps = ["", "align", "scene", "track", "evaluate", "bop"].map((command) =
   return { command, examples };
 });
 const guides = readdirSync(join(repository, "docs", "guides")).map((name) => join("docs", "guides", name));
+/** Flags that documents name, and no command has. */
+const unknown: string[] = [];
+// Of compilers and of other programs.
+const others = ["--allow-read", "--external", "--save-numpy", "--strict"];
 for (const document of ["README.md", ...guides]) {
   const text = readFileSync(join(repository, document), "utf8");
+  // Variables of style sheets begin as flags do.
+  const named = document.endsWith("embedding.md") ? [] : [...text.matchAll(/`(--[a-z][\w-]*)/g)];
+  const missing = named.filter(([, flag = ""]) => !flags.has(flag) && !others.includes(flag));
+  unknown.push(...missing.map(([, flag]) => `${document}: ${flag}`));
   for (const [, command = ""] of text.matchAll(/^ {4}(npx sim3align .*)$/gm)) add(command, document);
 }
 
@@ -89,6 +99,8 @@ test("every help text has examples of its command", () => {
     for (const example of examples) assert.match(example, new RegExp(`sim3align ${command}`));
   }
 });
+
+test("the flags that documents name are flags of a command", () => assert.deepEqual(unknown, []));
 
 for (const [command, place] of commands) {
   test(`${place}: ${command}`, { skip }, () => {

@@ -1,129 +1,229 @@
-/** A batch: what is done, and what is written of it. */
-import { isRecord } from "../values.js";
-import { BatchProgress } from "./batch-progress.js";
-import type { CaseKey } from "./jsonl-file.js";
-import { isMetric, noUnitNote } from "./lengths.js";
-import type { Output, OutputFlags } from "./output.js";
-import { type Pictures, shownIn } from "./pictures.js";
+/** Runs a batch of cases and records each result. A batch can be interrupted and resumed. */
+import { availableParallelism } from "node:os";
+import { MAX_WORKERS } from "../aligner-options.js";
+import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
+import { type Entry, errorsIn, failureEntry, isFailure, isMetric } from "./entry.js";
+import type { Flags } from "./flags.js";
+import { type EntrySink, Output } from "./output.js";
+import { Pictures } from "./pictures.js";
+import { BatchProgress, StatusLine } from "./progress.js";
+import type { CaseKey } from "./record.js";
+import { noUnitNote, type Style } from "./table.js";
 
-/** An item that is done. */
-export interface Done {
-  key: CaseKey;
-  /** Its JSON entry. */
-  entry: object;
-  /** Its rows of the table of a batch. */
-  rows: readonly string[];
-  /** Printed at the end: details of a single item, or warnings and failures. */
-  remarks: readonly string[];
+/** The context in which a command works on a case. */
+export interface CaseRun {
+  /** The file of each argument, set by the command once it has found them; the entry of a failure has them. */
+  files: Readonly<Record<string, string>>;
+  readonly style: Style;
+  /** Whether the reader of the output has closed it. */
+  isClosed(): boolean;
+  /** Shows the progress; only for a single case. */
+  onProgress?: (progress: Progress) => void;
+  /** Prints lines: at once for a single case, otherwise when the case is done. */
+  print(...lines: string[]): void;
+  /** Writes the entry so far. */
+  partial(entry: Entry): void;
 }
 
-/** The codes of the errors in an entry: its own, and those of its frames or objects. */
-export function errorsIn(entry: object): string[] {
-  const { error, frames, objects } = entry as Readonly<Record<string, unknown>>;
-  if (isRecord(error)) return [String(error.code)];
-  return [frames, objects].filter(isRecord).flatMap((parts) => Object.values(parts).filter(isRecord).flatMap(errorsIn));
+/** Lines for people about an entry. */
+export interface CaseLines {
+  /** Rows in the table of several cases. */
+  rows?: readonly string[];
+  /** Printed at the end: details of a single case, or warnings and failures. */
+  remarks?: readonly string[];
 }
 
+/** The cases of a command, and the functions that work on them. */
+export interface Job<T extends CaseKey> {
+  tasks: readonly T[];
+  /** Works on a case and returns its entry. A `UsageError` ends the batch; other errors make the case a failure. */
+  run(aligner: Aligner, task: T, caseRun: CaseRun): Promise<Entry>;
+  /** Lines about an entry; by default, those of failures. */
+  lines?(task: T, entry: Entry, isOnly: boolean, style: Style): CaseLines;
+  /** Reads the inputs of the poses of an entry, by their names, for pictures. */
+  inputs?(task: T, entry: Entry): Promise<ReadonlyMap<string, AlignInput>>;
+  /** Further outputs. */
+  sinks?: EntrySink[];
+  /** The flags of the batch, if these are not all of the command line. */
+  flags?: Flags;
+  /** Runs after the batch. */
+  after?(): Promise<void>;
+}
+
+/** The line of a failure. */
+export function failedLine(name: string, entry: Entry, style: Style): string {
+  if (!isFailure(entry)) return "";
+  const { code, message, file } = entry.error;
+  return `${style.red("failed ")}${name}: ${code}: ${message}${file === undefined ? "" : `\n  in ${file}`}`;
+}
+
+/** Items that are read while several workers are busy. One worker does the items in their order. */
+const READ_AHEAD = 2;
 /** Failures of an earlier run that are named. */
 const NAMED = 10;
 
-/** Writes the result of each case when it is done, and what concerns all of them at the end. */
-export class Batch {
-  readonly #total: number;
-  readonly #output: Output;
-  readonly #flags: OutputFlags;
-  readonly #pictures: Pictures;
-  readonly #remarks: string[] = [];
-  /** What failed in the run that is resumed. */
-  readonly #failedBefore: string[] = [];
-  #progress: BatchProgress | undefined;
-  #done = 0;
-  #failed = 0;
-  /** Whether a result has lengths without a unit. */
-  #hasNoUnit = false;
+/**
+ * Works on each case that is not in the record, and writes and prints the results.
+ * @returns whether all cases succeeded
+ */
+export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flags): Promise<boolean> {
+  const { tasks, flags = commandLine } = job;
+  const pictures = await Pictures.open(flags);
+  const output = new Output(flags, job.sinks ?? []);
+  const { style } = output;
+  const isOnly = tasks.length === 1;
+  const remarks: string[] = [];
+  const failedBefore: string[] = [];
+  let [done, failed] = [0, 0];
+  let hasNoUnit = false;
+  let progress: BatchProgress | undefined;
 
-  constructor(total: number, output: Output, pictures: Pictures, flags: OutputFlags) {
-    this.#total = total;
-    this.#output = output;
-    this.#pictures = pictures;
-    this.#flags = flags;
-  }
-
-  get hasFailure(): boolean {
-    return this.#failed > 0;
-  }
-
-  /** Adds a case that was done before. */
-  resume(name: string, entry: object): void {
-    const [error] = this.#count(entry);
-    if (error !== undefined) this.#failedBefore.push(`${name} (${error})`);
-    this.#picture(name, entry);
-  }
-
-  #count(entry: object): string[] {
+  /** Counts a case, and adds its rows to the report. Returns its errors. */
+  const count = (name: string, entry: Entry): string[] => {
     const errors = errorsIn(entry);
-    this.#done += 1;
-    this.#hasNoUnit ||= !isMetric(entry);
-    if (errors.length > 0) this.#failed += 1;
+    done += 1;
+    if (errors.length > 0) failed += 1;
+    hasNoUnit ||= !isMetric(entry);
+    pictures.record(name, entry);
     return errors;
-  }
-
-  /** Shows the progress of the cases that are left. */
-  begin(left: number): void {
-    this.#progress = new BatchProgress(process.stderr, left, () => performance.now());
-    this.#progress.draw();
-  }
-
-  /** Writes the result of a case. */
-  add({ key, entry, rows, remarks }: Done): void {
-    const isFailure = this.#count(entry).length > 0;
-    this.#output.add(key, entry);
-    this.#picture(key.name, entry);
-    this.#remarks.push(...remarks);
-    this.#progress?.clear();
-    this.#output.lines(rows);
-    this.#progress?.add(isFailure);
-  }
-
-  /** Adds the rows of a case to the report. */
-  #picture(name: string, entry: object): void {
-    for (const shown of shownIn(name, entry)) this.#pictures.record(shown.name, shown.entry);
-  }
-
-  /** Clears the progress. */
-  clear(): void {
-    this.#progress?.clear();
-  }
-
+  };
+  const draw = async (task: T, entry: Entry, isResumed: boolean) => {
+    const { inputs } = job;
+    if (inputs !== undefined) await pictures.draw(task.name, entry, isResumed, () => inputs(task, entry));
+  };
+  /** Adds the cases that were done before, and returns the others. */
+  const resume = async (): Promise<T[]> => {
+    const resumed = new Set<T>();
+    let recorded = 0;
+    for await (const { task, name, entry } of output.resumed(tasks)) {
+      recorded += 1;
+      output.addToOthers(name, entry);
+      if (task === undefined) continue;
+      resumed.add(task);
+      await draw(task, entry, true);
+      const [error] = count(name, entry);
+      if (error !== undefined) failedBefore.push(`${name} (${error})`);
+    }
+    if (recorded > 0) console.error(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
+    return tasks.filter((task) => !resumed.has(task));
+  };
+  const linesOf = (task: T, entry: Entry): CaseLines => {
+    if (job.lines !== undefined) return job.lines(task, entry, isOnly, style);
+    return isFailure(entry) ? { [isOnly ? "remarks" : "rows"]: [failedLine(task.name, entry, style)] } : {};
+  };
+  /** Works on a case. Returns a function that writes the result. */
+  const run = async (aligner: Aligner, task: T): Promise<() => void> => {
+    const early: string[] = [];
+    const line = isOnly ? new StatusLine(process.stderr) : undefined;
+    const show = (state: string) => line?.show(`[1/1] ${task.name}  ${state}`);
+    const caseRun: CaseRun = {
+      ...{ files: {}, style, isClosed: () => output.isClosed },
+      print(...lines) {
+        line?.clear();
+        if (line === undefined) early.push(...lines);
+        else output.lines(lines);
+      },
+      partial: (entry) => line && output.addToOthers(task.name, entry, false),
+    };
+    if (isOnly)
+      caseRun.onProgress = ({ stage, fraction }) =>
+        show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`);
+    show("reading");
+    const work = job.run(aligner, task, caseRun).catch((error) => failureEntry(error, caseRun.files));
+    const entry = await work.finally(() => line?.clear());
+    // Before the record: what is there needs no other pictures.
+    await draw(task, entry, false);
+    return () => {
+      const hasErrors = count(task.name, entry).length > 0;
+      output.add(task, entry);
+      const { rows = [], remarks: more = [] } = linesOf(task, entry);
+      remarks.push(...more);
+      progress?.clear();
+      output.lines([...early, ...rows]);
+      progress?.add(hasErrors);
+    };
+  };
   /** Closes the files and prints the remarks. */
-  end(): void {
-    this.clear();
-    this.#output.end();
-    this.#pictures.end();
-    const isSeparate = this.#total > 1 && this.#remarks.length > 0;
-    const remarks = isSeparate ? ["", ...this.#remarks] : this.#remarks;
-    this.#output.lines(this.#hasNoUnit ? [...remarks, "", noUnitNote] : remarks);
-    const before = this.#failedBefore;
-    if (before.length === 0) return;
-    const more = before.length > NAMED ? ` and ${before.length - NAMED} more` : "";
-    console.error(
-      `failed earlier: ${before.slice(0, NAMED).join(", ")}${more}; remove their lines from the record to try again`,
-    );
-  }
-
-  /** Ends the batch, and says how to go on. */
-  interrupt(): void {
-    this.end();
-    const { json, jsonl, csv } = this.#flags;
+  const end = () => {
+    progress?.clear();
+    output.end();
+    pictures.end();
+    output.lines(!isOnly && remarks.length > 0 ? ["", ...remarks] : remarks);
+    if (hasNoUnit) output.lines(["", noUnitNote]);
+    if (failedBefore.length === 0) return;
+    const more = failedBefore.length > NAMED ? ` and ${failedBefore.length - NAMED} more` : "";
+    const named = `${failedBefore.slice(0, NAMED).join(", ")}${more}`;
+    console.error(`failed earlier: ${named}; remove their lines from the record to try again`);
+  };
+  const interrupt = () => {
+    end();
+    const { json, jsonl = "-", csv } = flags;
     const files = [jsonl, json, csv].filter((path) => path !== undefined && path !== "-");
     const place = files.length === 0 ? "" : `; they are in ${files.join(", ")}`;
-    console.error(`interrupted: ${this.#done} of ${this.#total} cases are done${place}`);
-    if (this.#total === 1) return;
-    const isRecorded = jsonl !== undefined && jsonl !== "-";
-    console.error(
-      isRecorded
-        ? "To go on, run the same command with --resume."
-        : "With --jsonl FILE, a batch can be resumed: --resume skips the cases in the file.",
-    );
+    console.error(`interrupted: ${done} of ${tasks.length} cases are done${place}`);
+    const remedy = "With --jsonl FILE, a batch can be resumed: --resume skips the cases in the file.";
+    if (!isOnly) console.error(jsonl === "-" ? remedy : "To go on, run the same command with --resume.");
+  };
+
+  const left = flags.resume ? await resume() : tasks;
+  const { workers = "auto" } = flags;
+  // A single case is done on this thread, unless the flags ask for workers.
+  const wanted = workers === "auto" ? (isOnly ? 0 : availableParallelism()) : workers;
+  const size = Math.min(wanted, isOnly ? MAX_WORKERS : left.length, MAX_WORKERS);
+  const stop = onInterruption(interrupt);
+  let aligner: Aligner | undefined;
+  try {
+    if (left.length > 0) {
+      const created = await createAligner({ workers: size });
+      aligner = created;
+      if (!isOnly) progress = new BatchProgress(process.stderr, left.length);
+      for await (const write of concurrently(left, size > 1 ? size + READ_AHEAD : 1, (task) => run(created, task))) {
+        write();
+        if (output.isClosed) break;
+      }
+    }
+  } finally {
+    aligner?.dispose();
+    stop();
+    progress?.clear();
   }
+  end();
+  await job.after?.();
+  return failed === 0;
+}
+
+/** Runs a task for each item, at most `limit` at a time, and yields the results as the tasks finish. */
+async function* concurrently<T, R>(items: Iterable<T>, limit: number, run: (item: T) => Promise<R>) {
+  const iterator = items[Symbol.iterator]();
+  const running = new Set<Promise<() => R>>();
+  for (;;) {
+    while (running.size < limit) {
+      const next = iterator.next();
+      if (next.done) break;
+      const task: Promise<() => R> = run(next.value).then((result) => () => {
+        running.delete(task);
+        return result;
+      });
+      running.add(task);
+    }
+    if (running.size === 0) return;
+    yield (await Promise.race(running))();
+  }
+}
+
+const signals = ["SIGINT", "SIGTERM"] as const;
+
+/** Calls `act` when the program is interrupted, before it ends; until the returned function is called. */
+function onInterruption(act: () => void): () => void {
+  const stop = () => {
+    for (const signal of signals) process.off(signal, end);
+  };
+  const end = (signal: NodeJS.Signals) => {
+    stop();
+    act();
+    // Ends the program as the signal would have: a shell that runs a list of commands stops, too.
+    process.kill(process.pid, signal);
+  };
+  for (const signal of signals) process.on(signal, end);
+  return stop;
 }

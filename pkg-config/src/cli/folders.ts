@@ -6,15 +6,14 @@ import { text } from "node:stream/consumers";
 import { globSync, isDynamicPattern } from "tinyglobby";
 import { caseFiles } from "../case-files.js";
 import { viewNames } from "../scene/sam3d-files.js";
-import { absolutePath, namesIn } from "./case-identity.js";
-import type { CaseKey } from "./jsonl-file.js";
-import { UsageError } from "./usage-error.js";
+import { namesIn, UsageError } from "./files.js";
+import { absolutePath, type CaseKey } from "./record.js";
 
-/** What the folders of a command are. */
+/** A kind of folders. */
 export interface FolderKind {
-  /** What one of them is called. */
+  /** The name of one folder. */
   noun: string;
-  /** What makes a folder one, for errors. */
+  /** The mark of such a folder, for errors. */
   mark: string;
   /** Whether a folder is one. */
   is(folder: string): boolean;

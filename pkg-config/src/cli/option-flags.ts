@@ -1,6 +1,7 @@
 /** Flags for the options in the generated option tables. */
-import { type Command, InvalidArgumentError, Option } from "commander";
+import { InvalidArgumentError } from "commander";
 import type { OptionRow } from "../options.js";
+import { type Flag, type Flags, reads, valueName } from "./flags.js";
 import { direction, guard, number, scale, symmetry } from "./parse.js";
 
 /** Flags that are shorter than their option's name. */
@@ -10,41 +11,33 @@ const FLAG_NAMES: Readonly<Record<string, string>> = { knownExtentM: "known-exte
 const flagName = ({ name }: OptionRow) =>
   FLAG_NAMES[name] ?? name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
 
-/** The name under which Commander stores the value of a flag. */
-const valueName = (row: OptionRow) => flagName(row).replace(/-(.)/g, (_, letter: string) => letter.toUpperCase());
-
 /** Whether the flag disables an option that is on by default. */
 const isNegated = ({ kind, default: value }: OptionRow) => kind === "boolean" && value === true;
 
-/** Adds a flag for each option. */
-export function addOptionFlags(command: Command, rows: readonly OptionRow[]): void {
-  for (const row of rows) command.addOption(flagOf(row, rows));
-}
+/** A flag for each option. */
+export const optionFlags = (rows: readonly OptionRow[]): Flag[] =>
+  rows.map((row) => {
+    const flag = isNegated(row) ? `--no-${flagName(row)}` : `--${flagName(row)}`;
+    const { value, parse } = kinds[row.kind];
+    const file = row.kind === "transform" ? { ...reads, isReplaceable: true } : {};
+    const parsed = parse === undefined ? {} : { parse: (text: string) => parse(text, row) };
+    return [`${flag}${value(row.name)}`, meaning(row, rows), { ...file, ...parsed }];
+  });
 
-/** The options whose flags were given. The value of a transform is the path of its file. */
-export function givenOptions(
-  flags: Readonly<Record<string, unknown>>,
-  rows: readonly OptionRow[],
-): Record<string, unknown> {
-  const given: Record<string, unknown> = {};
+/** The values of the options whose flags are set. The value of a transform is the path of its file. */
+export function optionValues(flags: Flags, rows: readonly OptionRow[]): Record<string, unknown> {
+  const values: Record<string, unknown> = {};
   for (const row of rows) {
-    const value = flags[valueName(row)];
-    // Commander sets `true` for a --no flag that was not given.
+    const value = flags[valueName(`--${flagName(row)}`)];
+    // Commander sets `true` for a --no flag that was not values.
     if (value === undefined || (isNegated(row) && value === true)) continue;
-    given[row.name] = value === "none" && row.isNullable ? null : value;
+    values[row.name] = value === "none" && row.isNullable ? null : value;
   }
-  return given;
-}
-
-function flagOf(row: OptionRow, rows: readonly OptionRow[]): Option {
-  const flag = isNegated(row) ? `--no-${flagName(row)}` : `--${flagName(row)}`;
-  const { value, parse } = kinds[row.kind];
-  const option = new Option(`${flag}${value(row.name)}`, description(row, rows));
-  return parse === undefined ? option : option.argParser((text) => parse(text, row));
+  return values;
 }
 
 /** The summary of an option with its values and default. Option names in it are replaced by flags. */
-function description(row: OptionRow, rows: readonly OptionRow[]): string {
+function meaning(row: OptionRow, rows: readonly OptionRow[]): string {
   const summary = row.summary.replace(/`(\w+)`/g, (quoted, name: string) => {
     const named = rows.find((other) => other.name === name);
     // What only a --no flag changes has no flag of its own name.
@@ -70,19 +63,17 @@ function valuesOf({ min, max, above, choices }: OptionRow): string | undefined {
   return above === undefined ? undefined : `above ${above}`;
 }
 
-function defaultOf({ kind, default: value }: OptionRow): string | undefined {
-  if (value === null || kind === "boolean") return undefined;
-  return `default ${Array.isArray(value) ? value.join(",") : String(value)}`;
-}
+const defaultOf = ({ kind, default: value }: OptionRow) =>
+  value === null || kind === "boolean" ? undefined : `default ${Array.isArray(value) ? value.join(",") : value}`;
 
-const numeric = (name: string) => (name.endsWith("M") ? " <metres>" : name.endsWith("Deg") ? " <degrees>" : " <x>");
+const unit = (name: string) => (name.endsWith("M") ? " <metres>" : name.endsWith("Deg") ? " <degrees>" : " <x>");
 
 /** What follows the flags of each kind of option, by the name of the option, and how it is parsed. */
 const kinds: Readonly<
   Record<OptionRow["kind"], { value: (name: string) => string; parse?: (text: string, row: OptionRow) => unknown }>
 > = {
   integer: { value: () => " <n>", parse: number },
-  number: { value: numeric, parse: number },
+  number: { value: unit, parse: number },
   boolean: { value: () => "" },
   choice: { value: () => " <name>", parse: (text, { choices = [] }) => chosen(text, choices) },
   scale: { value: () => " <free|a|min,max>", parse: scale },

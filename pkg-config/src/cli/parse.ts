@@ -1,10 +1,8 @@
 /** Parsers for flag values. Invalid values are usage errors. */
-import { readFileSync } from "node:fs";
 import { InvalidArgumentError } from "commander";
 import { MAX_WORKERS } from "../aligner-options.js";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
 import { isRecord } from "../values.js";
-import { UsageError } from "./usage-error.js";
 
 /** Parses a number. */
 export function number(text: string): number {
@@ -27,27 +25,24 @@ function numbers(text: string, count: number): number[] | null {
   return values.length === count && !values.some(Number.isNaN) ? values : null;
 }
 
-/** Parses MIN,MAX or `none`. (Commander treats null as a missing value.) */
-export function guard(text: string): [number, number] | "none" {
-  if (text === "none") return text;
-  const values = numbers(text, 2);
-  if (values === null) throw new InvalidArgumentError('Expected MIN,MAX, such as 0.5,1.5, or "none".');
-  return values as [number, number];
+function listOf(text: string, count: number, expected: string): number[] {
+  const values = numbers(text, count);
+  if (values === null) throw new InvalidArgumentError(`Expected ${expected}.`);
+  return values;
 }
+
+/** Parses MIN,MAX or `none`. (Commander treats null as a missing value.) */
+export const guard = (text: string) =>
+  text === "none" ? text : (listOf(text, 2, 'MIN,MAX, such as 0.5,1.5, or "none"') as [number, number]);
+
+/** Parses X,Y,Z. */
+export const direction = (text: string) => listOf(text, 3, "X,Y,Z, such as 0,-1,0") as [number, number, number];
 
 /** Parses `free`, a number, or MIN,MAX. */
 export function scale(text: string): ScaleOption {
   if (text === "free") return text;
-  const [value, max] = numbers(text, 1) ?? numbers(text, 2) ?? [];
-  if (value === undefined) throw new InvalidArgumentError('Expected "free", a number, such as 0.001, or MIN,MAX.');
-  return max === undefined ? value : [value, max];
-}
-
-/** Parses X,Y,Z. */
-export function direction(text: string): [number, number, number] {
-  const values = numbers(text, 3);
-  if (values === null) throw new InvalidArgumentError("Expected X,Y,Z, such as 0,-1,0.");
-  return values as [number, number, number];
+  const [value, max] = numbers(text, 1) ?? listOf(text, 2, '"free", a number, such as 0.001, or MIN,MAX');
+  return max === undefined ? (value as number) : [value as number, max];
 }
 
 /** Parses a name, which the core checks, or a JSON array of axes. */
@@ -94,16 +89,4 @@ export function camera(text: string): string | { value: CameraInput } {
 function looksLikeNumbers(text: string): boolean {
   const isNumber = (part: string) => part.trim() !== "" && !Number.isNaN(Number(part));
   return text.split(",").filter(isNumber).length >= 2;
-}
-
-/**
- * The text of the file that a flag names.
- * @throws {@link UsageError} if it cannot be read
- */
-export function textOf(flag: string, path: string): string {
-  try {
-    return readFileSync(path, "utf8");
-  } catch (error) {
-    throw new UsageError(`${flag} ${path}: the file cannot be read: ${(error as Error).message}.`);
-  }
 }

@@ -2,7 +2,7 @@
 import { constants, copyFileSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { hostname } from "node:os";
 import { isRecord } from "../values.js";
-import { UsageError } from "./usage-error.js";
+import { UsageError } from "./files.js";
 
 /** The process that holds a lock. */
 interface Owner {
@@ -20,7 +20,12 @@ export function lockRecord(flag: string, record: string): () => void {
   const lock = `${record}.lock`;
   const owner: Owner = { pid: process.pid, host: hostname(), since: new Date().toISOString() };
   try {
-    while (!made(() => writeFileSync(lock, `${JSON.stringify(owner)}\n`, { flag: "wx" }))) takeOver(flag, record, lock);
+    while (!made(() => writeFileSync(lock, `${JSON.stringify(owner)}\n`, { flag: "wx" }))) {
+      const found = ownerOf(lock);
+      const reason = reasonToWait(found, lock);
+      if (reason !== undefined) throw new UsageError(`${flag} ${record}: ${reason}`);
+      takeOver(lock, found);
+    }
   } catch (error) {
     if (error instanceof UsageError) throw error;
     throw new UsageError(`${flag} ${record}: the lock ${lock} cannot be written: ${(error as Error).message}.`);
@@ -34,9 +39,7 @@ export function lockRecord(flag: string, record: string): () => void {
 }
 
 /** Removes the lock of a process that has ended. */
-function takeOver(flag: string, record: string, lock: string): void {
-  const found = ownerOf(lock);
-  refuseLiving(flag, record, lock, found);
+function takeOver(lock: string, found: Owner | undefined): void {
   const aside = `${lock}.${process.pid}`;
   try {
     renameSync(lock, aside);
@@ -49,20 +52,15 @@ function takeOver(flag: string, record: string, lock: string): void {
   rmSync(aside, { force: true });
 }
 
-/** @throws {@link UsageError} for an owner that may still write */
-function refuseLiving(flag: string, record: string, lock: string, owner: Owner | undefined): void {
-  const remedy = `Wait for it, pass another file, or remove ${lock} if it does not run any more.`;
-  if (owner === undefined) {
-    throw new UsageError(`${flag} ${record}: ${lock} names no process. Remove it if nothing writes the record.`);
-  }
+/** Why a lock may still be held; `undefined` if its process has ended. */
+function reasonToWait(owner: Owner | undefined, lock: string): string | undefined {
+  if (owner === undefined) return `${lock} names no process. Remove it if nothing writes the record.`;
   const { pid, host, since } = owner;
-  if (host !== hostname()) {
-    throw new UsageError(`${flag} ${record}: process ${pid} on ${host} writes this record since ${since}. ${remedy}`);
-  }
+  const isElsewhere = host !== hostname();
   // An own number is that of an earlier process: this one has no lock yet.
-  if (pid !== process.pid && isRunning(pid)) {
-    throw new UsageError(`${flag} ${record}: process ${pid} writes this record since ${since}. ${remedy}`);
-  }
+  if (!isElsewhere && (pid === process.pid || !isRunning(pid))) return undefined;
+  const remedy = `Wait for it, pass another file, or remove ${lock} if it does not run any more.`;
+  return `process ${pid}${isElsewhere ? ` on ${host}` : ""} writes this record since ${since}. ${remedy}`;
 }
 
 function isRunning(pid: number): boolean {

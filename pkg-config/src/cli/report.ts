@@ -1,328 +1,155 @@
-/** Human-readable tables of results. */
-import type { AlignResult, Evaluation, LayoutErrors, Metrics, PoseErrors, Stretch, Warning } from "../index.js";
-import { depthRows } from "./depth-rows.js";
-import { isMetric, Lengths } from "./lengths.js";
-import { type Failure, failedLine, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
-import type { Style } from "./style.js";
-import { type Column, fixed, headings, pairs, type Row, significant, tableLine, textWidth } from "./table.js";
+/** A report: a page, its rows, and a folder of pictures for each case. It is complete after each of them. */
+import { createHash } from "node:crypto";
+import { existsSync } from "node:fs";
+import { mkdir, readFile, rename, writeFile } from "node:fs/promises";
+import { basename, join, resolve } from "node:path";
+import type { CasePictures } from "../pictures/case-pictures.js";
+import { columns, type ReportDetails, type ReportRow } from "../report-page/row.js";
+import { alternativesOf, type Entry, rowOf } from "./entry.js";
+import { namesIn, OutputFile, UsageError } from "./files.js";
 
-const number = (heading: string): Column => ({ heading, isNumber: true, width: 6 });
+/** The fields of a row on the page. */
+const pageFields: readonly string[] = [...Object.keys(columns), "error", "warnings", "isMetric"];
 
-/** The metrics in tables: heading, name, and number of decimals. Those in millimetres need metric lengths. */
-const metricColumns = [
-  ["IoU", "iou", 3],
-  ["bound. F", "boundaryF", 3],
-  ["drift px", "centerDriftPx", 1],
-  ["Chamfer mm", "chamferMm", 2],
-  ["fitness", "fitness", 3],
-  ["MAE mm", "depthMaeMm", 2],
-] as const;
+/** The files of a report. */
+export class ReportFolder {
+  readonly #rows: OutputFile;
 
-type Metric = (typeof metricColumns)[number][1];
+  private constructor(private readonly folder: string) {
+    this.#rows = new OutputFile(join(folder, "rows.js"), "w");
+  }
 
-const metricHeadings = metricColumns.map(([heading]) => number(heading));
-const metricCells = (lengths: Lengths, read: (metric: Metric) => number | null | undefined): string[] =>
-  metricColumns.map(([, metric, digits]) =>
-    metric.endsWith("Mm") ? lengths.cell(read(metric), digits) : fixed(read(metric), digits),
-  );
+  /**
+   * Writes a page without rows, into a folder that is there. A report in it gets new rows.
+   * @throws {@link UsageError} if the folder has other content
+   */
+  static async open(folder: string): Promise<ReportFolder> {
+    const names = namesIn(folder);
+    if (names.length > 0 && !names.includes("rows.js"))
+      throw new UsageError(`--report ${folder}: the folder has other content. Pass a new folder.`);
+    const report = new ReportFolder(folder);
+    await writeFile(join(folder, "index.html"), await reportHtml(basename(resolve(folder))));
+    report.#rows.lines(['"use strict";']);
+    return report;
+  }
 
-const errorHeadings: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
+  /** Whether the pictures of a case are there. */
+  has(name: string): boolean {
+    return existsSync(join(this.folder, "cases", fileName(name), "details.js"));
+  }
 
-/** Writes the lines of a table, whose columns do not depend on the results. The first row is preceded by the headings. */
-export type RowLines<T> = (name: string, result: T | Failure) => string[];
+  /** Adds a row to the table; its pictures are shown if they are there. */
+  add(name: string, entry: Entry): void {
+    const fields = Object.entries(rowOf(entry)).filter(([field]) => pageFields.includes(field));
+    const folder = this.has(name) ? { folder: fileName(name) } : {};
+    const row = { name, ...folder, ...Object.fromEntries(fields) } as ReportRow;
+    this.#rows.lines([`sim3align.rows.push(${JSON.stringify(row)});`]);
+  }
 
-function tableOf<T extends object>(
-  names: readonly string[],
-  columns: readonly Column[],
-  style: Style,
-  cells: (result: T) => string[],
-): RowLines<T> {
-  const width = names.reduce((widest, name) => Math.max(widest, textWidth(name)), 0);
-  const all = [{ heading: "case", width }, ...columns];
-  let isEmpty = true;
-  return (name, result) => {
-    const row = "error" in result ? [style.red((result as Failure).error.code)] : cells(result as T);
-    const first = isEmpty ? [style.bold(headings(all))] : [];
-    isEmpty = false;
-    return [...first, tableLine(all, [name, ...row])];
-  };
+  /** Writes the pictures of a case: `details.js` last: its presence means that all are there. */
+  async write(name: string, entry: Entry, { files, ...known }: CasePictures): Promise<void> {
+    const folder = join(this.folder, "cases", fileName(name));
+    await mkdir(folder, { recursive: true });
+    await Promise.all(Object.entries(files).map(([file, bytes]) => writeFile(join(folder, file), bytes)));
+    const alternatives = alternativesOf(entry).map(({ turnDeg, score }, k) => ({
+      ...{ file: `alternative-${k + 1}.png`, turnDeg: Number(turnDeg), score: Number(score) },
+    }));
+    const details: ReportDetails = { ...known, alternatives, matrix: entry.matrix as number[] };
+    const text = `sim3align.details[${JSON.stringify(fileName(name))}] = ${JSON.stringify(details)};\n`;
+    await writeFile(join(folder, "details.part"), text);
+    await rename(join(folder, "details.part"), join(folder, "details.js"));
+  }
+
+  end(): void {
+    this.#rows.end();
+  }
 }
 
-/** The table of several cases; the errors have columns if a case has a true pose. */
-export function summaryTable(
-  cases: readonly { name: string; hasTruth: boolean }[],
-  style: Style,
-): RowLines<Success | ViewsSuccess> {
-  const hasTruth = cases.some((each) => each.hasTruth);
-  const columns = [
-    ...["conf.", "alt."].map(number),
-    { ...number("scale"), width: 9 },
-    number("s/s_init"),
-    ...metricHeadings,
-    number("time s"),
-    ...(hasTruth ? errorHeadings : []),
-  ];
-  const names = cases.map(({ name }) => name);
-  return tableOf(names, columns, style, (outcome) => {
-    const cells = "views" in outcome ? viewsCells(outcome) : caseCells(outcome);
-    return hasTruth ? [...cells, ...errorCells("views" in outcome ? null : outcome.errors)] : cells;
-  });
+/** The name of the files of a case: its own, if all file systems can have it, otherwise with a checksum. */
+export function fileName(name: string): string {
+  if (/^[a-z0-9][a-z0-9._-]{0,80}$/.test(name)) return name;
+  const check = createHash("sha256").update(name).digest("hex").slice(0, 8);
+  const plain = name.replace(/[^A-Za-z0-9._-]+/g, "-").replace(/^[.-]+/, "");
+  return `${plain.slice(-80)}-${check}`;
 }
 
-/** The table of several evaluations. */
-export function evaluationTable(names: readonly string[], lengths: Lengths, style: Style): RowLines<Evaluation> {
-  const cells = ({ metrics, errors }: Evaluation) => [
-    ...metricCells(lengths, (metric) => metrics[metric]),
-    ...errorCells(errors, lengths),
-  ];
-  return tableOf(names, [...metricHeadings, ...errorHeadings], style, cells);
+const style = `
+:root { color-scheme: light; font: 14px/1.45 system-ui, sans-serif; color: #1d2530; background: #f6f7f9; }
+* { box-sizing: border-box; }
+body { margin: 0; height: 100vh; display: grid; grid-template: auto 1fr / minmax(0, 1fr) 490px; }
+header { grid-column: 1 / 3; display: flex; flex-wrap: wrap; gap: 6px 22px; align-items: center; padding: 10px 16px;
+  background: #fff; border-bottom: 1px solid #dfe3e8; }
+h1 { font-size: 17px; margin: 0; } h2 { font-size: 16px; margin: 0 0 8px; overflow-wrap: anywhere; }
+h3 { font-size: 13px; margin: 16px 0 6px; color: #4a5563; }
+p { margin: 0; } #summary, #count { color: #4a5563; }
+form { display: flex; flex-wrap: wrap; gap: 6px 16px; align-items: center; margin-left: auto; }
+input[type="search"], select { font: inherit; padding: 4px 8px; border: 1px solid #98a2b0; border-radius: 5px; background: #fff; color: inherit; }
+label { white-space: nowrap; } input[type="range"] { vertical-align: middle; width: 110px; }
+main { min-width: 0; min-height: 0; display: flex; }
+#scroller { flex: 1; overflow: auto; }
+table { border-collapse: separate; border-spacing: 0; width: 100%; font-variant-numeric: tabular-nums; background: #fff; }
+thead th { position: sticky; top: 0; z-index: 1; background: #eef1f4; text-align: left; font-weight: 600; padding: 0 8px;
+  height: 38px; border-bottom: 1px solid #dfe3e8; white-space: nowrap; }
+thead button { all: unset; cursor: pointer; } thead button:focus-visible, tbody button:focus-visible { outline: 2px solid #1660c4; outline-offset: 2px; }
+th[aria-sort="ascending"] button::after { content: " ▲" / ""; font-size: 10px; } th[aria-sort="descending"] button::after { content: " ▼" / ""; font-size: 10px; }
+tbody tr { height: 48px; cursor: pointer; } tbody tr:hover { background: #f3f6fa; }
+tbody tr[aria-selected="true"] { background: #e3eefb; }
+tbody td, tbody th { padding: 0 8px; height: 48px; border-bottom: 1px solid #eceff2; text-align: left; font-weight: 400;
+  white-space: nowrap; max-width: 260px; overflow: hidden; text-overflow: ellipsis; }
+tbody th button { all: unset; cursor: pointer; font-weight: 600; } td.spacer { border: 0; padding: 0; height: auto; } td.words { color: #6a4a00; font-size: 12px; }
+td img { display: block; border-radius: 3px; }
+.bar { display: inline-block; width: 44px; height: 7px; margin-right: 7px; border-radius: 4px; background: linear-gradient(to right, #2f7fd6 calc(var(--share) * 100%), #dde3ea 0); }
+.failed, .problem { color: #a3211b; }
+aside { overflow: auto; background: #fff; border-left: 1px solid #dfe3e8; padding: 14px 16px 24px; }
+.stack { position: relative; width: 440px; max-width: 100%; aspect-ratio: 4 / 3; background: #22222a; border-radius: 6px; overflow: hidden; }
+.stack img { position: absolute; inset: 0; width: 100%; height: 100%; } [hidden] { display: none; }
+.layers { display: flex; flex-wrap: wrap; gap: 4px 14px; margin: 8px 0; }
+.legend { font-size: 12px; color: #4a5563; } .key { margin-left: 10px; white-space: nowrap; }
+.key::before { content: ""; display: inline-block; width: 10px; height: 10px; margin-right: 4px; border: 1px solid #6b7683; border-radius: 2px; }
+.key.mesh::before { background: #f08a24; } .key.mask::before { background: #fff; } .key.near::before { background: #1e64dc; } .key.far::before { background: #eb5f0a; }
+canvas { width: 440px; max-width: 100%; border: 1px solid #dfe3e8; border-radius: 6px; touch-action: none; cursor: grab; }
+canvas:focus-visible, pre:focus-visible { outline: 2px solid #1660c4; }
+.alternatives { display: flex; flex-wrap: wrap; gap: 10px; } figure { margin: 0; } figcaption { font-size: 12px; color: #4a5563; }
+figure img { display: block; border-radius: 4px; } ul.warnings { padding-left: 18px; margin: 10px 0; }
+dl { display: grid; grid-template-columns: auto 1fr; gap: 2px 14px; margin: 0; } dt { color: #4a5563; } dd { margin: 0; font-variant-numeric: tabular-nums; }
+pre { font-size: 12px; background: #f6f7f9; padding: 8px; border-radius: 5px; overflow: auto; }
+@media (max-width: 900px) { body { height: auto; grid-template: auto 60vh auto / 1fr; } header { grid-column: 1; } aside { border-left: 0; } }
+`;
+
+/** The page: style and script are in it; rows and details are scripts beside it. */
+export async function reportHtml(title: string): Promise<string> {
+  const script = await readFile(new URL("../report-page.js", import.meta.url), "utf8");
+  return `<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width">
+<title>${escaped(title)}</title>
+<style>${style}</style>
+</head>
+<body>
+<header>
+<h1>${escaped(title)}</h1>
+<p id="summary"></p>
+<form onsubmit="return false" role="search" aria-label="Filter">
+<label>Find <input type="search" id="text" placeholder="name or warning"></label>
+<label>Confidence up to <input type="range" id="up-to" min="0" max="1" step="0.01" value="1"> <output id="up-to-value" for="up-to">1.00</output></label>
+<label>Show <select id="only"><option value="all">all</option><option value="failures">failures</option><option value="warnings">with warnings</option><option value="alternatives">with alternatives</option></select></label>
+<p id="count" role="status"></p>
+</form>
+</header>
+<main>
+<div id="scroller" tabindex="0" role="region" aria-label="Cases">
+<table id="table"><caption hidden>Cases</caption><thead id="head"></thead><tbody id="rows"></tbody></table>
+</div>
+</main>
+<aside id="detail" aria-label="Details" tabindex="0"></aside>
+<script>var sim3align = { rows: [], details: {} };</script>
+<script src="rows.js"></script>
+<script>${script.replaceAll("</script", "<\\/script")}</script>
+</body>
+</html>
+`;
 }
 
-function caseCells({ alignment }: Success): string[] {
-  const { scale, metrics, diagnostics } = alignment;
-  const { scaleRatio, timingsMs } = diagnostics;
-  const certain = "confidence" in alignment ? alignment : null;
-  return [
-    fixed(certain?.confidence, 2),
-    certain === null ? "–" : String(certain.alternatives.length),
-    significant(scale, 4),
-    fixed(scaleRatio, 3),
-    ...metricCells(new Lengths(isMetric(alignment)), (metric) => metrics?.[metric]),
-    fixed(timingsMs.total / 1000, 2),
-  ];
-}
-
-/** Of the metrics, the means over the views that have them. */
-function viewsCells({ views: alignment }: ViewsSuccess): string[] {
-  const { confidence, alternatives, scale, views, diagnostics } = alignment;
-  const mean = (metric: Metric) => {
-    const values = views.flatMap(({ metrics }) => metrics?.[metric] ?? []);
-    return values.length === 0 ? null : values.reduce((sum, value) => sum + value, 0) / values.length;
-  };
-  return [
-    fixed(confidence, 2),
-    String(alternatives.length),
-    significant(scale, 4),
-    "–",
-    ...metricCells(new Lengths(isMetric(alignment)), mean),
-    fixed(diagnostics.timingsMs.total / 1000, 2),
-  ];
-}
-
-/** Details of a case of several views. */
-export function viewsDetails({ name, views: alignment, frames, errors }: ViewsSuccess, style: Style): string[] {
-  const { scale, translation, rotation, world, confidence, uncertainty, views, warnings, diagnostics } = alignment;
-  const frame = world === "given" ? "world" : "camera of the first view that is used";
-  const numbers = (values: readonly number[]) => values.map((x) => fixed(x, 6)).join("  ");
-  const { unit } = new Lengths(isMetric(alignment));
-  const view = (frameName: string, k: number): Row[] => {
-    const { confidence, role, metrics, ...ofInput } = views[k] as (typeof views)[number];
-    const read = depthRows(ofInput).map(([name, value]): Row => ["", `${name}: ${value}`]);
-    const own = errors[k] ?? null;
-    const error =
-      own === null
-        ? ""
-        : `, errors: scale ${fixed(100 * own.scaleError, 2)} %, rotation ${fixed(own.rotationErrorDeg, 2)}°, translation ${fixed(100 * own.translationErrorRelative, 2)} %`;
-    return [[frameName, `${role}, confidence ${fixed(confidence, 2)}, IoU ${fixed(metrics?.iou, 3)}${error}`], ...read];
-  };
-  return [
-    style.bold(`${name}: ${frame} from mesh, x = s·R·p + t`),
-    ...pairs([
-      [
-        "scale s",
-        `${significant(scale, 6)} ${unit} per mesh unit${uncertainty === null ? "" : ` ± ${fixed(100 * uncertainty.scale, 2)} %`}`,
-      ],
-      ["translation t", `${numbers(translation)} ${unit}`],
-      ["rotation R", `${numbers(rotation)} (quaternion x y z w)`],
-      ["confidence", `${fixed(confidence, 2)}, score ${fixed(diagnostics.score, 3)}`],
-      ...proportionsRows(alignment, new Lengths(isMetric(alignment))),
-    ]),
-    "",
-    style.bold("Views"),
-    ...pairs(frames.flatMap(view)),
-    ...warningsSection([...warnings, ...views.flatMap((each) => each.warnings)], style),
-  ];
-}
-
-/** Errors of an alignment are known for metric lengths only. */
-function errorCells(errors: PoseErrors | null, lengths = new Lengths(true)): string[] {
-  if (errors === null) return errorHeadings.map(() => "–");
-  return [
-    fixed(100 * errors.scaleError, 1),
-    fixed(errors.rotationErrorDeg, 1),
-    lengths.cell(1000 * errors.translationErrorM, 1),
-    fixed(100 * errors.translationErrorRelative, 1),
-  ];
-}
-
-/** Details of an aligned case. */
-export function details({ name, alignment, errors }: Success, style: Style): string[] {
-  const { scale, rotation, rotationMatrix, translation, metrics, diagnostics } = alignment;
-  const matrixRow = (i: 0 | 1 | 2) =>
-    [...rotationMatrix[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
-  const lengths = new Lengths(isMetric(alignment));
-  return [
-    style.bold(`${name}: camera from mesh, x_cam = s·R·p + t`),
-    ...pairs([
-      ["scale s", `${significant(scale, 6)} ${lengths.unit} per mesh unit`],
-      ["scale ratio", `${fixed(diagnostics.scaleRatio, 4)} of the initial ${significant(diagnostics.initialScale, 6)}`],
-      ["translation t", `${translation.map((x) => fixed(x, 6)).join("  ")} ${lengths.unit}`],
-      ["rotation R", `${rotation.map((x) => fixed(x, 6)).join("  ")} (quaternion x y z w)`],
-      ["matrix (s·R | t)", matrixRow(0)],
-      ["", matrixRow(1)],
-      ["", matrixRow(2)],
-      ...("confidence" in alignment ? certainty(alignment, lengths) : [refinement(alignment, lengths)]),
-      ...proportionsRows(alignment, lengths),
-      ...depthRows(alignment),
-    ]),
-    ...(metrics === undefined ? [] : ["", ...metricsSection(metrics, lengths, style)]),
-    ...errorsSection(errors, lengths, style),
-    "",
-    style.bold("Stages"),
-    ...pairs(Object.entries(diagnostics.timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`])),
-    "",
-    style.bold("Counts"),
-    ...pairs(countRows(alignment)),
-    ...warningsSection(alignment.warnings, style),
-  ];
-}
-
-/** The lengths of a mesh in the proportions that were found. */
-export function proportionsRows(alignment: object, lengths: Lengths): Row[] {
-  const { proportions } = alignment as { proportions?: Stretch };
-  if (proportions === undefined) return [];
-  const { sizeM, uncertainty } = proportions;
-  const sides = sizeM.map((size, k) => {
-    const sd = `± ${fixed(100 * (uncertainty[k as 0] ?? 0), 1)} %`;
-    return `${"xyz"[k]} ${lengths.millimetres(1000 * size, 1)} ${sd}`;
-  });
-  return [["in proportion", sides.join(", ")]];
-}
-
-function refinement({ diagnostics: { converged, residualM } }: AlignResult<"paper">, lengths: Lengths): Row {
-  const residual = lengths.millimetres(1000 * residualM, 3);
-  return ["refinement", `${converged ? "converged" : "did not converge"}, residual ${residual}`];
-}
-
-/** Confidence, alternatives and uncertainty. */
-function certainty(
-  { confidence, alternatives, uncertainty, diagnostics }: AlignResult<"precise">,
-  lengths: Lengths,
-): Row[] {
-  const { score } = diagnostics;
-  const others = alternatives.map((other) => `${fixed(other.turnDeg, 0)}° (score ${fixed(other.score, 3)})`);
-  const rows: Row[] = [
-    ["confidence", `${fixed(confidence, 2)}, score ${fixed(score, 3)}`],
-    ["alternatives", others.length === 0 ? "none" : `${others.length}, rotated by ${others.join(", ")}`],
-  ];
-  if (uncertainty === null) return rows;
-  const { scale, rotationDeg, rotationAxis, lateralM, distanceM } = uncertainty;
-  const axis = rotationAxis.map((x) => fixed(x, 2)).join(" ");
-  const [lateral, distance] = [lateralM, distanceM].map((length) => lengths.millimetres(1000 * length, 1));
-  const shift = `${lateral} lateral, ${distance} in distance`;
-  return [
-    ...rows,
-    ["uncertainty", `scale ${fixed(100 * scale, 1)} %, rotation ${fixed(rotationDeg, 1)}° about ${axis}, ${shift}`],
-  ];
-}
-
-function countRows({ diagnostics: { counts } }: AlignResult): Row[] {
-  const points: Row = ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`];
-  if ("renders" in counts) return [points, ["renders", String(counts.renders)]];
-  return [
-    points,
-    ["voxels", `${counts.sourceVoxels} and ${counts.targetVoxels}`],
-    ["matches", `${counts.matches}, of which ${counts.inliers} agree`],
-    ["hypotheses", `${counts.iterations} drawn, ${counts.inconsistent} inconsistent`],
-    ["scale guard", `${counts.rejected} rejected, ${counts.clamped} clamped`],
-    ["refinement", `${counts.icpIterations} iterations, ${counts.supported} points supported`],
-  ];
-}
-
-/** Details of an evaluated case. */
-export function evaluationDetails(name: string, evaluation: Evaluation, lengths: Lengths, style: Style): string[] {
-  const { metrics, errors, layout, warnings, diagnostics } = evaluation;
-  const { scaleRatio, initialScale, collapsed } = diagnostics;
-  return [
-    style.bold(`${name}: evaluation`),
-    ...pairs([
-      [
-        "scale ratio",
-        `${fixed(scaleRatio, 4)} of the initial ${significant(initialScale, 6)}${collapsed ? ", collapsed" : ""}`,
-      ],
-      ...depthRows(evaluation),
-    ]),
-    "",
-    ...metricsSection(metrics, lengths, style),
-    ...errorsSection(errors, lengths, style),
-    ...layoutSection(layout, lengths, style),
-    ...warningsSection(warnings, style),
-  ];
-}
-
-function metricsSection(metrics: Metrics, lengths: Lengths, style: Style): string[] {
-  return [
-    style.bold("Metrics"),
-    ...pairs([
-      ["silhouette IoU", fixed(metrics.iou, 4)],
-      ["boundary F", fixed(metrics.boundaryF, 4)],
-      ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`],
-      ["Chamfer", `${lengths.millimetres(metrics.chamferMm, 3)} (both directions)`],
-      ["uni-Chamfer", `${lengths.millimetres(metrics.uniChamferMm, 3)} (observed to surface)`],
-      ["fitness", fixed(metrics.fitness, 4)],
-      ["normal consistency", fixed(metrics.normalConsistency, 4)],
-      ["depth MAE", lengths.millimetres(metrics.depthMaeMm, 3)],
-    ]),
-  ];
-}
-
-function errorsSection(errors: PoseErrors | null, lengths: Lengths, style: Style): string[] {
-  if (errors === null) return [];
-  const { scaleError, rotationErrorDeg, translationErrorM, translationErrorRelative, addSMm } = errors;
-  return [
-    "",
-    style.bold("Errors (compared with gt.json)"),
-    ...pairs([
-      ["scale", `${fixed(100 * scaleError, 2)} %`],
-      ["rotation", `${fixed(rotationErrorDeg, 2)}°`],
-      [
-        "translation",
-        `${lengths.millimetres(1000 * translationErrorM, 2)}, ${fixed(100 * translationErrorRelative, 2)} % of the diameter`,
-      ],
-      ["ADD-S", lengths.millimetres(addSMm, 2)],
-    ]),
-  ];
-}
-
-function layoutSection(layout: LayoutErrors | null, { isMetric }: Lengths, style: Style): string[] {
-  if (layout === null) return [];
-  const { boxIou, icpRotationDeg, addSRelative, isFound, isCadAligned } = layout;
-  return [
-    "",
-    style.bold("Layout"),
-    ...pairs([
-      ["3D IoU", fixed(boxIou, 4)],
-      ["ICP-Rot", `${fixed(icpRotationDeg, 2)}°`],
-      ["ADD-S", `${fixed(100 * addSRelative, 2)} % of the diameter${isFound ? "" : ", not found"}`],
-      ...(isMetric ? [["20 cm, 20°, 20 %", isCadAligned ? "aligned" : "not aligned"] as const] : []),
-    ]),
-  ];
-}
-
-function warningsSection(warnings: readonly Warning[], style: Style): string[] {
-  if (warnings.length === 0) return [];
-  return ["", style.bold("Warnings"), ...warnings.map((warning) => `  ${warningText(warning, style)}`)];
-}
-
-const warningText = ({ code, message }: Warning, style: Style) => `${style.yellow(code)}: ${message}`;
-
-/** Warnings and failures of several cases. */
-export function notes(outcomes: readonly Outcome[], style: Style): string[] {
-  return outcomes.flatMap((outcome) =>
-    "error" in outcome
-      ? [failedLine(outcome, style)]
-      : ("views" in outcome ? outcome.views : outcome.alignment).warnings.map(
-          (warning) => `${outcome.name}: ${warningText(warning, style)}`,
-        ),
-  );
-}
+const escaped = (text: string) => text.replace(/[&<>"]/g, (character) => `&#${character.charCodeAt(0)};`);

@@ -1,16 +1,39 @@
-/** Aligned columns of text, and the numbers in them. */
+/** Text on a terminal: styles, tables, and lengths with or without a unit. */
+import type { WriteStream } from "node:tty";
 import { stripVTControlCharacters } from "node:util";
+import { type ColumnName, cellOf, columns, fixed } from "../report-page/row.js";
+import { type Entry, isFailure, rowOf } from "./entry.js";
 
-/** A column. Longer cells shift the rest of their row. */
-export interface Column {
+/** Bold and coloured text, if the terminal supports it and NO_COLOR is not set. */
+export class Style {
+  readonly #isColoured: boolean;
+
+  constructor(stream: Pick<WriteStream, "isTTY">) {
+    this.#isColoured = Boolean(stream.isTTY) && !process.env.NO_COLOR && process.env.TERM !== "dumb";
+  }
+
+  bold = (text: string): string => this.#wrap(1, 22, text);
+  red = (text: string): string => this.#wrap(31, 39, text);
+  yellow = (text: string): string => this.#wrap(33, 39, text);
+
+  #wrap(open: number, close: number, text: string): string {
+    return this.#isColoured ? `\u001b[${open}m${text}\u001b[${close}m` : text;
+  }
+}
+
+/** A column of text. Longer cells shift the rest of their row. */
+export interface TextColumn {
   heading: string;
   isNumber?: boolean;
   /** Minimum width in characters; the heading may be longer. */
   width?: number;
 }
 
+/** A column of numbers. */
+export const numeric = (heading: string, width = 6): TextColumn => ({ heading, isNumber: true, width });
+
 /** Width of a text on a terminal, without escape sequences. */
-export const textWidth = (text: string) => [...stripVTControlCharacters(text)].length;
+const textWidth = (text: string) => [...stripVTControlCharacters(text)].length;
 
 function pad(text: string, to: number, isNumber: boolean): string {
   const space = " ".repeat(Math.max(0, to - textWidth(text)));
@@ -18,43 +41,65 @@ function pad(text: string, to: number, isNumber: boolean): string {
 }
 
 /** A row of a table. In a row with fewer cells than columns, all cells are text. */
-export function tableLine(columns: readonly Column[], cells: readonly string[]): string {
-  return columns
+export const tableLine = (row: readonly TextColumn[], cells: readonly string[]): string =>
+  row
     .slice(0, cells.length)
     .map(({ heading, isNumber = false, width = 0 }, i) =>
-      pad(cells[i] ?? "", Math.max(width, textWidth(heading)), isNumber && cells.length === columns.length),
+      pad(cells[i] ?? "", Math.max(width, textWidth(heading)), isNumber && cells.length === row.length),
     )
     .join("  ")
     .trimEnd();
-}
 
 /** The headings of a table. */
-export const headings = (columns: readonly Column[]) =>
+export const headings = (row: readonly TextColumn[]) =>
   tableLine(
-    columns,
-    columns.map(({ heading }) => heading),
+    row,
+    row.map(({ heading }) => heading),
   );
 
+/**
+ * A table of cases with these columns, which do not depend on the results.
+ * @returns the lines of a case; the first one is preceded by the headings
+ */
+export function caseTable(names: readonly string[], shown: readonly ColumnName[]) {
+  const width = names.reduce((widest, name) => Math.max(widest, textWidth(name)), 0);
+  const numbers = shown.map((name) => numeric(columns[name].short, name === "scale" ? 9 : 6));
+  const all = [{ heading: "case", width }, ...numbers];
+  let isEmpty = true;
+  return (name: string, entry: Entry, style: Style): string[] => {
+    const row = rowOf(entry);
+    const cells = isFailure(entry) ? [style.red(entry.error.code)] : shown.map((column) => cellOf(row, column));
+    const first = isEmpty ? [style.bold(headings(all))] : [];
+    isEmpty = false;
+    return [...first, tableLine(all, [name, ...cells])];
+  };
+}
+
 /** A name and its value. */
-export type Row = readonly [name: string, value: string];
+export type Pair = readonly [name: string, value: string];
 
 /** Names and values in two columns, indented. */
-export function pairs(entries: readonly Row[]): string[] {
+export function pairs(entries: readonly Pair[]): string[] {
   const longest = Math.max(...entries.map(([name]) => textWidth(name)));
   return entries.map(([name, value]) => `  ${pad(name, longest, false)}  ${value}`);
 }
 
-/** Formats a number with a fixed number of decimals; a missing one is a dash. */
-export function fixed(value: number | null | undefined, digits: number): string {
-  return value === null || value === undefined ? "–" : value.toFixed(digits);
-}
+/** The note on results whose lengths have no unit. */
+export const noUnitNote =
+  "Lengths have no unit, because nothing metric is known: --known-extent, or a number as --scale, makes them metric.";
 
-/** Formats a number with the given significant digits, without an exponent if a few zeros suffice. */
-export function significant(value: number | null | undefined, digits: number): string {
-  if (value === null || value === undefined) return "–";
-  if (value === 0 || !Number.isFinite(value)) return String(value);
-  const magnitude = Math.floor(Math.log10(Math.abs(value)));
-  return magnitude < -5 || magnitude > 8
-    ? value.toExponential(digits - 1)
-    : value.toFixed(Math.max(0, digits - 1 - magnitude));
+/** How lengths are printed. */
+export class Lengths {
+  constructor(readonly isMetric: boolean) {}
+
+  /** The unit of numbers without a prefix. */
+  get unit(): string {
+    return this.isMetric ? "m" : "units";
+  }
+
+  /** A length with its unit; one of millimetres has three more decimals without them. */
+  millimetres(mm: number | null | undefined, digits: number): string {
+    if (mm === null || mm === undefined) return fixed(mm, digits);
+    return this.isMetric ? `${fixed(mm, digits)} mm` : `${fixed(mm / 1000, digits + 3)} ${this.unit}`;
+  }
 }

@@ -4,13 +4,6 @@ import { parsePoseFile } from "../conventions/pose-file.js";
 import { failure, type Sim3AlignError } from "../error.js";
 import { isRecord, oncePerKey } from "../values.js";
 
-/** The layout of a transform file, for --help. */
-export const transformFileHelp = `
-A transform file is JSON with
-  - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers, row-major, or as a quaternion x, y, z, w; or
-  - { "matrix" }, 16 numbers column by column; or
-  - the output of "sim3align align --json", or a record of --jsonl, from which the entry of the case is read.`;
-
 /** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
 const jsonIn = oncePerKey(async (path: string, argument: string) =>
   parse(new TextDecoder().decode(await read(argument, path)), argument, path),

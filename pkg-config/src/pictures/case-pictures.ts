@@ -16,7 +16,7 @@ const MAX_OVERLAY = 1600;
 
 type Matrix = readonly number[];
 
-/** Files of pictures, and what is to be known about them. */
+/** Files of pictures, and their properties. */
 export interface CasePictures {
   /** PNG files by name. */
   files: Record<string, Uint8Array>;

@@ -1,11 +1,11 @@
-/** Layers of pictures: what was seen, and what is drawn over it. */
+/** Layers of pictures: the observation, and drawings over it. */
 import { depthColour, differenceColour, MASK, MESH, type Rgb } from "./colours.js";
 import type { Picture } from "./png.js";
 import { lightAt, outlineOf } from "./shading.js";
 import type { Shot } from "./shot.js";
 import type { View } from "./view.js";
 
-/** What was seen: the photo or, without one, the depth in colours. */
+/** The observation: the photo or, without one, the depth in colours. */
 export function ground(shot: Shot, view: View): Picture {
   const { photo, width: columns, height: rows } = shot;
   return photo === undefined ? depthGround(shot, view) : photoGround(photo, columns, rows, view);

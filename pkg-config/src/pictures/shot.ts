@@ -10,7 +10,7 @@ import type { AlignInput } from "../input/types.js";
 import { type CoreMesh, nextMeshId } from "../prepared-mesh.js";
 import type { View } from "./view.js";
 
-/** What pictures show. Its mesh is kept by the core until it is disposed. */
+/** The decoded input of pictures. The core keeps its mesh until it is disposed. */
 export class Shot {
   private constructor(
     /** Metres, row by row; 0 is no reading. */

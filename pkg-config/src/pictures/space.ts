@@ -55,49 +55,40 @@ export function spaceOf(shot: Shot, matrix: readonly number[], seen: Seen): Spac
   };
 }
 
-/** The posed mesh with one vertex per occupied cell of a grid. */
+/** The posed mesh with one vertex per occupied cell of a grid: the mean of the vertices in it. */
 function simplified({ mesh }: Shot, matrix: readonly number[]): { vertices: Float64Array; triangles: Uint16Array } {
   const { positions } = mesh;
   const indices = mesh.indices ?? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i);
   const pose = similarityOf({ matrix });
   const { min: low, max: high } = bounds(positions);
-  const cell = Math.max(...high.map((x, axis) => x - (low[axis] as number)), 1e-30) / CELLS;
-  const cells = new Map<number, number>();
-  const sums: number[] = [];
-  const places = new Uint32Array(positions.length / 3);
-  for (let i = 0; i < places.length; i++) {
-    const at = [0, 1, 2].map((axis) =>
-      Math.floor(((positions[3 * i + axis] as number) - (low[axis] as number)) / cell),
-    );
-    const key = ((at[0] as number) * (CELLS + 1) + (at[1] as number)) * (CELLS + 1) + (at[2] as number);
-    let place = cells.get(key);
-    if (place === undefined) {
-      place = cells.size;
-      cells.set(key, place);
-      sums.push(0, 0, 0, 0);
-    }
-    places[i] = place;
-    for (let axis = 0; axis < 3; axis++)
-      sums[4 * place + axis] = (sums[4 * place + axis] as number) + (positions[3 * i + axis] as number);
-    sums[4 * place + 3] = (sums[4 * place + 3] as number) + 1;
-  }
-  const vertices = new Float64Array(3 * cells.size);
-  for (let k = 0; k < cells.size; k++) {
-    const count = sums[4 * k + 3] as number;
-    const [x = 0, y = 0, z = 0] = [0, 1, 2].map((axis) => (sums[4 * k + axis] as number) / count);
-    vertices.set(moved(pose, [x, y, z]), 3 * k);
-  }
+  const side = Math.max(...high.map((x, axis) => x - (low[axis] as number)), 1e-30) / CELLS;
+  const vertexOfCell = new Map<number, number>();
+  const sums: [x: number, y: number, z: number][] = [];
+  const counts: number[] = [];
+  const vertexOf = Uint32Array.from({ length: positions.length / 3 }, (_, i) => {
+    const at = [0, 1, 2].map((axis) => positions[3 * i + axis] as number) as (typeof sums)[0];
+    const key = at.reduce((sum, x, axis) => sum * (CELLS + 1) + Math.floor((x - (low[axis] as number)) / side), 0);
+    const vertex = vertexOfCell.get(key) ?? sums.length;
+    vertexOfCell.set(key, vertex);
+    const sum = sums[vertex] ?? [0, 0, 0];
+    sums[vertex] = [sum[0] + at[0], sum[1] + at[1], sum[2] + at[2]];
+    counts[vertex] = (counts[vertex] ?? 0) + 1;
+    return vertex;
+  });
+  const means = sums.map(([x, y, z], vertex) => {
+    const count = counts[vertex] as number;
+    return moved(pose, [x / count, y / count, z / count]);
+  });
   const seen = new Set<string>();
   const triangles: number[] = [];
   for (let t = 0; t + 2 < indices.length; t += 3) {
-    const [a = 0, b = 0, c = 0] = [0, 1, 2].map((k) => places[indices[t + k] as number] as number);
+    const [a = 0, b = 0, c = 0] = [0, 1, 2].map((k) => vertexOf[indices[t + k] as number] as number);
     if (a === b || b === c || c === a || Math.max(a, b, c) > 0xffff) continue;
     const key = [a, b, c].sort((i, j) => i - j).join();
-    if (seen.has(key)) continue;
+    if (!seen.has(key)) triangles.push(a, b, c);
     seen.add(key);
-    triangles.push(a, b, c);
   }
-  return { vertices, triangles: Uint16Array.from(triangles) };
+  return { vertices: Float64Array.from(means.flat()), triangles: Uint16Array.from(triangles) };
 }
 
 /** The observed points of a view near a place. */

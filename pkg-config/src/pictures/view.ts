@@ -1,4 +1,4 @@
-/** Views: parts of an image, in a size of their own. */
+/** Views: parts of an image, enlarged or reduced. */
 import type { Pinhole } from "../formats/pinhole.js";
 
 /** A rectangle in pixels of the depth map: its corner at the edge of a pixel, and its size. */

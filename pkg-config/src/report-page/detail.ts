@@ -1,7 +1,7 @@
 /** The details of a case: pictures with layers, alternatives, numbers, and the view in 3D. */
-import { byId, decimals, element } from "./dom.js";
+import { byId, element } from "./dom.js";
+import { fixed, type ReportDetails, type ReportHost, type ReportRow, significant } from "./row.js";
 import { SpaceView } from "./space-view.js";
-import type { ReportDetails, ReportHost, ReportRow } from "./types.js";
 
 /** The layers over the picture, from below, and whether each is shown at first. */
 const layers = [
@@ -36,14 +36,11 @@ const section = (title: string, ...children: Node[]) =>
 
 /** The panel of details. */
 export class Detail {
-  readonly #host: ReportHost;
   readonly #panel = byId("detail");
   #space: SpaceView | undefined;
   #row: ReportRow | undefined;
 
-  constructor(host: ReportHost) {
-    this.#host = host;
-  }
+  constructor(private readonly host: ReportHost) {}
 
   /** Shows a case. */
   show(row: ReportRow): void {
@@ -66,7 +63,7 @@ export class Detail {
       return;
     }
     body.prepend(this.#picture(folder));
-    loaded(this.#host, folder).then(
+    loaded(this.host, folder).then(
       (details) => {
         // Another case may have been selected since.
         if (this.#row === row) this.#fill(body, row, folder, details);
@@ -111,8 +108,8 @@ export class Detail {
     { limitMm, isPhoto, alternatives, matrix, space }: ReportDetails,
   ): void {
     // The unit of lengths that are not metric is unknown.
-    const length = (mm: number | null, digits: number) =>
-      row.isMetric ? `${decimals(mm, digits)} mm` : `${decimals(mm && mm / 1000, digits + 3)} units`;
+    const length = (mm: number | null | undefined, digits: number) =>
+      row.isMetric ? `${fixed(mm, digits)} mm` : `${fixed(mm && mm / 1000, digits + 3)} units`;
     const legend = element(
       "p",
       { class: "legend" },
@@ -148,10 +145,10 @@ export class Detail {
       body.append(section("Alternatives", element("div", { class: "alternatives" }, ...figures)));
     }
     const numbers: [string, string][] = [
-      ["Confidence", decimals(row.confidence, 3)],
-      ["Scale", row.scale === null ? "–" : `${row.scale.toPrecision(6)} ${row.isMetric ? "m" : "units"} per mesh unit`],
-      ["Silhouette IoU", decimals(row.iou, 4)],
-      ["Boundary F", decimals(row.boundaryF, 4)],
+      ["Confidence", fixed(row.confidence, 3)],
+      ["Scale", `${significant(row.scale, 6)} ${row.isMetric ? "m" : "units"} per mesh unit`],
+      ["Silhouette IoU", fixed(row.iou, 4)],
+      ["Boundary F", fixed(row.boundaryF, 4)],
       ["Depth difference", length(row.depthMaeMm, 2)],
       ["Chamfer distance", length(row.chamferMm, 2)],
     ];

@@ -22,7 +22,3 @@ export function byId<T extends HTMLElement>(id: string): T {
   if (found === null) throw new Error(`The page has no #${id}.`);
   return found as T;
 }
-
-/** A number with this many decimals; a missing one is a dash. */
-export const decimals = (value: number | null | undefined, digits: number): string =>
-  value === null || value === undefined ? "–" : value.toFixed(digits);

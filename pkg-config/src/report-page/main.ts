@@ -1,8 +1,8 @@
 /** The script of a report. */
 import { Detail } from "./detail.js";
 import { byId } from "./dom.js";
+import type { ReportHost } from "./row.js";
 import { Table } from "./table.js";
-import type { ReportHost } from "./types.js";
 
 const host = (globalThis as unknown as { sim3align: ReportHost }).sim3align;
 const detail = new Detail(host);

@@ -25,8 +25,6 @@ const [DRAG, KEY] = [0.008, 0.12];
 
 /** A canvas with the mesh and the points of a case. */
 export class SpaceView {
-  readonly #gl: WebGL2RenderingContext;
-  readonly #canvas: HTMLCanvasElement;
   readonly #program: WebGLProgram;
   readonly #distance: number;
   readonly #triangles: number;
@@ -42,9 +40,11 @@ export class SpaceView {
     return gl === null ? undefined : new SpaceView(canvas, gl, space);
   }
 
-  private constructor(canvas: HTMLCanvasElement, gl: WebGL2RenderingContext, space: SpaceJson) {
-    this.#canvas = canvas;
-    this.#gl = gl;
+  private constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly gl: WebGL2RenderingContext,
+    space: SpaceJson,
+  ) {
     this.#distance = FRAMED * STEPS_OF_SIZE * space.stepM;
     this.#program = program(gl);
     const metres = (text: string) => Float32Array.from(new Int16Array(bytes(text).buffer), (x) => x * space.stepM);
@@ -64,11 +64,11 @@ export class SpaceView {
 
   /** Frees the graphics memory at once: browsers allow few contexts. */
   dispose(): void {
-    this.#gl.getExtension("WEBGL_lose_context")?.loseContext();
+    this.gl.getExtension("WEBGL_lose_context")?.loseContext();
   }
 
   #array(places: Float32Array, colours: Uint8Array | null, indices: Uint16Array | null): WebGLVertexArrayObject {
-    const gl = this.#gl;
+    const gl = this.gl;
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
     const attribute = (name: string, data: Float32Array | Uint8Array) => {
@@ -88,7 +88,7 @@ export class SpaceView {
   }
 
   #listen(): void {
-    const canvas = this.#canvas;
+    const canvas = this.canvas;
     const change = (turn: number, tilt: number, zoom = 1) => {
       this.#turn += turn;
       this.#tilt = Math.min(Math.max(this.#tilt + tilt, -1.5), 1.5);
@@ -120,8 +120,8 @@ export class SpaceView {
   }
 
   #draw(): void {
-    const gl = this.#gl;
-    const { width, height } = this.#canvas;
+    const gl = this.gl;
+    const { width, height } = this.canvas;
     const [s, c, a, b] = [Math.sin(this.#turn), Math.cos(this.#turn), Math.sin(this.#tilt), Math.cos(this.#tilt)];
     // Turned about y of the camera, which points down, then tilted about x.
     const rows = [

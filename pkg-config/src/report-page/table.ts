@@ -1,14 +1,36 @@
 /** The table: sorted, filtered, and with elements for the rows in sight only. */
-import { type Column, columnsOf } from "./columns.js";
 import { byId, element } from "./dom.js";
-import type { ReportRow } from "./types.js";
+import { type Column, type ColumnName, cellOf, columns, numberIn, type ReportRow } from "./row.js";
 
 /** Height of a row, pixels; the style sheet has the same. */
 const ROW = 48;
 /** Rows beyond those in sight, above and below. */
 const SPARE = 6;
 
-/** Which rows are shown. */
+/** A column of the page. Missing sort keys come last in either order; a failure has no number. */
+interface PageColumn extends Pick<Column, "heading" | "title"> {
+  id: string;
+  text(row: ReportRow): string;
+  key(row: ReportRow): number | string | null;
+}
+
+const number = (id: ColumnName): PageColumn => ({
+  ...{ ...(columns[id] as Column), id },
+  ...{ text: (row) => cellOf(row, id), key: (row) => numberIn(row, id) },
+});
+const codesOf = ({ error, warnings }: ReportRow) => error?.code ?? warnings.map(({ code }) => code).join(", ");
+const name: PageColumn = { id: "name", heading: "Case", text: (row) => row.name, key: (row) => row.name };
+const warnings: PageColumn = { id: "warnings", heading: "Warnings", text: codesOf, key: (row) => codesOf(row) || null };
+
+/** The columns of a report. Errors have columns only if a row has a true pose. */
+function columnsOf(rows: readonly ReportRow[]): PageColumn[] {
+  const metrics = (["alternatives", "scale", "iou", "boundaryF", "depthMaeMm"] as const).map(number);
+  const errors = (["scaleError", "rotationErrorDeg", "translationErrorRelative"] as const).map(number);
+  const hasTruth = rows.some((row) => typeof row.scaleError === "number");
+  return [number("confidence"), name, ...metrics, ...(hasTruth ? errors : []), warnings, number("timeMs")];
+}
+
+/** A filter of rows. */
 export interface Filter {
   text: string;
   /** Only cases of a confidence up to this; failures count as 0. */
@@ -19,20 +41,20 @@ export interface Filter {
 
 /** The table, whose rows can be selected. */
 export class Table {
-  readonly #all: readonly ReportRow[];
-  readonly #columns: readonly Column[];
-  readonly #onSelect: (row: ReportRow) => void;
+  readonly #columns: readonly PageColumn[];
   readonly #scroller = byId("scroller");
   readonly #body = byId("rows");
   #rows: ReportRow[] = [];
   #selected: ReportRow | undefined;
-  #sort = { id: "confidence", isDescending: false };
+  #sort: { column: PageColumn; isDescending: boolean };
   #filter: Filter = { text: "", upTo: 1, only: "all" };
 
-  constructor(rows: readonly ReportRow[], onSelect: (row: ReportRow) => void) {
-    this.#all = rows;
-    this.#columns = columnsOf(rows);
-    this.#onSelect = onSelect;
+  constructor(
+    private readonly all: readonly ReportRow[],
+    private readonly onSelect: (row: ReportRow) => void,
+  ) {
+    this.#columns = columnsOf(all);
+    this.#sort = { column: this.#columns[0] as PageColumn, isDescending: false };
     this.#drawHead();
     this.#scroller.addEventListener("scroll", () => this.#draw(), { passive: true });
     new ResizeObserver(() => this.#draw()).observe(this.#scroller);
@@ -67,7 +89,7 @@ export class Table {
     if (row === undefined) return;
     this.#selected = row;
     this.#draw();
-    this.#onSelect(row);
+    this.onSelect(row);
   }
 
   #update(): void {
@@ -81,31 +103,30 @@ export class Table {
       (row.confidence ?? 0) <= upTo &&
       (only !== "failures" || row.error !== undefined) &&
       (only !== "warnings" || row.warnings.length > 0) &&
-      (only !== "alternatives" || row.alternatives > 0);
-    const { id, isDescending } = this.#sort;
-    const key = (this.#columns.find((column) => column.id === id) ?? (this.#columns[0] as Column)).key;
-    this.#rows = this.#all.filter(passes).sort((a, b) => compared(key(a), key(b), isDescending));
+      (only !== "alternatives" || (row.alternatives ?? 0) > 0);
+    const { column, isDescending } = this.#sort;
+    this.#rows = this.all.filter(passes).sort((a, b) => compared(column.key(a), column.key(b), isDescending));
     // Failures are the least certain of all.
-    if (id === "confidence" && !isDescending) {
+    if (column.id === "confidence" && !isDescending) {
       this.#rows.sort((a, b) => Number(b.error !== undefined) - Number(a.error !== undefined));
     }
-    byId("count").textContent = `${this.#rows.length} of ${this.#all.length} cases`;
+    byId("count").textContent = `${this.#rows.length} of ${this.all.length} cases`;
     byId("table").setAttribute("aria-rowcount", String(this.#rows.length + 1));
     this.#draw();
   }
 
   #drawHead(): void {
     const cells = this.#columns.map((column) => {
-      const button = element("button", { type: "button", title: column.title }, column.heading);
+      const { id, heading = "", title } = column;
+      const button = element("button", { type: "button", title }, heading);
       button.addEventListener("click", () => {
-        const isSame = this.#sort.id === column.id;
-        this.#sort = { id: column.id, isDescending: isSame ? !this.#sort.isDescending : false };
+        this.#sort = { column, isDescending: this.#sort.column === column && !this.#sort.isDescending };
         this.#drawHead();
         this.#update();
-        byId("head").querySelector<HTMLElement>(`[data-id="${column.id}"] button`)?.focus();
+        byId("head").querySelector<HTMLElement>(`[data-id="${id}"] button`)?.focus();
       });
-      const order = this.#sort.id !== column.id ? "none" : this.#sort.isDescending ? "descending" : "ascending";
-      return element("th", { scope: "col", "data-id": column.id, "aria-sort": order }, button);
+      const order = this.#sort.column !== column ? "none" : this.#sort.isDescending ? "descending" : "ascending";
+      return element("th", { scope: "col", "data-id": id, "aria-sort": order }, button);
     });
     byId("head").replaceChildren(
       element("tr", { "aria-rowindex": 1 }, element("th", { scope: "col" }, "Picture"), ...cells),
@@ -138,12 +159,11 @@ export class Table {
 
   #row(row: ReportRow, index: number): HTMLTableRowElement {
     const cells = this.#columns.map((column) => {
+      const { id } = column;
       const text = column.text(row);
-      if (column.id === "name") {
+      if (id === "name")
         return element("th", { scope: "row", title: text }, element("button", { type: "button", tabindex: -1 }, text));
-      }
-      if (column.id !== "confidence")
-        return element("td", { class: column.id === "warnings" ? "words" : "", title: text }, text);
+      if (id !== "confidence") return element("td", { class: id === "warnings" ? "words" : "", title: text }, text);
       if (row.error !== undefined) return element("td", {}, element("span", { class: "failed" }, "failed"));
       const bar = element("span", { class: "bar", style: `--share:${row.confidence ?? 0}` });
       return element("td", {}, bar, text);

@@ -1,0 +1,231 @@
+/** `sim3align align`: reads cases, aligns them, and prints the results. */
+import { readFileSync, statSync } from "node:fs";
+import { basename, join } from "node:path";
+import {
+  type CaseOnDisk,
+  frameNames,
+  inputOfFrame,
+  type ReadCaseOptions,
+  readCaseFiles,
+  readCaseFolder,
+  readFrames,
+} from "../case-folder.js";
+import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
+import {
+  type Aligner,
+  type AlignInput,
+  type InputInfo,
+  OPTIONS,
+  type OptionRow,
+  type OptionsOf,
+  type PoseErrors,
+  type Preset,
+  type Sim3,
+  type ViewsOptions,
+} from "../index.js";
+import { withoutUndefined } from "../values.js";
+import { type CaseRun, failedLine, type Job } from "./batch.js";
+import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
+import {
+  type AlignEntry,
+  alignEntry,
+  type Entry,
+  isFailure,
+  isMetric,
+  type ViewsEntry,
+  viewsEntry,
+  warningsOf,
+} from "./entry.js";
+import { correctedInput } from "./exports.js";
+import { UsageError } from "./files.js";
+import { caseSettings, type Flags } from "./flags.js";
+import { caseKind, foldersToDo } from "./folders.js";
+import { optionValues } from "./option-flags.js";
+import { absolutePath, type CaseKey } from "./record.js";
+import { caseTable, type Style } from "./table.js";
+import { readTransform } from "./transform-file.js";
+
+/** The options of both presets, and those of one. */
+export const shared = OPTIONS.align.filter(({ name }) => OPTIONS.paper.some((row) => row.name === name));
+const isShared = ({ name }: OptionRow) => shared.some((row) => row.name === name);
+export const precise: readonly OptionRow[] = OPTIONS.align.filter((row) => !isShared(row));
+export const paper: readonly OptionRow[] = OPTIONS.paper.filter((row) => !isShared(row));
+
+/** A case to read and align. */
+export interface CaseToDo extends CaseKey {
+  /** Whether it has a true pose. */
+  readonly hasTruth: boolean;
+  /** Reads a case of one view. */
+  read(): Promise<Pick<CaseOnDisk, "input" | "truth" | "files">>;
+}
+
+/** The job of a command line. */
+export async function alignJob(args: readonly string[], flags: Flags): Promise<Job<CaseToDo>> {
+  const settings = caseSettings(flags);
+  const only = caseOfFiles(flags, args, settings);
+  if (only !== undefined) return caseJob([only], flags);
+  const folders = await foldersToDo(caseKind, args, flags.list);
+  return caseJob(
+    folders.map((each) => ({
+      ...each,
+      // Read when it is asked for: among thousands of cases, the first ones tell.
+      get hasTruth() {
+        return hasTruth(each.folder);
+      },
+      read: () => readCaseFolder(each.folder, settings),
+    })),
+    flags,
+  );
+}
+
+/** The case of the files that the flags name; `undefined` if they name none. A photo is one of the arguments, too. */
+function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOptions): CaseToDo | undefined {
+  const { depth, mask, mesh, camera, image: photo } = flags;
+  const hasList = flags.list !== undefined;
+  const photos = args.filter(isPhoto);
+  if ([depth, mask, mesh, camera].every((flag) => flag === undefined)) {
+    if (typeof photo === "string")
+      throw new UsageError("--image belongs to --depth, --mask and --mesh; a case folder holds its own.");
+    if (photos.length > 0 && photos.length === args.length && !hasList)
+      throw new UsageError(`${photos[0]} is a photo: pass its --depth, --mask and --mesh with it.`);
+    if (args.length === 0 && !hasList)
+      throw new UsageError("Pass at least one case folder, or --depth, --mask and --mesh.");
+    return undefined;
+  }
+  if (hasList || photos.length < args.length)
+    throw new UsageError("Pass case folders, or --depth, --mask and --mesh, but not both.");
+  const named = typeof photo === "string" ? [photo, ...photos] : photos;
+  if (named.length > 1) throw new UsageError(`Pass one photo, not ${named.join(" and ")}.`);
+  if (depth === undefined || mask === undefined || mesh === undefined)
+    throw new UsageError("--depth, --mask and --mesh belong together: pass all three.");
+  const name = basename(mesh).replace(/\.[^.]*$/, "");
+  const read = () => readCaseFiles(name, { depth, mask, mesh, camera, image: named[0] }, settings);
+  // Of the files, the mask is that of one object in one image.
+  return { name, path: absolutePath(mask), hasTruth: false, read };
+}
+
+/** Whether an argument names a photo; folders may be named like one. */
+const isPhoto = (path: string) =>
+  /\.(jpe?g|png)$/i.test(path) && !statSync(path, { throwIfNoEntry: false })?.isDirectory();
+
+function hasTruth(folder: string): boolean {
+  try {
+    return parsePoseFile("truth", readFileSync(join(folder, "gt.json"))) !== null;
+  } catch {
+    // A file that cannot be read is reported for its case.
+    return false;
+  }
+}
+
+const metrics = ["iou", "boundaryF", "centerDriftPx", "chamferMm", "fitness", "depthMaeMm"] as const;
+const errors = ["scaleError", "rotationErrorDeg", "translationErrorM", "translationErrorRelative"] as const;
+
+/** The columns of several evaluations. */
+export const evaluationColumns = [...metrics, ...errors];
+
+/** The job for a list of cases. */
+export function caseJob(tasks: readonly CaseToDo[], flags: Flags): Job<CaseToDo> {
+  const row = caseTable(
+    tasks.map(({ name }) => name),
+    [
+      ...(["confidence", "alternatives", "scale", "scaleRatio"] as const),
+      ...metrics,
+      "timeMs",
+      // The errors have columns if a case has a true pose.
+      ...(tasks.some((each) => each.hasTruth) ? errors : []),
+    ],
+  );
+  return {
+    tasks,
+    run: (aligner, task, caseRun) => alignCase(aligner, task, flags, caseRun),
+    lines: ({ name }, entry, isOnly, style) =>
+      isOnly
+        ? { remarks: isFailure(entry) ? [failedLine(name, entry, style)] : details(name, entry, style) }
+        : { rows: row(name, withMeans(entry), style), remarks: notes(name, entry, style) },
+    async inputs({ name, folder, read }) {
+      const views = folder === undefined ? [await read()] : await viewsOf(folder, caseSettings(flags));
+      return new Map(views.map((view) => ["frame" in view ? `${name}/${view.frame}` : name, view.input]));
+    },
+  };
+}
+
+const details = (name: string, entry: Entry, style: Style) =>
+  "frames" in entry
+    ? viewsDetails(name, entry as unknown as ViewsEntry, style)
+    : alignDetails(name, entry as unknown as AlignEntry, style);
+
+/** The failure or the warnings of one of several cases. */
+const notes = (name: string, entry: Entry, style: Style) =>
+  isFailure(entry)
+    ? [failedLine(name, entry, style)]
+    : warningsOf(entry).map((warning) => `${name}: ${warningLine(warning, style)}`);
+
+/** A view of the object of a case: the case itself, or one of its frames. */
+export interface CaseView extends Pick<CaseOnDisk, "input" | "truth" | "files"> {
+  frame?: string;
+}
+
+/** The view of a case, or those of its frames with a mask. */
+export async function viewsOf(folder: string, settings: ReadCaseOptions): Promise<CaseView[]> {
+  if ((await frameNames(folder)).length === 0) return [await readCaseFolder(folder, settings)];
+  const { mesh, frames } = await readFrames(folder, settings);
+  return frames.flatMap(({ name, ...frame }) => {
+    const input = inputOfFrame(frame, mesh);
+    return input === undefined ? [] : [{ ...frame, frame: name, input }];
+  });
+}
+
+async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun: CaseRun): Promise<Entry> {
+  const { name, folder } = task;
+  if (folder !== undefined && (await frameNames(folder)).length > 0)
+    return alignFrames(aligner, name, folder, flags, caseRun);
+  const { input, truth, files } = await task.read();
+  caseRun.files = files;
+  const options = await alignOptions(flags, name);
+  const alignment = await aligner.align(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
+  return alignEntry(alignment, await errorsOf(aligner, input, alignment, truth));
+}
+
+/** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
+async function alignFrames(aligner: Aligner, name: string, folder: string, flags: Flags, caseRun: CaseRun) {
+  const { mesh, frames } = await readFrames(folder, caseSettings(flags));
+  const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
+  const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
+  const { preset, ...options } = await alignOptions(flags, name);
+  if (preset === "paper") throw new UsageError(`${name} has several frames, for which --preset paper has no method.`);
+  const { onProgress } = caseRun;
+  const alignment = await aligner.alignViews(
+    { mesh, views },
+    withoutUndefined({ ...(options as ViewsOptions), onProgress }),
+  );
+  const errors = frames.map(async (frame, k) => {
+    const [pose, input] = [alignment.views[k], inputOfFrame(frame, mesh)];
+    return pose === undefined || input === undefined ? null : errorsOf(aligner, input, pose, frame.truth);
+  });
+  const names = frames.map((frame) => frame.name);
+  return viewsEntry(alignment, names, await Promise.all(errors));
+}
+
+/** The errors of a metric pose relative to the true one; `null` without a true pose. */
+export async function errorsOf(
+  aligner: Aligner,
+  input: AlignInput,
+  pose: Sim3 & InputInfo,
+  truth: KnownPose | null | undefined,
+): Promise<PoseErrors | null> {
+  if (truth === null || truth === undefined || !isMetric(pose)) return null;
+  const { transform, symmetry } = truth;
+  const measured = await correctedInput(input, pose.depthCalibration);
+  return (await aligner.evaluate(measured, pose, { truth: transform, symmetry, layout: false })).errors;
+}
+
+/** The options set by `--options` and by flags. */
+async function alignOptions(flags: Flags, name: string): Promise<OptionsOf<Preset, boolean>> {
+  const options: Record<string, unknown> = {
+    ...flags.options,
+    ...optionValues(flags, [...shared, ...precise, ...paper]),
+    ...withoutUndefined({ preset: flags.preset }),
+  };
+  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
+  return options as unknown as OptionsOf<Preset, boolean>;
+}

@@ -1,0 +1,182 @@
+/** The table of commands. Parsing, help, and the lists of inputs and outputs of a run follow from it. */
+import { statSync } from "node:fs";
+import { OPTIONS } from "../index.js";
+import { alignJob, paper, precise, shared } from "./align.js";
+import { type Job, runBatch } from "./batch.js";
+import { bopJob, bopOptions, resultsFile } from "./bop.js";
+import { evaluateJob, evaluateOptions } from "./evaluate.js";
+import {
+  batchFlags,
+  caseFlags,
+  checkFlags,
+  type FlagList,
+  type Flags,
+  filesOf,
+  makeFolders,
+  type NamedFile,
+  pictureFlags,
+  reads,
+  recordFlags,
+  sceneFileFlags,
+  writes,
+} from "./flags.js";
+import { alignHelp, bopHelp, evaluateHelp, sceneHelp, trackHelp } from "./help.js";
+import { optionFlags } from "./option-flags.js";
+import { camera, jsonObject } from "./parse.js";
+import type { CaseKey } from "./record.js";
+import { sceneJob, sceneOptions } from "./scene.js";
+import { trackJob } from "./track.js";
+
+/** A command. */
+export interface CommandRow {
+  name: string;
+  summary: string;
+  description: string;
+  /** The name and the meaning of its arguments. */
+  argument: readonly [name: string, meaning: string];
+  flags: FlagList;
+  /** The text after the flags in the help. */
+  help: string;
+  /** Outputs that no flag names. */
+  writes?(args: readonly string[], flags: Flags): NamedFile[];
+  /** Finds the cases. Returns a function that works on them and returns whether all succeeded. */
+  prepare(args: readonly string[], flags: Flags): Promise<() => Promise<boolean>>;
+}
+
+/** The preparation of a batch; without a job, all is done. */
+const batch =
+  <T extends CaseKey>(jobOf: (args: readonly string[], flags: Flags) => Promise<Job<T> | undefined>) =>
+  async (args: readonly string[], flags: Flags) => {
+    const job = await jobOf(args, flags);
+    return async () => job === undefined || runBatch(job, flags);
+  };
+
+const folders = (noun: string) => [`[${noun}...]`, `${noun} folders, or patterns such as '${noun}s/*'`] as const;
+
+export const commands: readonly CommandRow[] = [
+  {
+    name: "align",
+    summary: "align the mesh of each case to its depth map",
+    description: "Aligns the mesh of each case to its masked depth map.",
+    argument: folders("case"),
+    flags: [
+      ...batchFlags("case"),
+      ["--depth <file>", "depth map (.npy, 16-bit .png, .npz, .exr, .tiff or .pfm), instead of a case folder", reads],
+      ["--mask <file>", "mask (.png, .npy, or .json with COCO RLE)", reads],
+      ["--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)", reads],
+      [
+        "--camera <file|fx,fy,cx,cy|fov:deg>",
+        "camera: a file, intrinsics or a vertical field of view",
+        { parse: camera, ...reads },
+      ],
+      ["--image <file>", "photo (.png or .jpg) with the field of view of the depth map, also without the flag", reads],
+      ["--preset <name>", "method (default precise)", { choices: ["precise", "paper"] }],
+      ...pictureFlags,
+      ...caseFlags,
+      ...optionFlags(shared),
+      ["--options <json>", "further options of align() as JSON; flags take precedence", { parse: jsonObject }],
+      "Options of --preset precise:",
+      ...optionFlags(precise),
+      "Options of --preset paper:",
+      ...optionFlags(paper),
+    ],
+    help: alignHelp,
+    prepare: batch(alignJob),
+  },
+  {
+    name: "track",
+    summary: "track the mesh of each video through its frames",
+    description: "Tracks the object of a mesh through the frames of each video.",
+    argument: folders("video"),
+    flags: [...batchFlags("video"), ...caseFlags, ...optionFlags(OPTIONS.track)],
+    help: trackHelp,
+    prepare: batch(trackJob),
+  },
+  {
+    name: "evaluate",
+    summary: "compute the metrics of transforms",
+    description: "Computes all metrics of a transform for each case and, if the case has gt.json, its errors.",
+    argument: folders("case"),
+    flags: [
+      ...batchFlags("case"),
+      [
+        "--transform <file|gt>",
+        'transform file, or "gt" for the true poses of the cases',
+        { default: "gt", ...reads, words: ["gt"], isReplaceable: true },
+      ],
+      ...caseFlags,
+      ...optionFlags(evaluateOptions),
+    ],
+    help: evaluateHelp,
+    prepare: batch(evaluateJob),
+  },
+  {
+    name: "scene",
+    summary: "align all objects of each scene, and what they stand on",
+    description: "Aligns the objects of each scene together: one depth map, a mask and a mesh per object.",
+    argument: folders("scene"),
+    flags: [
+      ...batchFlags("scene"),
+      ...sceneFileFlags,
+      ["--snap", "put objects exactly onto what they touch"],
+      [
+        "--support <auto|none|file>",
+        'what objects stand on: found, nothing, or a JSON file { "normal", "d" }',
+        { ...reads, words: ["auto", "none"] },
+      ],
+      ["--models <folder>", "the models of a BOP scene", reads],
+      ["--sam3d", "the folders are outputs of SAM 3D Objects"],
+      ...pictureFlags,
+      ...caseFlags,
+      "Options of every object:",
+      ...optionFlags(sceneOptions),
+    ],
+    help: sceneHelp,
+    prepare: batch(sceneJob),
+  },
+  {
+    name: "bop",
+    summary: "align the targets of a BOP dataset, and score poses as BOP does",
+    description:
+      "Aligns each target of a BOP dataset, at its known size, and writes the results file of the leaderboard.",
+    argument: ["<dataset>", "the folder of the dataset"],
+    flags: [
+      ...recordFlags("pose"),
+      ["--split <name>", "the folder of the split, such as test or test_primesense", { isRequired: true }],
+      [
+        "--masks <gt|file>",
+        "masks of the dataset, or a file with 2D detections",
+        { default: "gt", ...reads, words: ["gt"] },
+      ],
+      ["--models <folder>", "the models to align", reads],
+      ["--targets <file>", "what to find, as in test_targets_bop19.json", reads],
+      ["--method <name>", "the first part of the name of the results file", { default: "sim3align" }],
+      ["--csv <name>", "the last part of the name of the results file"],
+      ["--evaluate [file]", "score the results, or only those of a file", reads],
+      ["--scores <file>", 'write the scores as JSON; "-" is stdout', { ...writes, needs: ["evaluate", "--evaluate"] }],
+      ["--no-image", "do not read the photos: align by shape alone"],
+      ...pictureFlags,
+      ...optionFlags(bopOptions),
+      ["--options <json>", "further options of align() as JSON; flags take precedence", { parse: jsonObject }],
+    ],
+    help: bopHelp,
+    writes: resultsFile,
+    prepare: batch(bopJob),
+  },
+];
+
+/**
+ * Runs a command: checks its inputs and outputs, finds its cases, and works on them.
+ * @returns whether all cases succeeded
+ * @throws {@link UsageError}
+ */
+export async function runCommand(command: CommandRow, args: readonly string[], flags: Flags): Promise<boolean> {
+  const isFile = (path: string) => statSync(path, { throwIfNoEntry: false })?.isFile() === true;
+  const named = args.map((path) => ({ flag: command.argument[0], path, isFolder: !isFile(path) }));
+  const inputs = [...named, ...filesOf(command.flags, flags, "reads")];
+  const outputs = [...filesOf(command.flags, flags, "writes"), ...(command.writes?.(args, flags) ?? [])];
+  checkFlags(command.flags, flags, inputs, outputs);
+  const work = await command.prepare(args, flags);
+  makeFolders(outputs);
+  return work();
+}

@@ -1,0 +1,234 @@
+/** Details of a single case, for people. */
+import type { DepthCalibration, Evaluation, InputInfo, LayoutErrors, Metrics, PoseErrors, Stretch } from "../index.js";
+import { fixed, type Message, significant } from "../report-page/row.js";
+import { isRecord } from "../values.js";
+import { type AlignEntry, type Entry, isMetric, type ViewsEntry, warningsOf } from "./entry.js";
+import { Lengths, type Pair, pairs, type Style } from "./table.js";
+
+const numbers = (values: readonly number[], digits: number, between: string) =>
+  values.map((x) => fixed(x, digits)).join(between);
+const percent = (share: number, digits: number) => `${fixed(100 * share, digits)} %`;
+
+const section = (title: string, entries: readonly Pair[], style: Style) => ["", style.bold(title), ...pairs(entries)];
+
+export const warningLine = ({ code, message }: Message, style: Style) => `${style.yellow(code)}: ${message}`;
+
+function warningSection(warnings: readonly Message[], style: Style): string[] {
+  if (warnings.length === 0) return [];
+  return ["", style.bold("Warnings"), ...warnings.map((warning) => `  ${warningLine(warning, style)}`)];
+}
+
+/** Details of an aligned case. */
+export function alignDetails(name: string, entry: AlignEntry, style: Style): string[] {
+  const { scale, quaternion, rotation, translation, confidence, metrics, errors, diagnostics, timingsMs } = entry;
+  const lengths = new Lengths(isMetric(entry));
+  const matrixRow = (i: 0 | 1 | 2) =>
+    [...rotation[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
+  const { scaleRatio, initialScale } = diagnostics;
+  return [
+    style.bold(`${name}: camera from mesh, x_cam = s·R·p + t`),
+    ...pairs([
+      ["scale s", `${significant(scale, 6)} ${lengths.unit} per mesh unit`],
+      ["scale ratio", `${fixed(scaleRatio, 4)} of the initial ${significant(initialScale, 6)}`],
+      ["translation t", `${numbers(translation, 6, "  ")} ${lengths.unit}`],
+      ["rotation R", `${numbers(quaternion, 6, "  ")} (quaternion x y z w)`],
+      ["matrix (s·R | t)", matrixRow(0)],
+      ["", matrixRow(1)],
+      ["", matrixRow(2)],
+      ...(confidence === null ? refinement(entry, lengths) : certainty(entry, lengths)),
+      ...proportionsRows(entry, lengths),
+      ...depthRows(entry),
+    ]),
+    ...(metrics === undefined ? [] : metricsSection(metrics, lengths, style)),
+    ...errorsSection(errors, lengths, style),
+    ...section(
+      "Stages",
+      Object.entries(timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`]),
+      style,
+    ),
+    ...section("Counts", countRows(entry), style),
+    ...warningSection(entry.warnings, style),
+  ];
+}
+
+/** Of the method of the paper. */
+function refinement({ diagnostics }: AlignEntry, lengths: Lengths): Pair[] {
+  if (!("residualM" in diagnostics)) return [];
+  const { converged, residualM } = diagnostics;
+  const residual = lengths.millimetres(1000 * residualM, 3);
+  return [["refinement", `${converged ? "converged" : "did not converge"}, residual ${residual}`]];
+}
+
+/** Confidence, alternatives and uncertainty. */
+function certainty({ confidence, alternatives, uncertainty, diagnostics }: AlignEntry, lengths: Lengths): Pair[] {
+  const score = "score" in diagnostics ? diagnostics.score : null;
+  const others = alternatives.map((other) => `${fixed(other.turnDeg, 0)}° (score ${fixed(other.score, 3)})`);
+  const rows: Pair[] = [
+    ["confidence", `${fixed(confidence, 2)}, score ${fixed(score, 3)}`],
+    ["alternatives", others.length === 0 ? "none" : `${others.length}, rotated by ${others.join(", ")}`],
+  ];
+  if (uncertainty === null) return rows;
+  const { scale, rotationDeg, rotationAxis, lateralM, distanceM } = uncertainty;
+  const turn = `rotation ${fixed(rotationDeg, 1)}° about ${numbers(rotationAxis, 2, " ")}`;
+  const [lateral, distance] = [lateralM, distanceM].map((length) => lengths.millimetres(1000 * length, 1));
+  const text = `scale ${percent(scale, 1)}, ${turn}, ${lateral} lateral, ${distance} in distance`;
+  return [...rows, ["uncertainty", text]];
+}
+
+function countRows({ diagnostics: { counts } }: AlignEntry): Pair[] {
+  const points: Pair = ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`];
+  if ("renders" in counts) return [points, ["renders", String(counts.renders)]];
+  return [
+    points,
+    ["voxels", `${counts.sourceVoxels} and ${counts.targetVoxels}`],
+    ["matches", `${counts.matches}, of which ${counts.inliers} agree`],
+    ["hypotheses", `${counts.iterations} drawn, ${counts.inconsistent} inconsistent`],
+    ["scale guard", `${counts.rejected} rejected, ${counts.clamped} clamped`],
+    ["refinement", `${counts.icpIterations} iterations, ${counts.supported} points supported`],
+  ];
+}
+
+/** Details of a case of several views. */
+export function viewsDetails(name: string, entry: ViewsEntry, style: Style): string[] {
+  const { scale, world, confidence, uncertainty, diagnostics } = entry;
+  const frames = Object.entries(entry.frames);
+  const place = world === "given" ? "world" : "camera of the first view that is used";
+  const used = frames.find(([, { role }]) => role === "used") ?? frames[0];
+  const pose = "matrix" in entry ? entry : (used?.[1] as ViewsEntry["frames"][string]);
+  const lengths = new Lengths(isMetric(entry));
+  const view = ([frame, { role, confidence: certain, metrics, errors, ...input }]: (typeof frames)[number]): Pair[] => {
+    const error =
+      errors === undefined
+        ? ""
+        : `, errors: scale ${percent(errors.scaleError, 2)}, rotation ${fixed(errors.rotationErrorDeg, 2)}°, translation ${percent(errors.translationErrorRelative, 2)}`;
+    return [
+      [frame, `${role}, confidence ${fixed(certain, 2)}, IoU ${fixed(metrics?.iou, 3)}${error}`],
+      ...depthRows(input).map(([row, value]): Pair => ["", `${row}: ${value}`]),
+    ];
+  };
+  const sd = uncertainty === null ? "" : ` ± ${percent(uncertainty.scale, 2)}`;
+  return [
+    style.bold(`${name}: ${place} from mesh, x = s·R·p + t`),
+    ...pairs([
+      ["scale s", `${significant(scale, 6)} ${lengths.unit} per mesh unit${sd}`],
+      ["translation t", `${numbers(pose.translation, 6, "  ")} ${lengths.unit}`],
+      ["rotation R", `${numbers(pose.quaternion, 6, "  ")} (quaternion x y z w)`],
+      ["confidence", `${fixed(confidence, 2)}, score ${fixed(diagnostics.score, 3)}`],
+      ...proportionsRows(entry, lengths),
+    ]),
+    ...section("Views", frames.flatMap(view), style),
+    ...warningSection([...entry.warnings, ...frames.flatMap(([, each]) => each.warnings)], style),
+  ];
+}
+
+/** An entry of views for a table: its metrics are the means over the views that have them. */
+export function withMeans(entry: Entry): Entry {
+  const { frames } = entry;
+  if (!isRecord(frames)) return entry;
+  const sums = new Map<string, { sum: number; count: number }>();
+  for (const { metrics } of Object.values(frames) as { metrics?: Entry }[]) {
+    for (const [name, value] of Object.entries(metrics ?? {})) {
+      const { sum, count } = sums.get(name) ?? { sum: 0, count: 0 };
+      if (typeof value === "number") sums.set(name, { sum: sum + value, count: count + 1 });
+    }
+  }
+  const means = [...sums].map(([name, { sum, count }]) => [name, sum / count]);
+  return { ...entry, metrics: Object.fromEntries(means) };
+}
+
+/** Details of an evaluated case. */
+export function evaluationDetails(name: string, entry: Entry, style: Style): string[] {
+  const { metrics, errors, layout, diagnostics, ...input } = entry as unknown as Evaluation;
+  const { scaleRatio, initialScale, collapsed } = diagnostics;
+  const lengths = new Lengths(isMetric(entry));
+  const ratio = `${fixed(scaleRatio, 4)} of the initial ${significant(initialScale, 6)}`;
+  return [
+    style.bold(`${name}: evaluation`),
+    ...pairs([["scale ratio", `${ratio}${collapsed ? ", collapsed" : ""}`], ...depthRows(input)]),
+    ...metricsSection(metrics, lengths, style),
+    ...errorsSection(errors, lengths, style),
+    ...layoutSection(layout, lengths, style),
+    ...warningSection(warningsOf(entry), style),
+  ];
+}
+
+function metricsSection(metrics: Metrics, lengths: Lengths, style: Style): string[] {
+  const rows: Pair[] = [
+    ["silhouette IoU", fixed(metrics.iou, 4)],
+    ["boundary F", fixed(metrics.boundaryF, 4)],
+    ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`],
+    ["Chamfer", `${lengths.millimetres(metrics.chamferMm, 3)} (both directions)`],
+    ["uni-Chamfer", `${lengths.millimetres(metrics.uniChamferMm, 3)} (observed to surface)`],
+    ["fitness", fixed(metrics.fitness, 4)],
+    ["normal consistency", fixed(metrics.normalConsistency, 4)],
+    ["depth MAE", lengths.millimetres(metrics.depthMaeMm, 3)],
+  ];
+  return section("Metrics", rows, style);
+}
+
+function errorsSection(errors: PoseErrors | null | undefined, lengths: Lengths, style: Style): string[] {
+  if (errors === null || errors === undefined) return [];
+  const { scaleError, rotationErrorDeg, translationErrorM, translationErrorRelative, addSMm } = errors;
+  const shift = `${lengths.millimetres(1000 * translationErrorM, 2)}, ${percent(translationErrorRelative, 2)}`;
+  const rows: Pair[] = [
+    ["scale", percent(scaleError, 2)],
+    ["rotation", `${fixed(rotationErrorDeg, 2)}°`],
+    ["translation", `${shift} of the diameter`],
+    ["ADD-S", lengths.millimetres(addSMm, 2)],
+  ];
+  return section("Errors (compared with gt.json)", rows, style);
+}
+
+function layoutSection(layout: LayoutErrors | null, { isMetric }: Lengths, style: Style): string[] {
+  if (layout === null) return [];
+  const { boxIou, icpRotationDeg, addSRelative, isFound, isCadAligned } = layout;
+  const rows: Pair[] = [
+    ["3D IoU", fixed(boxIou, 4)],
+    ["ICP-Rot", `${fixed(icpRotationDeg, 2)}°`],
+    ["ADD-S", `${percent(addSRelative, 2)} of the diameter${isFound ? "" : ", not found"}`],
+    ...(isMetric ? [["20 cm, 20°, 20 %", isCadAligned ? "aligned" : "not aligned"] as const] : []),
+  ];
+  return section("Layout", rows, style);
+}
+
+/** The lengths of a mesh in the proportions that were found. */
+export function proportionsRows(alignment: object, lengths: Lengths): Pair[] {
+  const { proportions } = alignment as { proportions?: Pick<Stretch, "sizeM" | "uncertainty"> };
+  if (proportions === undefined) return [];
+  const { sizeM, uncertainty } = proportions;
+  const sides = sizeM.map(
+    (size, k) => `${"xyz"[k]} ${lengths.millimetres(1000 * size, 1)} ± ${percent(uncertainty[k as 0] ?? 0, 1)}`,
+  );
+  return [["in proportion", sides.join(", ")]];
+}
+
+/** How depth and camera were read: the unit of the depth, its calibration, and where the camera comes from. */
+export function depthRows({ depthUnit, cameraSource, depthCalibration }: InputInfo): Pair[] {
+  const rows: Pair[] = depthUnit === undefined ? [] : [["depth unit", depthUnit]];
+  if (depthCalibration !== undefined)
+    rows.push(
+      ["depth", depthText(depthCalibration)],
+      ["focal length", focalText(depthCalibration, cameraSource ?? "given")],
+    );
+  else if (cameraSource !== undefined) rows.push(["camera", cameraSource]);
+  return rows;
+}
+
+function depthText({ depthKind, scale, shift, uncertainty }: DepthCalibration): string {
+  const s = significant(scale, 4);
+  const shifted = `(d ${shift < 0 ? "−" : "+"} ${significant(Math.abs(shift), 4)})`;
+  const z = {
+    metric: "d",
+    "scale-invariant": `${s}·d`,
+    "affine-invariant": `${s}·${shifted}`,
+    "affine-invariant-disparity": `${s} / ${shifted}`,
+  }[depthKind];
+  const sd = uncertainty.shift === 0 ? "" : `, ± ${percent(uncertainty.shift, 1)} of the distance`;
+  return `${depthKind}, z = ${z}${sd}`;
+}
+
+function focalText({ camera, isFocalEstimated, uncertainty }: DepthCalibration, source: string): string {
+  const { fx, fy } = camera;
+  const pixels = fx === fy ? `${fixed(fx, 1)} px` : `${fixed(fx, 1)} × ${fixed(fy, 1)} px`;
+  return isFocalEstimated ? `${pixels} ± ${percent(uncertainty.focal, 1)}, ${source}` : `${pixels}, ${source}`;
+}

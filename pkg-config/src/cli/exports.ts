@@ -1,0 +1,192 @@
+/** Inputs and meshes in the lengths of a result; files of posed meshes, of scenes, and of scenes for simulators. */
+import { mkdirSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { correctDepth } from "../conventions/corrected-depth.js";
+import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
+import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
+import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
+import { fileReaders } from "../file-readers.js";
+import { parseCameraFile } from "../formats/camera-file.js";
+import type { AlignInput, DepthCalibration, SceneInput, SceneResult, Stretch } from "../index.js";
+import { readMesh } from "../input/mesh.js";
+import { readView } from "../input/resolve.js";
+import type { MeshArrays, MeshInput } from "../input/types.js";
+import { fixed } from "../report-page/row.js";
+import type { SceneOnDisk } from "../scene-folder.js";
+import type { Sim3Like } from "../sim3.js";
+import { toMjcf } from "../simulators/mjcf.js";
+import { type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
+import { toUrdf } from "../simulators/urdf.js";
+import { toUsd } from "../simulators/usd.js";
+import { isRecord, withoutUndefined } from "../values.js";
+import type { Flags } from "./flags.js";
+
+/** An input in the lengths of a result. Results without a calibration leave the depth as it is. */
+export async function correctedInput(
+  input: AlignInput,
+  calibration: DepthCalibration | undefined,
+): Promise<AlignInput> {
+  if (calibration === undefined) return input;
+  const { image, mask, mesh, resizeMask } = input;
+  // The photo is not needed to read the depth.
+  const { view } = await readView({ ...input, image: undefined }, fileReaders);
+  const depthMap = { data: view.depth as Float32Array, width: Number(view.width), height: Number(view.height) };
+  const depth = correctDepth(depthMap, calibration);
+  return { depth, camera: calibration.camera, mask, mesh, image, resizeMask };
+}
+
+/** A mesh for a file, with its transform. */
+export interface ExportedMesh<M> {
+  mesh: M;
+  transform: Sim3Like;
+}
+
+/** How an object is exported. */
+export interface ExportedAs {
+  /** The `proportions` of its result, if these were asked for. */
+  proportions: Pick<Stretch, "matrix" | "stretch"> | undefined;
+  /** In an upright frame, if that is asked for. */
+  upright: UprightOptions | undefined;
+}
+
+/** Arrays, for an export. `pose` is the result, whose facts are kept. */
+export function exportedArrays<M extends MeshArrays>(
+  mesh: M,
+  pose: Sim3Like,
+  { proportions, upright }: ExportedAs,
+): ExportedMesh<M> {
+  const stretched = inProportion(mesh, pose, proportions);
+  if (upright === undefined) return { ...stretched, transform: withFacts(stretched.transform, pose) };
+  const straight = uprightMesh(stretched.mesh, stretched.transform, upright);
+  return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
+}
+
+/** The file of a GLB, whose materials are kept, or the arrays of another mesh, for an export. */
+export async function exportedMesh(
+  input: MeshInput,
+  pose: Sim3Like,
+  as: ExportedAs,
+): Promise<ExportedMesh<Uint8Array | MeshArrays>> {
+  const { bytes, format } = (isRecord(input) ? input : {}) as { bytes?: Uint8Array; format?: string };
+  const read = async () => (await readMesh(input, fileReaders, false)).mesh as MeshArrays;
+  if (format !== "glb" || bytes === undefined) return exportedArrays(await read(), pose, as);
+  const { proportions, upright } = as;
+  const glb = proportions === undefined ? bytes : stretchGlb(bytes, proportions);
+  if (upright === undefined) return { mesh: glb, transform: withFacts(proportions ?? pose, pose) };
+  const stretched = inProportion(await read(), pose, proportions);
+  const straight = uprightGlb(glb, stretched.mesh, stretched.transform, upright);
+  return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
+}
+
+const inProportion = <M extends MeshArrays>(mesh: M, pose: Sim3Like, proportions: ExportedAs["proportions"]) =>
+  proportions === undefined
+    ? { mesh, transform: pose }
+    : { mesh: stretchMesh(mesh, proportions), transform: proportions as Sim3Like };
+
+/** Another transform of an object, with the metrics and the confidence of its result. */
+function withFacts(transform: Sim3Like, result: Sim3Like): Sim3Like {
+  if (transform === result || !isRecord(result) || !isRecord(transform)) return transform;
+  const { metrics, confidence } = result as Record<string, unknown>;
+  return { ...transform, ...withoutUndefined({ metrics, confidence }) } as Sim3Like;
+}
+
+/** Writes the files. Returns lines that say which bodies are fixed, and how far others were moved. */
+export async function writeSceneFiles(scene: SceneOnDisk, result: SceneResult, flags: Flags): Promise<string[]> {
+  const { sceneGlb, mjcf, urdf, usd, density, parts, rest, upright } = flags;
+  const camera = cameraOf(scene.input, result);
+  if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera, upright));
+  if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
+  const { support } = result;
+  const options = { support, ...withoutUndefined({ camera, density, maxParts: parts, rest }) };
+  const simulated = await simulatorScene(await simulatorObjects(scene, result, upright), options);
+  if (mjcf !== undefined) writeTexts(mjcf, toMjcf(simulated));
+  if (urdf !== undefined) writeTexts(urdf, toUrdf(simulated));
+  if (usd !== undefined) writeFileSync(usd, toUsd(simulated));
+  return linesOf(simulated);
+}
+
+function linesOf({ bodies, supportHeightM }: SimulatorScene): string[] {
+  const ground = `ground: ${fixed(-1000 * supportHeightM, 1)} mm above the support, where most objects stand`;
+  const lines = bodies.map(({ name, isFixed, mass, movedM, turnedDeg, parts }) => {
+    const state = isFixed
+      ? "fixed"
+      : movedM === 0 && turnedDeg === 0
+        ? "free, where it was found"
+        : `free, moved ${fixed(1000 * movedM, 1)} mm and turned ${fixed(turnedDeg, 1)}° to rest`;
+    return `${name}: ${fixed(mass, 3)} kg, ${parts.length} convex parts, ${state}`;
+  });
+  return supportHeightM === 0 ? lines : [ground, ...lines];
+}
+
+function writeTexts(folder: string, files: Record<string, string>): void {
+  for (const [path, text] of Object.entries(files)) {
+    const file = join(folder, path);
+    mkdirSync(dirname(file), { recursive: true });
+    writeFileSync(file, text);
+  }
+}
+
+/** The aligned objects with their meshes and colours. Indices of contacts count aligned objects only. */
+async function simulatorObjects(
+  { input }: SceneOnDisk,
+  { objects, support }: SceneResult,
+  upright: boolean | undefined,
+): Promise<SimulatorObject[]> {
+  const places = new Map<number, number>();
+  for (const [i, object] of objects.entries()) if (object.error === undefined) places.set(i, places.size);
+  const found: SimulatorObject[] = [];
+  for (const [i, object] of objects.entries()) {
+    const mesh = input.objects[i]?.mesh;
+    if (object.error !== undefined || mesh === undefined) continue;
+    const { mesh: arrays } = await readMesh(mesh, fileReaders, true);
+    const { restsOn } = object.contact;
+    const on = typeof restsOn === "number" ? (places.get(restsOn) ?? null) : restsOn;
+    const as = exportedAs(object.proportions, support, upright, "z");
+    found.push({ name: object.name, ...exportedArrays(arrays as MeshArrays, object, as), restsOn: on });
+  }
+  return found;
+}
+
+const exportedAs = (
+  proportions: ExportedAs["proportions"],
+  support: SceneResult["support"],
+  isUpright: boolean | undefined,
+  up: "y" | "z",
+): ExportedAs => ({ proportions, upright: isUpright ? { support, up } : undefined });
+
+interface ImageCamera {
+  fy: number;
+  width: number;
+  height: number;
+}
+
+/** The scene as one file. Only GLB files keep their materials. */
+async function glbOf(
+  { input }: SceneOnDisk,
+  { objects, support }: SceneResult,
+  camera: ImageCamera | undefined,
+  upright: boolean | undefined,
+): Promise<Uint8Array> {
+  const placed: SceneGlbObject[] = [];
+  for (const [i, object] of objects.entries()) {
+    const mesh = input.objects[i]?.mesh;
+    if (object.error !== undefined || mesh === undefined) continue;
+    const as = exportedAs(object.proportions, support, upright, "y");
+    placed.push({ name: object.name, ...(await exportedMesh(mesh, object, as)) });
+  }
+  return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
+}
+
+function cameraOf(input: SceneInput, { depthCalibration }: SceneResult): ImageCamera | undefined {
+  const { cameraFile, imageId } = input as { cameraFile?: Uint8Array; imageId?: string };
+  const found = depthCalibration?.camera;
+  // The principal point of a camera that was not given is the centre.
+  if (cameraFile === undefined) return found && { fy: found.fy, width: 2 * found.cx + 1, height: 2 * found.cy + 1 };
+  try {
+    const { fy, cx, cy, width, height } = parseCameraFile(cameraFile, withoutUndefined({ imageId }));
+    // A file without size: the principal point is about the middle.
+    return { fy, width: width ?? 2 * cx + 1, height: height ?? 2 * cy + 1 };
+  } catch {
+    return undefined;
+  }
+}

@@ -1,0 +1,192 @@
+/** Flags of the table of commands, and the inputs and outputs that they name. */
+import { resolve } from "node:path";
+import { type Command, Option } from "commander";
+import type { ReadCaseOptions } from "../case-folder.js";
+import type { CameraInput, Preset } from "../index.js";
+import { type DepthKind, depthKinds } from "../input/depth-kind.js";
+import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
+import { withoutUndefined } from "../values.js";
+import { checkWritable, makeFolder, UsageError } from "./files.js";
+import { number, workers } from "./parse.js";
+
+/** Settings of a flag. */
+interface FlagSettings {
+  parse?: (text: string) => unknown;
+  choices?: readonly string[];
+  default?: string;
+  isRequired?: boolean;
+  /** Whether its value names an input or an output; values in `words` name no file. */
+  use?: "reads" | "writes";
+  words?: readonly string[];
+  /** Whether the file is read whole before it may be written. */
+  isReplaceable?: boolean;
+  /** Another flag that it needs, and the name of that flag in the error. */
+  needs?: readonly [flag: string, what: string];
+}
+
+/** A flag: its name with the name of its value, its meaning, and its settings. */
+export type Flag = readonly [flag: string, meaning: string, facts?: FlagSettings];
+
+export const reads = { use: "reads" } as const;
+export const writes = { use: "writes" } as const;
+
+/** Flags, and titles in the help of the flags that follow. */
+export type FlagList = readonly (Flag | string)[];
+
+const withoutTitles = (list: FlagList): Flag[] => list.filter((row) => typeof row !== "string");
+
+type Texts =
+  | ("list" | "json" | "jsonl" | "csv" | "report" | "overlay" | "glb" | "sceneGlb" | "mjcf" | "urdf" | "usd" | "scores")
+  | ("imageId" | "depth" | "mask" | "mesh" | "transform" | "support" | "models")
+  | ("split" | "masks" | "targets" | "method");
+
+/** Values of the flags of all commands. */
+export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Partial<Record<Texts, string>>> {
+  readonly resume?: boolean;
+  readonly workers?: number | "auto";
+  readonly upright?: boolean;
+  readonly depthScale?: number;
+  readonly depthKind?: DepthKind;
+  readonly resizeMask?: "nearest";
+  /** The photo, or whether to use that of a case folder. */
+  readonly image?: string | boolean;
+  readonly camera?: string | { value: CameraInput };
+  readonly preset?: Preset;
+  readonly options?: Record<string, unknown>;
+  readonly snap?: boolean;
+  readonly sam3d?: boolean;
+  readonly density?: number;
+  readonly parts?: number;
+  readonly rest?: boolean;
+  readonly evaluate?: string | true;
+}
+
+/** The record of a batch, and the number of workers. */
+export const recordFlags = (noun: string): Flag[] => [
+  ["--json <file>", 'write the results as JSON; "-" is stdout', writes],
+  ["--jsonl <file>", `write a line of JSON for each ${noun} when it is done; "-" is stdout`, writes],
+  [
+    "--resume",
+    `go on: skip the ${noun}s in the file of --jsonl, and append to it`,
+    { needs: ["jsonl", "--jsonl FILE, the record of what is done"] },
+  ],
+  ["--workers <n|auto>", `${noun}s at a time (1 to 64; default auto: one per core)`, { parse: workers }],
+];
+
+/** The flags of all commands that work on many folders. */
+export const batchFlags = (noun: string): Flag[] => [
+  ["--list <file>", `a file with the path of a ${noun} folder per line; "-" is stdin`, reads],
+  ...recordFlags(noun),
+  ["--csv <file>", 'write a table of comma-separated values; "-" is stdout', writes],
+];
+
+/** Pictures and posed meshes. */
+export const pictureFlags: readonly Flag[] = [
+  ["--report <folder>", "write a page with a table, pictures and a 3D view of each case", writes],
+  ["--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh", writes],
+  ["--glb <folder>", "write the posed mesh of each case as a GLB file", writes],
+  ["--upright", "give the meshes in exported files upright frames: up along the support, a tight box"],
+];
+
+/** How a case is read. */
+export const caseFlags: readonly Flag[] = [
+  ["--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", { parse: number }],
+  ["--depth-kind <kind>", "what the values of the depth map are (default metric)", { choices: depthKinds }],
+  ["--image-id <id>", "image id in a BOP scene_camera.json"],
+  ["--no-image", "do not read the photo: align by shape alone"],
+  ["--resize-mask <how>", "resize the mask to the size of the depth map", { choices: ["nearest"] }],
+];
+
+/** Files of a whole scene, of which there is one. */
+export const sceneFileFlags: readonly Flag[] = [
+  ["--scene-glb <file>", "write the scene as one GLB file", writes],
+  ["--mjcf <folder>", "write the scene for MuJoCo: scene.xml and meshes", writes],
+  ["--urdf <folder>", "write the scene as URDF: a file per object, scene.json, load.py for PyBullet", writes],
+  ["--usd <file>", "write the scene as USD with physics (.usda)", writes],
+  ["--density <kg/m³>", `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`, { parse: number }],
+  [
+    "--parts <n>",
+    `most convex parts of an object for simulators; 1 is its hull (default ${SIMULATOR_DEFAULTS.maxParts})`,
+    { parse: number },
+  ],
+  ["--no-rest", "keep all objects for simulators where they were found: they are not put at rest"],
+];
+
+/** How the flags want a case to be read. */
+export const caseSettings = ({ depthScale, depthKind, imageId, resizeMask, image }: Flags): ReadCaseOptions =>
+  withoutUndefined({ depthScale, depthKind, imageId, resizeMask, image: image === false ? false : undefined });
+
+/** Adds flags to a command. */
+export function addFlags(command: Command, list: FlagList): void {
+  for (const row of list) {
+    if (typeof row === "string") {
+      command.optionsGroup(row);
+      continue;
+    }
+    const [flag, meaning, { choices, parse, default: value, isRequired = false } = {}] = row;
+    const option = new Option(flag, meaning).makeOptionMandatory(isRequired);
+    if (choices !== undefined) option.choices(choices);
+    if (parse !== undefined) option.argParser(parse);
+    if (value !== undefined) option.default(value);
+    command.addOption(option);
+  }
+}
+
+/** A file or folder that a command line names. */
+export interface NamedFile {
+  /** The flag, or what an argument is called. */
+  flag: string;
+  path: string;
+  isFolder: boolean;
+  isReplaceable?: boolean;
+}
+
+/** The name of a flag without its value: `--jsonl`. */
+const nameOf = (flag: string) => flag.split(" ")[0] as string;
+
+/** The name under which Commander stores the value of a flag. */
+export const valueName = (flag: string) =>
+  nameOf(flag)
+    .replace(/^--(no-)?/, "")
+    .replace(/-(.)/g, (_, letter: string) => letter.toUpperCase());
+
+/** The files and folders that the flags read or write, in the order of the flags. */
+export const filesOf = (list: FlagList, flags: Flags, use: "reads" | "writes"): NamedFile[] =>
+  withoutTitles(list).flatMap(([flag, , settings = {}]) => {
+    const path = flags[valueName(flag)];
+    if (settings.use !== use || typeof path !== "string" || settings.words?.includes(path)) return [];
+    const isReplaceable = settings.isReplaceable === true;
+    return [{ flag: nameOf(flag), path, isFolder: flag.includes("<folder>"), isReplaceable }];
+  });
+
+/**
+ * Checks flags before anything is read: flags that need others, and outputs that cannot be written or are one file.
+ * @throws {@link UsageError}
+ */
+export function checkFlags(
+  list: FlagList,
+  flags: Flags,
+  inputs: readonly NamedFile[],
+  outputs: readonly NamedFile[],
+): void {
+  for (const [flag, , { needs } = {}] of withoutTitles(list)) {
+    if (needs !== undefined && flags[valueName(flag)] !== undefined && flags[needs[0]] === undefined)
+      throw new UsageError(`${nameOf(flag)} needs ${needs[1]}.`);
+  }
+  const place = (path: string) => (path === "-" ? path : resolve(path));
+  const owners = new Map<string, string>();
+  for (const { flag, path } of inputs.filter((file) => !file.isFolder && !file.isReplaceable && file.path !== "-"))
+    owners.set(place(path), flag);
+  for (const { flag, path, isFolder } of outputs) {
+    if (isFolder) continue;
+    const other = owners.get(place(path));
+    if (other !== undefined) throw new UsageError(`${other} and ${flag} name the same file: ${path}.`);
+    owners.set(place(path), flag);
+    checkWritable(flag, path);
+  }
+}
+
+/** Makes the folders that are written. */
+export function makeFolders(outputs: readonly NamedFile[]): void {
+  for (const { flag, path, isFolder } of outputs) if (isFolder) makeFolder(flag, path);
+}

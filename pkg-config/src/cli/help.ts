@@ -1,0 +1,232 @@
+/** The help texts of the commands: layouts of folders, frames and units, outputs, and examples. */
+import { csvHeadings } from "./output.js";
+
+const caseFolder = `
+A case folder holds
+  depth.npy, .png, .npz, .exr, .tiff or .pfm
+                                 z-depth; floats are metres, whole numbers (16-bit PNG) millimetres unless
+                                 --depth-scale or the camera file says otherwise; 0 and NaN are "no reading";
+                                 --depth-kind for what depth models guess without a unit
+  mask.png, .npy or .json        non-zero is the object; JSON is COCO RLE {"size": [h, w], "counts": …}
+  mesh.glb, .gltf, .obj, .ply or .stl
+                                 the object in its own frame, in any unit
+  camera.json (optional)         {"fx", "fy", "cx", "cy"}, {"K"}, {"fovYDeg"}, or ROS CameraInfo; or BOP's
+                                 scene_camera.json; without it, the camera is that of the depth file or of the EXIF data
+                                 of the photo, or the focal length is estimated
+  rgb.png or .jpg, image.png or .jpg (optional)
+                                 the photo, registered to the depth map; compared with the colours of the mesh
+  gt.json (optional)             {"scale", "rotation": 3×3 row-major, "translation": m, "symmetry"}: the true pose
+or a mesh and folders frame_*, each with depth, and optionally
+  camera.json                    as above
+  mask.png, .npy or .json        in at least one frame; in all of them without pose.json
+  rgb.png or .jpg, image.png or .jpg
+                                 the photo of the frame
+  pose.json                      {"camera_to_world": 4×4 row by row, m}: the camera's pose; in all frames or it is not used`;
+
+const conventions = `
+Frames and units
+  x_cam = s·R·p_mesh + t. The camera looks along +z, x is right, y is down (OpenCV); metres. Pixel centres are at
+  whole numbers. "matrix" is column-major (three.js, glTF), "rotation" row-major, "quaternion" x, y, z, w.`;
+
+const depthKinds = `
+Depth of models
+  --depth-kind says what the values are: metric, scale-invariant (times an unknown factor), affine-invariant (times an
+  unknown factor, plus an unknown shift) or affine-invariant-disparity (the same of the inverse depth; near is large).
+  Factor and shift are estimated with the pose. Lengths are then metric only if one is known: --known-extent, or a number
+  as --scale. Otherwise they are in units of their own, also in JSON and in GLB files, and "depthCalibration" of the JSON
+  entry has { "isMetric": false }; columns in metres and millimetres are empty, and errors against gt.json are not measured.`;
+
+const transformFile = `
+A transform file is JSON with
+  - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers, row-major, or as a quaternion x, y, z, w; or
+  - { "matrix" }, 16 numbers column by column; or
+  - the output of "sim3align align --json", or a record of --jsonl, from which the entry of the case is read.`;
+
+const status = `
+Exit status: 0 all cases done, 1 some case failed (the others are done), 2 the command line is wrong, 130 interrupted
+by Ctrl-C.`;
+
+/** Lists, workers and outputs, for folders of a kind. */
+const batches = (noun: string, mark: string) => `
+Batches
+  The ${noun}s are worked on side by side; the results do not depend on --workers. Each is read when its turn comes: memory
+  grows with the number of workers, not with that of the ${noun}s. A pattern in quotes is expanded by this program:
+  * and ? within a name, [abc], {a,b}, and ** for folders at any depth, of which those with ${mark} are taken. Paths in a
+  list are relative to the current folder, and stand for themselves; empty lines and lines that begin with # are skipped.
+  A terminal shows a bar with rate, time left and failures; elsewhere, a batch of 20 or more prints a line per tenth.
+  Rows and entries are written when a ${noun} is done, in the order in which they end; with --workers 1, in that of the
+  command line. An interruption loses nothing: the files hold what is done.
+  --jsonl writes the entries of --json, a line each: { "case", "path", "content", … }. It is the record of a batch: after an
+  interruption, of whatever kind, the same command with --resume does what is missing. A ${noun} is known by its path
+  relative to the record, whatever else is given and from wherever; one that has moved, by the checksum of its files. One
+  program at a time writes a record, which FILE.lock says. A line that was cut off is removed. What failed counts as done;
+  remove its lines to try again. --json and --csv are then written anew from the record.`;
+
+/** The columns of CSV files, in lines that fit the help. */
+const columns = csvHeadings.join(", ").replace(/(.{80,100}), /g, "$1,\n  ");
+
+export const programHelp = `
+Examples
+  sim3align align cases/mug                      align one case and show everything about it
+  sim3align align cases/* --json results.json    align several cases; print a table and write a JSON file
+  sim3align scene scenes/desk --scene-glb desk.glb     align all objects of a scene; write it as one file
+  sim3align track videos/mug                     track an object through the frames of a video
+  sim3align evaluate cases/mug --transform results.json
+  sim3align bop bop/lmo --split test --evaluate    align the targets of a BOP dataset, and score them
+
+See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
+${status}`;
+
+export const alignHelp = `${caseFolder}
+${conventions}
+${depthKinds}
+${transformFile}
+
+Output
+  A table with a row per case: confidence, number of alternatives, scale, its ratio to the initial one, silhouette
+  IoU, boundary F, centre drift, Chamfer distance, fitness, depth error and time; with gt.json also the errors against
+  it. A single case is shown in detail. The confidence is the probability that the pose is right, 0 to 1. An alternative
+  is another pose that explains the observation nearly as well.
+  --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, turnConfidence, alternatives,
+  uncertainty, proportions, metrics, warnings, depthUnit, cameraSource, depthCalibration, timingsMs, diagnostics } };
+  proportions, cameraSource and depthCalibration where there are any. A case that failed has { error: { code, argument,
+  found, expected, remedy, message } }. With --preset paper, confidences and uncertainty are null and alternatives is empty.
+  A case with frames has { scale, rotation, translation, …, frames: { "<frame>": { scale, rotation, translation, …,
+  confidence, role, camera } } }: its own pose is world from mesh, if the camera poses are known; those of the frames are
+  camera from mesh.
+  --csv writes the columns ${columns}.
+  --report writes a folder with index.html, which a browser opens from disk: a table to sort and filter, and for each case
+  its picture with mask, mesh and depth difference, its alternatives, and a view in 3D. Cases with frames have a row per frame.
+  --overlay writes <case>.png, the whole image with the mask and the mesh; --glb writes <case>.glb, the posed mesh in the
+  frame of a glTF camera at the origin. Other characters than a-z, 0-9, ".", "_" and "-" change the name of the file.
+${batches("case", "a mesh")}
+
+Examples
+  sim3align align cases/mug
+  sim3align align cases/* --json results.json
+  sim3align align 'cases/**' --jsonl results.jsonl --csv results.csv --resume
+  find cases -name mesh.glb -printf '%h\\n' | sim3align align --list - --workers 4 --jsonl -
+  sim3align align 'cases/**' --jsonl results.jsonl --report report --resume
+  sim3align align views/mug --json views.json
+  sim3align align cases/mug --known-extent 0.095 --known-extent-axis y
+  sim3align align cases/mug --initial annotated.json --search local
+  sim3align align cases/mug --camera-up 0,-1,0 --mesh-up 0,1,0 --quality best
+  sim3align align cases/mug --preset paper --seed 7 --guard 0.8,1.2 --guard-mode clamp
+  sim3align align cases/mug --preset paper --options '{"fpfhRadiusVoxels": 4}' --json - | jq .mug.scale
+  sim3align align --depth d.png --mask m.png --mesh mug.glb --camera 600,600,320,240 --depth-scale 0.001
+  sim3align align --depth d.npy --mask m.png --mesh mug.obj --camera fov:55 --image photo.jpg
+  sim3align align photo.jpg --depth moge.npz --mask m.png --mesh mug.glb
+  sim3align align photo.jpg --depth d.npy --mask m.png --mesh mug.glb --depth-kind affine-invariant-disparity
+  sim3align align cases/mug --depth-kind affine-invariant-disparity --known-extent 0.095 --known-extent-axis y
+${status}`;
+
+export const trackHelp = `${caseFolder}
+A video needs a mask in its first frame only. Camera poses are not used.
+${conventions}
+${depthKinds}
+
+Output
+  A row per frame: state, confidence, scale and its standard deviation, and time.
+  --json writes { "<video>": { scale, frames: { "<frame>": { scale, rotation, translation, matrix, quaternion, state,
+  confidence, depthUnit, depthCalibration, … } } } }; a frame that failed has { error }. The scale of the video is the last one. A single video is written
+  after each frame, several when each ends. --csv has a row per frame, VIDEO/FRAME.
+${batches("video", "a mesh")}
+
+Examples
+  sim3align track videos/mug --json poses.json
+  sim3align track 'videos/**' --jsonl videos.jsonl --resume --workers 4
+  sim3align track videos/mug --known-extent 0.095 --known-extent-axis y
+${status}`;
+
+export const evaluateHelp = `${caseFolder}
+${conventions}
+
+Depth of models
+  Metrics need a camera and depth without an unknown shift: --depth-kind is metric, or scale-invariant (times an unknown
+  factor). Transforms of scale-invariant depth are in its unit, and lengths are printed as "units"; columns in metres and
+  millimetres are empty.
+${transformFile}
+
+Output
+  A row per case, or per frame of a case with frames that have a mask; a single case in detail. --json writes
+  { "<case>": { metrics, errors, layout, warnings, diagnostics } }, or { frames: { "<frame>": the same } }.
+${batches("case", "a mesh")}
+
+Examples
+  sim3align evaluate cases/mug --transform results.json
+  sim3align evaluate 'cases/**' --transform results.jsonl --csv scores.csv
+  sim3align evaluate views/mug --transform views.json
+  sim3align evaluate cases/mug --transform gt --json scores.json
+${status}`;
+
+export const sceneHelp = `
+A scene folder holds
+  depth.npy or .png …                   as a case folder, see "sim3align align --help"; also camera.json and the photo
+  objects/NAME/mask.png, .npy or .json  the mask of each object
+  objects/NAME/mesh.glb, …              its mesh; textures are kept by --scene-glb
+  objects/NAME/initial.json (optional)  a pose to start from, as gt.json: one candidate among those of the search
+  objects/NAME/gt.json (optional)       its true pose
+A scene in the layout of BOP (depth/, mask_visib/, scene_camera.json, scene_gt.json, and models in models/, ../models or
+../../models) is one as well; --image-id selects the image.
+With --sam3d, a folder is an output of SAM 3D Objects: pointmap.npy or depth.*, the photo, and for each object a mask, a GLB or
+the PLY of its Gaussians, and pose.json { "rotation", "translation", "scale" }, in objects/NAME/ or with NAME in their names.
+Frames are converted; its own placement is one candidate. Its point maps have no unit: pass --depth-kind metric if one has.
+${conventions}
+  The support is the plane n·x + d = 0 in the camera frame, metres; n points to the side of the objects.
+${depthKinds}
+  Files for simulators need metres.
+
+Output
+  A row per object: confidence, scale, what it rests on, gap, shared volume, silhouette IoU; with gt.json also the errors
+  against it. With --proportions, its lengths in the proportions found are below.
+  --json writes { "<scene>": { "objects": { "<object>": as a case of "align --json", with "contact" },
+  "support": { "normal", "d", "confidence" } | null, "metrics", "warnings",
+  "depthUnit", "cameraSource", "depthCalibration" } }; a scene that failed has { "error" }.
+  --csv has a row per object, SCENE/OBJECT. --report, --overlay and --glb write pictures and posed meshes of each object, see "sim3align align --help".
+  --scene-glb writes the scene of a single folder: nodes by name, materials and textures, the camera, and the support as
+  ground, y up, in metres.
+  --mjcf, --urdf and --usd write it for simulators, z up: bodies with mass and convex parts, the support as ground, the camera.
+  What rests on the support or on another object is put at rest; what leans, hangs or stands on anything else is fixed.
+  --no-rest keeps every pose as it was found; the files hold both.
+${batches("scene", "objects")}
+
+Examples
+  sim3align scene scenes/desk
+  sim3align scene scenes/* --json scenes.json
+  sim3align scene 'scenes/**' --jsonl scenes.jsonl --csv scenes.csv --resume
+  sim3align scene scenes/desk --scale 0.05,0.5
+  sim3align scene scenes/desk --snap --scene-glb desk.glb
+  sim3align scene scenes/desk --mjcf desk-mujoco --usd desk.usda
+  sim3align scene --sam3d outputs/desk --scene-glb desk.glb
+  sim3align scene scenes/desk --depth-kind affine-invariant-disparity
+  sim3align scene scenes/* --report report
+  sim3align scene bop/test/000048 --image-id 1 --json -
+${status}`;
+
+export const bopHelp = `
+A dataset is a folder as BOP publishes it
+  models/obj_000001.ply, …       the models, in millimetres; for --evaluate also models_info.json, in models_eval or models
+  SPLIT/SCENE/                   depth/, rgb/ (optional), scene_camera.json and, where they are public, scene_gt.json,
+                                 scene_gt_info.json and mask_visib/
+  test_targets_bop19.json        what is to be found in a test split; elsewhere, all objects that are a tenth visible
+${conventions}
+
+Masks
+  --masks gt takes those of the dataset: mask_visib of the most visible instances. A file has 2D detections in BOP's format,
+  such as those of CNOS: a list of { scene_id, image_id, category_id, score, segmentation, time }, the masks in COCO RLE. Of
+  each object, as many of the best detections are aligned as there are instances; the time of the detections is added.
+
+Output
+  The results file METHOD_DATASET-SPLIT.csv, or METHOD_DATASET-SPLIT_NAME.csv with --csv NAME, in the current folder: scene_id,
+  im_id, obj_id, score, R, t in millimetres, and the time, which is the sum over the objects of the image. The score is the
+  confidence, multiplied by that of the detection. --jsonl, --resume, --json, --workers, --report, --overlay and --glb work
+  as those of "align": cases are called SCENE/IMAGE/OBJECT-INSTANCE.
+  --evaluate compares the results, or those of a file, with the true poses: average recalls of VSD, MSSD and MSPD, their mean,
+  and recall of ADD and ADD-S below a tenth of the diameter. --scores writes them as JSON, with the errors of each pose.
+
+Examples
+  sim3align bop bop/ycbv --split test --jsonl ycbv.jsonl --resume
+  sim3align bop bop/lmo --split test --masks cnos_lmo-test.json --csv cnos --evaluate
+  sim3align bop bop/tless --split test_primesense --models bop/tless/models_cad
+  sim3align bop bop/lmo --split test --evaluate other_lmo-test.csv --scores scores.json
+${status}`;

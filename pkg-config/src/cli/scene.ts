@@ -1,0 +1,170 @@
+/** `sim3align scene`: aligns the objects of scenes. */
+import { read } from "../case-folder.js";
+import { parsedJson } from "../formats/json.js";
+import {
+  type Aligner,
+  type AlignInput,
+  type Contact,
+  OPTIONS,
+  type OptionRow,
+  type SceneInput,
+  type SceneOptions,
+} from "../index.js";
+import { cellOf, fixed } from "../report-page/row.js";
+import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
+import { withoutUndefined } from "../values.js";
+import { errorsOf } from "./align.js";
+import { type CaseRun, failedLine, type Job } from "./batch.js";
+import { depthRows, proportionsRows, warningLine } from "./details.js";
+import {
+  type AlignEntry,
+  type Entry,
+  isFailure,
+  isMetric,
+  rowOf,
+  type SceneEntry,
+  sceneEntry,
+  warningsOf,
+} from "./entry.js";
+import { writeSceneFiles } from "./exports.js";
+import { UsageError } from "./files.js";
+import { caseSettings, type Flags, filesOf, sceneFileFlags } from "./flags.js";
+import { type FolderToDo, foldersToDo, sam3dKind, sceneKind } from "./folders.js";
+import { optionValues } from "./option-flags.js";
+import { headings, Lengths, numeric, pairs, Style, tableLine } from "./table.js";
+
+/** The options of `align`, for every object; a first pose is that of one. */
+export const sceneOptions: readonly OptionRow[] = OPTIONS.align.filter(({ name }) => name !== "initial");
+
+/** A scene to align. */
+interface SceneToDo extends Omit<FolderToDo, "folder"> {
+  scene: string;
+  folder?: string;
+}
+
+/** The job of a command line. */
+export async function sceneJob(args: readonly string[], flags: Flags): Promise<Job<SceneToDo>> {
+  const { models, sam3d } = flags;
+  const tasks = await scenesIn(await foldersToDo(sam3d ? sam3dKind : sceneKind, args, flags.list), flags.imageId);
+  checkSceneFiles(flags, tasks.length);
+  const support = await supportOf(flags.support);
+  const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models, sam3d });
+  return {
+    tasks,
+    run: (aligner, task, caseRun) => alignScene(aligner, task, flags, settings, support, caseRun),
+    async inputs({ name, scene }) {
+      const onDisk = await readSceneFolder(scene, settings);
+      const inputs = new Map<string, AlignInput>();
+      for (const [i, object] of onDisk.input.objects.entries()) {
+        const input = inputOf(onDisk, i);
+        if (input !== undefined) inputs.set(`${name}/${object.name ?? i}`, input);
+      }
+      return inputs;
+    },
+  };
+}
+
+/** The scenes in folders. Images of one scene of BOP are scenes of their own, and have no files of their own. */
+async function scenesIn(folders: readonly FolderToDo[], imageId: string | undefined): Promise<SceneToDo[]> {
+  const scenes: SceneToDo[] = [];
+  for (const { name, path, folder } of folders) {
+    const image = await bopImageIn(folder, imageId);
+    const own = image === undefined ? { name, path, folder } : { name: `${name}/${image}`, path: `${path}#${image}` };
+    scenes.push({ ...own, scene: folder });
+  }
+  return scenes;
+}
+
+/** @throws {@link UsageError} for files of a single scene, if there are several, and for files that need metres */
+function checkSceneFiles(flags: Flags, scenes: number): void {
+  const { sam3d, depthKind = sam3d ? "scale-invariant" : "metric", knownExtent, scale } = flags;
+  const isMetric = depthKind === "metric" || knownExtent !== undefined || typeof scale === "number";
+  for (const { flag } of filesOf(sceneFileFlags, flags, "writes")) {
+    if (flag !== "--scene-glb" && !isMetric)
+      throw new UsageError(
+        `${flag} needs metres, which depth of this kind has not: pass --known-extent, or a number as --scale; or --depth-kind metric, if it is in metres.`,
+      );
+    if (scenes > 1) throw new UsageError(`${flag} takes a single scene.`);
+  }
+}
+
+async function alignScene(
+  aligner: Aligner,
+  task: SceneToDo,
+  flags: Flags,
+  settings: SceneSettings,
+  support: SceneInput["support"],
+  caseRun: CaseRun,
+): Promise<Entry> {
+  const scene = await readSceneFolder(task.scene, settings);
+  const options: SceneOptions = { ...optionValues(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
+  // A scale that is given goes before the first poses of files.
+  const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
+  const input = { ...scene.input, objects, support } as SceneInput;
+  const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
+  const { depthUnit, cameraSource, depthCalibration } = result;
+  const read = withoutUndefined({ depthUnit, cameraSource, depthCalibration });
+  const errors = result.objects.map((object, i) => {
+    const own = inputOf(scene, i);
+    if (object.error !== undefined || own === undefined) return null;
+    return errorsOf(aligner, own, { ...object, ...read }, scene.truths[i]);
+  });
+  const entry = sceneEntry(result, await Promise.all(errors));
+  const written = await writeSceneFiles(scene, result, flags);
+  const names = result.objects.map(({ name }, i) => name ?? `${i}`);
+  caseRun.print(...linesOf(task.name, entry, names), ...written);
+  return entry;
+}
+
+async function supportOf(flag: string | undefined): Promise<SceneInput["support"]> {
+  if (flag === undefined || flag === "auto") return "auto";
+  if (flag === "none") return null;
+  // The core checks the plane.
+  return parsedJson("support", await read("support", flag)) as SceneInput["support"];
+}
+
+/** The input of one object. */
+function inputOf({ input: scene }: SceneOnDisk, index: number): AlignInput | undefined {
+  const { objects, labels: _, occluders: __, support: ___, ...view } = scene;
+  const object = objects[index];
+  if (object === undefined) return undefined;
+  const { mask, mesh, resizeMask } = object;
+  return { ...view, mask, mesh, ...withoutUndefined({ resizeMask }) } as AlignInput;
+}
+
+const columns = [
+  { heading: "object", width: 20 },
+  ...["conf.", "scale"].map((heading) => numeric(heading, 8)),
+  { heading: "rests on", width: 20 },
+  ...["gap mm", "shared %", "IoU", "Δscale %", "Δrot °", "Δtrans %"].map((heading) => numeric(heading, 8)),
+];
+
+/** A table of the objects, in the order of their indices. */
+function linesOf(name: string, entry: SceneEntry, names: readonly string[]): string[] {
+  const { support, warnings } = entry;
+  const lengths = new Lengths(isMetric(entry));
+  const plane =
+    support === null
+      ? "no support"
+      : `support n = ${support.normal.map((x) => fixed(x, 4)).join(" ")}, d = ${fixed(support.d, 4)} ${lengths.unit}`;
+  const plain = new Style({ isTTY: false });
+  const rows = names.flatMap((object) => {
+    const own = entry.objects[object] as Entry;
+    if (isFailure(own)) return [failedLine(object, own, plain)];
+    const { contact, scale, ...aligned } = own as unknown as AlignEntry & { contact: Contact };
+    const { restsOn, gapM, sharedVolume } = contact;
+    const row = rowOf(own);
+    const cells = [
+      ...[object, cellOf(row, "confidence"), fixed(scale, 5)],
+      typeof restsOn === "number" ? (names[restsOn] ?? `${restsOn}`) : (restsOn ?? "–"),
+      fixed(gapM === null || !lengths.isMetric ? null : 1000 * gapM, 1),
+      fixed(100 * sharedVolume, 1),
+      ...(["iou", "scaleError", "rotationErrorDeg", "translationErrorRelative"] as const).map((fact) =>
+        cellOf(row, fact),
+      ),
+    ];
+    return [tableLine(columns, cells), ...pairs(proportionsRows(aligned, lengths))];
+  });
+  const notes = warningsOf({ warnings }).map((warning) => warningLine(warning, plain));
+  return [`${name}: ${plane}`, ...pairs(depthRows(entry)), headings(columns), ...rows, ...notes];
+}

@@ -1,0 +1,85 @@
+/** `sim3align track`: tracks an object through the frames of videos. */
+import { join } from "node:path";
+import { frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
+import { type Aligner, OPTIONS, type TrackOptions } from "../index.js";
+import { fixed, significant } from "../report-page/row.js";
+import type { CaseRun, Job } from "./batch.js";
+import { depthRows } from "./details.js";
+import { type Entry, failureEntry, frameEntry, trackEntry } from "./entry.js";
+import { UsageError } from "./files.js";
+import { caseSettings, type Flags } from "./flags.js";
+import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
+import { optionValues } from "./option-flags.js";
+import { headings, numeric, pairs, tableLine } from "./table.js";
+import { readTransform } from "./transform-file.js";
+
+const columns = [
+  { heading: "frame", width: 24 },
+  { heading: "state", width: 10 },
+  ...["conf.", "scale", "± %", "time ms"].map((heading) => numeric(heading, 9)),
+];
+
+/** The job of a command line. */
+export async function trackJob(args: readonly string[], flags: Flags): Promise<Job<FolderToDo>> {
+  const tasks = await foldersToDo(videoKind, args, flags.list);
+  for (const { folder } of tasks) {
+    if ((await frameNames(folder)).length === 0) throw new UsageError(`${folder} has no folder frame_*.`);
+  }
+  return { tasks, run: (aligner, video, caseRun) => trackVideo(aligner, video, flags, caseRun) };
+}
+
+async function trackVideo(
+  aligner: Aligner,
+  { name, folder }: FolderToDo,
+  flags: Flags,
+  caseRun: CaseRun,
+): Promise<Entry> {
+  const names = await frameNames(folder);
+  const options = optionValues(flags, OPTIONS.track);
+  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
+  const mesh = meshIn(folder);
+  caseRun.files = { mesh };
+  const tracker = await aligner.track(await readMeshFile(mesh), options as TrackOptions);
+  try {
+    caseRun.print(caseRun.style.bold(name), headings(columns));
+    const read = (frame: string) => readFrame(join(folder, frame), caseSettings(flags));
+    const frames = new Map<string, Entry>();
+    // How the last frame was read stands for the others.
+    let last: Parameters<typeof depthRows>[0] | undefined;
+    let next: ReturnType<typeof read> | undefined;
+    for (const [k, frame] of names.entries()) {
+      const began = performance.now();
+      let files: Readonly<Record<string, string>> = {};
+      let cells: string[];
+      try {
+        const reading = next ?? read(frame);
+        next = undefined;
+        const { files: own, input: view } = await reading;
+        files = own;
+        const { cameraToWorld: _, ...input } = view;
+        const tracking = tracker.next(input);
+        const following = names[k + 1];
+        if (following !== undefined) {
+          // The files of the next frame are read while the object is tracked in this one. What fails, fails in its turn.
+          next = read(following);
+          next.catch(() => {});
+        }
+        last = await tracking;
+        const { state, confidence, scale, scaleSd } = await tracking;
+        frames.set(frame, frameEntry(await tracking));
+        cells = [state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2)];
+      } catch (error) {
+        const failed = failureEntry(error, files);
+        frames.set(frame, failed);
+        cells = [failed.error.code, "–", "–", "–"];
+      }
+      caseRun.partial(trackEntry(frames));
+      caseRun.print(tableLine(columns, [frame, ...cells, fixed(performance.now() - began, 0)]));
+      if (caseRun.isClosed()) break;
+    }
+    if (last !== undefined) caseRun.print(...pairs(depthRows(last)));
+    return trackEntry(frames);
+  } finally {
+    tracker.close();
+  }
+}

@@ -1,2 +1,0 @@
-/** An invalid command line, which ends the program. */
-export class UsageError extends Error {}
