@@ -1,6 +1,6 @@
 /**
  * `npm run fit`: fits the regression behind `confidence` to generated cases, prints its constants as
- * `src/precise/judged/confidence.rs` declares them, and how reliable they are on other cases, real ones among them where their
+ * `src/precise/verdict/confidence.rs` declares them, and how reliable they are on other cases, real ones among them where their
  * folders are given: nothing is fitted to these.
  */
 import { mkdirSync, readFileSync } from "node:fs";
@@ -35,7 +35,7 @@ function currentModel() {
     if (value === undefined) throw new Error(`src/precise declares no ${name}. Remedy: correct scripts/fit.mjs.`);
     return value.split(",").map(Number);
   };
-  const [confidence, score] = [read("judged/confidence.rs"), read("scored/score.rs")];
+  const [confidence, score] = [read("verdict/confidence.rs"), read("scoring/score.rs")];
   const limits = (/** @type {string} */ name) => /** @type {Limits} */ (numbers(confidence, name));
   return {
     intercept: numbers(confidence, "INTERCEPT")[0] ?? Number.NaN,
@@ -151,7 +151,7 @@ async function samplesOf(name, cases, { threads, keep }) {
     // The features here and those of the core are the same: they give the same confidence.
     const [expected, found] = [result.confidence ?? Number.NaN, probability(features, model)];
     if (!(Math.abs(found - expected) < 1e-9)) {
-      const remedy = `Remedy: remove ${keep}, or make featuresOf() agree with src/precise/judged/confidence.rs.`;
+      const remedy = `Remedy: remove ${keep}, or make featuresOf() agree with src/precise/verdict/confidence.rs.`;
       throw new Error(`${result.name}: confidence ${expected}, but ${found} by the constants of the code. ${remedy}`);
     }
     return [{ result, features, isRight: result.strict === true && result.class !== "misfit" }];

@@ -16,7 +16,7 @@ pub use sim3align::evidence::photo::Photo;
 pub use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 pub use sim3align::options::scale::ScaleOption;
 pub use sim3align::paper::options::PaperOptions;
-pub use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+pub use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 pub use sim3align::precise::options::{AlignOptions, Quality};
 pub use sim3align::progress::Silent;
 pub use sim3align_geometry::cloud::{Bounds, Cloud};

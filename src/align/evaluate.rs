@@ -15,8 +15,8 @@ use crate::metrics::pose_error::{PoseComparison, PoseErrors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
 use crate::options::{Options, options};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::judged::color::agreement;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::verdict::color::agreement;
 use crate::report::{Warning, is_collapsed};
 
 options! {

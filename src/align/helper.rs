@@ -5,11 +5,11 @@ use std::rc::Rc;
 use super::search::Request;
 use crate::evidence::observation::Observation;
 use crate::helpers::Part;
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::observed::clean::CleanObservation;
-use crate::precise::scored::prior::Prior;
-use crate::precise::searched::search::Search;
-use crate::precise::searched::tasks::RoundTasks;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::observation::clean::CleanObservation;
+use crate::precise::scoring::prior::Prior;
+use crate::precise::search::problem::Search;
+use crate::precise::search::tasks::RoundTasks;
 use crate::report::Effort;
 
 /// A helper of an alignment.

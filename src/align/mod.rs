@@ -15,7 +15,7 @@ use crate::geometry::mesh::Mesh;
 use crate::paper;
 use crate::paper::options::PaperOptions;
 use crate::pauses::{Boxed, Pauses, Task, boxed, finished};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::progress::Host;
 use crate::report::{Alignment, AnyAlignment, PaperAlignment};

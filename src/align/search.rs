@@ -12,22 +12,22 @@ use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
 use crate::pauses::Pauses;
 use crate::precise;
-use crate::precise::drawn::equivalence::DIFFERENT;
-use crate::precise::drawn::pose::CropPose;
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::judged::color::{Judgment, agreement, judgment};
-use crate::precise::judged::confidence::certainty_of_relief;
-use crate::precise::judged::stretch::stretch;
-use crate::precise::judged::verdict;
-use crate::precise::judged::verdict::Certainty;
+use crate::precise::drawing::equivalence::DIFFERENT;
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::scored::conditioning::DROP;
-use crate::precise::scored::surroundings::Neighbourhood;
-use crate::precise::searched::efforts;
-use crate::precise::searched::recipe::{SURE, SearchSettings};
-use crate::precise::searched::rounds::Rounds;
-use crate::precise::searched::shown::shown;
-use crate::precise::searched::start::{self, Findings, Told};
+use crate::precise::scoring::conditioning::DROP;
+use crate::precise::scoring::surroundings::Neighbourhood;
+use crate::precise::search::efforts;
+use crate::precise::search::recipe::{SURE, SearchSettings};
+use crate::precise::search::rounds::Rounds;
+use crate::precise::search::shown::shown;
+use crate::precise::search::start::{self, Findings, Told};
+use crate::precise::verdict::color::{Judgment, agreement, judgment};
+use crate::precise::verdict::conclusion;
+use crate::precise::verdict::conclusion::Certainty;
+use crate::precise::verdict::confidence::certainty_of_relief;
+use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
 
@@ -90,7 +90,7 @@ impl Request {
 
 impl Searched {
     fn new(rounds: Rounds) -> Result<Self> {
-        let (solution, certainty) = verdict::conclude(&rounds, None)?;
+        let (solution, certainty) = conclusion::conclude(&rounds, None)?;
         Ok(Self { rounds, solution, certainty })
     }
 
@@ -164,7 +164,7 @@ impl<'a> Search<'a> {
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
             pauses.here().await;
             start::run(&mut rounds, &efforts::share(index, efforts.len()), pauses, stages).await;
-            let concluded = verdict::conclude(&rounds, None);
+            let concluded = conclusion::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
             let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
             if is_last || is_sure {
@@ -230,7 +230,7 @@ impl<'a> Search<'a> {
     pub fn finish(mut self, mut clouds: Clouds, searched: Searched, colors: Option<&Judgment>) -> Result<Alignment> {
         let Searched { rounds, solution, certainty } = searched;
         let (solution, mut certainty) = match colors {
-            Some(judgment) => verdict::conclude(&rounds, Some(judgment))?,
+            Some(judgment) => conclusion::conclude(&rounds, Some(judgment))?,
             None => (solution, certainty),
         };
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;

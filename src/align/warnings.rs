@@ -3,7 +3,7 @@
 use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
-use crate::precise::drawn::surplus::LeftOut;
+use crate::precise::drawing::surplus::LeftOut;
 use crate::report::Preset;
 use crate::report::{ScoreTerms, Warning, WarningCode, is_collapsed};
 

@@ -12,7 +12,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::check_triangles;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 
 thread_local! {
     /// The cached meshes, each with the id of the caller. There are few: a tree would be more code than data.

@@ -10,7 +10,7 @@ use crate::evidence::observation::check_mask_size;
 use crate::geometry::image::Mask;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::Pauses;
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::progress::{Host, Stopwatch};
 use glam::DVec3;

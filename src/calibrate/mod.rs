@@ -24,10 +24,10 @@ use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::order::median;
 use crate::geometry::pinhole::Pinhole;
 use crate::pauses::Pauses;
-use crate::precise::drawn::pose::MeshFrame;
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::pose::MeshFrame;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::scored::prior::Prior as ScalePrior;
+use crate::precise::scoring::prior::Prior as ScalePrior;
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Progress at the start of each stage.

@@ -6,7 +6,7 @@
 use super::raw_view::{Focal, RawView};
 use super::unknowns::{Reference, Unknowns};
 use crate::geometry::order::quantile;
-use crate::precise::scored::conditioning::DROP;
+use crate::precise::scoring::conditioning::DROP;
 
 /// Relief of objects beside their width: median, and standard deviation of the logarithm.
 const RELIEF: [f64; 2] = [0.4, 0.6];

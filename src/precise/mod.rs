@@ -8,18 +8,18 @@
 //!
 //! | room | what is in it |
 //! |---|---|
-//! | [`observed`] | the evidence: what the depth map and the mask reliably show, on grids of cells |
-//! | [`drawn`] | the mesh at several resolutions, its poses and symmetry, and the rasteriser |
-//! | [`scored`] | the score: how well an image that was drawn explains the evidence, and what else is known |
-//! | [`searched`] | the search: its recipe, its rounds, and the refinement of poses |
-//! | [`judged`] | the verdict: confidence, alternatives, uncertainty, and the choice by colour |
+//! | [`observation`] | the evidence: what the depth map and the mask reliably show, on grids of cells |
+//! | [`drawing`] | the mesh at several resolutions, its poses and symmetry, and the rasteriser |
+//! | [`scoring`] | the score: how well an image that was drawn explains the evidence, and what else is known |
+//! | [`search`] | the search: its recipe, its rounds, and the refinement of poses |
+//! | [`verdict`] | the verdict: confidence, alternatives, uncertainty, and the choice by colour |
 
-pub mod drawn;
-pub mod judged;
-pub mod observed;
+pub mod drawing;
+pub mod observation;
 pub mod options;
-pub mod scored;
-pub mod searched;
+pub mod scoring;
+pub mod search;
+pub mod verdict;
 
 use crate::error::{Error, ErrorCode};
 use crate::progress::Stage;

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::precise::scored::surroundings::Layer;
+use crate::precise::scoring::surroundings::Layer;
 
 /// The layer of a mesh: entry and exit of the line of sight of each pixel. A mesh is taken as solid between them, which
 /// holds for meshes that are not closed as well. Triangles behind the camera are left out.

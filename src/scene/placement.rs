@@ -13,13 +13,13 @@ use crate::evidence::observation::Observation;
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::precise::drawn::mesh_pyramid::MeshPyramid;
-use crate::precise::drawn::pose::{CropPose, MeshFrame};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::scored::surroundings::Layer;
-use crate::precise::searched::recipe::SearchSettings;
-use crate::precise::searched::rounds::Rounds;
-use crate::precise::searched::start::Findings;
+use crate::precise::drawing::mesh_pyramid::MeshPyramid;
+use crate::precise::drawing::pose::{CropPose, MeshFrame};
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::scoring::surroundings::Layer;
+use crate::precise::search::recipe::SearchSettings;
+use crate::precise::search::rounds::Rounds;
+use crate::precise::search::start::Findings;
 use crate::report::Alignment;
 
 /// What the alignment of an object tells.

@@ -12,8 +12,8 @@ use super::plane::Plane;
 use super::support::{Ground, Support, find_support};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::pinhole::Pinhole;
-use crate::precise::scored::surroundings::{Floor, Neighbourhood};
-use crate::precise::searched::start::Told;
+use crate::precise::scoring::surroundings::{Floor, Neighbourhood};
+use crate::precise::search::start::Told;
 
 /// Confidence from which on an object takes space.
 const SOLID: f64 = 0.5;

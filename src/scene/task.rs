@@ -16,10 +16,10 @@ use crate::evidence::observation::Observation;
 use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
 use crate::pauses::{Boxed, Pauses, boxed, finished};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::scored::surroundings::Surroundings;
-use crate::precise::searched::start::Told;
+use crate::precise::scoring::surroundings::Surroundings;
+use crate::precise::search::start::Told;
 use crate::progress::Host;
 use crate::report::{Alignment, Sim3};
 

@@ -1,11 +1,11 @@
 //! The search for a tracked object over all rotations, in its first frame and after it was lost.
 
 use crate::precise;
-use crate::precise::judged::alternatives::lead;
 use crate::precise::no_candidate;
-use crate::precise::searched::efforts;
-use crate::precise::searched::recipe::SearchSettings;
-use crate::precise::searched::start;
+use crate::precise::search::efforts;
+use crate::precise::search::recipe::SearchSettings;
+use crate::precise::search::start;
+use crate::precise::verdict::alternatives::lead;
 use std::rc::Rc;
 
 use glam::DQuat;
@@ -13,16 +13,16 @@ use glam::DQuat;
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::pauses::{Pauses, finished};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::judged::color::{Judgment, judgment};
-use crate::precise::judged::confidence::sureness;
-use crate::precise::observed::clean::CleanObservation;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
-use crate::precise::scored::prior::Prior;
-use crate::precise::scored::score::NOISE;
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::SURE;
-use crate::precise::searched::rounds::Rounds;
+use crate::precise::scoring::prior::Prior;
+use crate::precise::scoring::score::NOISE;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::SURE;
+use crate::precise::search::rounds::Rounds;
+use crate::precise::verdict::color::{Judgment, judgment};
+use crate::precise::verdict::confidence::sureness;
 use crate::progress::{Host, Stopwatch};
 
 /// What a search knows beforehand.

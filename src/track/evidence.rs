@@ -8,12 +8,12 @@ use crate::evidence::observation::Observation;
 use crate::evidence::photo::PhotoRegion;
 use crate::geometry::image::{Mask, bounds_of};
 use crate::metrics::symmetry::Symmetry;
-use crate::precise::drawn::mesh_pyramid::MeshPyramid;
-use crate::precise::drawn::pose::{CropPose, MeshFrame};
-use crate::precise::observed::clean::CleanObservation;
-use crate::precise::scored::appearance::PhotoCells;
-use crate::precise::searched::recipe::{FINE, SearchSettings};
-use crate::precise::searched::search::Search;
+use crate::precise::drawing::mesh_pyramid::MeshPyramid;
+use crate::precise::drawing::pose::{CropPose, MeshFrame};
+use crate::precise::observation::clean::CleanObservation;
+use crate::precise::scoring::appearance::PhotoCells;
+use crate::precise::search::problem::Search;
+use crate::precise::search::recipe::{FINE, SearchSettings};
 use crate::views::predicted_mask::with_predicted_mask;
 
 /// Margin of the window around the mask or the mesh, relative to its longer side, and in pixels.

@@ -1,7 +1,7 @@
 //! The poses of all frames of a video, and what a correction of one of them changes.
 
 use super::report::CorrectedFrame;
-use crate::precise::drawn::pose::MeshFrame;
+use crate::precise::drawing::pose::MeshFrame;
 use crate::views::world_pose::WorldPose;
 
 /// Maximum number of frames that a correction carries back.

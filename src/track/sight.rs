@@ -8,15 +8,15 @@ use super::detection::Lead;
 use super::evidence::{Evidence, of_mask, of_pose};
 use crate::evidence::frame::Frame;
 use crate::geometry::pinhole::Pinhole;
-use crate::precise::drawn::mesh_pyramid::MeshPyramid;
-use crate::precise::drawn::pose::CropPose;
-use crate::precise::drawn::render::Canvas;
-use crate::precise::scored::score::Score;
-use crate::precise::searched::cascade::Subject;
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{FINE, SearchSettings, TRACKED};
-use crate::precise::searched::refine::Refiner;
-use crate::precise::searched::search::Search;
+use crate::precise::drawing::mesh_pyramid::MeshPyramid;
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::render::Canvas;
+use crate::precise::scoring::score::Score;
+use crate::precise::search::cascade::Subject;
+use crate::precise::search::problem::Search;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::{FINE, SearchSettings, TRACKED};
+use crate::precise::search::refine::Refiner;
 
 /// Most times that the mask of a frame without one is predicted, and how far a pose may be from that of its mask for the next
 /// mask to be the last one: relative to the diagonal of the object, about half of what a predicted mask grows.

@@ -2,8 +2,8 @@
 
 use crate::precise;
 use crate::precise::no_candidate;
-use crate::precise::searched::recipe::SearchSettings;
-use crate::precise::searched::start;
+use crate::precise::search::recipe::SearchSettings;
+use crate::precise::search::start;
 use core::borrow::Borrow;
 use glam::DQuat;
 
@@ -25,20 +25,20 @@ use crate::geometry::similarity::Similarity;
 use crate::metrics::{self, symmetry::Symmetry};
 use crate::number::number;
 use crate::options::Options;
-use crate::precise::drawn::pose::CropPose;
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::drawn::render::Canvas;
-use crate::precise::judged::choice::AGREES;
-use crate::precise::judged::color::{LOOSE, agreement_at, loose_axis, roll};
-use crate::precise::judged::confidence::sureness;
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::render::Canvas;
 use crate::precise::options::AlignOptions;
-use crate::precise::scored::objective::Objective;
-use crate::precise::scored::prior::Prior;
-use crate::precise::scored::score::{NOISE, Score};
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::FINE;
-use crate::precise::searched::refine::Refiner;
-use crate::precise::searched::search::Search;
+use crate::precise::scoring::objective::Objective;
+use crate::precise::scoring::prior::Prior;
+use crate::precise::scoring::score::{NOISE, Score};
+use crate::precise::search::problem::Search;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::FINE;
+use crate::precise::search::refine::Refiner;
+use crate::precise::verdict::choice::AGREES;
+use crate::precise::verdict::color::{LOOSE, agreement_at, loose_axis, roll};
+use crate::precise::verdict::confidence::sureness;
 use crate::progress::Host;
 use crate::report::Effort;
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
@@ -300,7 +300,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let (conditioning, _) = search.conditioning(&found.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
-                .map(|own| precise::scored::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
+                .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
             sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);

@@ -8,14 +8,14 @@ use super::known::{Ranked, Views};
 use super::world_pose::WorldPose;
 use crate::geometry::rotations::exp;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::precise::judged::choice::{Choice, Look, best_roll};
-use crate::precise::judged::color::{DIFFERENT, Judgment, LOOSE, are_rivals};
-use crate::precise::judged::lookalikes::{Likeness, Lookalike, ROLLS, among};
-use crate::precise::scored::appearance::{Appearance, PhotoCells};
-use crate::precise::scored::conditioning::Conditioning;
-use crate::precise::scored::score::{NOISE, Score};
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{COARSE, COLORED, FINE};
+use crate::precise::scoring::appearance::{Appearance, PhotoCells};
+use crate::precise::scoring::conditioning::Conditioning;
+use crate::precise::scoring::score::{NOISE, Score};
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::{COARSE, COLORED, FINE};
+use crate::precise::verdict::choice::{Choice, Look, best_roll};
+use crate::precise::verdict::color::{DIFFERENT, Judgment, LOOSE, are_rivals};
+use crate::precise::verdict::lookalikes::{Likeness, Lookalike, ROLLS, among};
 
 /// Correlation above which a photo agrees no better.
 const SURE_AGREEMENT: f64 = 0.99;

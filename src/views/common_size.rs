@@ -2,14 +2,14 @@
 
 use super::joint::{Joint, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
-use crate::precise::drawn::pose::CropPose;
-use crate::precise::drawn::render::Canvas;
-use crate::precise::scored::conditioning::{DAMPING, DROP, covariance, deviation};
-use crate::precise::scored::objective::Objective;
-use crate::precise::scored::prior::Prior;
-use crate::precise::scored::score::Weights;
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::refine::Refiner;
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::render::Canvas;
+use crate::precise::scoring::conditioning::{DAMPING, DROP, covariance, deviation};
+use crate::precise::scoring::objective::Objective;
+use crate::precise::scoring::prior::Prior;
+use crate::precise::scoring::score::Weights;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::refine::Refiner;
 
 /// Standard deviation of the size due to errors that all masks have in common, relative.
 pub const SILHOUETTE_ERROR: f64 = 0.01;

@@ -2,13 +2,13 @@
 
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::geometry::normal_equations::NormalEquations;
-use crate::precise::drawn::pose::{CropPose, Step};
-use crate::precise::drawn::render::Canvas;
-use crate::precise::scored::objective::Objective;
-use crate::precise::scored::score::Score;
-use crate::precise::searched::ascent::{Ascent, ascend, limited};
-use crate::precise::searched::ranking::{Found, Total};
-use crate::precise::searched::refine::Refiner;
+use crate::precise::drawing::pose::{CropPose, Step};
+use crate::precise::drawing::render::Canvas;
+use crate::precise::scoring::objective::Objective;
+use crate::precise::scoring::score::Score;
+use crate::precise::search::ascent::{Ascent, ascend, limited};
+use crate::precise::search::ranking::{Found, Total};
+use crate::precise::search::refine::Refiner;
 
 /// One view of a joint objective.
 #[derive(Clone, Copy)]

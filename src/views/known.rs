@@ -3,13 +3,13 @@
 use super::common_size::{DEPTH_ERROR, SILHOUETTE_ERROR, SizeEvidence, mean};
 use super::joint::{Joint, JointScore, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
-use crate::precise::drawn::pose::CropPose;
-use crate::precise::drawn::render::Canvas;
-use crate::precise::searched::cascade::{Stage, Subject};
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{FINE, JOINT, JOINT_POLISH, JOINT_RANKING};
-use crate::precise::searched::refine::Refiner;
-use crate::precise::searched::search::Search;
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::render::Canvas;
+use crate::precise::search::cascade::{Stage, Subject};
+use crate::precise::search::problem::Search;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::{FINE, JOINT, JOINT_POLISH, JOINT_RANKING};
+use crate::precise::search::refine::Refiner;
 
 /// Share of a view's own best score below which a pose contradicts the view, and the one that a view adds at least, so that
 /// one wrong view does not move the others. The second is low: errors of the camera poses cost all views a little, and

@@ -24,7 +24,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Pauses, Task, finished};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
 use options::ViewsOptions;
 use report::ViewsAlignment;

@@ -13,9 +13,9 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::Observation;
 use crate::options::Options;
 use crate::pauses::{Boxed, Pauses, boxed};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::searched::efforts;
-use crate::precise::searched::shown::shown;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::search::efforts;
+use crate::precise::search::shown::shown;
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Progress at the start of each stage, 0 to 1.

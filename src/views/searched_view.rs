@@ -7,15 +7,15 @@ use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::pauses::Pauses;
-use crate::precise::drawn::pose::CropPose;
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::judged::color::{Judgment, judgment};
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{SearchSettings, Task};
-use crate::precise::searched::rounds::Rounds;
-use crate::precise::searched::search::Search;
-use crate::precise::searched::start;
+use crate::precise::search::problem::Search;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::{SearchSettings, Task};
+use crate::precise::search::rounds::Rounds;
+use crate::precise::search::start;
+use crate::precise::verdict::color::{Judgment, judgment};
 use crate::progress::Stopwatch;
 
 /// A view with a mask, and its search.

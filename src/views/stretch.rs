@@ -5,17 +5,17 @@ use super::known::Views;
 use super::world_pose::WorldPose;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
-use crate::precise::drawn::pose::Step;
-use crate::precise::judged::stretch::{
+use crate::precise::drawing::pose::Step;
+use crate::precise::options::Proportions as Freedom;
+use crate::precise::scoring::conditioning::fix_roll;
+use crate::precise::scoring::score::Score;
+use crate::precise::search::ascent::{Ascent, ascend};
+use crate::precise::search::proportions::{InProportion, PROPORTIONS, Proportions, Shapes, Stretched};
+use crate::precise::search::recipe::FINEST;
+use crate::precise::search::refine::Refiner;
+use crate::precise::verdict::stretch::{
     ALL, GRIDS, REACHES, STEPS, climb, deviations_of_lengths, report, shapes, significant,
 };
-use crate::precise::options::Proportions as Freedom;
-use crate::precise::scored::conditioning::fix_roll;
-use crate::precise::scored::score::Score;
-use crate::precise::searched::ascent::{Ascent, ascend};
-use crate::precise::searched::proportions::{InProportion, PROPORTIONS, Proportions, Shapes, Stretched};
-use crate::precise::searched::recipe::FINEST;
-use crate::precise::searched::refine::Refiner;
 use crate::report::Stretch;
 
 /// The best proportions near a pose in the world; `None` if they are not asked for, or the size of the mesh is given.

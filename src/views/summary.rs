@@ -8,9 +8,9 @@ use crate::evidence::observation::Observation;
 use crate::evidence::sample::Sampling;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::{self, Metrics};
-use crate::precise::drawn::prepared_mesh::PreparedMesh;
-use crate::precise::judged::color::agreement;
-use crate::precise::scored::score::Score;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::scoring::score::Score;
+use crate::precise::verdict::color::agreement;
 use crate::progress::Stopwatch;
 use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Stretch, Warning, WarningCode};
 

@@ -6,15 +6,15 @@ use super::searched_view::SearchedView;
 use super::summary::{Summary, SummaryView};
 use crate::error::Result;
 use crate::geometry::similarity::Similarity;
-use crate::precise::judged::alternatives::lead;
-use crate::precise::judged::color::Judgment;
-use crate::precise::judged::confidence::sureness;
 use crate::precise::no_candidate;
-use crate::precise::scored::conditioning::Conditioning;
-use crate::precise::scored::objective::Objective;
-use crate::precise::searched::ranking::Found;
-use crate::precise::searched::recipe::{COMMON_SIZE, FINE, SURE};
-use crate::precise::searched::search::Search;
+use crate::precise::scoring::conditioning::Conditioning;
+use crate::precise::scoring::objective::Objective;
+use crate::precise::search::problem::Search;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::{COMMON_SIZE, FINE, SURE};
+use crate::precise::verdict::alternatives::lead;
+use crate::precise::verdict::color::Judgment;
+use crate::precise::verdict::confidence::sureness;
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
 const NEAR: f32 = 0.35;

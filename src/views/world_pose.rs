@@ -6,8 +6,8 @@ use nalgebra::Vector3;
 use crate::geometry::normal_equations::PARAMETERS;
 use crate::geometry::rotations::{exp, matrix_of, quaternion_of};
 use crate::geometry::similarity::Similarity;
-use crate::precise::drawn::pose::{CropPose, MeshFrame, Step};
-use crate::precise::searched::ranking::Posed;
+use crate::precise::drawing::pose::{CropPose, MeshFrame, Step};
+use crate::precise::search::ranking::Posed;
 
 /// x_world = e^`log_scale`·R·p + `center`, for p in the [`MeshFrame`].
 #[derive(Debug, Clone, Copy, PartialEq)]

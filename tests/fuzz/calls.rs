@@ -8,7 +8,7 @@ use sim3align::geometry::depth_kind::DepthKind;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::options::Choice;
 use sim3align::paper::options::PaperOptions;
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::progress::Silent;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};

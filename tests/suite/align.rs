@@ -13,7 +13,7 @@ use sim3align::geometry::image::bounds_of;
 use sim3align::helpers::{Helpers, Link, READY};
 use sim3align::paper::options::{GuardMode, PaperOptions};
 use sim3align::pauses::Pauses;
-use sim3align::precise::searched::start::prepare;
+use sim3align::precise::search::start::prepare;
 use sim3align::report::PaperAlignment;
 
 use crate::observations::{HEIGHT, WIDTH, body, camera, observe, quick, solve, truth, turn_deg};

@@ -1,7 +1,7 @@
 //! Images: what a reading is, sizes, resampling, distances, and the outline of a mask.
 
 use sim3align::geometry::distance_transform::{NO_PIXEL, squared_distances, within};
-use sim3align::precise::observed::clean::CleanObservation;
+use sim3align::precise::observation::clean::CleanObservation;
 
 use crate::prelude::*;
 use crate::shapes::view;

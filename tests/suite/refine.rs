@@ -2,10 +2,10 @@
 
 use nalgebra::{SMatrix, SVector};
 use sim3align::geometry::normal_equations::NormalEquations;
-use sim3align::precise::drawn::equivalence::Equivalence;
-use sim3align::precise::scored::objective::Objective;
-use sim3align::precise::scored::prior::Prior;
-use sim3align::precise::searched::refine::Refiner;
+use sim3align::precise::drawing::equivalence::Equivalence;
+use sim3align::precise::scoring::objective::Objective;
+use sim3align::precise::scoring::prior::Prior;
+use sim3align::precise::search::refine::Refiner;
 
 use crate::prelude::*;
 use crate::score::{HEIGHT, WIDTH, facing, model, noisy_grid, pose, scoring};

@@ -1,7 +1,7 @@
 //! Real RGB-D cases: `SIM3ALIGN_CASES=<folder of case folders> cargo test -p sim3align-lab -- --ignored real_cases`.
 
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
-use sim3align::precise::drawn::surplus::LeftOut;
+use sim3align::precise::drawing::surplus::LeftOut;
 use sim3align_lab::case_folder::read::{case_folders, read};
 use sim3align_lab::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use sim3align::bindings::error::to_js;
 use sim3align::bindings::mesh::{drop_kept, mesh};
-use sim3align::precise::searched::start::prepare;
+use sim3align::precise::search::start::prepare;
 use wasm_bindgen::prelude::*;
 
 /// Validates and decimates a mesh, and caches it under its `id`; see `Aligner.prepareMesh` in the TypeScript package.

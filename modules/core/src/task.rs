@@ -15,7 +15,7 @@ use sim3align::bindings::{input, mesh, options};
 use sim3align::error::Error;
 use sim3align::evidence::observation::Observation;
 use sim3align::pauses::Task;
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
 use sim3align::report::Alignment;
 use wasm_bindgen::JsValue;

@@ -18,7 +18,7 @@ use sim3align::error::{Error, Result};
 use sim3align::evidence::observation::check_mask_size;
 use sim3align::geometry::image::{Image, Mask};
 use sim3align::pauses::{Pauses, Task};
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
 use sim3align::views::options::ViewsOptions;
 

@@ -17,7 +17,7 @@ use sim3align::calibrate::Calibrated;
 use sim3align::calibrate::frames::Sequence;
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::pauses::{Pauses, finished};
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
 use sim3align::track::tracker::Tracker;
 

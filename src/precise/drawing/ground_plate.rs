@@ -1,0 +1,169 @@
+//! Ground plate: a piece of the ground that a generator took for a part of the object which stands on it.
+//!
+//! Table tops, lamp feet and screens have the same form. This only finds what may be such a plate: whether it is one, the
+//! image decides (see [`shown`](crate::precise::search::shown)).
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::surplus::{LeftOut, Trimmed};
+use crate::geometry::angle::sin_cos;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::mesh_parts::MeshParts;
+use crate::geometry::symmetric_eigen::{SymmetricEigen, outer};
+
+/// Cosines of the angle up to which triangles count for the normal of the plate, pass by pass, and up to which one is flat.
+const NARROWER: [f64; 3] = [0.0, 0.9, 0.97];
+const FLAT: f64 = 0.95;
+/// Largest thickness of a plate relative to its largest extent, and the share of the flat surface there that is within its
+/// thickness.
+const THICKNESS: f64 = 0.06;
+const WITHIN: f64 = 0.98;
+/// Least flat area of a plate relative to its rectangle: a disc with one face has 0.79, with a hole below the object less.
+const FULL: f64 = 0.5;
+/// Ratio of the extents of plate and object in all directions along the plate, and height of the object relative to the plate.
+const LARGER: f64 = 1.2;
+const HEIGHT: f64 = 0.1;
+/// Least share of the surface that is the object's.
+const OBJECT: f64 = 0.1;
+/// Directions along the plate in which extents are compared.
+const DIRECTIONS: usize = 4;
+/// Heights by which the thickness of a plate is measured.
+const BINS: usize = 64;
+/// The interval of no point.
+const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// A mesh without its ground plate; `None` if it has nothing that looks like one.
+pub fn without_plate(mesh: &Mesh) -> Option<Trimmed> {
+    let faces: Vec<Face> = mesh.triangles().iter().map(|triangle| Face::of(mesh, *triangle)).collect();
+    let normal = flattest(&faces)?;
+    let parts = MeshParts::of(mesh);
+    [normal, -normal].into_iter().find_map(|down| below(mesh, &faces, parts.as_ref(), down))
+}
+
+/// A triangle: its corners, its unit normal and its area.
+struct Face {
+    corners: [DVec3; 3],
+    normal: DVec3,
+    area: f64,
+}
+
+impl Face {
+    fn of(mesh: &Mesh, triangle: [u32; 3]) -> Self {
+        let corners = mesh.corners(triangle).map(|p| p.as_dvec3());
+        let [a, b, c] = corners;
+        let cross = (b - a).cross(c - a);
+        let twice = cross.length_squared().sqrt();
+        Self { corners, normal: if twice > 0.0 { cross / twice } else { DVec3::ZERO }, area: 0.5 * twice }
+    }
+
+    fn is_flat(&self, down: DVec3) -> bool {
+        self.normal.dot(down).abs() >= FLAT
+    }
+
+    /// The interval of the corners along a direction.
+    #[inline(never)]
+    fn along(&self, direction: DVec3) -> [f64; 2] {
+        let [a, b, c] = self.corners.map(|p| p.dot(direction));
+        [a.min(b).min(c), a.max(b).max(c)]
+    }
+}
+
+/// The direction that most of the surface faces, or faces away from.
+fn flattest(faces: &[Face]) -> Option<DVec3> {
+    let mut normal = DVec3::ZERO;
+    for least in NARROWER {
+        let counted = faces.iter().filter(|face| face.normal.dot(normal).abs() >= least);
+        let squares = counted.fold(DMat3::ZERO, |sum, face| sum + outer(face.normal) * face.area);
+        normal = SymmetricEigen::of(squares).vectors[2];
+    }
+    normal.is_finite().then_some(normal)
+}
+
+/// The mesh without a plate at its end in the direction `down`.
+fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) -> Option<Trimmed> {
+    let side = down.any_orthonormal_vector();
+    let directions: [DVec3; DIRECTIONS] = core::array::from_fn(|k| {
+        let (sin, cos) = sin_cos(core::f64::consts::PI * k as f64 / DIRECTIONS as f64);
+        side * cos + down.cross(side) * sin
+    });
+    let all = |direction: DVec3| {
+        let along = |[low, high]: [f64; 2], p: &Vec3| {
+            let at = p.as_dvec3().dot(direction);
+            [low.min(at), high.max(at)]
+        };
+        mesh.positions().iter().fold(NOWHERE, along)
+    };
+    let lengths = directions.map(|direction| length(all(direction)));
+    // A plate is as long as all of the mesh.
+    let least = FULL * lengths[0] * lengths[DIRECTIONS / 2];
+    if faces.iter().filter(|face| face.is_flat(down)).map(|face| face.area).sum::<f64>() < least {
+        return None;
+    }
+    let [_, lowest] = all(down);
+    let longest = lengths.into_iter().fold(0.0, f64::max);
+    let most = THICKNESS * longest;
+    // The flat area by the height of its upper side.
+    let mut flat = [0.0; BINS];
+    for face in faces.iter().filter(|face| face.is_flat(down)) {
+        let height = BINS as f64 * (lowest - face.along(down)[0]) / most;
+        if height < BINS as f64 {
+            flat[height as usize] += face.area;
+        }
+    }
+    let total: f64 = flat.iter().sum();
+    let mut sum = 0.0;
+    let filled = flat.iter().position(|area| {
+        sum += area;
+        sum >= WITHIN * total
+    })?;
+    let top = lowest - most * (filled + 2) as f64 / BINS as f64;
+    let low: Vec<bool> = faces.iter().map(|face| face.along(down)[0] >= top).collect();
+
+    // A part of its own, where there is one: the bottom of the object is low, too.
+    let mut is_apart = vec![true; parts.map_or(0, |parts| parts.parts.len())];
+    let of_triangle = parts.map_or(&[][..], |parts| &parts.of_triangle);
+    for (low, &part) in low.iter().zip(of_triangle) {
+        is_apart[part as usize] &= low;
+    }
+    let apart: Vec<bool> = of_triangle.iter().map(|&part| is_apart[part as usize]).collect();
+    [apart, low].iter().find_map(|is_plate| {
+        if is_plate.is_empty() {
+            return None;
+        }
+        let [mut object, mut plate, mut flat] = [0.0; 3];
+        for (face, is_plate) in faces.iter().zip(is_plate) {
+            if *is_plate {
+                plate += face.area;
+                flat += if face.is_flat(down) { face.area } else { 0.0 };
+            } else {
+                object += face.area;
+            }
+        }
+        for direction in directions {
+            let [own, other] = [true, false].map(|side| interval(faces, is_plate, side, direction));
+            if !(own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)) {
+                return None;
+            }
+        }
+        let height = top - interval(faces, is_plate, false, down)[0];
+        let share = plate / (plate + object);
+        let is_ground = flat >= least && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
+        let left_out = LeftOut { ground: share, ..LeftOut::default() };
+        is_ground.then(|| Trimmed::split(mesh, left_out, &|triangle| is_plate[triangle])).flatten()
+    })
+}
+
+/// The interval along a direction of the triangles of which `of` says `side`.
+#[inline(never)]
+fn interval(faces: &[Face], of: &[bool], side: bool, direction: DVec3) -> [f64; 2] {
+    let mut all = NOWHERE;
+    for (face, _) in faces.iter().zip(of).filter(|(_, of)| **of == side) {
+        let [low, high] = face.along(direction);
+        all = [all[0].min(low), all[1].max(high)];
+    }
+    all
+}
+
+fn length([low, high]: [f64; 2]) -> f64 {
+    high - low
+}

@@ -1,0 +1,142 @@
+//! A mesh that is validated and decimated once for many alignments.
+
+use core::cell::{Cell, OnceCell, RefCell};
+use std::borrow::Cow;
+use std::rc::Rc;
+
+use super::ground_plate::without_plate;
+use super::mesh_pyramid::MeshPyramid;
+use super::surplus::{LeftOut, Trimmed};
+use crate::error::Result;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::surface::check_shape;
+use crate::geometry::surface_colors::SurfaceColors;
+use crate::precise::observation::resolution::{GRIDS, Grid};
+
+/// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
+/// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part
+/// of the object, and every render would transform them. So is the [surplus](super::surplus) of generators.
+pub struct PreparedMesh<'a> {
+    /// As it was given.
+    whole: Cow<'a, Mesh>,
+    /// The rest, where there is surplus; on first use.
+    trimmed: OnceCell<Option<Trimmed>>,
+    /// The colours of all of the mesh, and those of the rest; on first use.
+    colors: Option<SurfaceColors>,
+    trimmed_colors: OnceCell<SurfaceColors>,
+    is_checked: Cell<bool>,
+    /// By number of triangles, which depends on the quality.
+    pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
+    /// The mesh without what looks like a ground plate, on first use.
+    without_plate: OnceCell<Option<Box<PreparedMesh<'static>>>>,
+}
+
+impl PreparedMesh<'static> {
+    /// Takes ownership of a mesh.
+    pub fn new(mesh: Mesh) -> Self {
+        Self::of(Cow::Owned(mesh))
+    }
+}
+
+impl<'a> PreparedMesh<'a> {
+    /// Borrows a mesh.
+    pub fn borrowed(mesh: &'a Mesh) -> Self {
+        Self::of(Cow::Borrowed(mesh))
+    }
+
+    /// Borrows a mesh, and takes all of it for the object.
+    pub fn as_given(mesh: &'a Mesh) -> Self {
+        Self::with(Cow::Borrowed(mesh), OnceCell::from(None), OnceCell::from(None))
+    }
+
+    fn of(mesh: Cow<'a, Mesh>) -> Self {
+        let whole = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
+        Self::with(whole, OnceCell::new(), OnceCell::new())
+    }
+
+    fn with(
+        whole: Cow<'a, Mesh>,
+        trimmed: OnceCell<Option<Trimmed>>,
+        without_plate: OnceCell<Option<Box<PreparedMesh<'static>>>>,
+    ) -> Self {
+        let (is_checked, pyramids, trimmed_colors) = (Cell::new(false), RefCell::default(), OnceCell::new());
+        Self { whole, trimmed, colors: None, trimmed_colors, is_checked, pyramids, without_plate }
+    }
+
+    /// The mesh with the colours of its surface, or without any.
+    pub fn with_colors(self, colors: impl Into<Option<SurfaceColors>>) -> Self {
+        Self { colors: colors.into(), ..self }
+    }
+
+    /// The colours of the surface of the object, if they are known.
+    pub fn colors(&self) -> Option<&SurfaceColors> {
+        let colors = self.colors.as_ref()?;
+        Some(match self.trimmed() {
+            Some(trimmed) => self.trimmed_colors.get_or_init(|| colors.clone().beside(&trimmed.surplus)),
+            None => colors,
+        })
+    }
+
+    fn trimmed(&self) -> Option<&Trimmed> {
+        self.trimmed.get_or_init(|| Trimmed::of(&self.whole)).as_ref()
+    }
+
+    /// The mesh of the object, without surplus: what the evidence is compared with.
+    pub fn mesh(&self) -> &Mesh {
+        self.trimmed().map_or(&self.whole, |trimmed| &trimmed.mesh)
+    }
+
+    /// All of the mesh, as it was given.
+    pub fn whole(&self) -> &Mesh {
+        &self.whole
+    }
+
+    /// What is left out of it.
+    pub fn left_out(&self) -> LeftOut {
+        self.trimmed().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
+    }
+
+    /// The mesh without what looks like a ground plate; `None` if it has nothing of the kind.
+    pub fn without_plate(&self) -> Option<&PreparedMesh<'static>> {
+        let of = || {
+            let trimmed = without_plate(self.mesh())?;
+            let left_out = LeftOut { ground: trimmed.left_out.ground, ..self.left_out() };
+            let whole = Cow::Owned(self.whole.as_ref().clone());
+            let trimmed = OnceCell::from(Some(Trimmed { left_out, ..trimmed }));
+            let rest = PreparedMesh::with(whole, trimmed, OnceCell::from(None));
+            // Without those of what is left out already.
+            Some(Box::new(rest.with_colors(self.colors().cloned())))
+        };
+        self.without_plate.get_or_init(of).as_deref()
+    }
+
+    /// Whether every image of the mesh is compared with the same part of it. Helpers of a search, which have the mesh as it was
+    /// given, take part only then.
+    pub fn has_one_form(&self) -> bool {
+        self.left_out().ground == 0.0 && self.without_plate().is_none()
+    }
+
+    /// Checks that the surface encloses a volume.
+    ///
+    /// # Errors
+    /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
+    pub fn check(&self) -> Result<()> {
+        if !self.is_checked.get() {
+            check_shape(self.mesh())?;
+            self.is_checked.set(true);
+        }
+        Ok(())
+    }
+
+    /// The decimations for `grids`; `None` if no triangle remains.
+    pub fn pyramid(&self, grids: &[Grid; GRIDS]) -> Option<Rc<MeshPyramid>> {
+        let triangles = grids.map(|grid| grid.triangles);
+        let mut pyramids = self.pyramids.borrow_mut();
+        if let Some((_, known)) = pyramids.iter().find(|(known, _)| *known == triangles) {
+            return Some(known.clone());
+        }
+        let pyramid = Rc::new(MeshPyramid::new(self.mesh(), grids)?);
+        pyramids.push((triangles, pyramid.clone()));
+        Some(pyramid)
+    }
+}

@@ -1,0 +1,13 @@
+//! The observation: the evidence of a depth map and a mask.
+//!
+//! In: an [`Observation`](crate::evidence::observation::Observation). Out: the [`CleanObservation`](clean::CleanObservation),
+//! which holds the pixels and depths that reliably belong to the object, its grids of cells at any resolution, and where
+//! the mask is cut. Nothing here knows the mesh: the evidence must not depend on the hypothesis that it judges.
+
+pub mod anchors;
+pub mod clean;
+pub mod grid;
+pub mod ramp;
+pub mod resolution;
+pub mod rim;
+pub mod thinning;

@@ -1,0 +1,231 @@
+//! Appearance: how well the colours of a posed mesh agree with the photo.
+//!
+//! Light, exposure, white balance and the gamma of generated textures are unknown, so that colours are compared by
+//! correlation. Luminance is compared after the part that is linear in the normal has been subtracted from both images:
+//! the shading of a matt surface under distant light. Chroma hardly depends on shading.
+
+use glam::{DMat4, DVec4, Vec3};
+
+use crate::evidence::photo::{Photo, PhotoRegion};
+use crate::geometry::surface_colors::SurfaceColors;
+use crate::precise::drawing::pose::MeshFrame;
+use crate::precise::drawing::render::Canvas;
+use crate::precise::observation::grid::CropGrid;
+
+/// Maximum number of pixels along a side of a cell whose mean is its colour.
+const MAX_SAMPLES: usize = 6;
+/// Minimum cosine between the normal of a point and the direction to the camera for the point to colour a cell.
+const MIN_FACING: f32 = 0.15;
+/// Maximum distance of a point behind the rendered surface, relative to the diagonal of the mesh: it is decimated.
+const BEHIND: f32 = 0.03;
+/// Distance to the outline of the mask, in cells, from which on a cell is compared: the photo may be shifted.
+const INSIDE: f32 = -1.5;
+/// Minimum number of cells for a correlation.
+const MIN_CELLS: usize = 30;
+/// Mean square of the noise of a cell, which keeps surfaces without contrast from correlating.
+const NOISE: f64 = 1e-3;
+/// Mean absolute chroma below which a photo is grey.
+const GREY: f32 = 0.01;
+/// Regularisation of the fit of the shading, relative to the number of cells: a flat surface has one normal.
+const RIDGE: f64 = 1e-3;
+
+/// The photo on the cells of a grid: luminance and two opponent colours, sRGB-encoded.
+#[derive(Debug, Clone)]
+pub struct PhotoCells {
+    colors: Vec<Vec3>,
+    is_grey: bool,
+}
+
+/// The contrast of the colours of a posed mesh on the cells where it is compared, and its agreement with the photo.
+#[derive(Debug, Clone)]
+pub struct Appearance {
+    /// Correlation with the photo, −1 to 1; 0 without contrast.
+    pub agreement: f64,
+    /// Index of each cell, and its contrast.
+    contrasts: Vec<(u32, Vec3)>,
+}
+
+impl PhotoCells {
+    /// The means of the photo on the cells of a grid. `image` is the size in pixels of the depth map, which shows this
+    /// region of the photo.
+    pub fn new(photo: &Photo, region: &PhotoRegion, image: [f64; 2], grid: &CropGrid) -> Self {
+        let sizes = [photo.width(), photo.height()];
+        let ratio: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.size[k] / image[k]);
+        let corner: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.corner[k]);
+        let samples: [usize; 2] =
+            core::array::from_fn(|k| ((grid.cell[k] * ratio[k]).ceil() as usize).clamp(1, MAX_SAMPLES));
+        // The pixel at a sample of a cell.
+        let at = |i: usize, k: usize, axis: usize| {
+            let within = (k as f64 + 0.5) / samples[axis] as f64;
+            let x = (grid.corner[axis] + (i as f64 + within) * grid.cell[axis]) * ratio[axis] + corner[axis];
+            (x >= 0.0 && x < sizes[axis] as f64).then_some(x as usize)
+        };
+        let mut colors = Vec::with_capacity(grid.width * grid.height);
+        let (mut chroma, mut known) = (0.0f32, 0.0f32);
+        for v in 0..grid.height {
+            for u in 0..grid.width {
+                let mut mean = Mean::default();
+                for y in (0..samples[1]).filter_map(|k| at(v, k, 1)) {
+                    for x in (0..samples[0]).filter_map(|k| at(u, k, 0)) {
+                        mean.add(photo.data()[y * photo.width() + x]);
+                    }
+                }
+                let color = mean.color();
+                if !color.is_nan() {
+                    known += 2.0;
+                    chroma += color.y.abs() + color.z.abs();
+                }
+                colors.push(color);
+            }
+        }
+        Self { colors, is_grey: chroma < GREY * known }
+    }
+
+    /// The appearance of the mesh of the last render on the cells of `grid`; `None` if too little of it is in the mask.
+    pub fn compare(
+        &self,
+        canvas: &Canvas,
+        colors: &SurfaceColors,
+        frame: &MeshFrame,
+        grid: &CropGrid,
+    ) -> Option<Appearance> {
+        let cells: Vec<Cell> = drawn_colors(canvas, colors, frame, grid)
+            .into_iter()
+            .zip(&self.colors)
+            .enumerate()
+            .filter(|(i, ((mean, _), photo))| {
+                grid.mask[*i] && grid.outline[*i] < INSIDE && mean.count > 0.0 && !photo.is_nan()
+            })
+            .map(|(i, ((mean, normal), photo))| Cell {
+                index: i as u32,
+                photo: self.seen(*photo),
+                mesh: self.seen(mean.color()),
+                normal: normal.normalize_or_zero(),
+            })
+            .collect();
+        (cells.len() >= MIN_CELLS).then(|| Appearance::new(cells))
+    }
+
+    /// The channels that the photo has.
+    fn seen(&self, color: Vec3) -> Vec3 {
+        if self.is_grey { Vec3::new(color.x, 0.0, 0.0) } else { color }
+    }
+}
+
+impl Appearance {
+    fn new(mut cells: Vec<Cell>) -> Self {
+        Shading::fit(&cells, |cell| cell.photo).subtract(&mut cells, |cell| &mut cell.photo);
+        Shading::fit(&cells, |cell| cell.mesh).subtract(&mut cells, |cell| &mut cell.mesh);
+        let noise = NOISE * cells.len() as f64;
+        let sum = |of: fn(&Cell) -> f32| cells.iter().map(|cell| f64::from(of(cell))).sum::<f64>();
+        let common = sum(|cell| cell.photo.dot(cell.mesh));
+        let [photo, mesh] = [sum(|cell| cell.photo.length_squared()), sum(|cell| cell.mesh.length_squared())];
+        Self {
+            agreement: common / ((photo + noise) * (mesh + noise)).sqrt(),
+            contrasts: cells.iter().map(|cell| (cell.index, cell.mesh)).collect(),
+        }
+    }
+
+    /// Number of cells that were compared.
+    pub fn cells(&self) -> usize {
+        self.contrasts.len()
+    }
+
+    /// The mean squared difference of the contrasts of two poses, on their common cells, relative to the noise.
+    pub fn difference(&self, other: &Self) -> f64 {
+        let mut others = other.contrasts.iter().peekable();
+        let (mut sum, mut count) = (0.0, 0.0f64);
+        for (index, contrast) in &self.contrasts {
+            while others.next_if(|(other, _)| other < index).is_some() {}
+            if let Some((_, other)) = others.next_if(|(other, _)| other == index) {
+                sum += f64::from((*contrast - *other).length_squared());
+                count += 1.0;
+            }
+        }
+        sum / (count.max(1.0) * NOISE)
+    }
+}
+
+struct Cell {
+    index: u32,
+    photo: Vec3,
+    mesh: Vec3,
+    normal: Vec3,
+}
+
+/// Mean of 8-bit colours.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    sum: Vec3,
+    count: f32,
+}
+
+impl Mean {
+    fn add(&mut self, [r, g, b]: [u8; 3]) {
+        self.sum += Vec3::new(r.into(), g.into(), b.into());
+        self.count += 1.0;
+    }
+
+    /// Luminance, red to green, yellow to blue; NaN without any colour.
+    fn color(&self) -> Vec3 {
+        let Vec3 { x: r, y: g, z: b } = self.sum / (255.0 * self.count);
+        Vec3::new(0.3 * r + 0.6 * g + 0.1 * b, r - g, 0.5 * (r + g) - b)
+    }
+}
+
+/// The mean of the chroma of an image, and its luminance as a linear function of the normal.
+struct Shading {
+    luminance: DVec4,
+    chroma: Vec3,
+}
+
+impl Shading {
+    fn fit(cells: &[Cell], of: fn(&Cell) -> Vec3) -> Self {
+        let (mut squares, mut products, mut chroma) = (DMat4::ZERO, DVec4::ZERO, Vec3::ZERO);
+        for cell in cells {
+            let (basis, color) = (cell.normal.extend(1.0).as_dvec4(), of(cell));
+            squares += DMat4::from_cols(basis * basis.x, basis * basis.y, basis * basis.z, basis * basis.w);
+            products += basis * f64::from(color.x);
+            chroma += color;
+        }
+        let ridge = RIDGE * cells.len() as f64;
+        squares += DMat4::from_diagonal(DVec4::new(ridge, ridge, ridge, 1e-9 * ridge));
+        Self { luminance: squares.inverse() * products, chroma: chroma / cells.len() as f32 }
+    }
+
+    fn subtract(&self, cells: &mut [Cell], of: fn(&mut Cell) -> &mut Vec3) {
+        for cell in cells {
+            let lit = self.luminance.dot(cell.normal.extend(1.0).as_dvec4()) as f32;
+            *of(cell) -= Vec3::new(lit, self.chroma.y, self.chroma.z);
+        }
+    }
+}
+
+/// The colours of the visible points of the mesh per cell, and the sums of their normals, camera frame.
+fn drawn_colors(canvas: &Canvas, colors: &SurfaceColors, frame: &MeshFrame, grid: &CropGrid) -> Vec<(Mean, Vec3)> {
+    let mut cells = vec![(Mean::default(), Vec3::ZERO); grid.mask.len()];
+    let (center, per_unit) = (frame.center.as_vec3(), 1.0 / frame.diagonal as f32);
+    let linear = canvas.rotation * canvas.scale;
+    let (focal, [cx, cy]) = (grid.focal as f32, grid.center.map(|c| c as f32));
+    let (right, bottom) = (grid.width as f32, grid.height as f32);
+    let behind = BEHIND * canvas.scale;
+    let samples = colors.samples();
+    for ((p, n), rgb) in samples.points.iter().zip(&samples.normals).zip(colors.colors()) {
+        let point = linear * ((*p - center) * per_unit) + canvas.translation;
+        let normal = canvas.rotation * *n;
+        if point.z <= 0.0 || -normal.dot(point) < MIN_FACING * point.length() {
+            continue;
+        }
+        let (u, v) = (focal * point.x / point.z + cx + 0.5, focal * point.y / point.z + cy + 0.5);
+        if !(u >= 0.0 && v >= 0.0 && u < right && v < bottom) {
+            continue;
+        }
+        let i = v as usize * grid.width + u as usize;
+        let drawn = canvas.inverse_depth[i];
+        if drawn > 0.0 && point.z < 1.0 / drawn + behind {
+            cells[i].0.add(*rgb);
+            cells[i].1 += normal;
+        }
+    }
+    cells
+}

@@ -1,0 +1,46 @@
+//! The objective: scores poses on one grid.
+
+use glam::Mat3;
+
+use super::prior::Prior;
+use super::score::{Score, Scoring};
+use super::surroundings::Surroundings;
+use crate::precise::drawing::equivalence::Equivalence;
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::render::{Canvas, Model};
+use crate::precise::observation::grid::CropGrid;
+
+/// The objective on one grid.
+#[derive(Clone, Copy)]
+pub struct Objective<'a> {
+    /// The mesh.
+    pub model: &'a Model,
+    /// The evidence.
+    pub grid: &'a CropGrid,
+    /// The weights of the terms.
+    pub scoring: Scoring,
+    /// The prior.
+    pub prior: Prior,
+    /// Which poses of the mesh are equivalent.
+    pub equivalence: &'a Equivalence,
+    /// What surrounds the object, if that is known.
+    pub surroundings: Option<&'a Surroundings>,
+}
+
+impl Objective<'_> {
+    /// Renders a pose and scores it.
+    pub fn score(&self, canvas: &mut Canvas, pose: &CropPose) -> Score {
+        self.score_stretched(canvas, pose, &Mat3::IDENTITY)
+    }
+
+    /// Renders a pose of the mesh in other proportions and scores it.
+    pub fn score_stretched(&self, canvas: &mut Canvas, pose: &CropPose, stretch: &Mat3) -> Score {
+        canvas.draw_stretched(self.model, pose, stretch, self.grid);
+        let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
+        score.total += self.prior.score(pose, self.equivalence);
+        if let Some(surroundings) = self.surroundings {
+            score.total += surroundings.score(canvas, self.grid, pose);
+        }
+        score
+    }
+}

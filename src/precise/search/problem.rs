@@ -1,0 +1,218 @@
+//! A search: the observation and the mesh, prepared for rendering on every grid.
+
+use core::cell::OnceCell;
+use std::rc::Rc;
+
+use super::coarse::Coarse;
+use super::ranking::{Found, distinct};
+use super::recipe::{COARSE, FINE, GRIDS, SearchSettings};
+use super::refine::Refiner;
+use crate::geometry::rotations::angle_between;
+use crate::precise::drawing::equivalence::Equivalence;
+use crate::precise::drawing::mesh_pyramid::MeshPyramid;
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::render::Canvas;
+use crate::precise::observation::anchors::{Anchor, anchors};
+use crate::precise::observation::clean::CleanObservation;
+use crate::precise::observation::grid::CropGrid;
+use crate::precise::scoring::conditioning::Conditioning;
+use crate::precise::scoring::objective::Objective;
+use crate::precise::scoring::prior::Prior;
+use crate::precise::scoring::score::Score;
+use crate::precise::scoring::surroundings::Surroundings;
+use crate::report::Effort;
+
+/// Rotations tried around a given pose, radians, and the number that are refined.
+const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
+const NEIGHBORS: usize = 7;
+
+/// Number of rolls about each principal axis, and of each half turn followed by a roll, and the minimum rotation between
+/// those that are refined, radians.
+const ROLLS: usize = 24;
+const APART: f64 = 0.3;
+
+/// A search: the observation and the mesh, prepared.
+pub struct Search {
+    /// The mesh, decimated for every grid.
+    pub mesh: Rc<MeshPyramid>,
+    /// The cleaned observation.
+    pub observation: Rc<CleanObservation>,
+    /// The index of its view, where an alignment has several.
+    pub view: usize,
+    /// Number of renders so far.
+    pub renders: usize,
+    pub(crate) settings: SearchSettings,
+    pub(crate) prior: Prior,
+    surroundings: Option<Surroundings>,
+    /// Which poses of the mesh are equivalent.
+    pub equivalence: Rc<Equivalence>,
+    /// The evidence on every grid, on first use.
+    grids: Rc<[OnceCell<CropGrid>; GRIDS]>,
+}
+
+impl Search {
+    /// A search without a prior, surroundings or a symmetry.
+    pub fn new(observation: Rc<CleanObservation>, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
+        Self {
+            mesh,
+            grids: Rc::default(),
+            observation,
+            view: 0,
+            renders: 0,
+            settings,
+            prior: Prior::default(),
+            surroundings: None,
+            equivalence: Rc::default(),
+        }
+    }
+
+    /// A look for rivals of a pose, without the surroundings of the object: a search on the same grids.
+    pub(crate) fn look(&self) -> Self {
+        Self {
+            mesh: Rc::clone(&self.mesh),
+            observation: Rc::clone(&self.observation),
+            view: self.view,
+            renders: 0,
+            settings: self.settings.look(),
+            prior: self.prior,
+            surroundings: None,
+            equivalence: Rc::clone(&self.equivalence),
+            grids: Rc::clone(&self.grids),
+        }
+    }
+
+    /// Sets the prior.
+    pub fn assume(&mut self, prior: Prior) {
+        self.prior = prior;
+    }
+
+    /// Sets the surroundings.
+    pub fn surround(&mut self, surroundings: Surroundings) {
+        self.surroundings = Some(surroundings);
+    }
+
+    /// A pose and its neighbourhood: rotated about every axis, at its own distance and at that of the depths.
+    pub(crate) fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
+        let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
+        let mut canvas = Canvas::default();
+        let mut near: Vec<Found> = Vec::new();
+        for angle in [0.0, NEIGHBORHOOD[0], NEIGHBORHOOD[1]] {
+            for axis in 0..6 {
+                let mut step = [0.0; 7];
+                step[axis / 2] = if axis % 2 == 0 { angle } else { -angle };
+                near.push(stage.at_its_distance(&mut canvas, pose.moved(&step)));
+            }
+        }
+        self.renders += near.len();
+        let mut poses = vec![pose];
+        poses.extend(distinct(near, NEIGHBORS, 0.5 * NEIGHBORHOOD[0]).iter().map(|c| c.pose));
+        poses
+    }
+
+    /// The turns of the best of these poses that should be refined. `anchors` are sizes and positions for the half and quarter
+    /// turns: a part that something hides is elsewhere after a turn.
+    pub(crate) fn turned(&mut self, poses: &[CropPose], anchors: &[Anchor]) -> Vec<CropPose> {
+        let Some(best) = poses.first() else { return Vec::new() };
+        let mesh = Rc::clone(&self.mesh);
+        if self.settings.turned <= 1 {
+            return mesh.turns.of(best);
+        }
+        let rolled = mesh.turns.about_axes(best, ROLLS);
+        let turned: Vec<CropPose> =
+            poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)).collect();
+        let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
+        let mut canvas = Canvas::default();
+        let mut tried: Vec<Found> =
+            rolled.iter().chain(&turned).map(|pose| stage.at_its_distance(&mut canvas, *pose)).collect();
+        for pose in turned {
+            stage.try_anchors(&mut canvas, &mesh.outermost, pose.rotation, anchors, &mut tried);
+        }
+        self.renders += tried.len();
+        let is_new =
+            |turned: &Found| poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > APART);
+        let tried = tried.into_iter().filter(is_new).collect();
+        distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
+    }
+
+    /// Sizes and positions tried for each rotation.
+    pub fn anchors(&self) -> Vec<Anchor> {
+        if self.settings.anchors { anchors(self.grid(COARSE), self.settings.occlusion) } else { vec![Anchor::AS_IT_IS] }
+    }
+
+    /// Makes all grids.
+    pub fn make_grids(&self) {
+        (0..GRIDS).for_each(|grid| _ = self.grid(grid));
+    }
+
+    /// The evidence on the grid with this index.
+    pub fn grid(&self, index: usize) -> &CropGrid {
+        self.grids[index].get_or_init(|| CropGrid::new(&self.observation, self.settings.grids[index].cells))
+    }
+
+    /// The objective on the grid with this index.
+    pub fn objective(&self, index: usize) -> Objective<'_> {
+        let scoring = self.settings.scoring(&self.observation, index);
+        Objective {
+            model: &self.mesh.models[index],
+            grid: self.grid(index),
+            scoring,
+            prior: self.prior,
+            equivalence: &self.equivalence,
+            surroundings: self.surroundings.as_ref(),
+        }
+    }
+
+    /// The effort of the search.
+    pub fn effort(&self) -> Effort {
+        self.settings.effort
+    }
+
+    /// Whether a pose is at a bound of a scale that is not fixed.
+    pub fn is_at_bound(&self, pose: &CropPose) -> bool {
+        self.prior.is_at_bound(pose)
+    }
+
+    /// The score of any pose on the fine grid.
+    pub fn score(&self, pose: &CropPose) -> Score {
+        self.objective(FINE).score(&mut Canvas::default(), pose)
+    }
+
+    /// The part of a score that the image gives.
+    pub fn by_image(&self, score: &Score) -> f32 {
+        let weights = &self.settings.weights;
+        weights.factor(score, self.grid(FINE)) * weights.agreement(score)
+    }
+
+    /// The conditioning of a pose by the image alone.
+    pub fn conditioning_by_image(&self, pose: &CropPose) -> Option<Conditioning> {
+        let objective = Objective { surroundings: None, ..self.objective(FINE) };
+        self.conditioning_by(objective, pose).0
+    }
+
+    /// Whether the surroundings are known.
+    pub fn is_surrounded(&self) -> bool {
+        self.surroundings.is_some()
+    }
+
+    /// The conditioning of a pose, up to the symmetry of the mesh, and the root mean square of its depth residuals, metres.
+    pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
+        self.conditioning_by(self.objective(FINE), pose)
+    }
+
+    fn conditioning_by(&self, objective: Objective<'_>, pose: &CropPose) -> (Option<Conditioning>, f64) {
+        let refiner = Refiner { objective, lock_scale: false };
+        let mut canvas = Canvas::default();
+        let score = refiner.objective.score(&mut canvas, pose);
+        let depth_rms_m = refiner.depth_rms(&canvas);
+        let proportions = (&self.mesh.surface, self.settings.lock_scale);
+        let free_axis = self.equivalence.free_axis(pose.rotation);
+        let covariance = refiner.covariance(&mut canvas, &score, pose, proportions, free_axis);
+        let conditioning = covariance.map(|covariance| Conditioning::new(&covariance, pose));
+        // A sphere has no rotation that could be wrong.
+        let upright = |own: Conditioning| match self.equivalence.is_sphere() {
+            true => Conditioning { rotation: (0.0, own.rotation.1), ..own },
+            false => own,
+        };
+        (conditioning.map(upright), depth_rms_m)
+    }
+}

@@ -1,0 +1,266 @@
+//! Colour: which of the poses that shape leaves is right, by the photo.
+//!
+//! Many objects look the same after a half turn, or after any roll, but for their print. Of the poses whose shape scores
+//! are within noise, the one that agrees best with the photo is taken. Where no pose agrees, the colours of the mesh are
+//! not those of the object, and shape decides alone.
+
+use std::rc::Rc;
+
+use glam::{DQuat, DVec3};
+
+use super::choice::{Choice, HIDDEN, Look, SHAPE, best_roll};
+use super::lookalikes::{Likeness, Lookalike, lookalikes};
+use crate::evidence::observation::Observation;
+use crate::evidence::photo::{Photo, PhotoRegion};
+use crate::geometry::rotations::{angle_between, exp};
+use crate::geometry::similarity::Similarity;
+use crate::geometry::surface_colors::SurfaceColors;
+use crate::pauses::{Boxed, Pauses, boxed};
+use crate::precise::drawing::equivalence::{self, Equivalence};
+use crate::precise::drawing::pose::CropPose;
+use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::drawing::render::Canvas;
+use crate::precise::observation::clean::CleanObservation;
+use crate::precise::scoring::appearance::{Appearance, PhotoCells};
+use crate::precise::scoring::score::{NOISE, Score};
+use crate::precise::search::problem::Search;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::{COLORED, FINE, SearchSettings};
+use crate::precise::search::refine::Refiner;
+use crate::precise::search::rounds::Rounds;
+use crate::report::{ColorReport, Effort};
+
+/// Contrast between two poses, relative to the noise, from which on they look different.
+pub const DIFFERENT: f64 = 2.0;
+/// Minimum rotation between poses that are rivals, radians.
+const RIVAL: f64 = 0.35;
+/// Standard deviation of a rotation, radians, from which on colour refines it.
+pub const LOOSE: f64 = 0.05;
+
+/// A pose whose shape is within noise of the best one.
+struct Compared {
+    found: Found,
+    appearance: Appearance,
+    look: Look,
+}
+
+/// A pose that shape cannot tell from the chosen one, but that looks different.
+pub struct Rival {
+    /// The pose, with the score of its shape.
+    pub found: Found,
+    /// By how much its agreement with the photo is below that of the chosen pose.
+    pub margin: f64,
+    /// Whether a symmetry of the shape makes it equivalent to the chosen pose.
+    pub is_turn: bool,
+}
+
+/// What colour says.
+pub struct Judgment {
+    /// The chosen pose; `None` if it is that of shape.
+    pub chosen: Option<Found>,
+    /// Other poses that look different, best first.
+    pub rivals: Vec<Rival>,
+    /// Probability that the chosen pose is right up to the symmetry of the shape, given that it is one of those compared.
+    pub certainty: f64,
+    /// Probability that it is the right one of the poses that this symmetry makes equivalent; `None` where colour does not
+    /// tell them apart.
+    pub turn: Option<f64>,
+    /// For the result.
+    pub report: ColorReport,
+    /// Whether a pose agrees with the photo, so that colour counts.
+    pub is_used: bool,
+}
+
+/// What the photo says about the poses that a search has found, with a pause point after each comparison.
+pub fn judgment<'a>(
+    rounds: &'a Rounds,
+    photo: &'a Photo,
+    colors: &'a SurfaceColors,
+    pauses: &'a Pauses,
+) -> Boxed<'a, Judgment> {
+    boxed(async move {
+        let photo = cells(photo, &rounds.search);
+        let compared = compared(rounds, &photo, colors, pauses).await;
+        chosen(rounds, &photo, colors, &compared)
+    })
+}
+
+/// Chooses among the compared poses.
+fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared: &[Compared]) -> Judgment {
+    let looks = compared.iter().map(|compared| compared.look).collect();
+    let differ = |a: usize, b: usize| {
+        let [a, b] = [a, b].map(|k| &compared[k]);
+        are_rivals(a.found.pose.rotation, b.found.pose.rotation) && a.appearance.difference(&b.appearance) > DIFFERENT
+    };
+    let Some(choice) = Choice::among(looks, differ) else { return Judgment::none() };
+    let is_changed = choice.chosen != 0;
+    let mut found = compared[choice.chosen].found;
+    if is_changed {
+        found.pose = polished(rounds, found.pose);
+    }
+    let axis = if choice.is_used { loose_axis(&rounds.search, &found.pose, LOOSE) } else { None };
+    let rolled = axis.and_then(|axis| roll(&rounds.search, photo, colors, found.pose, axis));
+    let gain = rolled.map_or(0.0, |(_, gain)| gain);
+    if let Some((pose, _)) = rolled {
+        found.pose = pose;
+    }
+    let pose_of = |k: usize| compared.get(k).map(|compared| compared.found);
+    let is_other = is_changed || rolled.is_some();
+    Judgment::new(&choice, (found, is_other), pose_of, gain, &rounds.search.equivalence)
+}
+
+/// The poses of a search that shape cannot tell from the best one, which is the first, and what they look like. Empty if
+/// nothing can be compared.
+async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, pauses: &Pauses) -> Vec<Compared> {
+    let search = &rounds.search;
+    let mut canvas = Canvas::default();
+    let look_at = |canvas: &mut Canvas, pose: CropPose| {
+        let score = search.objective(FINE).score(canvas, &pose);
+        Some((score, photo.compare(canvas, colors, &search.mesh.frame, search.grid(FINE))?))
+    };
+    let Some(best) = rounds.found.first() else { return Vec::new() };
+    let Some((of_best, appearance)) = look_at(&mut canvas, best.pose) else { return Vec::new() };
+    let look = Look::new(appearance.agreement, 0.0);
+    let score = Score { total: best.score.total, ..of_best };
+    let mut list = vec![Compared { found: Found { score, ..*best }, appearance, look }];
+    let [rough, _] = COLORED;
+    let refiner = Refiner { objective: search.objective(rough.grid), lock_scale: search.settings.lock_scale };
+    for Lookalike { pose, likeness } in lookalikes(rounds) {
+        let is_rough = likeness == Likeness::Rough;
+        // A turn of the best pose doubles its error. What the search has found near the turn is more accurate.
+        let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
+        let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
+        let pose = match known {
+            Some(found) => found.pose,
+            None if is_rough => refiner.refine(&mut canvas, pose, rough.steps).pose,
+            None => pose,
+        };
+        let is_compared = |other: &Compared| other.found.pose == pose || is_rough && is_near(&other.found.pose, &pose);
+        if !list.iter().any(is_compared)
+            && let Some((mut score, appearance)) = look_at(&mut canvas, pose)
+        {
+            // The scores of the ranking are those of the mesh in better proportions. Other poses are compared, as the mesh
+            // is, with the best one.
+            let shape = known.map_or(score.total - of_best.total, |known| known.score.total - best.score.total);
+            score.total = best.score.total + shape;
+            // What a symmetry makes equivalent is compared, whatever the inaccuracy of the mesh takes off its score.
+            if likeness == Likeness::Equal || score.total > best.score.total - NOISE {
+                let look = Look::new(appearance.agreement, shape);
+                list.push(Compared { found: Found { pose, score, ..*best }, appearance, look });
+            }
+        }
+        pauses.here().await;
+    }
+    list
+}
+
+/// Whether two poses are so far apart that one of them is wrong.
+pub fn are_rivals(a: DQuat, b: DQuat) -> bool {
+    angle_between(a, b) > RIVAL
+}
+
+/// The axis about which shape leaves the rotation open, by at least `loose` radians.
+pub fn loose_axis(search: &Search, pose: &CropPose, loose: f64) -> Option<DVec3> {
+    let loosest = || search.conditioning(pose).0.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= loose);
+    search.equivalence.free_axis(pose.rotation).or_else(|| loosest().map(|(_, axis)| axis))
+}
+
+/// Rolls a pose about the axis that shape leaves open to where its colours agree best, and the gain of agreement; `None`
+/// if no roll is better.
+pub fn roll(
+    search: &Search,
+    photo: &PhotoCells,
+    colors: &SurfaceColors,
+    pose: CropPose,
+    axis: DVec3,
+) -> Option<(CropPose, f64)> {
+    let rolled = |angle: f64| search.mesh.turns.turned(&pose, exp(axis * angle) * pose.rotation);
+    let mut canvas = Canvas::default();
+    let objective = search.objective(FINE);
+    let (angle, gain) = best_roll(|angle| {
+        let score = objective.score(&mut canvas, &rolled(angle));
+        let appearance = photo.compare(&canvas, colors, &search.mesh.frame, search.grid(FINE));
+        appearance.map_or(f64::NEG_INFINITY, |a| Look::new(a.agreement, score.total).total)
+    })?;
+    Some((rolled(angle), gain))
+}
+
+impl Judgment {
+    /// From a choice and the pose that it ends with, which `is_other` than the best by shape. `pose_of` gives that of a rival.
+    pub fn new(
+        choice: &Choice,
+        (end, is_other): (Found, bool),
+        pose_of: impl Fn(usize) -> Option<Found>,
+        gain: f64,
+        equivalence: &Equivalence,
+    ) -> Self {
+        let rival = |&k: &usize| {
+            let found = pose_of(k)?;
+            let is_turn = equivalence.angle(end.pose.rotation, found.pose.rotation) <= equivalence::DIFFERENT;
+            Some((k, Rival { found, margin: choice.margin(k, gain), is_turn }))
+        };
+        let (indices, rivals): (Vec<usize>, Vec<Rival>) = choice.rivals.iter().filter_map(rival).unzip();
+        let certainty = |are_turns: bool| {
+            let these = indices.iter().zip(&rivals).filter(|(_, rival)| rival.is_turn == are_turns);
+            choice.certainty(gain, these.map(|(k, _)| *k))
+        };
+        Self {
+            chosen: is_other.then_some(end),
+            certainty: certainty(false),
+            turn: (choice.is_used && rivals.iter().any(|rival| rival.is_turn)).then(|| certainty(true)),
+            report: choice.report(gain),
+            is_used: choice.is_used,
+            rivals,
+        }
+    }
+
+    /// The smallest lead over a pose that looks different, in units of the shape score, of which no more than [`NOISE`]
+    /// counts; negative infinity if colour does not count.
+    pub fn lead(&self) -> f64 {
+        if !self.is_used {
+            return f64::NEG_INFINITY;
+        }
+        self.rivals.iter().fold(f64::from(NOISE), |least, rival| least.min(rival.margin.max(0.0) / SHAPE))
+    }
+
+    /// Nothing can be compared.
+    fn none() -> Self {
+        Self { chosen: None, rivals: Vec::new(), certainty: 1.0, turn: None, report: HIDDEN, is_used: false }
+    }
+}
+
+/// The correlation of the colours of a posed mesh with the photo, without the shading that normals explain, −1 to 1;
+/// `None` where either has no colours, or too little of the mesh is in the mask. `clean` is the observation, where it has
+/// been cleaned already.
+pub fn agreement(
+    observation: &Observation,
+    clean: Option<Rc<CleanObservation>>,
+    mesh: &PreparedMesh<'_>,
+    pose: &Similarity,
+) -> Option<f64> {
+    let (photo, colors) = (observation.photo()?, mesh.colors()?);
+    let settings = SearchSettings::from(Effort::Fast);
+    let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
+    let search = Search::new(clean, mesh.pyramid(&settings.grids)?, settings);
+    let pose = CropPose::of_similarity(pose, &search.mesh.frame)?;
+    agreement_at(&search, &cells(photo, &search), colors, &pose)
+}
+
+/// The correlation of the colours of a pose with the photo; `None` if nothing can be compared.
+pub fn agreement_at(search: &Search, photo: &PhotoCells, colors: &SurfaceColors, pose: &CropPose) -> Option<f64> {
+    let mut canvas = Canvas::default();
+    search.objective(FINE).score(&mut canvas, pose);
+    Some(photo.compare(&canvas, colors, &search.mesh.frame, search.grid(FINE))?.agreement)
+}
+
+/// The photo on the fine grid of a search in the whole depth map.
+pub fn cells(photo: &Photo, search: &Search) -> PhotoCells {
+    PhotoCells::new(photo, &PhotoRegion::WHOLE, search.observation.image, search.grid(FINE))
+}
+
+/// A pose refined on the finest grid.
+fn polished(rounds: &Rounds, pose: CropPose) -> CropPose {
+    let (search, [_, polish]) = (&rounds.search, COLORED);
+    let refiner = Refiner { objective: search.objective(polish.grid), lock_scale: search.settings.lock_scale };
+    refiner.refine_in_proportion(&mut Canvas::default(), pose, polish.steps, &search.mesh.surface).pose
+}

@@ -1,0 +1,113 @@
+//! Verdict: the best pose of a search, and how reliable it is.
+
+use std::borrow::Cow;
+
+use super::alternatives::{UNSURE, add_rivals, alternatives};
+use super::color::Judgment;
+use super::confidence::confidence;
+use crate::error::Result;
+use crate::precise::no_candidate;
+use crate::precise::scoring::conditioning::Conditioning;
+use crate::precise::scoring::score::NOISE;
+use crate::precise::search::problem::Search;
+use crate::precise::search::ranking::Found;
+use crate::precise::search::recipe::SURE;
+use crate::precise::search::rounds::Rounds;
+use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Solution, Uncertainty};
+
+/// The reliability of the pose.
+pub struct Certainty {
+    /// See [`Alignment::confidence`](crate::report::Alignment::confidence).
+    pub confidence: f64,
+    /// See [`Alignment::turn_confidence`](crate::report::Alignment::turn_confidence).
+    pub turn_confidence: Option<f64>,
+    /// Alternative poses.
+    pub alternatives: Vec<Alternative>,
+    /// How well each part of the pose is determined.
+    pub uncertainty: Option<Uncertainty>,
+    /// The score of the pose.
+    pub score: f64,
+    /// The terms of the score.
+    pub terms: ScoreTerms,
+    /// The effort of the search that found the pose.
+    pub effort: Effort,
+    /// What colour contributed, if it was known.
+    pub color: Option<ColorReport>,
+}
+
+/// How likely the best of several poses is right, and the others that may be.
+pub struct Reliability {
+    /// Probability that the pose is right, by shape alone.
+    pub by_shape: f64,
+    /// The same, by shape and colour.
+    pub confidence: f64,
+    /// Other poses that explain the evidence nearly as well.
+    pub alternatives: Vec<Alternative>,
+}
+
+/// The reliability of the first of these poses. `conditioning` is how sharply the images determine it.
+///
+/// # Errors
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) without a pose.
+pub fn reliability(
+    found: &[Found],
+    color: Option<&Judgment>,
+    conditioning: Option<&Conditioning>,
+    search: &Search,
+) -> Result<Reliability> {
+    let best = found.first().ok_or_else(no_candidate)?;
+    let listed = |margin: f32, with_turns: bool| {
+        let mut list = alternatives(found, search, margin);
+        let rivals = color.iter().flat_map(|color| &color.rivals).filter(|rival| with_turns || !rival.is_turn);
+        add_rivals(&mut list, best, rivals, search);
+        list
+    };
+    let by_shape = confidence(best, &listed(NOISE, false), conditioning);
+    let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
+    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour tells them apart.
+    let shows_turns = color.is_some_and(|color| color.is_used);
+    let alternatives = listed(if confidence < SURE { UNSURE } else { NOISE }, shows_turns);
+    Ok(Reliability { by_shape, confidence, alternatives })
+}
+
+/// The best pose of the search, or the one that colour chose, and its reliability.
+///
+/// # Errors
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose overlaps the mask.
+pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, Certainty)> {
+    let search = &rounds.search;
+    let mut found = Cow::Borrowed(&rounds.found);
+    if let Some(chosen) = color.and_then(|color| color.chosen) {
+        found.to_mut().insert(0, chosen);
+    }
+    let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+    let (conditioning, residual_m) = search.conditioning(&best.pose);
+    let solution = Solution {
+        camera_from_mesh: best.pose.similarity(&search.mesh.frame),
+        clamped: search.is_at_bound(&best.pose),
+        converged: best.converged,
+        residual_m,
+    };
+    // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
+    // wrong; what it tells is which of several poses is the better one.
+    let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
+    let Reliability { confidence, alternatives, .. } = reliability(&found, color, by_image.as_ref(), search)?;
+    let certainty = Certainty {
+        confidence,
+        turn_confidence: color.and_then(|color| color.turn),
+        alternatives,
+        uncertainty: conditioning.map(|c| Uncertainty {
+            scale: c.scale,
+            rotation_deg: c.rotation.0.to_degrees(),
+            rotation_axis: c.rotation.1.to_array(),
+            free_axis: search.equivalence.free_axis(best.pose.rotation).map(|axis| axis.to_array()),
+            lateral_m: c.lateral_m,
+            distance_m: c.distance_m,
+        }),
+        score: f64::from(best.score.total),
+        terms: (&best.score).into(),
+        effort: search.settings.effort,
+        color: color.map(|color| color.report),
+    };
+    Ok((solution, certainty))
+}

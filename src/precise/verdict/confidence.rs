@@ -1,0 +1,57 @@
+//! Confidence: the probability that a pose is correct, from its fit, its conditioning and its alternatives.
+//!
+//! A logistic regression on generated cases, some of them with the mesh of another object (`npm run fit`, which
+//! prints its calibration on others). The score alone is not informative: correct poses of
+//! half-hidden objects have low scores. Informative are the margin to the next best placement, the agreement of
+//! independent terms, and how sharply the score falls around the pose.
+
+use super::choice::SHAPE;
+use crate::precise::scoring::conditioning::Conditioning;
+use crate::precise::scoring::score::NOISE;
+use crate::precise::search::ranking::Found;
+use crate::report::Alternative;
+
+/// Intercept and coefficients of the regression: overlap, depth, outline, the margin relative to [`NOISE`], and the
+/// logarithms of the standard deviations of scale (relative) and rotation (degrees).
+const INTERCEPT: f64 = -24.033;
+const SLOPES: [f64; 6] = [4.971, 5.276, 3.319, 2.546, -3.013, -1.763];
+
+/// The range of standard deviations in these cases. Values outside are clamped, because the fit has no data there.
+const SCALE: [f64; 2] = [1e-3, 1.0];
+const ROTATION_DEG: [f64; 2] = [0.03, 90.0];
+
+/// Relative error of the relief that turns a pose by about 10°: as much as it turns a surface that is slanted by 45°.
+const WRONG_RELIEF: f64 = 0.43;
+
+/// The probability that the relief of an observation is not so wrong that the pose is, given the standard deviation of its
+/// estimate: at least this, by Chebyshev's inequality. The errors of such estimates have long tails.
+pub(crate) fn certainty_of_relief(deviation: f64) -> f64 {
+    let share = deviation / WRONG_RELIEF;
+    (1.0 - share * share).max(0.0)
+}
+
+/// The probability that a pose is correct, 0 to 1.
+pub(crate) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
+    let score = f64::from(best.score.total);
+    // Colour has lowered the odds of poses that shape alone cannot exclude.
+    let lead = |other: &Alternative| score - other.score + other.color_margin.unwrap_or(0.0).max(0.0) / SHAPE;
+    let margin = alternatives.iter().fold(f64::from(NOISE), |margin, other| margin.min(lead(other)));
+    sureness(best, margin, conditioning)
+}
+
+/// The same, given the lead over the next best placement, of which no more than [`NOISE`] counts.
+pub(crate) fn sureness(best: &Found, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
+    let Some(conditioning) = conditioning else { return 0.0 };
+    let margin = lead.min(f64::from(NOISE));
+    let log = |x: f64, [low, high]: [f64; 2]| libm::log(x.max(low).min(high));
+    let features = [
+        f64::from(best.score.overlap),
+        f64::from(best.score.depth),
+        f64::from(best.score.outline),
+        margin.max(0.0) / f64::from(NOISE),
+        log(conditioning.scale, SCALE),
+        log(conditioning.rotation.0.to_degrees(), ROTATION_DEG),
+    ];
+    let logit = features.iter().zip(SLOPES).map(|(x, slope)| x * slope).sum::<f64>() + INTERCEPT;
+    1.0 / (1.0 + libm::exp(-logit))
+}
