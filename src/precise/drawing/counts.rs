@@ -57,7 +57,7 @@ mod counted {
         ALL.get()
     }
 
-    pub(in crate::precise::drawn) fn add(of: impl FnOnce() -> Counts) {
+    pub(in crate::precise::drawing) fn add(of: impl FnOnce() -> Counts) {
         ALL.set(ALL.get().and(&of()));
     }
 }
