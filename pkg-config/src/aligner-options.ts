@@ -1,10 +1,10 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
 import { failure, invalidArgument } from "./error.js";
+import { ownArgument, ownOptions } from "./input/own.js";
+import type { LazyModules, WasmModules } from "./modules/modules.js";
 import { onAbort } from "./on-abort.js";
 import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "./platform.js";
-import { ownOptions, snapshot } from "./snapshot.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
-import type { LazyModules, WasmModules } from "./wasm-modules.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {
@@ -59,7 +59,7 @@ export function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
   if (!isRecord(options)) {
     throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
   }
-  const own = snapshot("options", options);
+  const own = ownArgument("options", options);
   const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
   if (unknown === undefined) return own;
   const remedy = "Check the spelling. Options of a call, such as `quality`, belong to the call.";

@@ -13,18 +13,17 @@ import {
   checkedWorkers,
 } from "./aligner-options.js";
 import { checkAttached } from "./attached.js";
-import { mayBeRaw } from "./calibrate.js";
-import { coreModule } from "./core.js";
-import { depthFilesModule } from "./depth-files-module.js";
-import { type Call, type Engine, MainThreadEngine, signalsOf } from "./engine.js";
+import { cachesMesh, type DataOf, type Method, type ResultOf, type SettingsOf } from "./calls/calls.js";
+import { type Call, type Engine, MainThreadEngine, signalsOf } from "./calls/engine.js";
 import { disposed, failure, internalError, Sim3AlignError } from "./error.js";
-import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
 import type { ViewsInput } from "./input/frame-types.js";
+import { ownArgument } from "./input/own.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
-import { isOfPaper, type Job, type Modules, type Results } from "./jobs.js";
-import { jointModule } from "./joint-module.js";
+import type { Core, ModuleName } from "./modules/exports.js";
+import { type LoadedModule, type Modules, modulesBy } from "./modules/module.js";
+import { checkedModules, wasmModules } from "./modules/modules.js";
 import { checkSignals, reasonOf } from "./on-abort.js";
 import type {
   AlignAllOptions,
@@ -43,17 +42,13 @@ import { copied } from "./pool/transfer.js";
 import { nextMeshId, PreparedMesh, withArrays } from "./prepared-mesh.js";
 import { checkedListener, ProgressListener } from "./progress.js";
 import { Queue } from "./queue.js";
-import { registrationModule } from "./registration-module.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "./results.js";
 import { alignScene } from "./scene/align-scene.js";
 import { classNames as sceneClassNames } from "./scene/read-scene.js";
 import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
-import { ownArgument, snapshot } from "./snapshot.js";
-import { splatsModule } from "./splats-module.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
 import { isRecord, withoutUndefined } from "./values.js";
-import { checkedModules } from "./wasm-modules.js";
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;
@@ -73,6 +68,7 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
  * before the call settles.
  */
 export class Aligner {
+  readonly #core: LoadedModule<Core>;
   readonly #modules: Modules;
   readonly #engine: Engine;
   /** As many scenes at a time as the engine has jobs. */
@@ -83,7 +79,8 @@ export class Aligner {
   readonly #dedicated: () => OwnEngine;
   readonly #trackers = new Set<Tracker>();
 
-  private constructor(modules: Modules, engine: Engine, dedicated: () => OwnEngine) {
+  private constructor(core: LoadedModule<Core>, modules: Modules, engine: Engine, dedicated: () => OwnEngine) {
+    this.#core = core;
     this.#modules = modules;
     this.#engine = engine;
     this.#scenes = new Queue(Array.from({ length: engine.capacity }, (_, i) => i));
@@ -96,34 +93,20 @@ export class Aligner {
     const wasm = { ...assets.wasm, ...withoutUndefined(checkedModules(given.wasm)) };
     const workers = checkedWorkers(given.workers);
     const startMs = checkedStartMs(given.workerStartMs);
-    const modules: Modules = {
-      core: await coreModule.load(wasm.core),
-      formats: () => formatsModule.load(wasm.formats),
-      depthFiles: () => depthFilesModule.load(wasm.depthFiles),
-      splats: () => splatsModule.load(wasm.splats),
-      registrar: () => registrationModule.load(wasm.registration),
-      joint: () => jointModule.load(wasm.joint),
-    };
+    const modules = modulesBy((name) => wasmModules[name].load(wasm[name]));
+    const core = await modules.core();
     if (workers === 0) {
-      const engine = new MainThreadEngine(modules);
+      const engine = new MainThreadEngine(wasmModules, modules);
       // Shared with all other calls on this thread, which the end of a tracker must not end.
-      return new Aligner(modules, engine, () => ({ engine, isShared: true }));
+      return new Aligner(core, modules, engine, () => ({ engine, isShared: true }));
     }
     const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
-    const setup = {
-      create: factory.create,
-      startMs,
-      core: await coreModule.compile(),
-      formats: () => formatsModule.compile(wasm.formats),
-      depthFiles: () => depthFilesModule.compile(wasm.depthFiles),
-      splats: () => splatsModule.compile(wasm.splats),
-      registration: () => registrationModule.compile(wasm.registration),
-      joint: () => jointModule.compile(wasm.joint),
-    };
+    const compiled = (name: ModuleName) => wasmModules[name].compile(wasm[name]);
+    const setup = { create: factory.create, startMs, compiled };
     // A pool disposes its engine of the main thread: each has one of its own.
-    const pool = (size: number) => new WorkerPool(size, setup, new MainThreadEngine(modules));
-    return new Aligner(modules, pool(size), () => ({ engine: pool(1), isShared: false }));
+    const pool = (size: number) => new WorkerPool(size, setup, new MainThreadEngine(wasmModules, modules));
+    return new Aligner(core, modules, pool(size), () => ({ engine: pool(1), isShared: false }));
   }
 
   /**
@@ -140,10 +123,11 @@ export class Aligner {
     input: AlignInput,
     options?: OptionsOf<P, M>,
   ): Promise<AlignResult<P, M>> {
-    const given: { initial?: unknown; onProgress?: unknown } = checkedOptions(options);
+    const given: CallOptions & { initial?: unknown; onProgress?: unknown; preset?: unknown } = checkedOptions(options);
     const { initial, onProgress, ...rest } = given;
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
-    const result: AlignResult = await this.#run("align", input, coreOptions, { onProgress });
+    const method = rest.preset === "paper" ? "alignPaper" : "align";
+    const result = await this.#run(method, input, coreOptions, (core) => core, { onProgress });
     return result as AlignResult<P, M>;
   }
 
@@ -201,12 +185,11 @@ export class Aligner {
       throw failure("UNKNOWN_OPTION", "options.initial", "a pose for all objects", "options of alignScene", remedy);
     }
     const isReturned = checkedFlag("transfer", transfer);
-    const own = snapshot("input", scene, sceneClassNames);
+    const own = ownArgument("input", scene, sceneClassNames);
     const call = { signal: checkedSignal(signal), progress: new ProgressListener(onProgress), transfer: false };
     const settings = { options: rest, snap: checkedFlag("snap", snap) };
     const result = await guarded(call, () => {
       checkSignals(signalsOf(call));
-      checkAttached("input", own);
       return this.#inTurn(call, () => alignScene(own, this.#modules, this.#engine, settings, call));
     });
     return isReturned ? { ...result, input: scene } : result;
@@ -224,7 +207,7 @@ export class Aligner {
    */
   async alignViews(input: ViewsInput, options?: ViewsOptions): Promise<ViewsAlignment> {
     const { onProgress, ...rest }: { onProgress?: unknown } = checkedOptions(options);
-    return this.#run("alignViews", input, rest, { onProgress });
+    return this.#run("alignViews", input, rest, (core) => core, { onProgress });
   }
 
   /**
@@ -237,7 +220,7 @@ export class Aligner {
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial as Sim3Like) };
     const listened = checkedSignal(signal);
     this.#checkUsable();
-    const { release, ...own } = withArrays(snapshot("input", { mesh }, classNames), this.#engine);
+    const { release, ...own } = withArrays(ownArgument("input", { mesh }, classNames), this.#engine);
     const closed = (tracker: Tracker) => this.#trackers.delete(tracker);
     const opening = Tracker.open(this.#dedicated(), own as TrackerMesh, coreOptions, listened, closed);
     const tracker = await opening.finally(release);
@@ -255,7 +238,8 @@ export class Aligner {
   async evaluate(input: AlignInput, transform: Sim3Like, options: EvaluateOptions = {}): Promise<Evaluation> {
     const { truth, ...rest } = checkedOptions(options);
     const coreOptions = truth === undefined ? rest : { ...rest, truth: coreSim3(truth) };
-    return this.#run("evaluate", input, coreOptions, { transform: coreSim3(ownArgument("transform", transform)) });
+    const pose = coreSim3(ownArgument("transform", transform));
+    return this.#run("evaluate", input, coreOptions, (settings) => ({ transform: pose, settings }));
   }
 
   /**
@@ -272,7 +256,7 @@ export class Aligner {
     target: Float32Array | Float64Array,
     options: RegisterOptions = {},
   ): Promise<Registration> {
-    return this.#run("register", { source, target }, checkedOptions(options));
+    return this.#run("register", { source, target }, checkedOptions(options), (core) => core);
   }
 
   /**
@@ -288,7 +272,8 @@ export class Aligner {
     correspondences: Uint32Array,
     options: EstimateSim3Options = {},
   ): Promise<Registration> {
-    return this.#run("estimateSim3", { source, target, correspondences }, checkedOptions(options));
+    const data = { source, target, correspondences };
+    return this.#run("estimateSim3", data, checkedOptions(options), (core) => core);
   }
 
   /**
@@ -299,7 +284,7 @@ export class Aligner {
   async prepareMesh(mesh: MeshInput, options: Pick<CallOptions, "signal"> = {}): Promise<PreparedMesh> {
     const id = nextMeshId();
     try {
-      const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), { meshId: id });
+      const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), (core) => core, { meshId: id });
       // Without workers, these are the caller's arrays.
       checkAttached("mesh", given.mesh);
       return new PreparedMesh({ id, mesh: { ...copied(given.mesh), warnings: given.warnings } }, this.#engine);
@@ -312,7 +297,7 @@ export class Aligner {
 
   /** The version of the core module. */
   get version(): string {
-    return this.#modules.core.call((core) => core.version());
+    return this.#core.call((core) => core.version());
   }
 
   /**
@@ -331,34 +316,28 @@ export class Aligner {
     this.dispose();
   }
 
-  async #run<M extends Job["method"]>(
+  /** @param settings the options of the core in the form of the job */
+  async #run<M extends Method>(
     method: M,
-    data: (Job & { method: M })["data"],
+    data: DataOf<M>,
     { signal, transfer = false, ...options }: CallOptions,
-    { onProgress, ...more }: { onProgress?: unknown; transform?: unknown; meshId?: number } = {},
-  ): Promise<Results[M]> {
+    settings: (options: object) => SettingsOf<M>,
+    { onProgress, meshId }: { onProgress?: unknown; meshId?: number } = {},
+  ): Promise<ResultOf<M>> {
     this.#checkUsable();
-    const own = snapshot("input", data, classNames);
-    const prepared: unknown = isRecord(own) ? (own as Record<string, unknown>).mesh : undefined;
-    const { release, ...arrays } = withArrays(own, this.#engine);
-    // The registration module caches no meshes, and the core's cache is not that of calibration.
-    const isCached = method !== "align" || !(isOfPaper(options) || mayBeRaw(own));
-    const sent = !isCached && "meshId" in arrays ? { data: withCopiedMesh(arrays.data) } : arrays;
-    const job = { method, ...sent, options, ...more } as unknown as Job & { method: M };
+    const own = ownArgument("input", data, classNames);
+    const { release, restored, ...sent } = withArrays(own, this.#engine, cachesMesh(method, own));
+    const job = { method, options: settings(options), ...(meshId === undefined ? sent : { ...sent, meshId }) };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
     // Arrays that were not moved are returned in the object that the caller passed; a prepared mesh replaces its arrays.
-    const returned = (arrays: unknown) => {
-      if (arrays === job.data) return data;
-      return prepared instanceof PreparedMesh ? { ...(arrays as object), mesh: prepared } : arrays;
-    };
+    const returned = (arrays: DataOf<M>) => (arrays === job.data ? data : restored(arrays));
     try {
       const outcome = await guarded(call, () => this.#engine.run(job, call));
-      const result = outcome.result as Results[M];
-      return transfer ? { ...result, input: returned(outcome.data) } : result;
+      return transfer ? { ...outcome.result, input: returned(outcome.data) } : outcome.result;
     } catch (error) {
       if (call.transfer && error instanceof Sim3AlignError && isRecord(error.input))
-        error.input = returned(error.input);
+        error.input = returned(error.input as DataOf<M>);
       throw error;
     } finally {
       release();
@@ -394,6 +373,3 @@ async function guarded<T>({ signal, progress }: Call, run: () => Promise<T>): Pr
     throw error instanceof Sim3AlignError ? error : internalError(error);
   }
 }
-
-/** Copies the arrays of a prepared mesh: a job without its id would move them to the worker. */
-const withCopiedMesh = (data: unknown) => ({ ...(data as object), mesh: copied((data as { mesh: unknown }).mesh) });

@@ -2,12 +2,12 @@
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { failure, invalidArgument, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
-import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { DepthKind } from "./input/depth-kind.js";
 import type { ViewInput } from "./input/frame-types.js";
+import { ownArgument } from "./input/own.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
-import { ownArgument } from "./snapshot.js";
+import type { LoadFormats } from "./modules/readers.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */

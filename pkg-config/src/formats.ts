@@ -5,22 +5,22 @@
  */
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { fileReaders } from "./file-readers.js";
 import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./formats/camera-file.js";
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
-import { type Formats, formatsModule } from "./formats-module.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import type { DepthImage, ReadDepthOptions } from "./input/depth-reading.js";
 import { decodeMesh } from "./input/mesh-file.js";
+import { ownArgument, ownOptions } from "./input/own.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
+import type { Formats } from "./modules/exports.js";
+import { fileReaders, formatsModule } from "./modules/readers.js";
 import type { WasmSource } from "./platform.js";
 import type { ColorSamples } from "./prepared-mesh.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
-import { ownArgument, ownOptions } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";

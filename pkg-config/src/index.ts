@@ -80,6 +80,7 @@ export type {
   PixelArray,
   UnknownCamera,
 } from "./input/types.js";
+export type { WasmModules } from "./modules/modules.js";
 export type {
   AlignAllOptions,
   AlignOptions,
@@ -126,4 +127,3 @@ export type {
 } from "./scene/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
 export { Tracker } from "./tracker.js";
-export type { WasmModules } from "./wasm-modules.js";

@@ -1,6 +1,7 @@
 /** Meshes that are read, validated and decimated once for many calls. */
 import { failure, invalidArgument } from "./error.js";
 import { isRecord } from "./kinds.js";
+import { copied } from "./pool/transfer.js";
 
 /** Colours of a surface, at points spread evenly over it. */
 export interface ColorSamples {
@@ -94,11 +95,13 @@ function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   return state;
 }
 
-/** The data of a job. */
-export interface JobData {
-  data: unknown;
+/** The data of a job, in which arrays have replaced a prepared mesh. */
+export interface JobData<T> {
+  data: T;
   /** The id of its prepared mesh. */
-  meshId?: number;
+  meshId?: number | undefined;
+  /** The data with the prepared mesh. */
+  restored(data: T): T;
   /** To be called when the job has ended. */
   release(): void;
 }
@@ -106,15 +109,20 @@ export interface JobData {
 /**
  * The input of a call as the data of a job: a prepared mesh is replaced by its arrays.
  * @param holder drops its data when the mesh is disposed
+ * @param isCached whether the call takes it from a cache, by its id; otherwise, the arrays are copies, which may be moved
  * @throws {@link Sim3AlignError} `DISPOSED`
  */
-export function withArrays(input: unknown, holder: MeshHolder): JobData {
+export function withArrays<T>(input: T, holder: MeshHolder, isCached = true): JobData<T> {
   const prepared = isRecord(input) ? input.mesh : undefined;
-  if (!(prepared instanceof PreparedMesh)) return { data: input, release() {} };
+  if (!(prepared instanceof PreparedMesh)) return { data: input, restored: (data) => data, release() {} };
   const { id, mesh } = keptMesh(prepared, holder);
-  const release = () => {
-    // A call that began before the mesh was disposed may have left data of it behind.
-    if (states.get(prepared) === "disposed") holder.dropMesh(id);
+  return {
+    data: { ...input, mesh: isCached ? mesh : copied(mesh) },
+    meshId: isCached ? id : undefined,
+    restored: (data) => ({ ...data, mesh: prepared }),
+    release() {
+      // A call that began before the mesh was disposed may have left data of it behind.
+      if (states.get(prepared) === "disposed") holder.dropMesh(id);
+    },
   };
-  return { data: { ...(input as object), mesh }, meshId: id, release };
 }

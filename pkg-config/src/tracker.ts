@@ -2,13 +2,14 @@
 /** Trackers: one object through a video. */
 
 import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";
-import type { Engine, MainThreadEngine } from "./engine.js";
+import type { Job, Method } from "./calls/calls.js";
+import type { Engine, MainThreadEngine } from "./calls/engine.js";
 import { disposed, internalError, invalidArgument, Sim3AlignError } from "./error.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput } from "./input/frame-types.js";
+import { ownArgument } from "./input/own.js";
 import { classNames } from "./input/resolve.js";
 import type { MeshInput } from "./input/types.js";
-import type { Job } from "./jobs.js";
 import { checkSignals, onAbort } from "./on-abort.js";
 import type { CallOptions } from "./options.js";
 import type { SignalLike } from "./platform.js";
@@ -16,7 +17,6 @@ import { sendableParts } from "./pool/transfer.js";
 import { ProgressListener } from "./progress.js";
 import type { TrackedFrame } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
-import { ownArgument, snapshot } from "./snapshot.js";
 
 /**
  * The engine of a tracker. One that other calls share outlives the tracker.
@@ -77,7 +77,11 @@ export class Tracker {
         checkSignals([signal]);
         tracker.#unfollow = onAbort(signal, () => tracker.close());
       }
-      await tracker.#inOrder({ method: "openTracker", ...mesh, options, tracker: tracker.#id });
+      await tracker.#inOrder({
+        method: "openTracker",
+        ...mesh,
+        options: { tracker: tracker.#id, settings: options },
+      });
       if (signal !== undefined) checkSignals([signal]);
       return tracker;
     } catch (error) {
@@ -102,8 +106,8 @@ export class Tracker {
     const { signal, transfer = false } = checkedOptions(options);
     const listened = checkedSignal(signal);
     const isMoved = checkedFlag("transfer", transfer);
-    const data = snapshot("input", frame, classNames);
-    const job = { method: "trackFrame", data, options: {}, tracker: this.#id } as const;
+    const data = ownArgument("input", frame, classNames);
+    const job = { method: "trackFrame", data, options: { tracker: this.#id } } as const;
     const { result, data: moved } = await this.#inOrder(job, isMoved, listened);
     return isMoved ? { ...result, input: moved } : result;
   }
@@ -123,7 +127,7 @@ export class Tracker {
       throw invalidArgument("frame", frame, "the number of a frame", "Pass `frame` of its result.");
     }
     const data = { pose: sendableParts(coreSim3(ownArgument("pose", pose))), frame };
-    return (await this.#inOrder({ method: "correctTrack", data, options: {}, tracker: this.#id })).result;
+    return (await this.#inOrder({ method: "correctTrack", data, options: { tracker: this.#id } })).result;
   }
 
   /** Ends the tracker, and frees its worker. Running and later calls reject with `DISPOSED`. */
@@ -144,13 +148,13 @@ export class Tracker {
   }
 
   /** Runs a job after those before. One that has not begun when the signal aborts is left out. */
-  #inOrder<J extends Job>(job: J, transfer = false, signal?: SignalLike) {
+  #inOrder<M extends Method>(job: Job<M>, transfer = false, signal?: SignalLike) {
     const own = this.#last.then(() => this.#run(job, transfer, signal));
     this.#last = own.catch(() => {});
     return own;
   }
 
-  async #run<J extends Job>(job: J, transfer: boolean, signal: SignalLike | undefined) {
+  async #run<M extends Method>(job: Job<M>, transfer: boolean, signal: SignalLike | undefined) {
     if (signal !== undefined) checkSignals([signal]);
     if (this.#isClosed) throw disposed();
     try {

@@ -3,11 +3,11 @@ import { type BopDataset, type BopTarget, imageKey, mostVisible, targetKey } fro
 import { bopId, readBopImage } from "../bop-folder.js";
 import { fileNotFound } from "../case-files.js";
 import { fromBop } from "../conventions/bop.js";
-import { fileReaders } from "../file-readers.js";
 import type { BopErrors } from "../generated/types.js";
 import type { CoreFrame } from "../input/core-input.js";
 import { resolveFrame } from "../input/frames.js";
-import { registrationModule } from "../registration-module.js";
+import { registrationModule } from "../modules/modules.js";
+import { fileReaders } from "../modules/readers.js";
 import { bopModelsIn } from "./bop-models.js";
 import { type BopResult, METRES_PER_UNIT } from "./bop-results.js";
 import { type BopScores, best, grouped, type ObjectErrors, scoresOf } from "./bop-scores.js";

@@ -1,7 +1,7 @@
 /** The models of a BOP dataset. */
 import { readBopModel } from "../bop-folder.js";
-import { fileReaders } from "../file-readers.js";
 import { readMesh } from "../input/mesh.js";
+import { fileReaders } from "../modules/readers.js";
 import { oncePerKey } from "../values.js";
 
 /** The models in a folder by their ids, each read once: arrays in millimetres, and the warnings of the reader. */

@@ -1,8 +1,8 @@
 /** Inputs in the depth and with the camera that their results found. */
 import { correctDepth } from "../conventions/corrected-depth.js";
-import { fileReaders } from "../file-readers.js";
 import type { AlignInput, DepthCalibration } from "../index.js";
 import { readView } from "../input/resolve.js";
+import { fileReaders } from "../modules/readers.js";
 
 /** An input whose lengths are those of a result. Without a calibration, the depth was known. */
 export async function correctedInput(

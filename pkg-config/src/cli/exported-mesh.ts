@@ -1,10 +1,10 @@
 /** Objects as the files of a result hold them: in the proportions that were found, and upright if that is asked for. */
 import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
 import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
-import { fileReaders } from "../file-readers.js";
 import type { Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import type { MeshArrays, MeshInput } from "../input/types.js";
+import { fileReaders } from "../modules/readers.js";
 import type { Sim3Like } from "../sim3.js";
 import { isRecord, withoutUndefined } from "../values.js";
 

@@ -1,7 +1,7 @@
 /** Converts depth maps and point maps to arrays with their size. */
 import { failure, invalidArgument } from "../error.js";
-import type { FileReaders } from "../file-readers.js";
 import type { Pinhole } from "../formats/pinhole.js";
+import type { FileReaders } from "../modules/readers.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
 import { isAffineInvariant } from "./depth-kind.js";

@@ -1,6 +1,6 @@
 /** Converts views and frames to the typed arrays and numbers of the core. */
 import { invalidArgument, renamed, Sim3AlignError } from "../error.js";
-import type { FileReaders } from "../file-readers.js";
+import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../results.js";
 import { coreSim3, type Sim3Like } from "../sim3.js";
 import { checkNames, isRecord, withoutUndefined } from "../values.js";

@@ -1,6 +1,7 @@
 /** Reads mesh files by the module that knows their format. */
-import type { FileReaders } from "../file-readers.js";
+
 import { holdsGaussians } from "../formats/splat-files.js";
+import type { FileReaders } from "../modules/readers.js";
 import type { MeshArrays, ReadMeshOptions } from "../wasm/formats.js";
 import { callReader } from "./bytes.js";
 

@@ -1,7 +1,7 @@
 /** The photo of an input. */
 import { failure, invalidArgument } from "../error.js";
 import type { Exif } from "../formats/exif-focal.js";
-import type { LoadFormats } from "../formats-module.js";
+import type { LoadFormats } from "../modules/readers.js";
 import { isRecord, isTypedArray, wrongKind } from "../values.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { type Photo, photoOf } from "./colors.js";

@@ -1,9 +1,8 @@
 /** Converts inputs to the typed arrays and numbers of the core. */
 
 import { invalidArgument } from "../error.js";
-import type { FileReaders } from "../file-readers.js";
+import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../results.js";
-import type { ClassNames } from "../snapshot.js";
 import { checkNames, isRecord, isTypedArray, oneOf, withoutUndefined } from "../values.js";
 import { cameraOf, cameraProperties, type ResolvedCamera } from "./camera.js";
 import type { Photo } from "./colors.js";
@@ -12,6 +11,7 @@ import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js
 import { depthKinds, isAffineInvariant } from "./depth-kind.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
+import type { ClassNames } from "./own.js";
 import { readPhoto, readPhotoExif } from "./photo.js";
 
 /** A resolved input, and what its files say. */

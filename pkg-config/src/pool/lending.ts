@@ -1,9 +1,8 @@
 /** Lends idle workers of a pool to long jobs of others. */
-import { type Job, meshCacheOf } from "../jobs.js";
+import { type Job, moduleOf } from "../calls/calls.js";
 import type { CoreMesh } from "../prepared-mesh.js";
-import { ProgressListener } from "../progress.js";
 import type { Queue } from "../queue.js";
-import type { WorkerSlot } from "./slot.js";
+import type { WorkerSetup, WorkerSlot } from "./slot.js";
 import { copied } from "./transfer.js";
 
 /** A running job that has asked for help. */
@@ -20,11 +19,13 @@ interface Borrower {
 /** Lends workers that have nothing to do, until a job waits for them. What they do changes no result. */
 export class Lending {
   readonly #queue: Queue<WorkerSlot>;
+  readonly #compiled: WorkerSetup["compiled"];
   /** By the worker that runs the job. */
   readonly #borrowers = new Map<WorkerSlot, Borrower>();
 
-  constructor(queue: Queue<WorkerSlot>) {
+  constructor(queue: Queue<WorkerSlot>, compiled: WorkerSetup["compiled"]) {
     this.#queue = queue;
+    this.#compiled = compiled;
   }
 
   /** The job that this worker runs is long. */
@@ -37,7 +38,7 @@ export class Lending {
   end(slot: WorkerSlot): void {
     const borrower = this.#borrowers.get(slot);
     this.#borrowers.delete(slot);
-    for (const helper of borrower?.helpers ?? []) helper.tell({ type: "stop-helping" });
+    for (const helper of borrower?.helpers ?? []) helper.tell({ type: "stop" });
   }
 
   /** Lends the workers that are idle, each to the job with the fewest helpers. */
@@ -57,7 +58,7 @@ export class Lending {
     const helpers = this.#inOrder().at(-1)?.[1].helpers;
     for (const helper of helpers ?? []) {
       helpers?.delete(helper);
-      helper.tell({ type: "stop-helping" });
+      helper.tell({ type: "stop" });
       return;
     }
   }
@@ -65,23 +66,26 @@ export class Lending {
   async #help(slot: WorkerSlot, borrower: Borrower, helper: WorkerSlot): Promise<void> {
     const isRunning = () => this.#borrowers.get(slot) === borrower;
     let place: number | undefined;
+    const { job } = borrower;
+    const module = moduleOf(job.method);
     try {
+      const modules = new Map([[module, await this.#compiled(module)]]);
       await helper.ready();
       // While it started, it may have been called back.
       if (!borrower.helpers.has(helper)) return;
       const { port1, port2 } = new MessageChannel();
-      const mesh = preparedMesh(borrower.job);
-      const isKnown = mesh === undefined || helper.hasMesh(mesh.id, mesh.cache);
-      slot.tell({ type: "helper", port: port1 }, [port1]);
       place = borrower.count++;
-      const request = { type: "help", port: port2, mesh: isKnown ? undefined : copied(mesh.arrays) } as const;
-      await helper.request(request, [port2], { progress: new ProgressListener(undefined) }, mesh);
+      slot.tell({ type: "helper", helper: place, port: port1 }, [port1]);
+      const cached = job.meshId === undefined ? undefined : { id: job.meshId, module };
+      const mesh = cached === undefined || helper.hasMesh(cached) ? undefined : copied(preparedMesh(job));
+      const help = { method: "help", data: { port: port2, mesh } } as const;
+      await helper.request({ job: help, wantsProgress: false, returnsData: false }, modules, [port2], () => {}, cached);
     } catch {
       // The job does without helpers: what is wrong, if anything, it will find itself.
       borrower.mayBorrow = false;
     } finally {
       borrower.helpers.delete(helper);
-      if (isRunning() && place !== undefined) slot.tell({ type: "helper-left", helper: place });
+      if (isRunning() && place !== undefined) slot.tell({ type: "helper", helper: place });
       this.#queue.release(helper);
       this.lend();
     }
@@ -93,9 +97,8 @@ export class Lending {
   }
 }
 
-/** The prepared mesh of a job. */
-function preparedMesh(job: Job) {
-  if (!("meshId" in job) || job.meshId === undefined) return undefined;
-  const { warnings: _, ...arrays } = (job.data as { mesh: CoreMesh & { warnings?: unknown } }).mesh;
-  return { id: job.meshId, cache: meshCacheOf(job), arrays };
+/** The arrays of the prepared mesh of a job. */
+function preparedMesh({ data }: Job): CoreMesh {
+  const { warnings: _, ...arrays } = (data as { mesh: CoreMesh & { warnings?: unknown } }).mesh;
+  return arrays;
 }

@@ -1,19 +1,17 @@
 /** A pool of workers that run jobs in parallel. */
-
-import { checkAttached } from "../attached.js";
-import { type Call, type Engine, type MainThreadEngine, type Outcome, signalsOf } from "../engine.js";
-import { disposed, Sim3AlignError } from "../error.js";
-import { type Job, type MeshCache, meshCacheOf } from "../jobs.js";
+import { type DataOf, type Job, type Method, moduleOf, type ResultOf } from "../calls/calls.js";
+import { type Call, checkReady, type Engine, type MainThreadEngine, type Outcome, signalsOf } from "../calls/engine.js";
+import { disposed, failure, partsOf, Sim3AlignError } from "../error.js";
 import { isAttached } from "../kinds.js";
-import { checkSignals, onAbort } from "../on-abort.js";
+import type { ModuleName } from "../modules/exports.js";
+import type { CompiledModule } from "../modules/module.js";
+import { beforeAbort, checkSignals, onAbort } from "../on-abort.js";
 import type { SignalLike } from "../platform.js";
 import { Queue } from "../queue.js";
 import { Lending } from "./lending.js";
-import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
+import type { Answer, Report } from "./messages.js";
+import { JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
 import { buffersOf, copied, isSendable, sendableParts } from "./transfer.js";
-
-/** The id of a prepared mesh, and the module that caches it. */
-type CachedMesh = { id: number; cache: MeshCache };
 
 /** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;
@@ -21,6 +19,7 @@ const ATTEMPTS = 2;
 /** Workers, for which jobs wait in a queue. */
 export class WorkerPool implements Engine {
   readonly capacity: number;
+  readonly #setup: WorkerSetup;
   readonly #slots: readonly WorkerSlot[];
   readonly #fallback: MainThreadEngine;
   readonly #queue: Queue<WorkerSlot>;
@@ -31,20 +30,21 @@ export class WorkerPool implements Engine {
   constructor(size: number, setup: WorkerSetup, fallback: MainThreadEngine) {
     // Two per worker: the next job is prepared while one runs.
     this.capacity = 2 * size;
+    this.#setup = setup;
     this.#fallback = fallback;
     this.#slots = Array.from({ length: size }, () => new WorkerSlot(setup));
     this.#queue = new Queue(this.#slots);
-    this.#lending = new Lending(this.#queue);
-    for (const slot of this.#slots) startEarly(slot);
+    this.#lending = new Lending(this.#queue, setup.compiled);
+    for (const slot of this.#slots) slot.start();
   }
 
-  async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
+  async run<M extends Method>(job: Job<M>, call: Call): Promise<Outcome<M>> {
     const signals = [this.#ended.signal, ...signalsOf(call)];
     this.#lending.recall();
     const slot = await this.#queue.acquire(signals);
     const stop = (reason: unknown) => {
       slot.end(reason);
-      if (!this.#ended.signal.aborted) startEarly(slot);
+      if (!this.#ended.signal.aborted) slot.start();
     };
     const unfollow: (() => void)[] = [];
     try {
@@ -69,24 +69,33 @@ export class WorkerPool implements Engine {
     this.#fallback.dispose();
   }
 
-  async #runIn<J extends Job>(
+  async #runIn<M extends Method>(
     slot: WorkerSlot,
-    job: J,
+    given: Job<M>,
     call: Call,
     signals: readonly SignalLike[],
-  ): Promise<Outcome<J>> {
-    for (let attempt = 1; ; attempt++) {
+  ): Promise<Outcome<M>> {
+    let job = given;
+    let failures = 0;
+    const modules = new Map<ModuleName, CompiledModule>();
+    const needed = new Set<ModuleName>(["core", moduleOf(job.method)]);
+    for (;;) {
       try {
         // A call that has ended must not start a worker, which nothing would end.
         checkSignals(signals);
+        for (const name of needed) modules.set(name, await beforeAbort(this.#compiled(name), signals));
         await slot.ready();
-        const needsHelp = () => this.#lending.ask(slot, job);
-        const answer = await send(slot, job, call, signals, needsHelp);
-        if (answer === null) {
-          // The worker, in which trackers live, does not need the rest; what a pose then lacks is an error there.
-          return (await this.#runHere(job, call)) ?? (await this.#runIn(slot, sendableParts(job) as J, call, signals));
+        const answer = await this.#send(slot, job, modules, call, signals);
+        if (answer === undefined) {
+          // A tracker lives in its worker, which does not need the rest: what a pose then lacks is an error there.
+          const isTracked = "tracker" in job.options && !isSendable(job);
+          if (!isTracked) return await this.#fallback.run(job, call);
+          job = sendableParts(job);
+          continue;
         }
-        return { result: answer.result, data: answer.data ?? job.data } as Outcome<J>;
+        if (answer.data !== undefined) job = { ...job, data: answer.data as DataOf<M> };
+        if (answer.needs === undefined) return { result: answer.result as ResultOf<M>, data: job.data };
+        needed.add(answer.needs);
       } catch (error) {
         if (error instanceof JobFailed) {
           if (call.transfer) error.error.input = error.data ?? job.data;
@@ -94,83 +103,66 @@ export class WorkerPool implements Engine {
         }
         if (!(error instanceof WorkerLost)) throw error;
         this.#lending.end(slot);
-        if (attempt === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
+        failures += 1;
+        if (failures === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
       }
     }
   }
 
-  /** Runs a job that cannot be sent; `undefined` for one of a tracker in which nothing that matters is wrong. */
-  async #runHere<J extends Job>(job: J, call: Call): Promise<Outcome<J> | undefined> {
-    const isWhole = isSendable(job);
-    try {
-      const outcome = await this.#fallback.run(job, call);
-      if (isWhole || job.method !== "openTracker") return outcome;
-      this.#fallback.closeTracker(job.tracker);
-    } catch (error) {
-      if (isWhole || (error as Sim3AlignError | undefined)?.code !== "TRACKER_LOST") throw error;
+  #compiled(name: ModuleName): Promise<CompiledModule> {
+    return this.#setup.compiled(name).catch((error) => {
+      throw error instanceof Sim3AlignError ? new JobFailed(partsOf(error), undefined) : error;
+    });
+  }
+
+  /** Sends a job; `undefined` if it cannot be sent, so that the core can report what is wrong with it. */
+  async #send(
+    slot: WorkerSlot,
+    job: Job,
+    modules: ReadonlyMap<ModuleName, CompiledModule>,
+    { transfer, progress }: Call,
+    signals: readonly SignalLike[],
+  ): Promise<Answer | undefined> {
+    const { method, meshId } = job;
+    const mesh = meshId === undefined ? undefined : { id: meshId, module: moduleOf(method) };
+    const report = (message: Report) => {
+      if (message.stage === undefined) this.#lending.ask(slot, job);
+      else progress.report(message.stage, message.fraction, message.best);
+    };
+    // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.
+    for (const isMoved of transfer ? [true, false] : [false]) {
+      checkReady(job, signals);
+      if (!isSendable(job)) return undefined;
+      const data = sentData(job, isMoved, mesh && slot.hasMesh(mesh));
+      const sent = { job: { ...job, data }, wantsProgress: progress.isWanted, returnsData: isMoved };
+      try {
+        return await slot.request(sent, modules, buffersOf(data), report, mesh);
+      } catch (error) {
+        if (!(error instanceof Unsendable)) throw error;
+      }
     }
     return undefined;
   }
 }
 
-/** Starts a worker in advance. A failure surfaces at the first request. */
-function startEarly(slot: WorkerSlot): void {
-  try {
-    slot.start();
-  } catch {}
-}
-
-/** Sends a job; `null` if it cannot be sent, so that the core can report what is wrong with it. */
-async function send(
-  slot: WorkerSlot,
-  job: Job,
-  { transfer, progress }: Call,
-  signals: readonly SignalLike[],
-  onNeedsHelp: () => void,
-): Promise<Answer | null> {
-  const mesh = "meshId" in job && job.meshId !== undefined ? { id: job.meshId, cache: meshCacheOf(job) } : undefined;
-  // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.
-  for (const isMoved of transfer ? [true, false] : [false]) {
-    // While the job waited for the slot, for a new worker or for the first attempt, it may have been aborted, and its
-    // arrays may have been moved to another thread.
-    checkSignals(signals);
-    checkAttached("input", job.data);
-    if (!isSendable(job)) return null;
-    try {
-      const sent = { ...job, data: sentData(slot, job, isMoved, mesh) } as Job;
-      const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;
-      return await slot.request(request, buffersOf(sent.data), { progress, onNeedsHelp }, mesh);
-    } catch (error) {
-      if (!(error instanceof Unsendable)) throw error;
-    }
-  }
-  return null;
-}
-
-/** The data of a job for a worker. The arrays of a prepared mesh are copied, once to each cache of a worker. */
-function sentData(slot: WorkerSlot, job: Job, isMoved: boolean, prepared: CachedMesh | undefined): unknown {
-  if (prepared === undefined || job.method === "prepareMesh") return isMoved ? job.data : copied(job.data);
-  const { mesh, ...rest } = job.data as { mesh: { warnings?: unknown } };
-  const isKnown = slot.hasMesh(prepared.id, prepared.cache);
-  return {
-    ...(isMoved ? rest : copied(rest)),
-    mesh: isKnown ? { positions: new Float32Array(), warnings: mesh.warnings } : copied(mesh),
-  };
+/**
+ * The data of a job for a worker. The arrays of a prepared mesh are copied, once to each cache of a worker.
+ * @param isCached whether the worker has cached the prepared mesh; `undefined` if there is none
+ */
+function sentData({ method, data }: Job, isMoved: boolean, isCached: boolean | undefined): DataOf<Method> {
+  const own = <T>(value: T) => (isMoved ? value : copied(value));
+  if (isCached === undefined || method === "prepareMesh" || !("mesh" in data)) return own(data);
+  const { mesh, ...rest } = data;
+  const { warnings } = mesh as { warnings?: unknown };
+  return { ...own(rest), mesh: isCached ? { positions: new Float32Array(), warnings } : copied(mesh) } as typeof data;
 }
 
 /** Whether the arrays of the job were lost with the worker. */
 const isGone = ({ data }: Job, { transfer }: Call) => transfer && buffersOf(data).some((buffer) => !isAttached(buffer));
 
 function workerFailed(cause: WorkerLost): Sim3AlignError {
-  return new Sim3AlignError(
-    {
-      code: "WORKER_FAILED",
-      argument: "workers",
-      found: `a worker that was lost: ${cause.message}`,
-      expected: "a worker that runs until its job is done",
-      remedy:
-        'Check that worker.js can be loaded and that memory suffices; use fewer workers, or none; in a bundle, import from "sim3align/inline".',
-    },
-    { cause },
-  );
+  const found = `a worker that was lost: ${cause.message}`;
+  const remedy =
+    'Check that worker.js can be loaded and that memory suffices; use fewer workers, or none; in a bundle, import from "sim3align/inline".';
+  return failure("WORKER_FAILED", "workers", found, "a worker that runs until its job is done", remedy, cause);
 }

@@ -1,10 +1,11 @@
-/** A worker slot of the pool; a failed worker is replaced. */
-import { type ErrorParts, messageOf, partsOf, Sim3AlignError } from "../error.js";
-import type { MeshCache } from "../jobs.js";
+/** A place for a worker of the pool; a worker that fails is replaced. */
+import type { Method } from "../calls/calls.js";
+import { type ErrorParts, messageOf, Sim3AlignError } from "../error.js";
+import type { ModuleName } from "../modules/exports.js";
+import type { CompiledModule } from "../modules/module.js";
 import type { CreateWorker } from "../platform.js";
-import type { ProgressListener } from "../progress.js";
+import { type Answer, type Instances, isFromWorker, type Report, type Request, type ToWorker } from "./messages.js";
 import { type Port, portOf } from "./port.js";
-import { isReply, type LazyName, type Request } from "./protocol.js";
 
 /** The worker terminated or trapped before it answered; the job may be retried. */
 export class WorkerLost extends Error {}
@@ -23,89 +24,71 @@ export class JobFailed {
   }
 }
 
-/** The result of a job, and its data if requested. */
-export interface Answer {
-  result: unknown;
-  data?: unknown;
-  /** The caches of meshes that the worker has lost. */
-  emptied?: readonly MeshCache[];
-}
-
-/** Everything a slot needs to start a worker. */
-export interface WorkerSetup extends Record<LazyName, () => Promise<WebAssembly.Module>> {
+/** What is needed to start a worker, and for what it runs. */
+export interface WorkerSetup {
   create: CreateWorker;
-  core: WebAssembly.Module;
   /** Longest time until a worker says that it is ready, milliseconds. */
   startMs: number;
+  compiled(name: ModuleName): Promise<CompiledModule>;
 }
 
-/** Who hears what a worker says while it runs a job. */
-export interface Listeners {
-  progress: ProgressListener;
-  /** Called when the job would be faster with helpers. */
-  onNeedsHelp?(): void;
+/** A prepared mesh, and the module that caches it. */
+export interface CachedMesh {
+  id: number;
+  module: ModuleName;
 }
 
 interface Pending {
+  method: Method | "help";
   resolve(answer: Answer): void;
   reject(reason: unknown): void;
-  listeners: Listeners;
-  /** Whether the job has a result; all but the opening of a tracker have one, an object. */
-  hasResult: boolean;
+  report(message: Report): void;
 }
 
-/** What a worker says first. */
-class Greeting {
+/** A worker, and what it has got. */
+class Hired {
+  readonly port: Port;
+  readonly modules = new Set<ModuleName>();
+  /** By prepared mesh: the modules that have cached it, with their instances. */
+  readonly meshes = new Map<number, Map<ModuleName, number>>();
+  instances: Instances = {};
   hear = () => {};
   fail = (_reason: unknown) => {};
-  readonly heard = new Promise<void>((resolve, reject) => {
+  /** What the worker says first. */
+  readonly ready = new Promise<void>((resolve, reject) => {
     this.hear = resolve;
     this.fail = reject;
   });
 
-  constructor() {
+  constructor(port: Port) {
+    this.port = port;
     // A worker that starts in advance may fail while nothing waits for it.
-    this.heard.catch(() => {});
+    this.ready.catch(() => {});
+  }
+
+  /** The number of an instance; a module that is not loaded will begin with 0. */
+  instance(module: ModuleName): number {
+    return this.instances[module] ?? 0;
   }
 }
 
-/** A slot for a worker. */
+/** A place for a worker. */
 export class WorkerSlot {
   readonly #setup: WorkerSetup;
-  #port: Port | undefined;
-  #greeting: Greeting | undefined;
+  #worker: Hired | undefined;
   #pending: Pending | undefined;
-  /**
-   * The ids of the prepared meshes that were sent to the worker, and the modules that are known to hold them there: it may
-   * also hold one of a job that failed.
-   */
-  readonly #meshes = new Map<number, Set<MeshCache>>();
-  /** The ids of meshes to free when the running job is done. */
-  readonly #dropped: number[] = [];
+  /** Prepared meshes that the worker is told to free with its next job. */
+  readonly #dropped = new Set<number>();
 
   constructor(setup: WorkerSetup) {
     this.#setup = setup;
   }
 
   /** Starts a worker if there is none. A failure surfaces at the next request. */
-  start(): Port {
-    if (this.#port !== undefined) return this.#port;
-    const port = portOf(this.#setup.create(), {
-      // Messages of a replaced worker may still arrive.
-      onMessage: (message) => this.#isCurrent(port) && this.#receive(message, port),
-      onFailure: (description) => this.#isCurrent(port) && this.end(new WorkerLost(description)),
-    });
-    this.#port = port;
-    this.#greeting = new Greeting();
-    this.#meshes.clear();
+  start(): void {
     try {
-      port.post({ type: "start", core: this.#setup.core });
-    } catch (error) {
-      // A worker without core could not run any job.
-      this.end(error);
-      throw error;
-    }
-    return port;
+      this.#hired();
+    } catch {}
   }
 
   /**
@@ -114,135 +97,125 @@ export class WorkerSlot {
    * @throws {@link WorkerLost}, and the reason passed to `end`
    */
   async ready(): Promise<void> {
-    const port = this.#started();
+    const worker = this.#hired();
     const { startMs } = this.#setup;
     const found = `no answer for ${startMs} ms, which \`workerStartMs\` allows`;
-    const timer = setTimeout(() => this.#isCurrent(port) && this.end(new WorkerLost(found)), startMs);
-    port.keepAlive(true);
+    const timer = setTimeout(() => this.#end(worker, new WorkerLost(found)), startMs);
+    worker.port.keepAlive(true);
     try {
-      await this.#greeting?.heard;
+      await worker.ready;
     } finally {
       clearTimeout(timer);
-      port.keepAlive(false);
+      worker.port.keepAlive(false);
     }
   }
 
   /**
    * Runs a job in the worker, or lets it help another one; one at a time.
-   * @param mesh the prepared mesh of the job, and the module that caches it
+   * @param modules the compiled modules that it needs
+   * @param mesh the prepared mesh of the job
    * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason passed to `end`
    */
   async request(
-    message: Request & { type: "job" | "help" },
+    job: Pick<Request, "job" | "wantsProgress" | "returnsData">,
+    modules: ReadonlyMap<ModuleName, CompiledModule>,
     transfer: Transferable[],
-    listeners: Listeners,
-    mesh?: { id: number; cache: MeshCache },
+    report: (message: Report) => void,
+    mesh?: CachedMesh,
   ): Promise<Answer> {
-    const port = this.#started();
+    const worker = this.#hired();
+    const given = new Map([...modules].filter(([name]) => !worker.modules.has(name)));
+    // The job needs its own mesh until its end.
+    const droppedMeshes = [...this.#dropped].filter((id) => id !== mesh?.id);
+    const instance = mesh && worker.instance(mesh.module);
     try {
       const answer = await new Promise<Answer>((resolve, reject) => {
         // Before the message is sent: its answer, or the end of the worker, may come at once.
-        const hasResult = message.type === "help" || message.job.method !== "openTracker";
-        this.#pending = { resolve, reject, listeners, hasResult };
+        this.#pending = { method: job.job.method, resolve, reject, report };
         try {
-          port.post(message, transfer);
+          worker.port.post({ type: "job", ...job, modules: given, droppedMeshes }, transfer);
         } catch (cause) {
           throw new Unsendable("a message that cannot be sent", { cause });
         }
-        port.keepAlive(true);
-        if (mesh !== undefined && !this.#meshes.has(mesh.id)) this.#meshes.set(mesh.id, new Set());
+        worker.port.keepAlive(true);
+        for (const name of given.keys()) worker.modules.add(name);
+        for (const id of droppedMeshes) {
+          this.#dropped.delete(id);
+          worker.meshes.delete(id);
+        }
+        // A job that fails may leave its mesh there, too.
+        if (mesh !== undefined && !worker.meshes.has(mesh.id)) worker.meshes.set(mesh.id, new Map());
       });
-      const isKept = mesh !== undefined && this.#isCurrent(port) && !answer.emptied?.includes(mesh.cache);
-      if (isKept) this.#meshes.get(mesh.id)?.add(mesh.cache);
+      if (mesh !== undefined && instance !== undefined && answer.needs === undefined)
+        worker.meshes.get(mesh.id)?.set(mesh.module, instance);
       return answer;
     } finally {
       this.#pending = undefined;
-      port.keepAlive(false);
-      for (const id of this.#dropped.splice(0)) this.dropMesh(id);
+      worker.port.keepAlive(false);
     }
   }
 
   /** Sends a message that needs no answer, to a worker that may be lost. */
-  tell(message: Request, transfer: Transferable[] = []): void {
-    this.#port?.post(message, transfer);
+  tell(message: ToWorker, transfer: Transferable[] = []): void {
+    this.#worker?.port.post(message, transfer);
   }
 
-  /** Whether the worker holds this mesh in this module: its arrays need not be sent. */
-  hasMesh(id: number, cache: MeshCache): boolean {
-    return this.#port !== undefined && this.#meshes.get(id)?.has(cache) === true;
+  /** Whether the worker has cached this mesh: its arrays need not be sent. */
+  hasMesh({ id, module }: CachedMesh): boolean {
+    const worker = this.#worker;
+    return worker !== undefined && worker.meshes.get(id)?.get(module) === worker.instance(module);
   }
 
-  /** Frees this mesh in the worker. */
+  /** Frees this mesh in the worker, with its next job. */
   dropMesh(id: number): void {
-    // The running job may need the mesh.
-    if (this.#pending !== undefined) {
-      this.#dropped.push(id);
-      return;
-    }
-    if (!this.#meshes.delete(id)) return;
-    try {
-      this.#port?.post({ type: "drop-mesh", id });
-    } catch (error) {
-      // The mesh ends with its worker.
-      this.end(error);
-    }
+    if (this.#worker?.meshes.has(id)) this.#dropped.add(id);
   }
 
   /** Terminates the worker and its job. The next request starts another worker. */
   end(reason: unknown): void {
-    const port = this.#port;
-    this.#port = undefined;
-    port?.terminate();
-    this.#greeting?.fail(reason);
+    if (this.#worker !== undefined) this.#end(this.#worker, reason);
+  }
+
+  /** Messages of a replaced worker may still arrive. */
+  #end(worker: Hired, reason: unknown): void {
+    if (worker !== this.#worker) return;
+    this.#worker = undefined;
+    this.#dropped.clear();
+    worker.port.terminate();
+    worker.fail(reason);
     this.#pending?.reject(reason);
   }
 
-  #isCurrent = (port: Port) => this.#port === port;
-
-  #started(): Port {
+  #hired(): Hired {
+    if (this.#worker !== undefined) return this.#worker;
     try {
-      return this.start();
+      const port = portOf(this.#setup.create(), {
+        onMessage: (message) => worker === this.#worker && this.#receive(worker, message),
+        onFailure: (description) => this.#end(worker, new WorkerLost(description)),
+      });
+      const worker = new Hired(port);
+      this.#worker = worker;
+      return worker;
     } catch (error) {
       throw new WorkerLost(messageOf(error), { cause: error });
     }
   }
 
-  #receive(message: unknown, port: Port): void {
-    if (!isReply(message, this.#pending?.hasResult)) {
-      this.end(new WorkerLost("a message that worker.js does not send"));
+  #receive(worker: Hired, message: unknown): void {
+    const pending = this.#pending;
+    if (!isFromWorker(message, pending?.method)) {
+      this.#end(worker, new WorkerLost("a message that worker.js does not send"));
     } else if (message.type === "ready") {
-      this.#greeting?.hear();
+      worker.hear();
     } else if (message.type === "progress") {
-      this.#pending?.listeners.progress.report(message.stage, message.fraction, message.best);
-    } else if (message.type === "needs-help") {
-      this.#pending?.listeners.onNeedsHelp?.();
-    } else if (message.type === "needs-module") {
-      const lost = (error: unknown) => this.#isCurrent(port) && this.end(new WorkerLost(messageOf(error)));
-      this.#sendModule(message.name, port).catch(lost);
-    } else if (message.type === "unreadable") {
-      this.end(new WorkerLost("a message that the worker could not read"));
-    } else if (message.error === undefined) {
-      this.#forget(message.emptied);
-      this.#pending?.resolve(message);
-    } else if (message.error.code === "INTERNAL") {
+      pending?.report(message);
+    } else if (message.error?.code === "INTERNAL") {
       // After a trap, the state of the module is unknown, and its memory may be exhausted.
-      this.end(new WorkerLost(message.error.found));
+      this.#end(worker, new WorkerLost(message.error.found));
     } else {
-      this.#forget(message.emptied);
-      this.#pending?.reject(new JobFailed(message.error, message.data));
+      worker.instances = message.instances;
+      if (message.error === undefined) pending?.resolve(message);
+      else pending?.reject(new JobFailed(message.error, message.data));
     }
-  }
-
-  /** Forgets what was in these caches: the next jobs bring their meshes again. */
-  #forget(emptied: readonly MeshCache[] = []): void {
-    for (const caches of this.#meshes.values()) for (const cache of emptied) caches.delete(cache);
-  }
-
-  async #sendModule(name: LazyName, port: Port): Promise<void> {
-    const module = await this.#setup[name]().catch((error) => {
-      if (error instanceof Sim3AlignError) return partsOf(error);
-      throw error;
-    });
-    port.post({ type: "module", name, module });
   }
 }

@@ -26,6 +26,7 @@ export function isSendable(value: unknown): boolean {
 }
 
 /** A value without the parts that are not {@link isSendable}. */
+export function sendableParts<T>(value: T): T;
 export function sendableParts(value: unknown): unknown {
   if (isSendable(value)) return value;
   if (Array.isArray(value)) return value.map(sendableParts);

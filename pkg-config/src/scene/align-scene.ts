@@ -1,10 +1,9 @@
 /** Aligns the objects of a scene, on this thread or in workers. */
-import { checkAttached } from "../attached.js";
-import { type Calibrated, inCalibration, isRaw } from "../calibrate.js";
-import { type Call, type Engine, signalsOf } from "../engine.js";
+import { type Calibrated, inCalibration, isRaw } from "../calls/calibrate.js";
+import { type Call, type Engine, signalsOf } from "../calls/engine.js";
 import { isOfInput, Sim3AlignError } from "../error.js";
-import type { Job, Modules, PlaceInput } from "../jobs.js";
-import type { Arrangement, Placed } from "../joint-module.js";
+import type { Arrangement, Placed } from "../modules/exports.js";
+import type { Modules } from "../modules/module.js";
 import { onAbort, reasonOf } from "../on-abort.js";
 import type { Progress } from "../options.js";
 import { withArrays } from "../prepared-mesh.js";
@@ -36,20 +35,20 @@ export async function alignScene(
   const running = { engine, options, progress: call.progress, stopped };
   try {
     const calibrated = isRaw(read.view) ? await calibratedScene(read, running) : undefined;
-    const scene = calibrated === undefined ? read : { ...read, view: inCalibration(read.view, calibrated) };
+    const scene = { ...read, view: inCalibration(read.view, calibrated) };
     const { view, objects, occluders, support } = scene;
     const module = await modules.joint();
     const round = roundsOf(scene, running, calibrated === undefined ? 0 : CALIBRATION);
     const masks = [...objects.map(({ mask }) => mask), ...occluders];
+    const given = { ...view, objects: objects.map(({ mask }) => ({ mask })), occluders };
     const seed = typeof options.seed === "number" ? options.seed : 0;
     let placed: PlacedOrError[] = [];
     for (let plan: Uint8Array | undefined; ; ) {
       placed = await round(plan, placed);
-      // The thread may have been elsewhere since the scene was read.
-      checkAttached("input", { ...view, objects: objects.map(({ mask }) => ({ mask })) });
-      checkAttached("occluders", occluders);
       const placements = placed.map((of) => (of instanceof Sim3AlignError ? null : of.placement));
-      const next = module.call((j) => j.planScene({ ...view, masks, support, seed, snap }, plan, placements));
+      const next = module.callWith("input", given, (j) =>
+        j.planScene({ ...view, masks, support, seed, snap }, plan, placements),
+      );
       if (next.plan === undefined) {
         const result = resultOf(scene, placed, next);
         return calibrated === undefined ? result : { ...result, depthCalibration: calibrated.calibration };
@@ -109,10 +108,9 @@ function stopOf(call: Call): { stopped: AbortController; end(): void } {
 /** Calibrates the view of a scene by all its objects, in one job. */
 async function calibratedScene(scene: ReadScene, { engine, options, progress, stopped }: Running): Promise<Calibrated> {
   const sent = scene.objects.map((object) => {
-    const { data, release } = withArrays({ mesh: object.mesh }, engine);
-    const { mesh } = data as { mesh: unknown };
     const { mask } = object;
-    return { object: { mask, others: othersOf(scene, mask), mesh, options: ownOptions(options, object) }, release };
+    const { data, release } = withArrays({ mask, mesh: object.mesh }, engine);
+    return { object: { ...data, others: othersOf(scene, mask), options: ownOptions(options, object) }, release };
   });
   const report = ({ stage, fraction }: Progress) => progress.report(stage, CALIBRATION * fraction);
   const listener = new ProgressListener(progress.isWanted ? report : undefined);
@@ -142,7 +140,7 @@ function roundsOf(scene: ReadScene, { engine, options, progress: reported, stopp
   const place = async (index: number, plan: Uint8Array | undefined): Promise<Placed> => {
     const { input, others } = inputOf(scene, index);
     const own = ownOptions(options, objects[index] as ReadObject);
-    const { release, ...sent } = withArrays({ ...input, others, plan, index } satisfies PlaceInput, engine);
+    const { data, meshId, release } = withArrays({ ...input, others, plan, index }, engine);
     const [from, to] = plan === undefined ? [0, ALONE] : [ALONE, 1];
     const report = ({ stage, fraction, best }: Progress) => {
       fractions[index] = Math.max(fractions[index] ?? 0, from + (to - from) * fraction);
@@ -150,7 +148,7 @@ function roundsOf(scene: ReadScene, { engine, options, progress: reported, stopp
       reported.report(stage, begun + (1 - begun) * all, undefined, { index, best });
     };
     const progress = new ProgressListener(reported.isWanted ? report : undefined);
-    const job = { method: "place", ...sent, options: own } as Job & { method: "place" };
+    const job = { method: "place", data, meshId, options: own } as const;
     try {
       const { result } = await engine.run(job, { signal: stopped.signal, progress, transfer: false });
       fractions[index] = to;

@@ -1,14 +1,13 @@
 /** Reads a scene: the view once, and a mask per object. */
 import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../error.js";
-import type { FileReaders } from "../file-readers.js";
 import { nearest } from "../formats/pixels.js";
-import type { LoadFormats } from "../formats-module.js";
 import type { CoreView } from "../input/core-input.js";
 import { readMask } from "../input/mask.js";
+import type { ClassNames } from "../input/own.js";
 import { classNames as inputClassNames, readView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
+import type { FileReaders, LoadFormats } from "../modules/readers.js";
 import type { InputNotes } from "../results.js";
-import type { ClassNames } from "../snapshot.js";
 import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 

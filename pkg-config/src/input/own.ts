@@ -1,11 +1,11 @@
 /**
- * Reads arguments once, before anything else looks at them: getters and proxies may throw, or return something else the
- * next time. What is read afterwards are plain objects and arrays.
+ * The border: arguments are read once, before anything else looks at them, because getters and proxies may throw, or return
+ * something else the next time. What is behind it are plain objects and arrays, and typed arrays that have their memory.
  */
-import { checkAttached } from "./attached.js";
-import { failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
-import { isKind, isRecord, proxiedKind } from "./kinds.js";
-import { PreparedMesh } from "./prepared-mesh.js";
+import { checkAttached } from "../attached.js";
+import { failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "../error.js";
+import { isBuffer, isKind, isRecord, proxiedKind } from "../kinds.js";
+import { PreparedMesh } from "../prepared-mesh.js";
 
 /** No argument has more levels: a camera file of several images has five. Deeper objects are left out. */
 const MAX_LEVELS = 8;
@@ -23,20 +23,11 @@ export type ClassNames = Readonly<Record<string, readonly string[]>>;
  * Copies the plain objects and arrays in an argument. Typed arrays, buffers, files, functions and prepared meshes remain
  * the same objects. An object inside itself is left out, so that what is read has an end.
  * @param argument its name in errors
- * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for properties that throw, and proxies of typed arrays
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for properties that throw, proxies of typed arrays, and arrays and
+ * buffers without their memory
  */
-export function snapshot<T>(argument: string, value: T, classNames: ClassNames = {}): T {
+export function ownArgument<T>(argument: string, value: T, classNames: ClassNames = {}): T {
   return new Reader(classNames).read(argument, value, 0) as T;
-}
-
-/**
- * An argument, read once, whose arrays have their memory.
- * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`, as {@link snapshot} and {@link checkAttached}
- */
-export function ownArgument<T>(argument: string, value: T): T {
-  const own = snapshot(argument, value);
-  checkAttached(argument, own);
-  return own;
 }
 
 /** The options of a call, read once. */
@@ -64,6 +55,10 @@ class Reader {
     try {
       const proxied = proxiedKind(value);
       if (proxied !== undefined) throw proxy(argument, value, proxied);
+      if (ArrayBuffer.isView(value) || isBuffer(value)) {
+        checkAttached(argument, value);
+        return value;
+      }
       if (value instanceof PreparedMesh || !(Array.isArray(value) || this.#isRead(argument, value))) return value;
       this.#open.add(value);
       const copied = Array.isArray(value) ? this.#array(argument, value, level) : this.#record(argument, value, level);

@@ -1,7 +1,37 @@
-/** The WebAssembly modules of the package by name, and where the caller has them. */
-import { invalidArgument } from "./error.js";
-import type { LazySource, WasmSource } from "./platform.js";
-import { isKind, isRecord } from "./values.js";
+/** The WebAssembly modules of the aligner, shared by all aligners of this realm, and where the caller has them. */
+import { invalidArgument } from "../error.js";
+import { isKind, isRecord } from "../kinds.js";
+import type { LazySource, WasmSource } from "../platform.js";
+import * as coreGlue from "../wasm/core.js";
+import type { Core, Joint, ModuleName, Registrar } from "./exports.js";
+import { type ModuleTable, moduleFile, WasmModule } from "./module.js";
+import { readerModules } from "./readers.js";
+
+export const coreModule = /* @__PURE__ */ new WasmModule<Core>(
+  "core",
+  () => new URL("../wasm/core_bg.wasm", import.meta.url),
+  () => coreGlue,
+);
+
+export const jointModule = /* @__PURE__ */ new WasmModule<Joint>(
+  "joint",
+  () => new URL("../wasm/joint_bg.wasm", import.meta.url),
+  () => import("../wasm/joint.js"),
+);
+
+export const registrationModule = /* @__PURE__ */ new WasmModule<Registrar>(
+  "registration",
+  () => new URL("../wasm/registration_bg.wasm", import.meta.url),
+  () => import("../wasm/registration.js"),
+);
+
+/** All modules. */
+export const wasmModules: ModuleTable = {
+  core: coreModule,
+  ...readerModules,
+  joint: jointModule,
+  registration: registrationModule,
+};
 
 /** The sources of the modules, each loaded when it is first needed. Those left out are next to the script. */
 export interface WasmModules {
@@ -19,27 +49,12 @@ export interface WasmModules {
   registration?: WasmSource | undefined;
 }
 
-/** The name of a module among the options. */
-export type ModuleName = keyof WasmModules;
-
 /** The source of each module, or a function that returns it on demand. */
-export type LazyModules = { readonly [K in ModuleName]?: LazySource | undefined };
-
-/** The file of a module. */
-export const moduleFile = (name: string): string =>
-  `${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}_bg.wasm`;
-
-const names: readonly string[] = [
-  "core",
-  "formats",
-  "depthFiles",
-  "splats",
-  "joint",
-  "registration",
-] satisfies ModuleName[];
+export type LazyModules = { readonly [N in ModuleName]?: LazySource | undefined };
 
 /** The option `wasm` of `createAligner`, as one source for each module. */
 export function checkedModules(wasm: unknown): LazyModules {
+  const names = Object.keys(wasmModules);
   if (wasm === undefined) return {};
   if (typeof wasm === "string" || isKind<URL>(wasm, "URL")) {
     const folder = String(wasm).replace(/\/?$/, "/");

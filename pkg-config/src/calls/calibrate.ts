@@ -1,12 +1,11 @@
 /** Views whose depth or focal length is not fully known: they are calibrated before their objects are aligned. */
-import type { CoreListener } from "./core.js";
-import { invalidArgument } from "./error.js";
-import type { DepthCalibration } from "./generated/types.js";
-import { intrinsics } from "./input/camera.js";
-import type { CoreFrame } from "./input/core-input.js";
-import { isAffineInvariant } from "./input/depth-kind.js";
-import { isRecord } from "./kinds.js";
-import type { CoreMesh } from "./prepared-mesh.js";
+import { invalidArgument } from "../error.js";
+import type { DepthCalibration } from "../generated/types.js";
+import { intrinsics } from "../input/camera.js";
+import type { CoreFrame } from "../input/core-input.js";
+import { isAffineInvariant } from "../input/depth-kind.js";
+import { isRecord } from "../kinds.js";
+import type { CoreMesh } from "../prepared-mesh.js";
 
 /** An object by which a view is calibrated. */
 export interface CalibrationObject extends Pick<CoreFrame, "mask" | "maskWidth" | "maskHeight" | "resizeMask"> {
@@ -24,9 +23,6 @@ export interface Calibrated {
   calibration: DepthCalibration;
 }
 
-/** The part of a call that calibration takes, where it is one. */
-const SHARE = 0.7;
-
 /** Whether depth or focal length are not fully known. */
 export const isRaw = ({ depthKind, focalDeviation }: Pick<CoreFrame, "depthKind" | "focalDeviation">): boolean =>
   depthKind !== undefined || focalDeviation !== undefined;
@@ -39,18 +35,12 @@ export const mayBeRaw = (input: unknown): boolean => {
   return depthKind !== undefined || focalUncertainty !== undefined || !hasCamera;
 };
 
-/** The view in the depth and with the camera of its calibration. */
-export function inCalibration<V extends Omit<CoreFrame, "mask">>(view: V, { depth, calibration }: Calibrated): V {
+/** The view in the depth and with the camera of its calibration, if it has one. */
+export function inCalibration<V extends Omit<CoreFrame, "mask">>(view: V, calibrated: Calibrated | undefined): V {
+  if (calibrated === undefined) return view;
+  const { depth, calibration } = calibrated;
   const { depthScale: _, depthKind: __, focalDeviation: ___, pointMap: ____, ...rest } = view;
   return { ...rest, depth, camera: calibration.camera, uncertainty: calibration.uncertainty } as unknown as V;
-}
-
-/** The listener of the calibration, and that of what follows. */
-export function partsOf(listener: CoreListener | undefined): [first?: CoreListener, then?: CoreListener] {
-  if (listener === undefined) return [];
-  // Poses of a calibration that is not known yet are nothing to show.
-  const first: CoreListener = (stage, fraction) => listener(stage, SHARE * fraction);
-  return [first, (stage, fraction, best) => listener(stage, SHARE + (1 - SHARE) * fraction, best)];
 }
 
 /**

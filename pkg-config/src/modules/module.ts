@@ -1,15 +1,36 @@
 /** Loading and calling one WebAssembly module. */
-import { failure, internalError, isCoded, isExhausted, outOfMemory, Sim3AlignError } from "./error.js";
-import type { LazySource, WasmSource } from "./platform.js";
-import { Queue } from "./queue.js";
-import { isKind } from "./values.js";
-import { moduleFile } from "./wasm-modules.js";
+import { checkAttached } from "../attached.js";
+import { failure, internalError, isCoded, isExhausted, outOfMemory, Sim3AlignError, withoutInput } from "../error.js";
+import { isKind } from "../kinds.js";
+import type { LazySource, WasmSource } from "../platform.js";
+import { Queue } from "../queue.js";
+import type { Exports, ModuleName } from "./exports.js";
 
 /** A compiled `WebAssembly.Module`, whose type no library but the DOM's declares. */
-type CompiledModule = object;
+export type CompiledModule = object;
+
+/** Loads each module when it is first needed. */
+export type Modules = { readonly [N in ModuleName]: () => Promise<LoadedModule<Exports[N]>> };
+
+/** A module by each name. */
+export type ModuleTable = { readonly [N in ModuleName]: WasmModule<Exports[N]> };
+
+/** The modules as functions that load them. */
+export const modulesBy = (load: <N extends ModuleName>(name: N) => Promise<LoadedModule<Exports[N]>>): Modules => ({
+  core: () => load("core"),
+  formats: () => load("formats"),
+  depthFiles: () => load("depthFiles"),
+  splats: () => load("splats"),
+  joint: () => load("joint"),
+  registration: () => load("registration"),
+});
+
+/** The file of a module. */
+export const moduleFile = (name: string): string =>
+  `${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}_bg.wasm`;
 
 /** The exports of wasm-bindgen's glue, other than the functions of the module. */
-export interface Glue {
+interface Glue {
   default(options: { module_or_path: CompiledModule }): Promise<unknown>;
   /** The exports of the current instance, once there is one. */
   initSync(options: { module: CompiledModule }): { memory: { buffer: ArrayBufferLike } };
@@ -37,14 +58,16 @@ export function releaseHeaps(held: string): void {
 }
 
 /** A module that is loaded once, also for concurrent callers. After a failure, the next call tries again. */
-export class WasmModule<G extends Glue> {
+export class WasmModule<G> {
   readonly #name: string;
   readonly #source: LazySource;
-  readonly #importGlue: () => Promise<G> | G;
+  readonly #importGlue: () => unknown;
   #compiling: Promise<CompiledModule> | undefined;
   #loading: Promise<LoadedModule<G>> | undefined;
+  #loaded: LoadedModule<G> | undefined;
 
-  constructor(name: string, source: LazySource, importGlue: () => Promise<G> | G) {
+  /** @param importGlue returns the glue of wasm-bindgen, whose declarations lack the functions of most modules */
+  constructor(name: string, source: LazySource, importGlue: () => unknown) {
     this.#name = name;
     this.#source = source;
     this.#importGlue = importGlue;
@@ -62,9 +85,9 @@ export class WasmModule<G extends Glue> {
     return this.#compiling;
   }
 
-  /** The module, if it has been asked for. */
-  get loading(): Promise<LoadedModule<G>> | undefined {
-    return this.#loading;
+  /** The module, if it has been loaded. */
+  get loaded(): LoadedModule<G> | undefined {
+    return this.#loaded;
   }
 
   /** Loads the module. Only the `source` of the first successful call is used. */
@@ -82,9 +105,10 @@ export class WasmModule<G extends Glue> {
   async #instantiate(source: LazySource | undefined): Promise<LoadedModule<G>> {
     const module = await this.compile(source);
     return this.#explained(async () => {
-      const glue = await this.#importGlue();
+      const glue = (await this.#importGlue()) as G & Glue;
       await glue.default({ module_or_path: module });
-      return new LoadedModule(glue, module);
+      this.#loaded = new LoadedModule<G>(glue, module);
+      return this.#loaded;
     });
   }
 
@@ -112,8 +136,8 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
 }
 
 /** A loaded module: its current instance, whose heap is let go when it has grown too large. */
-export class LoadedModule<G extends Glue> {
-  readonly #glue: G;
+export class LoadedModule<G> {
+  readonly #glue: G & Glue;
   readonly #module: CompiledModule;
   /** What lives in the instance and is more than a copy: while there is any, its heap stays. */
   readonly #kept = new Set<unknown>();
@@ -123,7 +147,7 @@ export class LoadedModule<G extends Glue> {
   /** Calls on the stack: a listener may call the module again. */
   #depth = 0;
 
-  constructor(glue: G, module: CompiledModule) {
+  constructor(glue: G & Glue, module: CompiledModule) {
     this.#glue = glue;
     this.#module = module;
     loaded.add(this);
@@ -156,12 +180,24 @@ export class LoadedModule<G extends Glue> {
     }
   }
 
-  /** Keeps the instance: this object, or what has this name, lives in it. To be called while the module is called. */
-  keep(owner: unknown): void {
-    this.#kept.add(owner);
+  /**
+   * Calls the module with data that have been read. Since then, other threads may have got their memory, without which the
+   * module would trap.
+   * @param argument the name of the data in errors
+   * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
+   */
+  callWith<T>(argument: string, data: unknown, work: (glue: G) => T, rename = withoutInput): T {
+    checkAttached(argument, data);
+    return this.call(work, rename);
   }
 
-  /** Ends what {@link keep} has begun. */
+  /** Keeps the instance: this object, or what has this name, lives in it. To be called while the module is called. */
+  kept<T>(owner: T): T {
+    this.#kept.add(owner);
+    return owner;
+  }
+
+  /** Ends what {@link kept} has begun. */
   drop(owner: unknown): void {
     this.#kept.delete(owner);
     if (!heaps.isBusy) this.letGo();
