@@ -44,7 +44,6 @@ class WorkerHost {
 
   constructor(post: Post) {
     this.#post = post;
-    post({ type: "ready" });
   }
 
   receive(message: ToWorker): void {
@@ -61,7 +60,7 @@ class WorkerHost {
   }
 
   async #answer(request: Request): Promise<void> {
-    const data = request.returnsData ? request.job.data : undefined;
+    const data = request.returnsData && "data" in request.job ? request.job.data : undefined;
     const answer = await this.#run(request).catch((error) => this.#failed(error));
     try {
       this.#post({ ...answer, data }, buffersOf(data));
@@ -78,6 +77,7 @@ class WorkerHost {
   }
 
   async #performed({ job, wantsProgress }: Request): Promise<unknown> {
+    if (job.method === "start") return {};
     if (job.method === "help") {
       this.#helping = new Helping(job.data);
       await this.#helping.run(this.#modules);

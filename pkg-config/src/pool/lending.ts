@@ -2,14 +2,14 @@
 import { type Job, moduleOf } from "../calls/calls.js";
 import type { CoreMesh } from "../prepared-mesh.js";
 import type { Queue } from "../queue.js";
-import type { WorkerSetup, WorkerSlot } from "./slot.js";
+import type { Slot, WorkerSetup } from "./pool-worker.js";
 import { copied } from "./transfer.js";
 
 /** A running job that has asked for help. */
 interface Borrower {
   job: Job;
   /** The workers that help it, and those that are about to. */
-  helpers: Set<WorkerSlot>;
+  helpers: Set<Slot>;
   /** Number of helpers that it has had. */
   count: number;
   /** Whether it gets others. */
@@ -18,27 +18,27 @@ interface Borrower {
 
 /** Lends workers that have nothing to do, until a job waits for them. What they do changes no result. */
 export class Lending {
-  readonly #queue: Queue<WorkerSlot>;
+  readonly #queue: Queue<Slot>;
   readonly #compiled: WorkerSetup["compiled"];
   /** By the worker that runs the job. */
-  readonly #borrowers = new Map<WorkerSlot, Borrower>();
+  readonly #borrowers = new Map<Slot, Borrower>();
 
-  constructor(queue: Queue<WorkerSlot>, compiled: WorkerSetup["compiled"]) {
+  constructor(queue: Queue<Slot>, compiled: WorkerSetup["compiled"]) {
     this.#queue = queue;
     this.#compiled = compiled;
   }
 
   /** The job that this worker runs is long. */
-  ask(slot: WorkerSlot, job: Job): void {
+  ask(slot: Slot, job: Job): void {
     this.#borrowers.set(slot, { job, helpers: new Set(), count: 0, mayBorrow: true });
     this.lend();
   }
 
   /** The job that this worker ran has ended. */
-  end(slot: WorkerSlot): void {
+  end(slot: Slot): void {
     const borrower = this.#borrowers.get(slot);
     this.#borrowers.delete(slot);
-    for (const helper of borrower?.helpers ?? []) helper.tell({ type: "stop" });
+    for (const helper of borrower?.helpers ?? []) helper.last.tell({ type: "stop" });
   }
 
   /** Lends the workers that are idle, each to the job with the fewest helpers. */
@@ -58,41 +58,42 @@ export class Lending {
     const helpers = this.#inOrder().at(-1)?.[1].helpers;
     for (const helper of helpers ?? []) {
       helpers?.delete(helper);
-      helper.tell({ type: "stop" });
+      helper.last.tell({ type: "stop" });
       return;
     }
   }
 
-  async #help(slot: WorkerSlot, borrower: Borrower, helper: WorkerSlot): Promise<void> {
+  async #help(slot: Slot, borrower: Borrower, helper: Slot): Promise<void> {
     const isRunning = () => this.#borrowers.get(slot) === borrower;
     let place: number | undefined;
     const { job } = borrower;
     const module = moduleOf(job.method);
     try {
       const modules = new Map([[module, await this.#compiled(module)]]);
-      await helper.ready();
+      await helper.hire().ready();
       // While it started, it may have been called back.
       if (!borrower.helpers.has(helper)) return;
       const { port1, port2 } = new MessageChannel();
       place = borrower.count++;
-      slot.tell({ type: "helper", helper: place, port: port1 }, [port1]);
+      slot.last.tell({ type: "helper", helper: place, port: port1 }, [port1]);
       const cached = job.meshId === undefined ? undefined : { id: job.meshId, module };
-      const mesh = cached === undefined || helper.hasMesh(cached) ? undefined : copied(preparedMesh(job));
+      const mesh = cached === undefined || helper.last.hasMesh(cached) ? undefined : copied(preparedMesh(job));
       const help = { method: "help", data: { port: port2, mesh } } as const;
-      await helper.request({ job: help, wantsProgress: false, returnsData: false }, modules, [port2], () => {}, cached);
+      const sent = { job: help, wantsProgress: false, returnsData: false, report() {} };
+      await helper.last.request({ ...sent, transfer: [port2], modules, mesh: cached });
     } catch {
       // The job does without helpers: what is wrong, if anything, it will find itself.
       borrower.mayBorrow = false;
     } finally {
       borrower.helpers.delete(helper);
-      if (isRunning() && place !== undefined) slot.tell({ type: "helper", helper: place });
+      if (isRunning() && place !== undefined) slot.last.tell({ type: "helper", helper: place });
       this.#queue.release(helper);
       this.lend();
     }
   }
 
   /** Those with the fewest helpers first. */
-  #inOrder(): [WorkerSlot, Borrower][] {
+  #inOrder(): [Slot, Borrower][] {
     return [...this.#borrowers].sort(([, a], [, b]) => a.helpers.size - b.helpers.size);
   }
 }

@@ -1,9 +1,9 @@
 /**
- * The messages between a pool and its workers. A worker says that it is ready, and then runs one job, or helps another worker
- * with one, at a time; each ends with one result.
+ * The messages between a pool and its workers. A worker runs one job, or helps another worker with one, at a time; each ends
+ * with one result. The first job is empty: its result shows that the script runs.
  */
-import type { Job, Method } from "../calls/calls.js";
-import { type ErrorParts, isCoded } from "../error.js";
+import type { Job } from "../calls/calls.js";
+import type { ErrorParts } from "../error.js";
 import type { Stage } from "../generated/types.js";
 import { isRecord } from "../kinds.js";
 import type { ModuleName } from "../modules/exports.js";
@@ -23,7 +23,7 @@ export interface Help {
 /** A job for a worker. */
 export interface Request {
   type: "job";
-  job: Job | Help;
+  job: Job | Help | { method: "start" };
   wantsProgress: boolean;
   /** Whether the data of the job, which were moved to the worker, are returned. */
   returnsData: boolean;
@@ -67,12 +67,8 @@ interface Progress {
 }
 
 /** Messages from a worker. */
-export type FromWorker = { type: "ready" } | Report | Answer;
+export type FromWorker = Report | Answer;
 
 /** Whether a message is one of this package's `worker.js`: a worker of the caller may run another script. */
-export function isFromWorker(message: unknown, method: Method | "help" | undefined): message is FromWorker {
-  if (!isRecord(message)) return false;
-  const { type, result, error, needs } = message;
-  if (type !== "result") return type === "ready" || type === "progress";
-  return method !== undefined && (isRecord(result) || Array.isArray(result) || isCoded(error) || needs !== undefined);
-}
+export const isFromWorker = (message: unknown): message is FromWorker =>
+  isRecord(message) && (message.type === "progress" || (message.type === "result" && isRecord(message.instances)));

@@ -10,7 +10,7 @@ import type { SignalLike } from "../platform.js";
 import { Queue } from "../queue.js";
 import { Lending } from "./lending.js";
 import type { Answer, Report } from "./messages.js";
-import { JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
+import { JobFailed, Slot, Unsendable, WorkerLost, type WorkerSetup } from "./pool-worker.js";
 import { buffersOf, copied, isSendable, sendableParts } from "./transfer.js";
 
 /** Attempts per job if its worker is lost. */
@@ -20,9 +20,9 @@ const ATTEMPTS = 2;
 export class WorkerPool implements Engine {
   readonly capacity: number;
   readonly #setup: WorkerSetup;
-  readonly #slots: readonly WorkerSlot[];
+  readonly #slots: readonly Slot[];
   readonly #fallback: MainThreadEngine;
-  readonly #queue: Queue<WorkerSlot>;
+  readonly #queue: Queue<Slot>;
   readonly #lending: Lending;
   readonly #ended = new AbortController();
 
@@ -32,10 +32,9 @@ export class WorkerPool implements Engine {
     this.capacity = 2 * size;
     this.#setup = setup;
     this.#fallback = fallback;
-    this.#slots = Array.from({ length: size }, () => new WorkerSlot(setup));
+    this.#slots = Array.from({ length: size }, () => new Slot(setup));
     this.#queue = new Queue(this.#slots);
     this.#lending = new Lending(this.#queue, setup.compiled);
-    for (const slot of this.#slots) slot.start();
   }
 
   async run<M extends Method>(job: Job<M>, call: Call): Promise<Outcome<M>> {
@@ -43,8 +42,8 @@ export class WorkerPool implements Engine {
     this.#lending.recall();
     const slot = await this.#queue.acquire(signals);
     const stop = (reason: unknown) => {
-      slot.end(reason);
-      if (!this.#ended.signal.aborted) slot.start();
+      slot.last.end(reason);
+      if (!this.#ended.signal.aborted) slot.hire();
     };
     const unfollow: (() => void)[] = [];
     try {
@@ -59,18 +58,18 @@ export class WorkerPool implements Engine {
   }
 
   dropMesh(id: number): void {
-    for (const slot of this.#slots) slot.dropMesh(id);
+    for (const { last } of this.#slots) last.dropMesh(id);
     this.#fallback.dropMesh(id);
   }
 
   dispose(): void {
     this.#ended.abort(disposed());
-    for (const slot of this.#slots) slot.end(this.#ended.signal.reason);
+    for (const { last } of this.#slots) last.end(this.#ended.signal.reason);
     this.#fallback.dispose();
   }
 
   async #runIn<M extends Method>(
-    slot: WorkerSlot,
+    slot: Slot,
     given: Job<M>,
     call: Call,
     signals: readonly SignalLike[],
@@ -84,7 +83,7 @@ export class WorkerPool implements Engine {
         // A call that has ended must not start a worker, which nothing would end.
         checkSignals(signals);
         for (const name of needed) modules.set(name, await beforeAbort(this.#compiled(name), signals));
-        await slot.ready();
+        await slot.hire().ready();
         const answer = await this.#send(slot, job, modules, call, signals);
         if (answer === undefined) {
           // A tracker lives in its worker, which does not need the rest: what a pose then lacks is an error there.
@@ -117,7 +116,7 @@ export class WorkerPool implements Engine {
 
   /** Sends a job; `undefined` if it cannot be sent, so that the core can report what is wrong with it. */
   async #send(
-    slot: WorkerSlot,
+    slot: Slot,
     job: Job,
     modules: ReadonlyMap<ModuleName, CompiledModule>,
     { transfer, progress }: Call,
@@ -133,10 +132,10 @@ export class WorkerPool implements Engine {
     for (const isMoved of transfer ? [true, false] : [false]) {
       checkReady(job, signals);
       if (!isSendable(job)) return undefined;
-      const data = sentData(job, isMoved, mesh && slot.hasMesh(mesh));
+      const data = sentData(job, isMoved, mesh && slot.last.hasMesh(mesh));
       const sent = { job: { ...job, data }, wantsProgress: progress.isWanted, returnsData: isMoved };
       try {
-        return await slot.request(sent, modules, buffersOf(data), report, mesh);
+        return await slot.last.request({ ...sent, transfer: buffersOf(data), modules, mesh, report });
       } catch (error) {
         if (!(error instanceof Unsendable)) throw error;
       }
