@@ -17,10 +17,8 @@ import { cachesMesh, type DataOf, type Method, type ResultOf, type SettingsOf } 
 import { type Call, type Engine, MainThreadEngine, signalsOf } from "./calls/engine.js";
 import { disposed, failure, internalError, Sim3AlignError } from "./error.js";
 import type { Preset } from "./generated/types.js";
-import type { ViewsInput } from "./input/frame-types.js";
 import { ownArgument } from "./input/own.js";
-import { classNames } from "./input/resolve.js";
-import type { AlignInput, MeshInput } from "./input/types.js";
+import type { AlignInput, MeshInput, ViewsInput } from "./input/types.js";
 import type { Core, ModuleName } from "./modules/exports.js";
 import { type LoadedModule, type Modules, modulesBy } from "./modules/module.js";
 import { checkedModules, wasmModules } from "./modules/modules.js";
@@ -44,7 +42,6 @@ import { checkedListener, ProgressListener } from "./progress.js";
 import { Queue } from "./queue.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "./results.js";
 import { alignScene } from "./scene/align-scene.js";
-import { classNames as sceneClassNames } from "./scene/read-scene.js";
 import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
@@ -185,7 +182,7 @@ export class Aligner {
       throw failure("UNKNOWN_OPTION", "options.initial", "a pose for all objects", "options of alignScene", remedy);
     }
     const isReturned = checkedFlag("transfer", transfer);
-    const own = ownArgument("input", scene, sceneClassNames);
+    const own = ownArgument("input", scene);
     const call = { signal: checkedSignal(signal), progress: new ProgressListener(onProgress), transfer: false };
     const settings = { options: rest, snap: checkedFlag("snap", snap) };
     const result = await guarded(call, () => {
@@ -220,7 +217,7 @@ export class Aligner {
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial as Sim3Like) };
     const listened = checkedSignal(signal);
     this.#checkUsable();
-    const { release, ...own } = withArrays(ownArgument("input", { mesh }, classNames), this.#engine);
+    const { release, ...own } = withArrays(ownArgument("input", { mesh }), this.#engine);
     const closed = (tracker: Tracker) => this.#trackers.delete(tracker);
     const opening = Tracker.open(this.#dedicated(), own as TrackerMesh, coreOptions, listened, closed);
     const tracker = await opening.finally(release);
@@ -325,7 +322,7 @@ export class Aligner {
     { onProgress, meshId }: { onProgress?: unknown; meshId?: number } = {},
   ): Promise<ResultOf<M>> {
     this.#checkUsable();
-    const own = ownArgument("input", data, classNames);
+    const own = ownArgument("input", data);
     const { release, restored, ...sent } = withArrays(own, this.#engine, cachesMesh(method, own));
     const job = { method, options: settings(options), ...(meshId === undefined ? sent : { ...sent, meshId }) };
     const progress = new ProgressListener(onProgress);

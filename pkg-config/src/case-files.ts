@@ -4,9 +4,8 @@ import { failure, invalidArgument, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { DepthKind } from "./input/depth-kind.js";
-import type { ViewInput } from "./input/frame-types.js";
 import { ownArgument } from "./input/own.js";
-import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
+import type { AlignInput, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
 import { isRecord, withoutUndefined } from "./values.js";
 

@@ -11,10 +11,17 @@ import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
-import type { DepthImage, ReadDepthOptions } from "./input/depth-reading.js";
-import { decodeMesh } from "./input/mesh-file.js";
+import { decodeMesh } from "./input/mesh.js";
 import { ownArgument, ownOptions } from "./input/own.js";
-import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
+import type {
+  CameraFileInput,
+  CocoRle,
+  DepthImage,
+  EncodedBytes,
+  MeshFormat,
+  PixelArray,
+  ReadDepthOptions,
+} from "./input/types.js";
 import type { Formats } from "./modules/exports.js";
 import { fileReaders, formatsModule } from "./modules/readers.js";
 import type { WasmSource } from "./platform.js";
@@ -28,7 +35,7 @@ export type { KnownPose } from "./conventions/pose-file.js";
 export { Sim3AlignError } from "./error.js";
 export type { CameraFile, ReadCameraOptions } from "./formats/camera-file.js";
 export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
-export type { DepthImage, ReadDepthOptions } from "./input/depth-reading.js";
+export type { DepthImage, ReadDepthOptions } from "./input/types.js";
 export type { SceneCase } from "./scene/scene-files.js";
 
 /** A mesh from a file, in the unit and axes of the file. */

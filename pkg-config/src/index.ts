@@ -59,7 +59,6 @@ export type {
   WorldUncertainty,
 } from "./generated/types.js";
 export type { DepthKind } from "./input/depth-kind.js";
-export type { FrameInput, ViewInput, ViewsInput } from "./input/frame-types.js";
 export type {
   AlignInput,
   CameraFileInput,
@@ -69,6 +68,7 @@ export type {
   DepthView,
   EncodedBytes,
   FieldOfViewCamera,
+  FrameInput,
   MaskInput,
   MatrixCamera,
   MeshArrays,
@@ -79,6 +79,8 @@ export type {
   PinholeCamera,
   PixelArray,
   UnknownCamera,
+  ViewInput,
+  ViewsInput,
 } from "./input/types.js";
 export type { WasmModules } from "./modules/modules.js";
 export type {

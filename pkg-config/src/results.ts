@@ -4,8 +4,7 @@
  */
 import type { Sim3AlignError } from "./error.js";
 import type * as Core from "./generated/types.js";
-import type { FrameInput, ViewsInput } from "./input/frame-types.js";
-import type { AlignInput } from "./input/types.js";
+import type { AlignInput, FrameInput, ViewsInput } from "./input/types.js";
 
 /** How the depth map and the camera of a view were read. */
 export interface InputInfo {

@@ -2,11 +2,10 @@
 import { isOfInput } from "../error.js";
 import type { CorrectedFrame } from "../generated/types.js";
 import type { CoreInput, CoreView } from "../input/core-input.js";
-import type { FrameInput, ViewsInput } from "../input/frame-types.js";
 import { resolveFrame, resolveViews } from "../input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
 import { resolveInput } from "../input/resolve.js";
-import type { AlignInput, MeshInput } from "../input/types.js";
+import type { AlignInput, FrameInput, MeshInput, ViewsInput } from "../input/types.js";
 import type { Core, Joint, ModuleName, Placed, Surroundings } from "../modules/exports.js";
 import type { ModuleTable } from "../modules/module.js";
 import type {

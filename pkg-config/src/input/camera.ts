@@ -39,7 +39,7 @@ const fileRemedy = "Pass the content of a camera file as cameraFile.";
 const fileProperties = ["cam_K", "k", "d", "D", "intrinsic_matrix", "ppx", "ppy", "fov_y_deg", "depth_scale"];
 
 /** `readCamera` adds `warnings` and `depthScale` to the intrinsics of a camera file. */
-export const cameraProperties = [
+const cameraProperties = [
   ...["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "focalUncertainty", "warnings", "depthScale"],
 ];
 

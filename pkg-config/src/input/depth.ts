@@ -5,7 +5,7 @@ import type { FileReaders } from "../modules/readers.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
 import { isAffineInvariant } from "./depth-kind.js";
-import type { DepthImage, ReadDepthOptions } from "./depth-reading.js";
+import type { DepthImage, ReadDepthOptions } from "./types.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {

@@ -1,6 +1,6 @@
 /**
- * The border: arguments are read once, before anything else looks at them, because getters and proxies may throw, or return
- * something else the next time. What is behind it are plain objects and arrays, and typed arrays that have their memory.
+ * The border: arguments are read once, before anything else looks at them. What is behind it are plain objects and arrays,
+ * and typed arrays that have their memory.
  */
 import { checkAttached } from "../attached.js";
 import { failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "../error.js";
@@ -14,20 +14,14 @@ const MAX_LEVELS = 8;
 const MAX_LENGTH = 1 << 27;
 
 /**
- * The names that may be read from the class of an object, by the argument that the object is (`[]` for any item of an array);
- * all, if missing.
- */
-export type ClassNames = Readonly<Record<string, readonly string[]>>;
-
-/**
  * Copies the plain objects and arrays in an argument. Typed arrays, buffers, files, functions and prepared meshes remain
  * the same objects. An object inside itself is left out, so that what is read has an end.
  * @param argument its name in errors
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for properties that throw, proxies of typed arrays, and arrays and
  * buffers without their memory
  */
-export function ownArgument<T>(argument: string, value: T, classNames: ClassNames = {}): T {
-  return new Reader(classNames).read(argument, value, 0) as T;
+export function ownArgument<T>(argument: string, value: T): T {
+  return copyOf(argument, value, MAX_LEVELS, new Map()) as T;
 }
 
 /** The options of a call, read once. */
@@ -36,95 +30,59 @@ export function ownOptions<T extends object>(options: T): T {
   throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
 }
 
-class Reader {
-  readonly #classNames: ClassNames;
-  /** The copies so far: an object may be in two places. */
-  readonly #copies = new Map<object, object>();
-  /** The objects that are being copied. */
-  readonly #open = new Set<object>();
-
-  constructor(classNames: ClassNames) {
-    this.#classNames = classNames;
-  }
-
-  read(argument: string, value: unknown, level: number): unknown {
-    if (typeof value !== "object" || value === null) return value;
-    const copy = this.#copies.get(value);
-    if (copy !== undefined) return copy;
-    if (this.#open.has(value) || level > MAX_LEVELS) return undefined;
-    try {
-      const proxied = proxiedKind(value);
-      if (proxied !== undefined) throw proxy(argument, value, proxied);
-      if (ArrayBuffer.isView(value) || isBuffer(value)) {
-        checkAttached(argument, value);
-        return value;
-      }
-      if (value instanceof PreparedMesh || !(Array.isArray(value) || this.#isRead(argument, value))) return value;
-      this.#open.add(value);
-      const copied = Array.isArray(value) ? this.#array(argument, value, level) : this.#record(argument, value, level);
-      this.#open.delete(value);
-      this.#copies.set(value, copied);
-      return copied;
-    } catch (cause) {
-      throw cause instanceof Sim3AlignError ? cause : unreadable(argument, cause);
+/** @param copies those so far, as an object may be in two places; `undefined` for one that is being copied */
+function copyOf(argument: string, value: unknown, levels: number, copies: Map<object, unknown>): unknown {
+  if (typeof value !== "object" || value === null) return value;
+  if (copies.has(value) || levels < 0) return copies.get(value);
+  try {
+    const proxied = proxiedKind(value);
+    if (proxied !== undefined) throw proxy(argument, value, proxied);
+    if (ArrayBuffer.isView(value) || isBuffer(value)) {
+      checkAttached(argument, value);
+      return value;
     }
-  }
-
-  /** Whether an object is copied by its properties: also an object of the platform, if its names are known. */
-  #isRead(argument: string, value: object): value is Record<string, unknown> {
-    return isRecord(value) || (this.#knownNames(argument) !== undefined && isKind(value, "ImageData"));
-  }
-
-  #knownNames(argument: string): readonly string[] | undefined {
-    return this.#classNames[argument.replace(/\[\d+\]/g, "[]")];
-  }
-
-  #array(argument: string, array: readonly unknown[], level: number): unknown[] {
-    const { length } = array;
-    if (!(length <= MAX_LENGTH)) {
-      throw invalidArgument(withoutInput(argument), array, `at most ${MAX_LENGTH} values`, "Pass a typed array.");
-    }
-    const copy: unknown[] = [];
-    for (let i = 0; i < length; i++) {
-      const item = array[i];
-      copy.push(typeof item === "object" ? this.read(`${argument}[${i}]`, item, level + 1) : item);
-    }
+    const isImage = isKind(value, "ImageData") && argument.endsWith(".image");
+    if (value instanceof PreparedMesh || !(Array.isArray(value) || isRecord(value) || isImage)) return value;
+    copies.set(value, undefined);
+    const inner = (name: string, item: unknown) => copyOf(`${argument}${name}`, item, levels - 1, copies);
+    const copy = Array.isArray(value)
+      ? Array.from({ length: lengthOf(argument, value) }, (_, i) =>
+          typeof value[i] === "object" ? inner(`[${i}]`, value[i]) : value[i],
+        )
+      : Object.fromEntries(namesOf(value).map((name) => [name, inner(`.${name}`, propertyOf(argument, value, name))]));
+    copies.set(value, copy);
     return copy;
+  } catch (cause) {
+    throw cause instanceof Sim3AlignError ? cause : unreadable(argument, cause);
   }
+}
 
-  #record(argument: string, record: Record<string, unknown>, level: number): object {
-    const copy = {};
-    for (const name of this.#namesOf(argument, record)) {
-      let value: unknown;
-      try {
-        value = record[name];
-      } catch (cause) {
-        throw unreadable(`${argument}.${name}`, cause);
-      }
-      // Not an assignment, because of "__proto__".
-      const own = { enumerable: true, configurable: true, writable: true };
-      Object.defineProperty(copy, name, { ...own, value: this.read(`${argument}.${name}`, value, level + 1) });
-    }
-    return copy;
+/** The names of an object, and of the accessors of its class, as those of `ImageData`. */
+function namesOf(value: object): string[] {
+  const names = Object.keys(value);
+  let prototype: object | null = Object.getPrototypeOf(value);
+  for (let i = 0; i < MAX_LEVELS && prototype !== null; i++) {
+    const next: object | null = Object.getPrototypeOf(prototype);
+    // The last one is that of all objects.
+    if (next === null) break;
+    const properties = Object.entries(Object.getOwnPropertyDescriptors(prototype));
+    names.push(...properties.filter(([, { get }]) => get !== undefined).map(([name]) => name));
+    prototype = next;
   }
+  return names;
+}
 
-  /** The names of an object, and of the accessors of its class. */
-  #namesOf(argument: string, record: object): Iterable<string> {
-    const names = new Set(Object.keys(record));
-    const known = this.#knownNames(argument);
-    let prototype: object | null = Object.getPrototypeOf(record);
-    for (let i = 0; i < MAX_LEVELS && prototype !== null; i++) {
-      const next: object | null = Object.getPrototypeOf(prototype);
-      // The last one is that of all objects.
-      if (next === null) break;
-      for (const [name, { get, enumerable }] of Object.entries(Object.getOwnPropertyDescriptors(prototype))) {
-        const isRead = get !== undefined || enumerable === true;
-        if (isRead && (known === undefined || known.includes(name))) names.add(name);
-      }
-      prototype = next;
-    }
-    return names;
+function propertyOf(argument: string, value: object, name: string): unknown {
+  try {
+    return (value as Record<string, unknown>)[name];
+  } catch (cause) {
+    throw unreadable(`${argument}.${name}`, cause);
   }
+}
+
+function lengthOf(argument: string, array: readonly unknown[]): number {
+  if (array.length <= MAX_LENGTH) return array.length;
+  throw invalidArgument(withoutInput(argument), array, `at most ${MAX_LENGTH} values`, "Pass a typed array.");
 }
 
 function proxy(argument: string, value: unknown, kind: string): Sim3AlignError {

@@ -4,14 +4,13 @@ import { invalidArgument } from "../error.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../results.js";
 import { checkNames, isRecord, isTypedArray, oneOf, withoutUndefined } from "../values.js";
-import { cameraOf, cameraProperties, type ResolvedCamera } from "./camera.js";
+import { cameraOf, type ResolvedCamera } from "./camera.js";
 import type { Photo } from "./colors.js";
 import type { CoreInput, CoreView } from "./core-input.js";
 import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
 import { depthKinds, isAffineInvariant } from "./depth-kind.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
-import type { ClassNames } from "./own.js";
 import { readPhoto, readPhotoExif } from "./photo.js";
 
 /** A resolved input, and what its files say. */
@@ -40,18 +39,6 @@ export const frameProperties: readonly string[] = [
 export const spelling = "Check the spelling. Options belong in the second argument.";
 
 const properties = [...frameProperties, "mesh"];
-
-/** The accessors of an ImageData. */
-const pixelNames = ["data", "width", "height"];
-
-/** The properties that an input and its parts may inherit from a class; others of the class are not arguments. */
-export const classNames: ClassNames = {
-  input: properties,
-  "input.camera": cameraProperties,
-  "input.image": pixelNames,
-  "input.views[].camera": cameraProperties,
-  "input.views[].image": pixelNames,
-};
 
 /**
  * Resolves an input. Readers are loaded only if a file needs them.

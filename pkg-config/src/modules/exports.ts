@@ -16,7 +16,7 @@ import type {
   ViewsAlignment,
 } from "../generated/types.js";
 import type { CoreFrame, CoreInput, CoreView, CoreViews } from "../input/core-input.js";
-import type { DepthImage } from "../input/depth-reading.js";
+import type { DepthImage } from "../input/types.js";
 import type { CoreMesh } from "../prepared-mesh.js";
 import type { Support } from "../scene/types.js";
 import type { MeshArrays } from "../wasm/formats.js";

@@ -3,8 +3,7 @@ import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../
 import { nearest } from "../formats/pixels.js";
 import type { CoreView } from "../input/core-input.js";
 import { readMask } from "../input/mask.js";
-import type { ClassNames } from "../input/own.js";
-import { classNames as inputClassNames, readView } from "../input/resolve.js";
+import { readView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
 import type { InputNotes } from "../results.js";
@@ -37,7 +36,6 @@ export interface ReadObject {
   known: KnownOfObject;
 }
 
-const sceneProperties = ["objects", "labels", "occluders", "support"];
 const objectProperties = ["name", "mask", "label", "resizeMask", "mesh"] as const;
 const knownProperties: readonly string[] = [
   "scale",
@@ -50,12 +48,6 @@ const knownProperties: readonly string[] = [
   "search",
   "quality",
 ] satisfies (keyof KnownOfObject)[];
-
-/** The properties that a scene may inherit from a class. */
-export const classNames: ClassNames = {
-  ...inputClassNames,
-  input: [...(inputClassNames.input ?? []), ...sceneProperties],
-};
 
 /**
  * Reads a scene.
