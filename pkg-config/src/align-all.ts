@@ -2,7 +2,6 @@
 
 import { invalidArgument, type Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
-import { proxiedKind } from "./kinds.js";
 import { checkSignals, onAbort } from "./on-abort.js";
 import type { SignalLike } from "./platform.js";
 import type { AlignAllResult } from "./results.js";
@@ -88,29 +87,17 @@ export async function* alignAll<A extends { input?: AlignInput }>(
 type Inputs = Iterable<AlignInput> | AsyncIterable<AlignInput>;
 
 function iteratorOf(inputs: Inputs): Iterator<AlignInput> | AsyncIterator<AlignInput> {
-  const iterator = methodOf(inputs)?.call(inputs);
-  if (typeof iterator?.next === "function") return iterator;
-  const remedy = "Pass an array or a generator of inputs. For a single input, use align().";
-  throw invalidArgument("inputs", inputs, "an iterable or an async iterable of inputs", remedy);
-}
-
-type IteratorMethod = (this: Inputs) => Iterator<AlignInput> | AsyncIterator<AlignInput>;
-
-/** The method that begins an iteration; none for typed arrays, which contain no inputs. */
-function methodOf(inputs: Inputs): IteratorMethod | undefined {
-  try {
-    if (typeof inputs !== "object" || ArrayBuffer.isView(inputs) || proxiedKind(inputs) !== undefined) return undefined;
-    // Throws for proxies of which this cannot be told.
-    Object.getPrototypeOf(inputs);
+  // Typed arrays contain no inputs.
+  if (typeof inputs === "object" && inputs !== null && !ArrayBuffer.isView(inputs)) {
     const { [Symbol.asyncIterator]: iterateLater, [Symbol.iterator]: iterate } = inputs as Partial<
       Iterable<AlignInput> & AsyncIterable<AlignInput>
     >;
     const method: unknown = iterateLater ?? iterate;
-    return typeof method === "function" ? (method as IteratorMethod) : undefined;
-  } catch {
-    // A hostile proxy, or null.
-    return undefined;
+    const iterator = typeof method === "function" ? method.call(inputs) : undefined;
+    if (typeof iterator?.next === "function") return iterator;
   }
+  const remedy = "Pass an array or a generator of inputs. For a single input, use align().";
+  throw invalidArgument("inputs", inputs, "an iterable or an async iterable of inputs", remedy);
 }
 
 async function outcome<A extends { input?: AlignInput }>(

@@ -1,27 +1,10 @@
 /** Views whose depth or focal length is not fully known: they are calibrated before their objects are aligned. */
 import { invalidArgument } from "../error.js";
-import type { DepthCalibration } from "../generated/types.js";
 import { intrinsics } from "../input/camera.js";
 import type { CoreFrame } from "../input/core-input.js";
 import { isAffineInvariant } from "../input/depth-kind.js";
 import { isRecord } from "../kinds.js";
-import type { CoreMesh } from "../prepared-mesh.js";
-
-/** An object by which a view is calibrated. */
-export interface CalibrationObject extends Pick<CoreFrame, "mask" | "maskWidth" | "maskHeight" | "resizeMask"> {
-  /** The pixels of other objects. */
-  others?: Uint8Array | undefined;
-  mesh: CoreMesh;
-  /** Options of `align`, in the form of the core. */
-  options: object;
-}
-
-/** The depth map of a calibrated view, and its calibration. */
-export interface Calibrated {
-  /** In metres if the calibration is metric. */
-  depth: Float32Array;
-  calibration: DepthCalibration;
-}
+import type { Calibrated } from "../modules/exports.js";
 
 /** Whether depth or focal length are not fully known. */
 export const isRaw = ({ depthKind, focalDeviation }: Pick<CoreFrame, "depthKind" | "focalDeviation">): boolean =>

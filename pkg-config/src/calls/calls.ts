@@ -6,7 +6,15 @@ import { resolveFrame, resolveViews } from "../input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
 import { resolveInput } from "../input/resolve.js";
 import type { AlignInput, FrameInput, MeshInput, ViewsInput } from "../input/types.js";
-import type { Core, Joint, ModuleName, Placed, Surroundings } from "../modules/exports.js";
+import type {
+  Calibrated,
+  CalibrationObject,
+  Core,
+  Joint,
+  ModuleName,
+  Placed,
+  Surroundings,
+} from "../modules/exports.js";
 import type { ModuleTable } from "../modules/module.js";
 import type {
   AlignResult,
@@ -19,14 +27,7 @@ import type {
 } from "../results.js";
 import { sourcesOf, withNotes } from "../results.js";
 import { isTypedArray, withoutUndefined, wrongKind } from "../values.js";
-import {
-  type Calibrated,
-  type CalibrationObject,
-  checkMeasurable,
-  inCalibration,
-  isRaw,
-  mayBeRaw,
-} from "./calibrate.js";
+import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { Work } from "./work.js";
 
 /** Two clouds and, for `estimateSim3`, the correspondences between their points. */

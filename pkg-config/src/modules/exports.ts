@@ -1,5 +1,4 @@
 /** What the WebAssembly modules export. Their functions validate their arguments and throw errors with codes. */
-import type { Calibrated, CalibrationObject } from "../calls/calibrate.js";
 import type { Pinhole } from "../formats/pinhole.js";
 import type {
   Alignment,
@@ -148,6 +147,22 @@ export interface Joint extends MeshCache {
   ): TrackedFrame & { depthCalibration?: DepthCalibration };
   correctTrack(id: number, pose: unknown, frame: unknown): CorrectedFrame[];
   closeTracker(id: number): void;
+}
+
+/** An object by which a view is calibrated. */
+export interface CalibrationObject extends Pick<CoreFrame, "mask" | "maskWidth" | "maskHeight" | "resizeMask"> {
+  /** The pixels of other objects. */
+  others?: Uint8Array | undefined;
+  mesh: CoreMesh;
+  /** Options of `align`, in the form of the core. */
+  options: object;
+}
+
+/** The depth map of a calibrated view, and its calibration. */
+export interface Calibrated {
+  /** In metres if the calibration is metric. */
+  depth: Float32Array;
+  calibration: DepthCalibration;
 }
 
 /** What is known of an object of a scene, beside its own input. */

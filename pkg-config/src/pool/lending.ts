@@ -71,8 +71,8 @@ export class Lending {
     try {
       const modules = new Map([[module, await this.#compiled(module)]]);
       await helper.hire().ready();
-      // While it started, it may have been called back.
-      if (!borrower.helpers.has(helper)) return;
+      // While it started, it may have been called back, or the job may have ended.
+      if (!borrower.helpers.has(helper) || !isRunning()) return;
       const { port1, port2 } = new MessageChannel();
       place = borrower.count++;
       slot.last.tell({ type: "helper", helper: place, port: port1 }, [port1]);

@@ -1,8 +1,8 @@
 /** Aligns the objects of a scene, on this thread or in workers. */
-import { type Calibrated, inCalibration, isRaw } from "../calls/calibrate.js";
+import { inCalibration, isRaw } from "../calls/calibrate.js";
 import { type Call, type Engine, signalsOf } from "../calls/engine.js";
 import { isOfInput, Sim3AlignError } from "../error.js";
-import type { Arrangement, Placed } from "../modules/exports.js";
+import type { Arrangement, Calibrated, Placed } from "../modules/exports.js";
 import type { Modules } from "../modules/module.js";
 import { onAbort, reasonOf } from "../on-abort.js";
 import type { Progress } from "../options.js";
