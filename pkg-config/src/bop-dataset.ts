@@ -5,9 +5,9 @@ import { basename, join, resolve } from "node:path";
 import { type BopScene, bopId, bopModels, bopName, openBopScene } from "./bop-folder.js";
 import { fileNotFound } from "./case-files.js";
 import { read } from "./case-folder.js";
-import { failure } from "./error.js";
 import { isNumber, numbersIn, parsedJson, shown } from "./formats/json.js";
-import { isRecord, oncePerKey } from "./values.js";
+import { failure } from "./values/error.js";
+import { isRecord, oncePerKey } from "./values/values.js";
 
 /** The file of targets that a split has by default. */
 const TARGETS = "test_targets_bop19.json";

@@ -4,10 +4,10 @@ import { join } from "node:path";
 import { fileNotFound } from "./case-files.js";
 import { read, readMeshFile } from "./case-folder.js";
 import type { BopPose } from "./conventions/bop.js";
-import { failure, invalidArgument } from "./error.js";
 import { isNumber, parsedJson } from "./formats/json.js";
 import type { MeshFile } from "./input/types.js";
-import { isRecord } from "./values.js";
+import { failure, invalidArgument } from "./values/error.js";
+import { isRecord } from "./values/values.js";
 
 /** A scene of BOP: what its JSON files say of all its images. */
 export interface BopScene {

@@ -1,13 +1,13 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { failure, invalidArgument, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
+import { ownArgument } from "./input/border.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { DepthKind } from "./input/depth-kind.js";
-import { ownArgument } from "./input/own.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
-import { isRecord, withoutUndefined } from "./values.js";
+import { failure, invalidArgument, Sim3AlignError } from "./values/error.js";
+import { isRecord, withoutUndefined } from "./values/values.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;

@@ -14,7 +14,7 @@ import {
 } from "./case-files.js";
 import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
 import { formatsModule } from "./modules/readers.js";
-import { withoutUndefined } from "./values.js";
+import { withoutUndefined } from "./values/values.js";
 
 export type { ReadCaseOptions } from "./case-files.js";
 

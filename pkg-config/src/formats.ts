@@ -9,10 +9,11 @@ import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./form
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
+import { ownArgument, ownOptions } from "./input/border.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
-import { ownArgument, ownOptions } from "./input/own.js";
+import type { ColorSamples } from "./input/prepared-mesh.js";
 import type {
   CameraFileInput,
   CocoRle,
@@ -24,19 +25,18 @@ import type {
 } from "./input/types.js";
 import type { Formats } from "./modules/exports.js";
 import { fileReaders, formatsModule } from "./modules/readers.js";
-import type { WasmSource } from "./platform.js";
-import type { ColorSamples } from "./prepared-mesh.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
-import { isRecord, withoutUndefined } from "./values.js";
+import type { WasmSource } from "./types/platform.js";
+import { isRecord, withoutUndefined } from "./values/values.js";
 
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
-export { Sim3AlignError } from "./error.js";
 export type { CameraFile, ReadCameraOptions } from "./formats/camera-file.js";
 export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
 export type { DepthImage, ReadDepthOptions } from "./input/types.js";
 export type { SceneCase } from "./scene/scene-files.js";
+export { Sim3AlignError } from "./values/error.js";
 
 /** A mesh from a file, in the unit and axes of the file. */
 export interface MeshFromFile {

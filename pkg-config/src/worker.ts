@@ -1,13 +1,13 @@
 /** Worker script: runs the jobs of its aligner, or helps another worker with one, one at a time. */
 import { dropMesh, perform } from "./calls/calls.js";
 import { Work } from "./calls/work.js";
-import { internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Stage } from "./generated/types.js";
 import type { Core, DepthFiles, Exports, Formats, Joint, ModuleName, Registrar, Splats } from "./modules/exports.js";
 import { type CompiledModule, type LoadedModule, type ModuleTable, modulesBy, WasmModule } from "./modules/module.js";
 import { Helpers, Helping } from "./pool/helpers.js";
 import type { Answer, FromWorker, Request, ToWorker } from "./pool/messages.js";
-import { buffersOf } from "./pool/transfer.js";
+import { internalError, partsOf, Sim3AlignError } from "./values/error.js";
+import { buffersOf } from "./values/transfer.js";
 // Imported statically, because some bundlers put a worker script into a single file without dynamic imports.
 import * as coreGlue from "./wasm/core.js";
 import * as depthFilesGlue from "./wasm/depth-files.js";

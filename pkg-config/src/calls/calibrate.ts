@@ -1,10 +1,11 @@
 /** Views whose depth or focal length is not fully known: they are calibrated before their objects are aligned. */
-import { invalidArgument } from "../error.js";
+
 import { intrinsics } from "../input/camera.js";
 import type { CoreFrame } from "../input/core-input.js";
 import { isAffineInvariant } from "../input/depth-kind.js";
-import { isRecord } from "../kinds.js";
 import type { Calibrated } from "../modules/exports.js";
+import { invalidArgument } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
 
 /** Whether depth or focal length are not fully known. */
 export const isRaw = ({ depthKind, focalDeviation }: Pick<CoreFrame, "depthKind" | "focalDeviation">): boolean =>

@@ -1,5 +1,5 @@
 /** The calls as data, so that the same code runs them on the calling thread or in a worker. */
-import { isOfInput } from "../error.js";
+
 import type { CorrectedFrame } from "../generated/types.js";
 import type { CoreInput, CoreView } from "../input/core-input.js";
 import { resolveFrame, resolveViews } from "../input/frames.js";
@@ -24,9 +24,10 @@ import type {
   TrackedFrame,
   ViewAlignment,
   ViewsAlignment,
-} from "../results.js";
-import { sourcesOf, withNotes } from "../results.js";
-import { isTypedArray, withoutUndefined, wrongKind } from "../values.js";
+} from "../types/results.js";
+import { sourcesOf, withNotes } from "../types/results.js";
+import { isOfInput } from "../values/error.js";
+import { isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { Work } from "./work.js";
 

@@ -1,6 +1,6 @@
 /** Engines that run jobs: on the calling thread, or in workers. */
-import { checkAttached } from "../attached.js";
-import { disposed } from "../error.js";
+
+import { beforeAbort, checkSignals } from "../concurrency/on-abort.js";
 import type { CoreListener, Exports, ModuleName } from "../modules/exports.js";
 import {
   heaps,
@@ -10,10 +10,11 @@ import {
   modulesBy,
   releaseHeaps,
 } from "../modules/module.js";
-import { beforeAbort, checkSignals } from "../on-abort.js";
-import type { SignalLike } from "../platform.js";
-import type { ProgressListener } from "../progress.js";
+import type { SignalLike } from "../types/platform.js";
+import { disposed } from "../values/error.js";
+import { checkAttached } from "../values/values.js";
 import { type DataOf, dropMesh, type Job, type Method, perform, type ResultOf, trackerName } from "./calls.js";
+import type { ProgressListener } from "./progress.js";
 import { Work } from "./work.js";
 
 /** Options that control how a call runs. */

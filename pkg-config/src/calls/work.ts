@@ -1,7 +1,8 @@
 /** A job while it runs: its modules, its listener, and how it shares its thread. */
-import { withoutInput } from "../error.js";
+
 import type { Alignment, ViewsAlignment } from "../generated/types.js";
 import type { CoreInput, CoreViews } from "../input/core-input.js";
+import type { CoreMesh } from "../input/prepared-mesh.js";
 import type {
   CoreHelpers,
   CoreListener,
@@ -13,7 +14,7 @@ import type {
   Task,
 } from "../modules/exports.js";
 import type { LoadedModule, Modules } from "../modules/module.js";
-import type { CoreMesh } from "../prepared-mesh.js";
+import { withoutInput } from "../values/error.js";
 
 /** The searches, with which other threads may help. */
 interface Searches {

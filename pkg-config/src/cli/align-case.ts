@@ -14,7 +14,7 @@ import {
   type Sim3,
   type ViewsOptions,
 } from "../index.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { type CaseFlags, caseSettings } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
 import { correctedInput } from "./corrected-input.js";

@@ -1,5 +1,5 @@
 /** A batch: what is done, and what is written of it. */
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/values.js";
 import { BatchProgress } from "./batch-progress.js";
 import type { CaseKey } from "./jsonl-file.js";
 import { isMetric, noUnitNote } from "./lengths.js";

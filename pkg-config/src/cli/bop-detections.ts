@@ -1,10 +1,10 @@
 /** 2D detections in the format of BOP: masks of objects that a detector found, such as those of CNOS. */
 
 import { type BopTarget, targetKey } from "../bop-dataset.js";
-import { failure } from "../error.js";
 import { isNumber } from "../formats/json.js";
 import type { CocoRle } from "../input/types.js";
-import { isRecord } from "../values.js";
+import { failure } from "../values/error.js";
+import { isRecord } from "../values/values.js";
 import { best, grouped } from "./bop-scores.js";
 import { textOf } from "./parse.js";
 

@@ -2,7 +2,7 @@
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
 import { type DepthKind, depthKinds } from "../input/depth-kind.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { number } from "./parse.js";
 
 /** Values of the flags. */

@@ -1,5 +1,5 @@
 /** The results as a table of comma-separated values. */
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/values.js";
 import { isMetric } from "./lengths.js";
 import { LineFile } from "./line-file.js";
 import { shownIn } from "./pictures.js";

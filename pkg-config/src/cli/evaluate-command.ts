@@ -3,7 +3,6 @@
 import { Command } from "commander";
 import { frameNames, inputOfFrame, readCaseFolder, readFrames } from "../case-folder.js";
 import type { KnownPose } from "../conventions/pose-file.js";
-import { failure } from "../error.js";
 import {
   type Aligner,
   type AlignInput,
@@ -12,6 +11,7 @@ import {
   type OptionRow,
   type Sim3AlignError,
 } from "../index.js";
+import { failure } from "../values/error.js";
 import type { Done } from "./batch.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
 import {

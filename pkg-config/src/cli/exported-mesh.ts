@@ -3,10 +3,10 @@ import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
 import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
 import type { Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
+import type { Sim3Like } from "../input/sim3.js";
 import type { MeshArrays, MeshInput } from "../input/types.js";
 import { fileReaders } from "../modules/readers.js";
-import type { Sim3Like } from "../sim3.js";
-import { isRecord, withoutUndefined } from "../values.js";
+import { isRecord, withoutUndefined } from "../values/values.js";
 
 /** A mesh for a file, with its transform. */
 export interface ExportedMesh<M> {

@@ -1,7 +1,7 @@
 /** The results as JSON Lines: the record of a batch, from which it can be resumed. */
 import { appendFileSync, closeSync, createReadStream, openSync, readSync, statSync, truncateSync } from "node:fs";
 import { createInterface } from "node:readline";
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/values.js";
 import { contentHash, pathIn, recordedPath } from "./case-identity.js";
 import { LineFile } from "./line-file.js";
 import { lockRecord } from "./record-lock.js";

@@ -1,5 +1,5 @@
 /** Lengths in what is printed: metric, or in a unit that nobody knows. */
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/values.js";
 import { fixed } from "./table.js";
 
 /** What is said once of results whose lengths have no unit. */

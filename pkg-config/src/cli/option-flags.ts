@@ -1,6 +1,6 @@
 /** Flags for the options in the generated option tables. */
 import { type Command, InvalidArgumentError, Option } from "commander";
-import type { OptionRow } from "../options.js";
+import type { OptionRow } from "../types/options.js";
 import { direction, guard, number, scale, symmetry } from "./parse.js";
 
 /** Flags that are shorter than their option's name. */

@@ -1,7 +1,8 @@
 /** Outcomes of cases, for tables and for JSON. */
-import { describe, failure, Sim3AlignError } from "../error.js";
+
 import type { AlignResult, Evaluation, InputInfo, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
-import { withoutUndefined } from "../values.js";
+import { describe, failure, Sim3AlignError } from "../values/error.js";
+import { withoutUndefined } from "../values/values.js";
 import type { Lengths } from "./lengths.js";
 import type { Style } from "./style.js";
 import { UsageError } from "./usage-error.js";

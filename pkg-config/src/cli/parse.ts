@@ -1,9 +1,9 @@
 /** Parsers for flag values. Invalid values are usage errors. */
 import { readFileSync } from "node:fs";
 import { InvalidArgumentError } from "commander";
-import { MAX_WORKERS } from "../aligner-options.js";
+import { MAX_WORKERS } from "../aligner/aligner-options.js";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/values.js";
 import { UsageError } from "./usage-error.js";
 
 /** Parses a number. */

@@ -5,7 +5,7 @@ import { mkdir, rename, writeFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import type { CasePictures } from "../pictures/case-pictures.js";
 import type { ReportDetails, ReportRow } from "../report-page/types.js";
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/values.js";
 import { isMetric } from "./lengths.js";
 import { LineFile } from "./line-file.js";
 import { reportHtml } from "./report-html.js";

@@ -1,6 +1,6 @@
 /** The loop of all commands that work on many folders. */
 import { availableParallelism } from "node:os";
-import { MAX_WORKERS } from "../aligner-options.js";
+import { MAX_WORKERS } from "../aligner/aligner-options.js";
 import { type Aligner, createAligner, type Progress } from "../index.js";
 import { Batch, type Done } from "./batch.js";
 import type { BatchFlags } from "./batch-flags.js";

@@ -13,7 +13,7 @@ import {
   type SceneResult,
 } from "../index.js";
 import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align-case.js";
 import type { Done } from "./batch.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";

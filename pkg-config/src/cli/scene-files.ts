@@ -13,7 +13,7 @@ import { toMjcf } from "../simulators/mjcf.js";
 import { SIMULATOR_DEFAULTS, type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { type ExportedAs, exportedArrays, exportedMesh } from "./exported-mesh.js";
 import { number } from "./parse.js";
 import { fixed } from "./table.js";

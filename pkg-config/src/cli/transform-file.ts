@@ -1,8 +1,8 @@
 /** Transforms from JSON files. */
 import { read } from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
-import { failure, type Sim3AlignError } from "../error.js";
-import { isRecord, oncePerKey } from "../values.js";
+import { failure, type Sim3AlignError } from "../values/error.js";
+import { isRecord, oncePerKey } from "../values/values.js";
 
 /** The layout of a transform file, for --help. */
 export const transformFileHelp = `

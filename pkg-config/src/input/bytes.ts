@@ -1,8 +1,9 @@
 /** Files as bytes, and detection of their type. */
-import { checkAttached } from "../attached.js";
-import { describe, failure, invalidArgument, messageOf } from "../error.js";
-import { isBuffer, isKind, isTypedArray } from "../kinds.js";
+
 import type { LoadedModule } from "../modules/module.js";
+import { describe, failure, invalidArgument, messageOf } from "../values/error.js";
+import { isBuffer, isKind, isTypedArray } from "../values/kinds.js";
+import { checkAttached } from "../values/values.js";
 
 /** An array of bytes. */
 export type Bytes = Uint8Array | Uint8ClampedArray;

@@ -1,14 +1,15 @@
 /** Converts views and frames to the typed arrays and numbers of the core. */
-import { invalidArgument, renamed, Sim3AlignError } from "../error.js";
+
 import type { FileReaders } from "../modules/readers.js";
-import type { InputNotes } from "../results.js";
-import { coreSim3, type Sim3Like } from "../sim3.js";
-import { checkNames, isRecord, withoutUndefined } from "../values.js";
+import type { InputNotes } from "../types/results.js";
+import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
+import { checkNames, isRecord, withoutUndefined } from "../values/values.js";
 import type { CoreFrame, CoreViews } from "./core-input.js";
 import { checkSides } from "./depth.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
 import { frameProperties, readFrame, spelling } from "./resolve.js";
+import { coreSim3, type Sim3Like } from "./sim3.js";
 
 /** A resolved frame, and what its files say. */
 export interface ResolvedFrame {

@@ -1,13 +1,13 @@
 /** Meshes from arrays or mesh files. */
 
-import { failure, invalidArgument } from "../error.js";
 import { holdsGaussians } from "../formats/splat-files.js";
 import type { FileReaders } from "../modules/readers.js";
-import type { ColorSamples, CoreMesh } from "../prepared-mesh.js";
-import { isRecord, isTypedArray, oneOf, record, stringsIn, withoutUndefined, wrongKind } from "../values.js";
+import { failure, invalidArgument } from "../values/error.js";
+import { isRecord, isTypedArray, oneOf, record, stringsIn, withoutUndefined, wrongKind } from "../values/values.js";
 import type { MeshArrays, ReadMeshOptions } from "../wasm/formats.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
+import type { ColorSamples, CoreMesh } from "./prepared-mesh.js";
 import type { MeshFile } from "./types.js";
 
 /** The readers of mesh files. */

@@ -1,9 +1,9 @@
 /** Converts inputs to the typed arrays and numbers of the core. */
 
-import { invalidArgument } from "../error.js";
 import type { FileReaders } from "../modules/readers.js";
-import type { InputNotes } from "../results.js";
-import { checkNames, isRecord, isTypedArray, oneOf, withoutUndefined } from "../values.js";
+import type { InputNotes } from "../types/results.js";
+import { invalidArgument } from "../values/error.js";
+import { checkNames, isRecord, isTypedArray, oneOf, withoutUndefined } from "../values/values.js";
 import { cameraOf, type ResolvedCamera } from "./camera.js";
 import type { Photo } from "./colors.js";
 import type { CoreInput, CoreView } from "./core-input.js";

@@ -1,8 +1,8 @@
 /** The inputs of the calls, and what depth files hold. */
-import type { BlobLike } from "../platform.js";
-import type { ColorSamples, PreparedMesh } from "../prepared-mesh.js";
-import type { Sim3Like } from "../sim3.js";
+import type { BlobLike } from "../types/platform.js";
 import type { DepthKind } from "./depth-kind.js";
+import type { ColorSamples, PreparedMesh } from "./prepared-mesh.js";
+import type { Sim3Like } from "./sim3.js";
 
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;

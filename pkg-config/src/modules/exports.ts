@@ -15,8 +15,8 @@ import type {
   ViewsAlignment,
 } from "../generated/types.js";
 import type { CoreFrame, CoreInput, CoreView, CoreViews } from "../input/core-input.js";
+import type { CoreMesh } from "../input/prepared-mesh.js";
 import type { DepthImage } from "../input/types.js";
-import type { CoreMesh } from "../prepared-mesh.js";
 import type { Support } from "../scene/types.js";
 import type { MeshArrays } from "../wasm/formats.js";
 

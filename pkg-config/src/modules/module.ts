@@ -1,9 +1,18 @@
 /** Loading and calling one WebAssembly module. */
-import { checkAttached } from "../attached.js";
-import { failure, internalError, isCoded, isExhausted, outOfMemory, Sim3AlignError, withoutInput } from "../error.js";
-import { isKind } from "../kinds.js";
-import type { LazySource, WasmSource } from "../platform.js";
-import { Queue } from "../queue.js";
+
+import { Queue } from "../concurrency/queue.js";
+import type { LazySource, WasmSource } from "../types/platform.js";
+import {
+  failure,
+  internalError,
+  isCoded,
+  isExhausted,
+  outOfMemory,
+  Sim3AlignError,
+  withoutInput,
+} from "../values/error.js";
+import { isKind } from "../values/kinds.js";
+import { checkAttached } from "../values/values.js";
 import type { Exports, ModuleName } from "./exports.js";
 
 /** A compiled `WebAssembly.Module`, whose type no library but the DOM's declares. */

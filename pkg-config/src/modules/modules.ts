@@ -1,7 +1,8 @@
 /** The WebAssembly modules of the aligner, shared by all aligners of this realm, and where the caller has them. */
-import { invalidArgument } from "../error.js";
-import { isKind, isRecord } from "../kinds.js";
-import type { LazySource, WasmSource } from "../platform.js";
+
+import type { LazySource, WasmSource } from "../types/platform.js";
+import { invalidArgument } from "../values/error.js";
+import { isKind, isRecord } from "../values/kinds.js";
 import * as coreGlue from "../wasm/core.js";
 import type { Core, Joint, ModuleName, Registrar } from "./exports.js";
 import { type ModuleTable, moduleFile, WasmModule } from "./module.js";

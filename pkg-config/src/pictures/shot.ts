@@ -3,11 +3,11 @@ import { resizeMask } from "../conventions/resize.js";
 import type { Pinhole } from "../formats/pinhole.js";
 import type { MaskPixels } from "../formats/pixels.js";
 import type { Photo } from "../input/colors.js";
+import { type CoreMesh, nextMeshId } from "../input/prepared-mesh.js";
 import { resolveInput } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
 import { coreModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
-import { type CoreMesh, nextMeshId } from "../prepared-mesh.js";
 import type { View } from "./view.js";
 
 /** What pictures show. Its mesh is kept by the core until it is disposed. */

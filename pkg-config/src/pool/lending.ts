@@ -1,9 +1,9 @@
 /** Lends idle workers of a pool to long jobs of others. */
 import { type Job, moduleOf } from "../calls/calls.js";
-import type { CoreMesh } from "../prepared-mesh.js";
-import type { Queue } from "../queue.js";
+import type { Queue } from "../concurrency/queue.js";
+import type { CoreMesh } from "../input/prepared-mesh.js";
+import { copied } from "../values/transfer.js";
 import type { Slot, WorkerSetup } from "./pool-worker.js";
-import { copied } from "./transfer.js";
 
 /** A running job that has asked for help. */
 interface Borrower {

@@ -3,12 +3,12 @@
  * with one result. The first job is empty: its result shows that the script runs.
  */
 import type { Job } from "../calls/calls.js";
-import type { ErrorParts } from "../error.js";
 import type { Stage } from "../generated/types.js";
-import { isRecord } from "../kinds.js";
+import type { CoreMesh } from "../input/prepared-mesh.js";
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
-import type { CoreMesh } from "../prepared-mesh.js";
+import type { ErrorParts } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
 
 /** Help for the worker at the other end of a port with its job. */
 export interface Help {

@@ -1,8 +1,9 @@
 /** A worker of the pool, as the thread of the pool knows it. */
-import { type ErrorParts, messageOf, Sim3AlignError } from "../error.js";
+
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
-import type { CreateWorker } from "../platform.js";
+import type { CreateWorker } from "../types/platform.js";
+import { type ErrorParts, messageOf, Sim3AlignError } from "../values/error.js";
 import { type Answer, type Instances, isFromWorker, type Report, type Request, type ToWorker } from "./messages.js";
 import { type Port, portOf } from "./port.js";
 

@@ -1,17 +1,17 @@
 /** A pool of workers that run jobs in parallel. */
 import { type DataOf, type Job, type Method, moduleOf, type ResultOf } from "../calls/calls.js";
 import { type Call, checkReady, type Engine, type MainThreadEngine, type Outcome, signalsOf } from "../calls/engine.js";
-import { disposed, failure, partsOf, Sim3AlignError } from "../error.js";
-import { isAttached } from "../kinds.js";
+import { beforeAbort, checkSignals, onAbort } from "../concurrency/on-abort.js";
+import { Queue } from "../concurrency/queue.js";
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
-import { beforeAbort, checkSignals, onAbort } from "../on-abort.js";
-import type { SignalLike } from "../platform.js";
-import { Queue } from "../queue.js";
+import type { SignalLike } from "../types/platform.js";
+import { disposed, failure, partsOf, Sim3AlignError } from "../values/error.js";
+import { isAttached } from "../values/kinds.js";
+import { buffersOf, copied, isSendable, sendableParts } from "../values/transfer.js";
 import { Lending } from "./lending.js";
 import type { Answer, Report } from "./messages.js";
 import { JobFailed, Slot, Unsendable, WorkerLost, type WorkerSetup } from "./pool-worker.js";
-import { buffersOf, copied, isSendable, sendableParts } from "./transfer.js";
 
 /** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;

@@ -1,6 +1,7 @@
 /** One interface for browser workers and Node worker threads. */
-import { failure } from "../error.js";
-import type { CreateWorker, WorkerLike } from "../platform.js";
+
+import type { CreateWorker, WorkerLike } from "../types/platform.js";
+import { failure } from "../values/error.js";
 import { startedFromAnywhere } from "./cross-origin.js";
 import type { ToWorker } from "./messages.js";
 

@@ -1,15 +1,15 @@
 /** Aligns the objects of a scene, on this thread or in workers. */
 import { inCalibration, isRaw } from "../calls/calibrate.js";
 import { type Call, type Engine, signalsOf } from "../calls/engine.js";
-import { isOfInput, Sim3AlignError } from "../error.js";
+import { ProgressListener } from "../calls/progress.js";
+import { onAbort, reasonOf } from "../concurrency/on-abort.js";
+import { withArrays } from "../input/prepared-mesh.js";
+import { coreSim3, type Sim3 } from "../input/sim3.js";
 import type { Arrangement, Calibrated, Placed } from "../modules/exports.js";
 import type { Modules } from "../modules/module.js";
-import { onAbort, reasonOf } from "../on-abort.js";
-import type { Progress } from "../options.js";
-import { withArrays } from "../prepared-mesh.js";
-import { ProgressListener } from "../progress.js";
-import { withNotes } from "../results.js";
-import { coreSim3, type Sim3 } from "../sim3.js";
+import type { Progress } from "../types/options.js";
+import { withNotes } from "../types/results.js";
+import { isOfInput, Sim3AlignError } from "../values/error.js";
 import { inputOf, othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
 

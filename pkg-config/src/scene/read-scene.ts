@@ -1,13 +1,14 @@
 /** Reads a scene: the view once, and a mask per object. */
-import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../error.js";
+
 import { nearest } from "../formats/pixels.js";
 import type { CoreView } from "../input/core-input.js";
 import { readMask } from "../input/mask.js";
 import { readView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
-import type { InputNotes } from "../results.js";
-import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
+import type { InputNotes } from "../types/results.js";
+import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
+import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values/values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */

@@ -2,7 +2,7 @@
 import { type CaseFiles, fileNotFound, filesOf, INITIAL_FILE, meshFile, type ReadCaseOptions } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import type { LoadFormats } from "../modules/readers.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose files have been read, but not decoded. */

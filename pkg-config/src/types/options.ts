@@ -1,5 +1,5 @@
 /** Options of the calls. The documentation of each field states its range and default. */
-import type * as Core from "./generated/types.js";
+import type * as Core from "../generated/types.js";
 import type { SignalLike } from "./platform.js";
 
 export type { Direction, ScaleOption, SymmetryAxis, SymmetryOption } from "./argument-types.js";

@@ -1,7 +1,7 @@
 /** Meshes that are read, validated and decimated once for many calls. */
-import { failure, invalidArgument } from "./error.js";
-import { isRecord } from "./kinds.js";
-import { copied } from "./pool/transfer.js";
+import { failure, invalidArgument } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
+import { copied } from "../values/transfer.js";
 
 /** Colours of a surface, at points spread evenly over it. */
 export interface ColorSamples {

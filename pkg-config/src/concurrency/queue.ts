@@ -1,6 +1,7 @@
 /** A queue of calls for what only one call can use at a time: a worker, or the heap of this thread. */
+
+import type { SignalLike } from "../types/platform.js";
 import { onAbort, reasonOf } from "./on-abort.js";
-import type { SignalLike } from "./platform.js";
 
 /** Items, each of which one call has at a time. Calls get them in their order. */
 export class Queue<T> {

@@ -1,5 +1,5 @@
 /** The error type of the package, and conversions to it. */
-import type { ErrorCode as CoreErrorCode } from "./generated/types.js";
+import type { ErrorCode as CoreErrorCode } from "../generated/types.js";
 import { proxiedKind, typedArrayKind } from "./kinds.js";
 
 /**

@@ -1,10 +1,11 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
-import { failure, invalidArgument } from "./error.js";
-import { ownArgument, ownOptions } from "./input/own.js";
-import type { LazyModules, WasmModules } from "./modules/modules.js";
-import { onAbort } from "./on-abort.js";
-import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "./platform.js";
-import { isKind, isRecord, withoutUndefined } from "./values.js";
+
+import { onAbort } from "../concurrency/on-abort.js";
+import { ownArgument, ownOptions } from "../input/border.js";
+import type { LazyModules, WasmModules } from "../modules/modules.js";
+import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "../types/platform.js";
+import { failure, invalidArgument } from "../values/error.js";
+import { isKind, isRecord, withoutUndefined } from "../values/values.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {

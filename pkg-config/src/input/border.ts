@@ -2,10 +2,11 @@
  * The border: arguments are read once, before anything else looks at them. What is behind it are plain objects and arrays,
  * and typed arrays that have their memory.
  */
-import { checkAttached } from "../attached.js";
-import { failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "../error.js";
-import { isBuffer, isKind, isRecord, proxiedKind } from "../kinds.js";
-import { PreparedMesh } from "../prepared-mesh.js";
+
+import { failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "../values/error.js";
+import { isBuffer, isKind, isRecord, proxiedKind } from "../values/kinds.js";
+import { checkAttached } from "../values/values.js";
+import { PreparedMesh } from "./prepared-mesh.js";
 
 /** No argument has more levels: a camera file of several images has five. Deeper objects are left out. */
 const MAX_LEVELS = 8;

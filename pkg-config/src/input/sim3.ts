@@ -1,9 +1,9 @@
 /** Similarity transforms as arguments. */
-export type { Sim3Like } from "./argument-types.js";
+export type { Sim3Like } from "../types/argument-types.js";
 
-import { isRecord, plainNumbers } from "./values.js";
+import { isRecord, plainNumbers } from "../values/values.js";
 
-export type { Sim3 } from "./generated/types.js";
+export type { Sim3 } from "../generated/types.js";
 
 /** Converts a similarity to the form that the core reads. The core checks the numbers. */
 export function coreSim3(transform: unknown): unknown {

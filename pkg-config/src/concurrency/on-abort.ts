@@ -1,5 +1,5 @@
 /** Abort signals: callbacks, and checks. */
-import type { SignalLike } from "./platform.js";
+import type { SignalLike } from "../types/platform.js";
 
 interface Followers {
   acts: Set<(reason: unknown) => void>;

@@ -1,6 +1,6 @@
 /** Validation of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
-import { describe, failure, invalidArgument, type Sim3AlignError } from "./error.js";
-import { isKind, isRecord, isTypedArray, typedArrayKind } from "./kinds.js";
+import { describe, failure, invalidArgument, type Sim3AlignError, withoutInput } from "./error.js";
+import { isAttached, isBuffer, isKind, isRecord, isTypedArray, typedArrayKind } from "./kinds.js";
 
 export { isKind, isRecord, isTypedArray };
 
@@ -9,6 +9,33 @@ export function wrongKind(argument: string, value: unknown, expected: string, ty
   const isArray = isKind(value, "Array") || (ArrayBuffer.isView(value) && !isKind(value, "DataView"));
   const remedy = isArray ? `Convert it: ${typedArray}.from(${argument}).` : "Pass one of these.";
   return invalidArgument(argument, value, expected, remedy);
+}
+
+/**
+ * Checks all typed arrays and buffers in an argument, which consists of plain objects and arrays. Detached memory must
+ * neither reach the modules, which would trap, nor a worker of Node, which would get no message.
+ * @param argument its name in errors
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
+ */
+export function checkAttached(argument: string, value: unknown): void {
+  if (ArrayBuffer.isView(value) || isBuffer(value)) {
+    if (!isAttached(value)) throw detached(argument, value);
+  } else if (isRecord(value) || Array.isArray(value)) {
+    for (const [name, inner] of Object.entries(value)) {
+      if (typeof inner === "object")
+        checkAttached(`${argument}${Array.isArray(value) ? `[${name}]` : `.${name}`}`, inner);
+    }
+  }
+}
+
+function detached(argument: string, value: unknown): Sim3AlignError {
+  return failure(
+    "INVALID_ARGUMENT",
+    withoutInput(argument),
+    `${describe(value).replace(/ of 0$/, "")} whose memory is detached: it was moved to another thread, or shrunk`,
+    "an array with its memory",
+    "After a call with transfer: true, use the arrays in `input` of the result or of the error.",
+  );
 }
 
 /** Converts any array to a plain one. Other values are unchanged, for the core to reject. */

@@ -1,5 +1,38 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** The main class of the package. */
+
+import { cachesMesh, type DataOf, type Method, type ResultOf, type SettingsOf } from "../calls/calls.js";
+import { type Call, type Engine, MainThreadEngine, signalsOf } from "../calls/engine.js";
+import { checkedListener, ProgressListener } from "../calls/progress.js";
+import { checkSignals, reasonOf } from "../concurrency/on-abort.js";
+import { Queue } from "../concurrency/queue.js";
+import type { Preset } from "../generated/types.js";
+import { ownArgument } from "../input/border.js";
+import { nextMeshId, PreparedMesh, withArrays } from "../input/prepared-mesh.js";
+import { coreSim3, type Sim3Like } from "../input/sim3.js";
+import type { AlignInput, MeshInput, ViewsInput } from "../input/types.js";
+import type { Core, ModuleName } from "../modules/exports.js";
+import { type LoadedModule, type Modules, modulesBy } from "../modules/module.js";
+import { checkedModules, wasmModules } from "../modules/modules.js";
+import { WorkerPool } from "../pool/pool.js";
+import { workerFactory } from "../pool/port.js";
+import { alignScene } from "../scene/align-scene.js";
+import type { SceneInput, SceneOptions, SceneResult } from "../scene/types.js";
+import type {
+  AlignAllOptions,
+  CallOptions,
+  EstimateSim3Options,
+  EvaluateOptions,
+  OptionsOf,
+  Progress,
+  RegisterOptions,
+  TrackOptions,
+  ViewsOptions,
+} from "../types/options.js";
+import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "../types/results.js";
+import { disposed, failure, internalError, Sim3AlignError } from "../values/error.js";
+import { copied } from "../values/transfer.js";
+import { checkAttached, isRecord, withoutUndefined } from "../values/values.js";
 import { alignAll } from "./align-all.js";
 import {
   type AlignerOptions,
@@ -12,40 +45,7 @@ import {
   checkedStartMs,
   checkedWorkers,
 } from "./aligner-options.js";
-import { checkAttached } from "./attached.js";
-import { cachesMesh, type DataOf, type Method, type ResultOf, type SettingsOf } from "./calls/calls.js";
-import { type Call, type Engine, MainThreadEngine, signalsOf } from "./calls/engine.js";
-import { disposed, failure, internalError, Sim3AlignError } from "./error.js";
-import type { Preset } from "./generated/types.js";
-import { ownArgument } from "./input/own.js";
-import type { AlignInput, MeshInput, ViewsInput } from "./input/types.js";
-import type { Core, ModuleName } from "./modules/exports.js";
-import { type LoadedModule, type Modules, modulesBy } from "./modules/module.js";
-import { checkedModules, wasmModules } from "./modules/modules.js";
-import { checkSignals, reasonOf } from "./on-abort.js";
-import type {
-  AlignAllOptions,
-  CallOptions,
-  EstimateSim3Options,
-  EvaluateOptions,
-  OptionsOf,
-  Progress,
-  RegisterOptions,
-  TrackOptions,
-  ViewsOptions,
-} from "./options.js";
-import { WorkerPool } from "./pool/pool.js";
-import { workerFactory } from "./pool/port.js";
-import { copied } from "./pool/transfer.js";
-import { nextMeshId, PreparedMesh, withArrays } from "./prepared-mesh.js";
-import { checkedListener, ProgressListener } from "./progress.js";
-import { Queue } from "./queue.js";
-import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "./results.js";
-import { alignScene } from "./scene/align-scene.js";
-import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
-import { coreSim3, type Sim3Like } from "./sim3.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
-import { isRecord, withoutUndefined } from "./values.js";
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;

@@ -2,9 +2,10 @@
  * Results of the calls: plain objects, which `JSON.stringify` writes completely. `null` marks a value that could not be
  * measured.
  */
-import type { Sim3AlignError } from "./error.js";
-import type * as Core from "./generated/types.js";
-import type { AlignInput, FrameInput, ViewsInput } from "./input/types.js";
+
+import type * as Core from "../generated/types.js";
+import type { AlignInput, FrameInput, ViewsInput } from "../input/types.js";
+import type { Sim3AlignError } from "../values/error.js";
 
 /** How the depth map and the camera of a view were read. */
 export interface InputInfo {

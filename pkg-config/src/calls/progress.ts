@@ -1,8 +1,8 @@
 /** Reports the progress of the core to the caller. */
 
-import { invalidArgument } from "./error.js";
-import type { Progress } from "./options.js";
-import type { SignalLike } from "./platform.js";
+import type { Progress } from "../types/options.js";
+import type { SignalLike } from "../types/platform.js";
+import { invalidArgument } from "../values/error.js";
 
 /** Maximum number of reports per second. */
 const MAX_PER_SECOND = 20;

@@ -1,5 +1,5 @@
 /** Copies or lists the arrays that are sent to a worker. */
-import { isBuffer, isKind, isRecord, typedArrayKind } from "../kinds.js";
+import { isBuffer, isKind, isRecord, typedArrayKind } from "./kinds.js";
 
 type View = new (buffer: ArrayBuffer) => ArrayBufferView;
 

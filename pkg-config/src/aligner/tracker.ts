@@ -1,20 +1,20 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** Trackers: one object through a video. */
 
+import type { Job, Method } from "../calls/calls.js";
+import type { Engine, MainThreadEngine } from "../calls/engine.js";
+import { ProgressListener } from "../calls/progress.js";
+import { checkSignals, onAbort } from "../concurrency/on-abort.js";
+import type { CorrectedFrame } from "../generated/types.js";
+import { ownArgument } from "../input/border.js";
+import { coreSim3, type Sim3Like } from "../input/sim3.js";
+import type { FrameInput, MeshInput } from "../input/types.js";
+import type { CallOptions } from "../types/options.js";
+import type { SignalLike } from "../types/platform.js";
+import type { TrackedFrame } from "../types/results.js";
+import { disposed, internalError, invalidArgument, Sim3AlignError } from "../values/error.js";
+import { sendableParts } from "../values/transfer.js";
 import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";
-import type { Job, Method } from "./calls/calls.js";
-import type { Engine, MainThreadEngine } from "./calls/engine.js";
-import { disposed, internalError, invalidArgument, Sim3AlignError } from "./error.js";
-import type { CorrectedFrame } from "./generated/types.js";
-import { ownArgument } from "./input/own.js";
-import type { FrameInput, MeshInput } from "./input/types.js";
-import { checkSignals, onAbort } from "./on-abort.js";
-import type { CallOptions } from "./options.js";
-import type { SignalLike } from "./platform.js";
-import { sendableParts } from "./pool/transfer.js";
-import { ProgressListener } from "./progress.js";
-import type { TrackedFrame } from "./results.js";
-import { coreSim3, type Sim3Like } from "./sim3.js";
 
 /**
  * The engine of a tracker. One that other calls share outlives the tracker.

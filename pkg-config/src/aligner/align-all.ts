@@ -1,10 +1,10 @@
 /** Aligns many inputs with bounded memory, and yields each result when it is ready. */
 
-import { invalidArgument, type Sim3AlignError } from "./error.js";
-import type { AlignInput } from "./input/types.js";
-import { checkSignals, onAbort } from "./on-abort.js";
-import type { SignalLike } from "./platform.js";
-import type { AlignAllResult } from "./results.js";
+import { checkSignals, onAbort } from "../concurrency/on-abort.js";
+import type { AlignInput } from "../input/types.js";
+import type { SignalLike } from "../types/platform.js";
+import type { AlignAllResult } from "../types/results.js";
+import { invalidArgument, type Sim3AlignError } from "../values/error.js";
 
 /** Options of a batch. */
 export interface BatchOptions<A> {
