@@ -1,7 +1,7 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
-import { ownArgument } from "./input/border.js";
+import { plainArgument } from "./input/border.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { DepthKind } from "./input/depth-kind.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
@@ -211,7 +211,7 @@ function decoded(uri: string): string {
 
 /** The files of a call, read once. */
 export function ownFiles(files: CaseFiles): CaseFiles {
-  if (isRecord(files)) return ownArgument("files", files);
+  if (isRecord(files)) return plainArgument("files", files);
   throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
 }
 

@@ -9,7 +9,7 @@ import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./form
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
-import { ownArgument, ownOptions } from "./input/border.js";
+import { plainArgument, plainOptions } from "./input/border.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
@@ -88,7 +88,7 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<PixelArray<Uint8Array>> {
-  if (isRecord(file)) return fromCocoRle(ownArgument("rle", file as unknown as CocoRle));
+  if (isRecord(file)) return fromCocoRle(plainArgument("rle", file as unknown as CocoRle));
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return call(bytes, (readers) => readers.readMask(bytes));
@@ -214,11 +214,11 @@ export async function readSam3d(files: CaseFiles, settings: ReadCaseOptions = {}
 }
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {
-  const given = ownArgument(argument, file);
+  const given = plainArgument(argument, file);
   return typeof given === "string" || isRecord(given) || Array.isArray(given) ? given : requiredBytes("file", given);
 }
 
-const optionsOf = <T extends object>(options: T) => withoutUndefined(ownOptions(options));
+const optionsOf = <T extends object>(options: T) => withoutUndefined(plainOptions(options));
 
 const call = <T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> =>
   callReader(() => formatsModule.load(), "file", bytes, read);

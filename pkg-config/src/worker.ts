@@ -1,10 +1,10 @@
 /** Worker script: runs the jobs of its aligner, or helps another worker with one, one at a time. */
 import { dropMesh, perform } from "./calls/calls.js";
-import { Work } from "./calls/work.js";
+import { JobContext } from "./calls/context.js";
 import type { Stage } from "./generated/types.js";
-import type { Core, DepthFiles, Exports, Formats, Joint, ModuleName, Registrar, Splats } from "./modules/exports.js";
+import type { Exports, ModuleName } from "./modules/exports.js";
 import { type CompiledModule, type LoadedModule, type ModuleTable, modulesBy, WasmModule } from "./modules/module.js";
-import { Helpers, Helping } from "./pool/helpers.js";
+import { HelperSession, Helpers } from "./pool/helpers.js";
 import type { Answer, FromWorker, Request, ToWorker } from "./pool/messages.js";
 import { internalError, partsOf, Sim3AlignError } from "./values/error.js";
 import { buffersOf } from "./values/transfer.js";
@@ -29,18 +29,18 @@ class WorkerHost {
   /** The compiled modules that have come with jobs. */
   readonly #compiled = new Map<ModuleName, CompiledModule>();
   readonly #table: ModuleTable = {
-    core: this.#module<Core>("core", coreGlue),
-    formats: this.#module<Formats>("formats", formatsGlue),
-    depthFiles: this.#module<DepthFiles>("depthFiles", depthFilesGlue),
-    splats: this.#module<Splats>("splats", splatsGlue),
-    joint: this.#module<Joint>("joint", jointGlue),
-    registration: this.#module<Registrar>("registration", registrationGlue),
+    core: this.#module("core", coreGlue),
+    formats: this.#module("formats", formatsGlue),
+    depthFiles: this.#module("depthFiles", depthFilesGlue),
+    splats: this.#module("splats", splatsGlue),
+    joint: this.#module("joint", jointGlue),
+    registration: this.#module("registration", registrationGlue),
   };
   readonly #modules = modulesBy((name) => this.#loaded(name));
   /** The helpers of the running job. */
   #helpers: Helpers | undefined;
   /** The help that this worker gives. */
-  #helping: Helping | undefined;
+  #session: HelperSession | undefined;
 
   constructor(post: Post) {
     this.#post = post;
@@ -48,7 +48,7 @@ class WorkerHost {
 
   receive(message: ToWorker): void {
     if (message.type === "job") this.#answer(message);
-    else if (message.type === "stop") this.#helping?.stop();
+    else if (message.type === "stop") this.#session?.stop();
     else if (this.#helpers !== undefined) this.#helpers.change(message.helper, message.port);
     // The job has ended in the meantime.
     else message.port?.close();
@@ -79,8 +79,8 @@ class WorkerHost {
   async #performed({ job, wantsProgress }: Request): Promise<unknown> {
     if (job.method === "start") return {};
     if (job.method === "help") {
-      this.#helping = new Helping(job.data);
-      await this.#helping.run(this.#modules);
+      this.#session = new HelperSession(job.data);
+      await this.#session.run(this.#modules);
       return {};
     }
     const helpers = new Helpers(() => this.#post({ type: "progress" }));
@@ -88,7 +88,7 @@ class WorkerHost {
     const listener = (stage: Stage, fraction: number, best?: Float64Array) =>
       this.#post({ type: "progress", stage, fraction, best });
     try {
-      return await perform(job, new Work(this.#modules, helpers, wantsProgress ? listener : undefined));
+      return await perform(job, new JobContext(this.#modules, helpers, wantsProgress ? listener : undefined));
     } finally {
       this.#helpers = undefined;
       helpers.close();
@@ -108,8 +108,8 @@ class WorkerHost {
     return { core: core.loaded?.instance, joint: joint.loaded?.instance };
   }
 
-  #module<G>(name: ModuleName, glue: object): WasmModule<G> {
-    return new WasmModule<G>(
+  #module<N extends ModuleName>(name: N, glue: object): WasmModule<Exports[N]> {
+    return new WasmModule(
       name,
       () => this.#compiled.get(name) as CompiledModule,
       () => glue,

@@ -1,7 +1,7 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
 
 import { onAbort } from "../concurrency/on-abort.js";
-import { ownArgument, ownOptions } from "../input/border.js";
+import { plainArgument, plainOptions } from "../input/border.js";
 import type { LazyModules, WasmModules } from "../modules/modules.js";
 import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "../types/platform.js";
 import { failure, invalidArgument } from "../values/error.js";
@@ -40,7 +40,7 @@ export interface BundledAssets {
 
 /** Options without undefined properties. The core checks names and values. */
 export function checkedOptions<T extends object>(options: T | undefined) {
-  const own = options === undefined ? ({} as T) : ownOptions(options);
+  const own = options === undefined ? ({} as T) : plainOptions(options);
   const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
   if (misplaced === undefined) return withoutUndefined(own);
   const found = `\`${misplaced}\`, which is an option of createAligner`;
@@ -60,7 +60,7 @@ export function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
   if (!isRecord(options)) {
     throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
   }
-  const own = ownArgument("options", options);
+  const own = plainArgument("options", options);
   const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
   if (unknown === undefined) return own;
   const remedy = "Check the spelling. Options of a call, such as `quality`, belong to the call.";

@@ -7,7 +7,7 @@ import { checkedListener, ProgressListener } from "../calls/progress.js";
 import { checkSignals, reasonOf } from "../concurrency/on-abort.js";
 import { Queue } from "../concurrency/queue.js";
 import type { Preset } from "../generated/types.js";
-import { ownArgument } from "../input/border.js";
+import { plainArgument } from "../input/border.js";
 import { nextMeshId, PreparedMesh, withArrays } from "../input/prepared-mesh.js";
 import { coreSim3, type Sim3Like } from "../input/sim3.js";
 import type { AlignInput, MeshInput, ViewsInput } from "../input/types.js";
@@ -182,7 +182,7 @@ export class Aligner {
       throw failure("UNKNOWN_OPTION", "options.initial", "a pose for all objects", "options of alignScene", remedy);
     }
     const isReturned = checkedFlag("transfer", transfer);
-    const own = ownArgument("input", scene);
+    const own = plainArgument("input", scene);
     const call = { signal: checkedSignal(signal), progress: new ProgressListener(onProgress), transfer: false };
     const settings = { options: rest, snap: checkedFlag("snap", snap) };
     const result = await guarded(call, () => {
@@ -217,7 +217,7 @@ export class Aligner {
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial as Sim3Like) };
     const listened = checkedSignal(signal);
     this.#checkUsable();
-    const { release, ...own } = withArrays(ownArgument("input", { mesh }), this.#engine);
+    const { release, ...own } = withArrays(plainArgument("input", { mesh }), this.#engine);
     const closed = (tracker: Tracker) => this.#trackers.delete(tracker);
     const opening = Tracker.open(this.#dedicated(), own as TrackerMesh, coreOptions, listened, closed);
     const tracker = await opening.finally(release);
@@ -235,7 +235,7 @@ export class Aligner {
   async evaluate(input: AlignInput, transform: Sim3Like, options: EvaluateOptions = {}): Promise<Evaluation> {
     const { truth, ...rest } = checkedOptions(options);
     const coreOptions = truth === undefined ? rest : { ...rest, truth: coreSim3(truth) };
-    const pose = coreSim3(ownArgument("transform", transform));
+    const pose = coreSim3(plainArgument("transform", transform));
     return this.#run("evaluate", input, coreOptions, (settings) => ({ transform: pose, settings }));
   }
 
@@ -322,7 +322,7 @@ export class Aligner {
     { onProgress, meshId }: { onProgress?: unknown; meshId?: number } = {},
   ): Promise<ResultOf<M>> {
     this.#checkUsable();
-    const own = ownArgument("input", data);
+    const own = plainArgument("input", data);
     const { release, restored, ...sent } = withArrays(own, this.#engine, cachesMesh(method, own));
     const job = { method, options: settings(options), ...(meshId === undefined ? sent : { ...sent, meshId }) };
     const progress = new ProgressListener(onProgress);

@@ -6,7 +6,7 @@ import type { Engine, MainThreadEngine } from "../calls/engine.js";
 import { ProgressListener } from "../calls/progress.js";
 import { checkSignals, onAbort } from "../concurrency/on-abort.js";
 import type { CorrectedFrame } from "../generated/types.js";
-import { ownArgument } from "../input/border.js";
+import { plainArgument } from "../input/border.js";
 import { coreSim3, type Sim3Like } from "../input/sim3.js";
 import type { FrameInput, MeshInput } from "../input/types.js";
 import type { CallOptions } from "../types/options.js";
@@ -104,7 +104,7 @@ export class Tracker {
     const { signal, transfer = false } = checkedOptions(options);
     const listened = checkedSignal(signal);
     const isMoved = checkedFlag("transfer", transfer);
-    const data = ownArgument("input", frame);
+    const data = plainArgument("input", frame);
     const job = { method: "trackFrame", data, options: { tracker: this.#id } } as const;
     const { result, data: moved } = await this.#inOrder(job, isMoved, listened);
     return isMoved ? { ...result, input: moved } : result;
@@ -124,7 +124,7 @@ export class Tracker {
     if (frame !== undefined && frame !== null && typeof frame !== "number") {
       throw invalidArgument("frame", frame, "the number of a frame", "Pass `frame` of its result.");
     }
-    const data = { pose: sendableParts(coreSim3(ownArgument("pose", pose))), frame };
+    const data = { pose: sendableParts(coreSim3(plainArgument("pose", pose))), frame };
     return (await this.#inOrder({ method: "correctTrack", data, options: { tracker: this.#id } })).result;
   }
 

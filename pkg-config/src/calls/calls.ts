@@ -2,9 +2,8 @@
 
 import type { CorrectedFrame } from "../generated/types.js";
 import type { CoreInput, CoreView } from "../input/core-input.js";
-import { resolveFrame, resolveViews } from "../input/frames.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
-import { resolveInput } from "../input/resolve.js";
+import { resolveFrame, resolveInput, resolveViews } from "../input/resolve.js";
 import type { AlignInput, FrameInput, MeshInput, ViewsInput } from "../input/types.js";
 import type {
   Calibrated,
@@ -29,7 +28,7 @@ import { sourcesOf, withNotes } from "../types/results.js";
 import { isOfInput } from "../values/error.js";
 import { isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
-import type { Work } from "./work.js";
+import type { JobContext } from "./context.js";
 
 /** Two clouds and, for `estimateSim3`, the correspondences between their points. */
 type Clouds = NonNullable<Registration["input"]>;
@@ -78,44 +77,45 @@ export interface Job<M extends Method = Method> {
 interface CallOf<M extends Method> {
   /** The module without which it cannot be run, and which caches its prepared mesh. */
   module: ModuleName;
-  run(job: Job<M>, work: Work): Promise<ResultOf<M>>;
+  run(job: Job<M>, context: JobContext): Promise<ResultOf<M>>;
 }
 
 const calls: { readonly [M in Method]: CallOf<M> } = {
   align: {
     module: "core",
-    run: (job, work) => aligned(job, work, job.options, (input, work) => work.search("align", input, job.options)),
+    run: (job, context) =>
+      aligned(job, context, job.options, (input, context) => context.search("align", input, job.options)),
   },
   alignPaper: {
     module: "registration",
     // What is known of the object is an option of the other method.
-    run: (job, work) =>
-      aligned(job, work, {}, (input, work) =>
-        work.call("registration", input, (r) => r.alignPaper(input, job.options, work.listener)),
+    run: (job, context) =>
+      aligned(job, context, {}, (input, context) =>
+        context.call("registration", input, (r) => r.alignPaper(input, job.options, context.listener)),
       ),
   },
   evaluate: {
     module: "core",
-    async run({ data, options: { transform, settings }, meshId }, work) {
-      const { core: input, notes } = await resolveInput(data, work.modules, meshId);
+    async run({ data, options: { transform, settings }, meshId }, context) {
+      const { core: input, notes } = await resolveInput(data, context.modules, meshId);
       checkMeasurable(input);
-      return withNotes(await work.call("core", input, (c) => c.evaluate(input, transform, settings)), notes);
+      return withNotes(await context.call("core", input, (c) => c.evaluate(input, transform, settings)), notes);
     },
   },
   prepareMesh: {
     module: "core",
-    async run({ data, meshId }, work) {
-      const { mesh, warnings } = await readMesh(data.mesh, work.modules, true);
-      await work.call("core", { mesh }, (c) => c.prepareMesh({ ...mesh, ...withoutUndefined({ id: meshId }) }));
+    async run({ data, meshId }, context) {
+      const { mesh, warnings } = await readMesh(data.mesh, context.modules, true);
+      await context.call("core", { mesh }, (c) => c.prepareMesh({ ...mesh, ...withoutUndefined({ id: meshId }) }));
       return { mesh, warnings };
     },
   },
   alignViews: {
     module: "joint",
-    async run({ data, options, meshId }, work) {
-      const { core: read, notes } = await resolveViews(data, work.modules, meshId);
+    async run({ data, options, meshId }, context) {
+      const { core: read, notes } = await resolveViews(data, context.modules, meshId);
       const isKnown = !read.views.some(isRaw);
-      const [first, then] = isKnown ? [work, work] : work.parts();
+      const [first, then] = isKnown ? [context, context] : context.parts();
       const begin = (j: Joint) => j.beginCalibrateViews({ ...read, options }, first.listener);
       const calibrated = isKnown ? [] : await first.task("joint", read, begin);
       const views = read.views.map((view, k) => inCalibration(view, calibrated[k]));
@@ -127,24 +127,24 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   },
   calibrate: {
     module: "joint",
-    async run({ data: { objects, ...view } }, work) {
+    async run({ data: { objects, ...view } }, context) {
       const read: CalibrationObject[] = [];
       for (const object of objects) {
         // What is wrong with a mesh is told where it is aligned.
-        const mesh = await readCoreMesh(object.mesh, work.modules, false).catch((error) => {
+        const mesh = await readCoreMesh(object.mesh, context.modules, false).catch((error) => {
           if (!isOfInput(error)) throw error;
         });
         if (mesh) read.push({ ...object, mesh: mesh.mesh });
       }
       const input = { ...view, objects: read };
-      return work.task("joint", input, (j) => j.beginCalibrate(input, work.listener));
+      return context.task("joint", input, (j) => j.beginCalibrate(input, context.listener));
     },
   },
   place: {
     module: "joint",
-    async run({ data: { others, plan, index, uncertainty, ...own }, options, meshId }, work) {
-      const { core, notes } = await resolveInput(own, work.modules, meshId);
-      const placed = await work.search("place", { ...core, others, plan, index, uncertainty }, options);
+    async run({ data: { others, plan, index, uncertainty, ...own }, options, meshId }, context) {
+      const { core, notes } = await resolveInput(own, context.modules, meshId);
+      const placed = await context.search("place", { ...core, others, plan, index, uncertainty }, options);
       if (placed.alignment === undefined) return placed;
       // The view belongs to the scene, which reports what its files say.
       return { ...placed, alignment: withNotes(placed.alignment, { warnings: [], colors: notes.colors }) };
@@ -152,10 +152,10 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   },
   openTracker: {
     module: "joint",
-    async run({ data, options: { tracker, settings }, meshId }, work) {
+    async run({ data, options: { tracker, settings }, meshId }, context) {
       // Any frame may have a photo.
-      const { mesh } = await readCoreMesh(data.mesh, work.modules, true, meshId);
-      const joint = await work.modules.joint();
+      const { mesh } = await readCoreMesh(data.mesh, context.modules, true, meshId);
+      const joint = await context.modules.joint();
       joint.callWith("input", { mesh }, (j) => {
         j.openTracker(tracker, { mesh }, settings);
         joint.kept(trackerName(tracker));
@@ -165,40 +165,40 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   },
   trackFrame: {
     module: "joint",
-    async run({ data, options: { tracker } }, work) {
-      const { core: frame, notes } = await resolveFrame(data, work.modules);
-      const pose = await work.call("joint", frame, (j) => j.trackFrame(tracker, frame, work.listener));
+    async run({ data, options: { tracker } }, context) {
+      const { core: frame, notes } = await resolveFrame(data, context.modules);
+      const pose = await context.call("joint", frame, (j) => j.trackFrame(tracker, frame, context.listener));
       return { ...pose, ...sourcesOf(notes) };
     },
   },
   correctTrack: {
     module: "joint",
-    run: ({ data, options: { tracker } }, work) =>
-      work.call("joint", data, (j) => j.correctTrack(tracker, data.pose, data.frame)),
+    run: ({ data, options: { tracker } }, context) =>
+      context.call("joint", data, (j) => j.correctTrack(tracker, data.pose, data.frame)),
   },
   register: {
     module: "registration",
-    async run({ data, options }, work) {
+    async run({ data, options }, context) {
       const { source, target } = checkedClouds(data);
-      return work.task("registration", data, (r) => r.beginRegister(source, target, options));
+      return context.task("registration", data, (r) => r.beginRegister(source, target, options));
     },
   },
   estimateSim3: {
     module: "registration",
-    async run({ data, options }, work) {
+    async run({ data, options }, context) {
       const { source, target, correspondences } = checkedClouds(data);
       if (!isTypedArray<Uint32Array>(correspondences, "Uint32Array")) {
         throw wrongKind("correspondences", correspondences, "a Uint32Array of index pairs", "Uint32Array");
       }
-      return work.task("registration", data, (r) => r.beginEstimateSim3(source, target, correspondences, options));
+      return context.task("registration", data, (r) => r.beginEstimateSim3(source, target, correspondences, options));
     },
   },
 };
 
 /** Runs a job. */
-export function perform<M extends Method>(job: Job<M>, work: Work): Promise<ResultOf<M>> {
+export function perform<M extends Method>(job: Job<M>, context: JobContext): Promise<ResultOf<M>> {
   const call: CallOf<M> = calls[job.method];
-  return call.run(job, work);
+  return call.run(job, context);
 }
 
 /** The module without which a call cannot be run, and which caches its prepared mesh. */
@@ -222,13 +222,13 @@ export const trackerName = (id: number) => `tracker ${id}`;
 /** Aligns an input, whose view is first calibrated by the object, unless its depth and lens are known. */
 async function aligned<T extends AlignResult>(
   { data, meshId }: Job<"align" | "alignPaper">,
-  work: Work,
+  context: JobContext,
   known: object,
-  align: (input: CoreInput, work: Work) => Promise<T>,
+  align: (input: CoreInput, context: JobContext) => Promise<T>,
 ): Promise<T> {
-  const { core: read, notes } = await resolveInput(data, work.modules, meshId);
-  if (!isRaw(read)) return withNotes(await align(read, work), notes);
-  const [first, then] = work.parts();
+  const { core: read, notes } = await resolveInput(data, context.modules, meshId);
+  if (!isRaw(read)) return withNotes(await align(read, context), notes);
+  const [first, then] = context.parts();
   const { mesh, mask, maskWidth, maskHeight, resizeMask, ...view } = read;
   const { id: _, ...own } = mesh;
   const object = withoutUndefined({ mask, maskWidth, maskHeight, resizeMask, mesh: own, options: known });

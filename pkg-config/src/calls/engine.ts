@@ -14,8 +14,8 @@ import type { SignalLike } from "../types/platform.js";
 import { disposed } from "../values/error.js";
 import { checkAttached } from "../values/values.js";
 import { type DataOf, dropMesh, type Job, type Method, perform, type ResultOf, trackerName } from "./calls.js";
+import { JobContext } from "./context.js";
 import type { ProgressListener } from "./progress.js";
-import { Work } from "./work.js";
 
 /** Options that control how a call runs. */
 export interface Call {
@@ -78,13 +78,13 @@ export class MainThreadEngine implements Engine {
     const held = await heaps.acquire(signals);
     try {
       checkReady(job, signals);
-      return { result: await perform(job, this.#work(call, signals)), data: job.data };
+      return { result: await perform(job, this.#context(call, signals)), data: job.data };
     } finally {
       releaseHeaps(held);
     }
   }
 
-  #work({ progress }: Call, signals: readonly SignalLike[]): Work {
+  #context({ progress }: Call, signals: readonly SignalLike[]): JobContext {
     const check = () => checkSignals(signals);
     const load = async <N extends ModuleName>(name: N): Promise<LoadedModule<Exports[N]>> => {
       // A call that waits for the network ends at once: others wait for it.
@@ -93,7 +93,11 @@ export class MainThreadEngine implements Engine {
       return module;
     };
     const listener: CoreListener = (stage, fraction, best) => progress.report(stage, fraction, best);
-    return new Work(modulesBy(load), { sliceMs: SLICE_MS, check, turn }, progress.isWanted ? listener : undefined);
+    return new JobContext(
+      modulesBy(load),
+      { sliceMs: SLICE_MS, check, turn },
+      progress.isWanted ? listener : undefined,
+    );
   }
 
   dropMesh(id: number): void {

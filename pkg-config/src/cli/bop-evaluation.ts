@@ -5,7 +5,7 @@ import { fileNotFound } from "../case-files.js";
 import { fromBop } from "../conventions/bop.js";
 import type { BopErrors } from "../generated/types.js";
 import type { CoreFrame } from "../input/core-input.js";
-import { resolveFrame } from "../input/frames.js";
+import { resolveFrame } from "../input/resolve.js";
 import { registrationModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
 import { bopModelsIn } from "./bop-models.js";

@@ -1,7 +1,7 @@
 /** Inputs in the depth and with the camera that their results found. */
 import { correctDepth } from "../conventions/corrected-depth.js";
 import type { AlignInput, DepthCalibration } from "../index.js";
-import { readView } from "../input/resolve.js";
+import { resolveView } from "../input/resolve.js";
 import { fileReaders } from "../modules/readers.js";
 
 /** An input whose lengths are those of a result. Without a calibration, the depth was known. */
@@ -12,7 +12,7 @@ export async function correctedInput(
   if (calibration === undefined) return input;
   const { image, mask, mesh, resizeMask } = input;
   // The photo says nothing more about the depth.
-  const { view } = await readView({ ...input, image: undefined }, fileReaders);
+  const { core: view } = await resolveView({ ...input, image: undefined }, fileReaders);
   const seen = { data: view.depth as Float32Array, width: Number(view.width), height: Number(view.height) };
   const depth = correctDepth(seen, calibration);
   return { depth, camera: calibration.camera, mask, mesh, image, resizeMask };

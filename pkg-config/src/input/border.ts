@@ -21,13 +21,13 @@ const MAX_LENGTH = 1 << 27;
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for properties that throw, proxies of typed arrays, and arrays and
  * buffers without their memory
  */
-export function ownArgument<T>(argument: string, value: T): T {
+export function plainArgument<T>(argument: string, value: T): T {
   return copyOf(argument, value, MAX_LEVELS, new Map()) as T;
 }
 
 /** The options of a call, read once. */
-export function ownOptions<T extends object>(options: T): T {
-  if (isRecord(options)) return ownArgument("options", options as T);
+export function plainOptions<T extends object>(options: T): T {
+  if (isRecord(options)) return plainArgument("options", options as T);
   throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
 }
 

@@ -62,7 +62,9 @@ export class PreparedMesh {
     states.set(this, { ...kept, holders: new Set([holder]) });
   }
 
-  /** Frees the mesh on this thread and in all workers. Later calls with it reject with `DISPOSED`. */
+  /**
+   * Frees the mesh on this thread, and in each worker with its next call. Later calls with it reject with `DISPOSED`.
+   */
   dispose(): void {
     const state = states.get(this);
     if (state === undefined || state === "disposed") return;

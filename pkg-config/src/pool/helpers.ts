@@ -1,8 +1,8 @@
 /** In workers: the helpers of a long job, and those that help. */
-import { type Help as Begun, beginHelp, type Offer, type Pace } from "../calls/work.js";
+import { beginHelp, type Scheduler, type SearchHelp, type SharedSearch } from "../calls/context.js";
 import type { CoreHelpers } from "../modules/exports.js";
 import type { Modules } from "../modules/module.js";
-import type { Help } from "./messages.js";
+import type { HelpJob } from "./messages.js";
 
 /** About how long a job that has asked for help runs until it hears what has arrived, milliseconds. */
 const SLICE_MS = 8;
@@ -42,11 +42,11 @@ class Inbox<T> {
 }
 
 /** The helpers of a job, between whose slices their messages arrive. */
-export class Helpers implements CoreHelpers, Pace {
+export class Helpers implements CoreHelpers, Scheduler {
   readonly #askPool: () => void;
   readonly #ports: MessagePort[] = [];
   readonly #inbox = new Inbox<Float64Array>();
-  #offer: Offer | undefined;
+  #search: SharedSearch | undefined;
   #isAsked = false;
   #isWaiting = false;
 
@@ -66,8 +66,8 @@ export class Helpers implements CoreHelpers, Pace {
     this.#isWaiting = false;
   }
 
-  helpersFor(offer: Offer): this {
-    this.#offer = offer;
+  helpersFor(search: SharedSearch): this {
+    this.#search = search;
     return this;
   }
 
@@ -83,7 +83,7 @@ export class Helpers implements CoreHelpers, Pace {
       data[0] = helper;
       this.#inbox.put(data);
     };
-    port.postMessage(this.#offer);
+    port.postMessage(this.#search);
   }
 
   /** Ends all connections. */
@@ -110,12 +110,12 @@ export class Helpers implements CoreHelpers, Pace {
 }
 
 /** Helps another worker with its job, until it is told to stop. The first message is the search, the others its tasks. */
-export class Helping {
-  readonly #data: Help["data"];
-  readonly #inbox = new Inbox<Offer | Float64Array | "stop">();
+export class HelperSession {
+  readonly #data: HelpJob["data"];
+  readonly #inbox = new Inbox<SharedSearch | Float64Array | "stop">();
   #isOver = false;
 
-  constructor(data: Help["data"]) {
+  constructor(data: HelpJob["data"]) {
     this.#data = data;
     data.port.onmessage = ({ data }) => this.#inbox.put(data);
   }
@@ -127,7 +127,7 @@ export class Helping {
 
   async run(modules: Modules): Promise<void> {
     const { port, mesh } = this.#data;
-    let help: Begun | undefined;
+    let help: SearchHelp | undefined;
     try {
       for (;;) {
         await this.#inbox.filled();
@@ -145,7 +145,7 @@ export class Helping {
   }
 
   /** Runs tasks until there are no more, or other ones: a later message replaces these. */
-  async #runTasks({ call }: Begun, tasks: Float64Array): Promise<void> {
+  async #runTasks({ call }: SearchHelp, tasks: Float64Array): Promise<void> {
     call((helper) => helper.receive(tasks));
     while (this.#inbox.isEmpty) {
       const results = call((helper) => helper.step(HELP_MS));

@@ -11,7 +11,7 @@ import type { ErrorParts } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 
 /** Help for the worker at the other end of a port with its job. */
-export interface Help {
+export interface HelpJob {
   method: "help";
   data: {
     port: MessagePort;
@@ -23,7 +23,7 @@ export interface Help {
 /** A job for a worker. */
 export interface Request {
   type: "job";
-  job: Job | Help | { method: "start" };
+  job: Job | HelpJob | { method: "start" };
   wantsProgress: boolean;
   /** Whether the data of the job, which were moved to the worker, are returned. */
   returnsData: boolean;

@@ -3,26 +3,12 @@
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
 import type { CreateWorker } from "../types/platform.js";
-import { type ErrorParts, messageOf, Sim3AlignError } from "../values/error.js";
+import { messageOf } from "../values/error.js";
 import { type Answer, type Instances, isFromWorker, type Report, type Request, type ToWorker } from "./messages.js";
 import { type Port, portOf } from "./port.js";
 
 /** The worker terminated or trapped before it answered; the job may be retried. */
 export class WorkerLost extends Error {}
-
-/** The message contains a value that cannot be cloned or transferred. */
-export class Unsendable extends Error {}
-
-/** A job that failed in a worker, with its returned data. */
-export class JobFailed {
-  readonly error: Sim3AlignError;
-  readonly data: unknown;
-
-  constructor(parts: ErrorParts, data: unknown) {
-    this.error = new Sim3AlignError(parts);
-    this.data = data;
-  }
-}
 
 /** What is needed to start a worker, and for what it runs. */
 export interface WorkerSetup {
@@ -46,7 +32,7 @@ interface Pending {
 }
 
 /** What a job is sent with. */
-export interface Sending extends Pick<Request, "job" | "wantsProgress" | "returnsData"> {
+export interface JobMessage extends Pick<Request, "job" | "wantsProgress" | "returnsData"> {
   transfer: Transferable[];
   /** The compiled modules that it needs. */
   modules: ReadonlyMap<ModuleName, CompiledModule>;
@@ -55,7 +41,7 @@ export interface Sending extends Pick<Request, "job" | "wantsProgress" | "return
   report(message: Report): void;
 }
 
-const START: Sending = {
+const START: JobMessage = {
   job: { method: "start" },
   wantsProgress: false,
   returnsData: false,
@@ -117,23 +103,25 @@ export class PoolWorker {
   }
 
   /**
-   * Runs a job, or lets the worker help another one; one at a time.
-   * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason passed to `end`
+   * Runs a job, or lets the worker help another one; one at a time. Returns `undefined` for a job that cannot be cloned or
+   * transferred.
+   * @throws {@link WorkerLost}, and the reason passed to `end`
    */
-  async request({ transfer, modules, mesh, report, ...job }: Sending): Promise<Answer> {
+  async request({ transfer, modules, mesh, report, ...job }: JobMessage): Promise<Answer | undefined> {
     const missing = new Map([...modules].filter(([name]) => !this.#modules.has(name)));
     // The job needs its mesh until its end.
     const droppedMeshes = [...this.#dropped].filter((id) => id !== mesh?.id);
     const instance = mesh && this.#instance(mesh.module);
     try {
-      const answer = await new Promise<Answer>((resolve, reject) => {
+      const answer = await new Promise<Answer | undefined>((resolve, reject) => {
         if (this.#end !== undefined) throw this.#end.reason;
         // Before the message is sent: its answer, or the end of the worker, may come at once.
         this.#pending = { method: job.job.method, resolve, reject, report };
         try {
           this.#port?.post({ type: "job", ...job, modules: missing, droppedMeshes }, transfer);
-        } catch (cause) {
-          throw new Unsendable("a message that cannot be sent", { cause });
+        } catch {
+          resolve(undefined);
+          return;
         }
         if (job.job.method !== "start") this.#port?.keepAlive(true);
         for (const name of missing.keys()) this.#modules.add(name);
@@ -144,8 +132,10 @@ export class PoolWorker {
         // A job that fails may leave its mesh there, too.
         if (mesh !== undefined && !this.#meshes.has(mesh.id)) this.#meshes.set(mesh.id, new Map());
       });
-      if (mesh !== undefined && instance !== undefined && answer.needs === undefined)
+      const isCached = answer !== undefined && answer.error === undefined && answer.needs === undefined;
+      if (mesh !== undefined && instance !== undefined && isCached) {
         this.#meshes.get(mesh.id)?.set(mesh.module, instance);
+      }
       return answer;
     } finally {
       this.#pending = undefined;
@@ -193,8 +183,7 @@ export class PoolWorker {
       this.end(new WorkerLost(message.error.found));
     } else {
       this.#instances = message.instances;
-      if (message.error === undefined) pending.resolve(message);
-      else pending.reject(new JobFailed(message.error, message.data));
+      pending.resolve(message);
     }
   }
 }

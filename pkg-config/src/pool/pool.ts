@@ -6,12 +6,12 @@ import { Queue } from "../concurrency/queue.js";
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
 import type { SignalLike } from "../types/platform.js";
-import { disposed, failure, partsOf, Sim3AlignError } from "../values/error.js";
+import { disposed, type ErrorParts, failure, partsOf, Sim3AlignError } from "../values/error.js";
 import { isAttached } from "../values/kinds.js";
 import { buffersOf, copied, isSendable, sendableParts } from "../values/transfer.js";
-import { Lending } from "./lending.js";
+import { HelperBroker } from "./helper-broker.js";
 import type { Answer, Report } from "./messages.js";
-import { JobFailed, Slot, Unsendable, WorkerLost, type WorkerSetup } from "./pool-worker.js";
+import { Slot, WorkerLost, type WorkerSetup } from "./pool-worker.js";
 
 /** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;
@@ -23,7 +23,7 @@ export class WorkerPool implements Engine {
   readonly #slots: readonly Slot[];
   readonly #fallback: MainThreadEngine;
   readonly #queue: Queue<Slot>;
-  readonly #lending: Lending;
+  readonly #broker: HelperBroker;
   readonly #ended = new AbortController();
 
   /** @param fallback runs jobs that cannot be cloned; it is disposed with the pool */
@@ -34,12 +34,12 @@ export class WorkerPool implements Engine {
     this.#fallback = fallback;
     this.#slots = Array.from({ length: size }, () => new Slot(setup));
     this.#queue = new Queue(this.#slots);
-    this.#lending = new Lending(this.#queue, setup.compiled);
+    this.#broker = new HelperBroker(this.#queue, setup.compiled);
   }
 
   async run<M extends Method>(job: Job<M>, call: Call): Promise<Outcome<M>> {
     const signals = [this.#ended.signal, ...signalsOf(call)];
-    this.#lending.recall();
+    this.#broker.recall();
     const slot = await this.#queue.acquire(signals);
     const stop = (reason: unknown) => {
       slot.last.end(reason);
@@ -51,9 +51,9 @@ export class WorkerPool implements Engine {
       return await this.#runIn(slot, job, call, signals);
     } finally {
       for (const end of unfollow) end();
-      this.#lending.end(slot);
+      this.#broker.end(slot);
       this.#queue.release(slot);
-      this.#lending.lend();
+      this.#broker.lend();
     }
   }
 
@@ -78,11 +78,20 @@ export class WorkerPool implements Engine {
     let failures = 0;
     const modules = new Map<ModuleName, CompiledModule>();
     const needed = new Set<ModuleName>(["core", moduleOf(job.method)]);
+    const failed = (parts: ErrorParts) => {
+      const error = new Sim3AlignError(parts);
+      if (call.transfer) error.input = job.data;
+      return error;
+    };
+    const compiled = (name: ModuleName) =>
+      this.#setup.compiled(name).catch((error) => {
+        throw error instanceof Sim3AlignError ? failed(partsOf(error)) : error;
+      });
     for (;;) {
       try {
         // A call that has ended must not start a worker, which nothing would end.
         checkSignals(signals);
-        for (const name of needed) modules.set(name, await beforeAbort(this.#compiled(name), signals));
+        for (const name of needed) modules.set(name, await beforeAbort(compiled(name), signals));
         await slot.hire().ready();
         const answer = await this.#send(slot, job, modules, call, signals);
         if (answer === undefined) {
@@ -93,25 +102,16 @@ export class WorkerPool implements Engine {
           continue;
         }
         if (answer.data !== undefined) job = { ...job, data: answer.data as DataOf<M> };
+        if (answer.error !== undefined) throw failed(answer.error);
         if (answer.needs === undefined) return { result: answer.result as ResultOf<M>, data: job.data };
         needed.add(answer.needs);
       } catch (error) {
-        if (error instanceof JobFailed) {
-          if (call.transfer) error.error.input = error.data ?? job.data;
-          throw error.error;
-        }
         if (!(error instanceof WorkerLost)) throw error;
-        this.#lending.end(slot);
+        this.#broker.end(slot);
         failures += 1;
         if (failures === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
       }
     }
-  }
-
-  #compiled(name: ModuleName): Promise<CompiledModule> {
-    return this.#setup.compiled(name).catch((error) => {
-      throw error instanceof Sim3AlignError ? new JobFailed(partsOf(error), undefined) : error;
-    });
   }
 
   /** Sends a job; `undefined` if it cannot be sent, so that the core can report what is wrong with it. */
@@ -125,7 +125,7 @@ export class WorkerPool implements Engine {
     const { method, meshId } = job;
     const mesh = meshId === undefined ? undefined : { id: meshId, module: moduleOf(method) };
     const report = (message: Report) => {
-      if (message.stage === undefined) this.#lending.ask(slot, job);
+      if (message.stage === undefined) this.#broker.ask(slot, job);
       else progress.report(message.stage, message.fraction, message.best);
     };
     // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.
@@ -134,11 +134,8 @@ export class WorkerPool implements Engine {
       if (!isSendable(job)) return undefined;
       const data = sentData(job, isMoved, mesh && slot.last.hasMesh(mesh));
       const sent = { job: { ...job, data }, wantsProgress: progress.isWanted, returnsData: isMoved };
-      try {
-        return await slot.last.request({ ...sent, transfer: buffersOf(data), modules, mesh, report });
-      } catch (error) {
-        if (!(error instanceof Unsendable)) throw error;
-      }
+      const answer = await slot.last.request({ ...sent, transfer: buffersOf(data), modules, mesh, report });
+      if (answer !== undefined) return answer;
     }
     return undefined;
   }

@@ -3,7 +3,7 @@
 import { nearest } from "../formats/pixels.js";
 import type { CoreView } from "../input/core-input.js";
 import { readMask } from "../input/mask.js";
-import { readView } from "../input/resolve.js";
+import { resolveView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
@@ -60,7 +60,7 @@ export async function readScene(scene: SceneInput, readers: FileReaders): Promis
   }
   const { objects, labels, occluders, support, ...rest } = scene as SceneInput & Record<string, unknown>;
   const { formats } = readers;
-  const { view, notes } = await readView(rest, readers);
+  const { core: view, notes } = await resolveView(rest, readers);
   const size: [number, number] = [Number(view.width), Number(view.height)];
   const read = { size, formats, labels: labels === undefined ? undefined : checkedLabels(labels, size) };
   const given = listOf("objects", objects);

@@ -6,22 +6,22 @@ import { copied } from "../values/transfer.js";
 import type { Slot, WorkerSetup } from "./pool-worker.js";
 
 /** A running job that has asked for help. */
-interface Borrower {
+interface LongJob {
   job: Job;
   /** The workers that help it, and those that are about to. */
   helpers: Set<Slot>;
   /** Number of helpers that it has had. */
   count: number;
   /** Whether it gets others. */
-  mayBorrow: boolean;
+  mayHaveHelp: boolean;
 }
 
 /** Lends workers that have nothing to do, until a job waits for them. What they do changes no result. */
-export class Lending {
+export class HelperBroker {
   readonly #queue: Queue<Slot>;
   readonly #compiled: WorkerSetup["compiled"];
   /** By the worker that runs the job. */
-  readonly #borrowers = new Map<Slot, Borrower>();
+  readonly #longJobs = new Map<Slot, LongJob>();
 
   constructor(queue: Queue<Slot>, compiled: WorkerSetup["compiled"]) {
     this.#queue = queue;
@@ -30,25 +30,25 @@ export class Lending {
 
   /** The job that this worker runs is long. */
   ask(slot: Slot, job: Job): void {
-    this.#borrowers.set(slot, { job, helpers: new Set(), count: 0, mayBorrow: true });
+    this.#longJobs.set(slot, { job, helpers: new Set(), count: 0, mayHaveHelp: true });
     this.lend();
   }
 
   /** The job that this worker ran has ended. */
   end(slot: Slot): void {
-    const borrower = this.#borrowers.get(slot);
-    this.#borrowers.delete(slot);
-    for (const helper of borrower?.helpers ?? []) helper.last.tell({ type: "stop" });
+    const longJob = this.#longJobs.get(slot);
+    this.#longJobs.delete(slot);
+    for (const helper of longJob?.helpers ?? []) helper.last.tell({ type: "stop" });
   }
 
   /** Lends the workers that are idle, each to the job with the fewest helpers. */
   lend(): void {
     for (;;) {
-      const [slot, borrower] = this.#inOrder().find(([, { mayBorrow }]) => mayBorrow) ?? [];
+      const [slot, longJob] = this.#inOrder().find(([, { mayHaveHelp }]) => mayHaveHelp) ?? [];
       const helper = slot && this.#queue.takeIdle();
-      if (slot === undefined || borrower === undefined || helper === undefined) return;
-      borrower.helpers.add(helper);
-      this.#help(slot, borrower, helper);
+      if (slot === undefined || longJob === undefined || helper === undefined) return;
+      longJob.helpers.add(helper);
+      this.#help(slot, longJob, helper);
     }
   }
 
@@ -63,29 +63,30 @@ export class Lending {
     }
   }
 
-  async #help(slot: Slot, borrower: Borrower, helper: Slot): Promise<void> {
-    const isRunning = () => this.#borrowers.get(slot) === borrower;
+  async #help(slot: Slot, longJob: LongJob, helper: Slot): Promise<void> {
+    const isRunning = () => this.#longJobs.get(slot) === longJob;
     let place: number | undefined;
-    const { job } = borrower;
+    const { job } = longJob;
     const module = moduleOf(job.method);
     try {
       const modules = new Map([[module, await this.#compiled(module)]]);
       await helper.hire().ready();
       // While it started, it may have been called back, or the job may have ended.
-      if (!borrower.helpers.has(helper) || !isRunning()) return;
+      if (!longJob.helpers.has(helper) || !isRunning()) return;
       const { port1, port2 } = new MessageChannel();
-      place = borrower.count++;
+      place = longJob.count++;
       slot.last.tell({ type: "helper", helper: place, port: port1 }, [port1]);
       const cached = job.meshId === undefined ? undefined : { id: job.meshId, module };
       const mesh = cached === undefined || helper.last.hasMesh(cached) ? undefined : copied(preparedMesh(job));
       const help = { method: "help", data: { port: port2, mesh } } as const;
       const sent = { job: help, wantsProgress: false, returnsData: false, report() {} };
-      await helper.last.request({ ...sent, transfer: [port2], modules, mesh: cached });
+      const answer = await helper.last.request({ ...sent, transfer: [port2], modules, mesh: cached });
+      if (answer?.result === undefined) longJob.mayHaveHelp = false;
     } catch {
       // The job does without helpers: what is wrong, if anything, it will find itself.
-      borrower.mayBorrow = false;
+      longJob.mayHaveHelp = false;
     } finally {
-      borrower.helpers.delete(helper);
+      longJob.helpers.delete(helper);
       if (isRunning() && place !== undefined) slot.last.tell({ type: "helper", helper: place });
       this.#queue.release(helper);
       this.lend();
@@ -93,8 +94,8 @@ export class Lending {
   }
 
   /** Those with the fewest helpers first. */
-  #inOrder(): [Slot, Borrower][] {
-    return [...this.#borrowers].sort(([, a], [, b]) => a.helpers.size - b.helpers.size);
+  #inOrder(): [Slot, LongJob][] {
+    return [...this.#longJobs].sort(([, a], [, b]) => a.helpers.size - b.helpers.size);
   }
 }
 

@@ -54,14 +54,14 @@ const searches: { readonly [S in keyof Searches]: SearchOf<S> } = {
 };
 
 /** A search, for those that help with it. A prepared mesh comes to them from where it was prepared. */
-export interface Offer<S extends keyof Searches = keyof Searches> {
+export interface SharedSearch<S extends keyof Searches = keyof Searches> {
   search: S;
   input: Searches[S]["input"];
   options: object;
 }
 
 /** How tasks share their thread. */
-export interface Pace {
+export interface Scheduler {
   /** About how long each slice takes, milliseconds. */
   readonly sliceMs: number;
   /** Called after each slice and each turn; may throw. */
@@ -69,29 +69,29 @@ export interface Pace {
   /** Gives the thread away between two slices. */
   turn(): Promise<void>;
   /** The helpers of a search. */
-  helpersFor?(offer: Offer): CoreHelpers;
+  helpersFor?(search: SharedSearch): CoreHelpers;
 }
 
 /** The part of a call that calibration takes, where it is one. */
 const CALIBRATION = 0.7;
 
 /** A job that runs. */
-export class Work {
+export class JobContext {
   readonly modules: Modules;
-  readonly #pace: Pace;
+  readonly #scheduler: Scheduler;
   /** Called when stages begin; if it throws, the job fails with that exception. */
   readonly listener: CoreListener | undefined;
 
-  constructor(modules: Modules, pace: Pace, listener: CoreListener | undefined) {
+  constructor(modules: Modules, scheduler: Scheduler, listener: CoreListener | undefined) {
     this.modules = modules;
-    this.#pace = pace;
+    this.#scheduler = scheduler;
     this.listener = listener;
   }
 
   /** The calibration of a call, and what follows. */
-  parts(): [first: Work, then: Work] {
+  parts(): [first: JobContext, then: JobContext] {
     const { modules, listener } = this;
-    const of = (part: CoreListener) => new Work(modules, this.#pace, listener && part);
+    const of = (part: CoreListener) => new JobContext(modules, this.#scheduler, listener && part);
     return [
       // Poses of a calibration that is not known yet are nothing to show.
       of((stage, fraction) => listener?.(stage, CALIBRATION * fraction)),
@@ -108,19 +108,19 @@ export class Work {
   /** Runs a task to its end, and frees it. `input` is what its beginning reads. */
   async task<N extends ModuleName, T>(name: N, input: object, begin: (exports: Exports[N]) => Task<T>): Promise<T> {
     const module: LoadedModule<Exports[N]> = await this.modules[name]();
-    const pace = this.#pace;
-    pace.check();
+    const scheduler = this.#scheduler;
+    scheduler.check();
     for (;;) {
       const task = module.callWith("input", input, (exports) => module.kept(begin(exports)));
       const { instance } = module;
       try {
         // Until another call traps: the task is then lost with its instance.
         while (module.instance === instance) {
-          const result = module.call(() => task.step(pace.sliceMs), withoutInput);
-          pace.check();
+          const result = module.call(() => task.step(scheduler.sliceMs), withoutInput);
+          scheduler.check();
           if (result !== undefined) return result;
-          await pace.turn();
-          pace.check();
+          await scheduler.turn();
+          scheduler.check();
         }
       } finally {
         if (module.instance === instance) task.free();
@@ -138,13 +138,13 @@ export class Work {
     const { module, begin }: SearchOf<S> = searches[search];
     const { id } = input.mesh;
     const mesh = id === undefined ? input.mesh : { positions: new Float32Array(), id };
-    const helpers = this.#pace.helpersFor?.({ search, input: { ...input, mesh }, options });
+    const helpers = this.#scheduler.helpersFor?.({ search, input: { ...input, mesh }, options });
     return this.task(module, input, (exports) => begin(exports, input, options, this.listener, helpers));
   }
 }
 
 /** Help with a search: its module is called with {@link Helper}, until it is over. */
-export interface Help {
+export interface SearchHelp {
   call<T>(work: (helper: Helper) => T): T;
   end(): void;
 }
@@ -154,10 +154,10 @@ export interface Help {
  * @param mesh the arrays of its prepared mesh, unless the module has them
  */
 export async function beginHelp<S extends keyof Searches>(
-  { search, input, options }: Offer<S>,
+  { search, input, options }: SharedSearch<S>,
   mesh: CoreMesh | undefined,
   modules: Modules,
-): Promise<Help> {
+): Promise<SearchHelp> {
   const { module: name, help }: SearchOf<S> = searches[search];
   const { id } = input.mesh;
   const own = mesh === undefined || id === undefined ? input : { ...input, mesh: { ...mesh, id } };
