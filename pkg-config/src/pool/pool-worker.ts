@@ -1,5 +1,4 @@
 /** A worker of the pool, as the thread of the pool knows it. */
-
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
 import type { CreateWorker } from "../types/platform.js";

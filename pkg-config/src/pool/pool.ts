@@ -101,7 +101,7 @@ export class WorkerPool implements Engine {
           job = sendableParts(job);
           continue;
         }
-        if (answer.data !== undefined) job = { ...job, data: answer.data as DataOf<M> };
+        if (answer.data !== undefined) job = { ...job, data: returnedData(job, answer.data as DataOf<M>) };
         if (answer.error !== undefined) throw failed(answer.error);
         if (answer.needs === undefined) return { result: answer.result as ResultOf<M>, data: job.data };
         needed.add(answer.needs);
@@ -146,12 +146,16 @@ export class WorkerPool implements Engine {
  * @param isCached whether the worker has cached the prepared mesh; `undefined` if there is none
  */
 function sentData({ method, data }: Job, isMoved: boolean, isCached: boolean | undefined): DataOf<Method> {
-  const own = <T>(value: T) => (isMoved ? value : copied(value));
-  if (isCached === undefined || method === "prepareMesh" || !("mesh" in data)) return own(data);
+  const sent = <T>(value: T) => (isMoved ? value : copied(value));
+  if (isCached === undefined || method === "prepareMesh" || !("mesh" in data)) return sent(data);
   const { mesh, ...rest } = data;
   const { warnings } = mesh as { warnings?: unknown };
-  return { ...own(rest), mesh: isCached ? { positions: new Float32Array(), warnings } : copied(mesh) } as typeof data;
+  return { ...sent(rest), mesh: isCached ? { positions: new Float32Array(), warnings } : copied(mesh) } as typeof data;
 }
+
+/** The data that a worker has returned. A prepared mesh was not moved there, and may come back without its arrays. */
+const returnedData = <M extends Method>({ method, data, meshId }: Job<M>, returned: DataOf<M>): DataOf<M> =>
+  meshId === undefined || method === "prepareMesh" || !("mesh" in data) ? returned : { ...returned, mesh: data.mesh };
 
 /** Whether the arrays of the job were lost with the worker. */
 const isGone = ({ data }: Job, { transfer }: Call) => transfer && buffersOf(data).some((buffer) => !isAttached(buffer));
