@@ -12,7 +12,7 @@ import type {
   Joint,
   ModuleName,
   Placed,
-  Surroundings,
+  PlacedInput,
 } from "../modules/exports.js";
 import type { ModuleTable } from "../modules/module.js";
 import type {
@@ -36,6 +36,9 @@ type Clouds = NonNullable<Registration["input"]>;
 /** A view, and the objects by which it is calibrated, whose meshes have not been read. */
 type CalibrateInput = CoreView & { objects: (Omit<CalibrationObject, "mesh"> & { mesh: unknown })[] };
 
+/** An object of a scene, whose mesh has not been read. */
+type PlaceInput = Omit<PlacedInput, "mesh"> & { mesh: unknown };
+
 /** The calls: their data, which contain all large arrays, what else they are given, in the form of the core, and their results. */
 interface Calls {
   align: { data: AlignInput; options: object; result: AlignResult };
@@ -44,7 +47,7 @@ interface Calls {
   prepareMesh: { data: { mesh: MeshInput }; options: object; result: MeshAndWarnings };
   alignViews: { data: ViewsInput; options: object; result: ViewsAlignment };
   calibrate: { data: CalibrateInput; options: object; result: Calibrated };
-  place: { data: AlignInput & Surroundings; options: object; result: Placed };
+  place: { data: PlaceInput; options: object; result: Placed };
   openTracker: { data: { mesh: MeshInput }; options: { tracker: number; settings: object }; result: object };
   trackFrame: { data: FrameInput; options: { tracker: number }; result: TrackedFrame };
   correctTrack: { data: { pose: unknown; frame: unknown }; options: { tracker: number }; result: CorrectedFrame[] };
@@ -142,12 +145,14 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   },
   place: {
     module: "joint",
-    async run({ data: { others, plan, index, uncertainty, ...own }, options, meshId }, context) {
-      const { core, notes } = await resolveInput(own, context.modules, meshId);
-      const placed = await context.search("place", { ...core, others, plan, index, uncertainty }, options);
+    async run({ data, options, meshId }, context) {
+      const isColored = data.image !== undefined;
+      const { mesh, warnings } = await readCoreMesh(data.mesh, context.modules, isColored, meshId);
+      const placed = await context.search("place", { ...data, mesh }, options);
       if (placed.alignment === undefined) return placed;
       // The view belongs to the scene, which reports what its files say.
-      return { ...placed, alignment: withNotes(placed.alignment, { warnings: [], colors: notes.colors }) };
+      const notes = { warnings: [], colors: isColored ? warnings : [] };
+      return { ...placed, alignment: withNotes(placed.alignment, notes) };
     },
   },
   openTracker: {

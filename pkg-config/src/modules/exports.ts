@@ -165,8 +165,8 @@ export interface Calibrated {
   calibration: DepthCalibration;
 }
 
-/** What is known of an object of a scene, beside its own input. */
-export interface Surroundings {
+/** An object of a scene. */
+export interface PlacedInput extends CoreInput {
   /** The pixels of the other objects. */
   others?: Uint8Array | undefined;
   /** The plan of the scene, which only the module reads; none in the first round. */
@@ -176,9 +176,6 @@ export interface Surroundings {
   /** The uncertainty of the calibration of the scene. */
   uncertainty?: object | undefined;
 }
-
-/** An object of a scene. */
-export type PlacedInput = CoreInput & Surroundings;
 
 /** An object of a scene, aligned in one of its rounds. */
 export interface Placed {

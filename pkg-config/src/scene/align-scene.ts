@@ -10,7 +10,7 @@ import type { Modules } from "../modules/module.js";
 import type { Progress } from "../types/options.js";
 import { withNotes } from "../types/results.js";
 import { isOfInput, Sim3AlignError } from "../values/error.js";
-import { inputOf, othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
+import { othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
 
 type PlacedOrError = Placed | Sim3AlignError;
@@ -138,9 +138,10 @@ function roundsOf(scene: ReadScene, { engine, options, progress: reported, stopp
   const fractions = objects.map(() => 0);
 
   const place = async (index: number, plan: Uint8Array | undefined): Promise<Placed> => {
-    const { input, others } = inputOf(scene, index);
-    const own = ownOptions(options, objects[index] as ReadObject);
-    const { data, meshId, release } = withArrays({ ...input, others, plan, index }, engine);
+    const object = objects[index] as ReadObject;
+    const { mask, mesh } = object;
+    const input = { ...scene.view, mask, mesh, others: othersOf(scene, mask), plan, index };
+    const { data, meshId, release } = withArrays(input, engine);
     const [from, to] = plan === undefined ? [0, ALONE] : [ALONE, 1];
     const report = ({ stage, fraction, best }: Progress) => {
       fractions[index] = Math.max(fractions[index] ?? 0, from + (to - from) * fraction);
@@ -148,7 +149,7 @@ function roundsOf(scene: ReadScene, { engine, options, progress: reported, stopp
       reported.report(stage, begun + (1 - begun) * all, undefined, { index, best });
     };
     const progress = new ProgressListener(reported.isWanted ? report : undefined);
-    const job = { method: "place", data, meshId, options: own } as const;
+    const job = { method: "place", data, meshId, options: ownOptions(options, object) } as const;
     try {
       const { result } = await engine.run(job, { signal: stopped.signal, progress, transfer: false });
       fractions[index] = to;

@@ -4,7 +4,6 @@ import { nearest } from "../formats/pixels.js";
 import type { CoreView } from "../input/core-input.js";
 import { readMask } from "../input/mask.js";
 import { resolveView } from "../input/resolve.js";
-import type { AlignInput } from "../input/types.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
@@ -177,11 +176,3 @@ function countsOf(masks: readonly Uint8Array[]): Uint16Array | undefined {
 /** The pixels of the objects other than that of a mask. */
 export const othersOf = ({ counts }: ReadScene, mask: Uint8Array): Uint8Array | undefined =>
   counts && Uint8Array.from(counts, (count, i) => (count > (mask[i] !== 0 ? 1 : 0) ? 1 : 0));
-
-/** The input of one object, and the pixels of the others. */
-export function inputOf(scene: ReadScene, index: number): { input: AlignInput; others: Uint8Array | undefined } {
-  const { mask, mesh } = scene.objects[index] as ReadObject;
-  const [width, height] = scene.size;
-  const input = { ...scene.view, mask: { data: mask, width, height }, mesh } as unknown as AlignInput;
-  return { input, others: othersOf(scene, mask) };
-}
