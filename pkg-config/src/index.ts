@@ -58,7 +58,6 @@ export type {
   WorldFrame,
   WorldUncertainty,
 } from "./generated/types.js";
-export type { DepthKind } from "./input/depth-kind.js";
 export { type ColorSamples, PreparedMesh } from "./input/prepared-mesh.js";
 export type { Sim3, Sim3Like } from "./input/sim3.js";
 export type {
@@ -67,6 +66,7 @@ export type {
   CameraInput,
   CocoRle,
   DepthInput,
+  DepthKind,
   DepthView,
   EncodedBytes,
   FieldOfViewCamera,

@@ -1,7 +1,7 @@
 /** Flags of all commands that control how a case is read. */
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
-import { type DepthKind, depthKinds } from "../input/depth-kind.js";
+import { type DepthKind, depthKinds } from "../input/types.js";
 import { withoutUndefined } from "../values/values.js";
 import { number } from "./parse.js";
 

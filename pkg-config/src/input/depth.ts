@@ -5,8 +5,8 @@ import type { FileReaders } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
-import { isAffineInvariant } from "./depth-kind.js";
 import type { DepthImage, ReadDepthOptions } from "./types.js";
+import { isAffineInvariant } from "./types.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {

@@ -7,8 +7,8 @@ import { cameraOf, type ResolvedCamera } from "./camera.js";
 import type { Photo } from "./colors.js";
 import type { CoreInput, CoreView } from "./core-input.js";
 import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
-import { depthKinds, isAffineInvariant } from "./depth-kind.js";
 import { readPhoto, readPhotoExif } from "./photo.js";
+import { depthKinds, isAffineInvariant } from "./types.js";
 
 /** An input for the core, and what its files say. */
 export interface Resolved<T> {

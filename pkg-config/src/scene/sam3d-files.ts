@@ -4,7 +4,7 @@ import { fromSam3d } from "../conventions/sam3d.js";
 import { parsedJson } from "../formats/json.js";
 import { holdsGaussians } from "../formats/splat-files.js";
 import { requiredBytes } from "../input/bytes.js";
-import type { DepthKind } from "../input/depth-kind.js";
+import type { DepthKind } from "../input/types.js";
 import type { LoadFormats } from "../modules/readers.js";
 import { failure, renamed, Sim3AlignError } from "../values/error.js";
 import { flattened, isRecord } from "../values/values.js";

@@ -38,11 +38,6 @@ function detached(argument: string, value: unknown): Sim3AlignError {
   );
 }
 
-/** Converts any array to a plain one. Other values are unchanged, for the core to reject. */
-export function plainNumbers(value: unknown): unknown {
-  return ArrayBuffer.isView(value) && !isKind(value, "DataView") ? Array.from(value as unknown as number[]) : value;
-}
-
 /** Copies an object without its undefined properties. */
 export function withoutUndefined<T extends object>(object: T): { [K in keyof T]?: Exclude<T[K], undefined> } {
   const entries = Object.entries(object).filter(([, value]) => value !== undefined);
