@@ -25,6 +25,14 @@ export function onAbort(signal: SignalLike, act: (reason: unknown) => void): () 
   };
 }
 
+/** The same for several signals. */
+export function onAnyAbort(signals: readonly SignalLike[], act: (reason: unknown) => void): () => void {
+  const unfollow = signals.map((signal) => onAbort(signal, act));
+  return () => {
+    for (const end of unfollow) end();
+  };
+}
+
 function begin(signal: SignalLike): Followers {
   const acts: Followers["acts"] = new Set();
   const listener = () => {
@@ -43,14 +51,14 @@ export function checkSignals(signals: readonly SignalLike[]): void {
 
 /** The value of a promise, unless a signal aborts before: then its reason is thrown. */
 export async function beforeAbort<T>(awaited: Promise<T>, signals: readonly SignalLike[]): Promise<T> {
-  const unfollow: (() => void)[] = [];
+  let unfollow = () => {};
   const aborted = new Promise<never>((_, reject) => {
-    for (const signal of signals) unfollow.push(onAbort(signal, reject));
+    unfollow = onAnyAbort(signals, reject);
   });
   try {
     return await Promise.race([awaited, aborted]);
   } finally {
-    for (const end of unfollow) end();
+    unfollow();
   }
 }
 

@@ -1,7 +1,7 @@
 /** A queue of calls for what only one call can use at a time: a worker, or the heap of this thread. */
 
 import type { SignalLike } from "../types/platform.js";
-import { onAbort, reasonOf } from "./on-abort.js";
+import { onAnyAbort, reasonOf } from "./on-abort.js";
 
 /** Items, each of which one call has at a time. Calls get them in their order. */
 export class Queue<T> {
@@ -39,15 +39,15 @@ export class Queue<T> {
       const idle = this.#idle.pop();
       if (idle !== undefined) return resolve(idle);
       const take = (item: T) => {
-        for (const end of unfollow) end();
+        unfollow();
         resolve(item);
       };
       const giveUp = (reason: unknown) => {
-        for (const end of unfollow) end();
+        unfollow();
         this.#waiting.splice(this.#waiting.indexOf(take), 1);
         reject(reason);
       };
-      const unfollow = signals.map((signal) => onAbort(signal, giveUp));
+      const unfollow = onAnyAbort(signals, giveUp);
       this.#waiting.push(take);
     });
   }

@@ -1,7 +1,7 @@
 /** A pool of workers that run jobs in parallel. */
 import { type DataOf, type Job, type Method, moduleOf, type ResultOf } from "../calls/calls.js";
 import { type Call, checkReady, type Engine, type MainThreadEngine, type Outcome, signalsOf } from "../calls/engine.js";
-import { beforeAbort, checkSignals, onAbort } from "../concurrency/on-abort.js";
+import { beforeAbort, checkSignals, onAnyAbort } from "../concurrency/on-abort.js";
 import { Queue } from "../concurrency/queue.js";
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
@@ -45,12 +45,11 @@ export class WorkerPool implements Engine {
       slot.last.end(reason);
       if (!this.#ended.signal.aborted) slot.hire();
     };
-    const unfollow: (() => void)[] = [];
+    const unfollow = onAnyAbort(signals, stop);
     try {
-      for (const signal of signals) unfollow.push(onAbort(signal, stop));
       return await this.#runIn(slot, job, call, signals);
     } finally {
-      for (const end of unfollow) end();
+      unfollow();
       this.#broker.end(slot);
       this.#queue.release(slot);
       this.#broker.lend();

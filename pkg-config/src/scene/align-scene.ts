@@ -2,7 +2,7 @@
 import { inCalibration, isRaw } from "../calls/calibrate.js";
 import { type Call, type Engine, signalsOf } from "../calls/engine.js";
 import { ProgressListener } from "../calls/progress.js";
-import { onAbort, reasonOf } from "../concurrency/on-abort.js";
+import { checkSignals, onAnyAbort } from "../concurrency/on-abort.js";
 import { withArrays } from "../input/prepared-mesh.js";
 import { coreSim3, type Sim3 } from "../input/sim3.js";
 import type { Arrangement, Calibrated, Placed } from "../modules/exports.js";
@@ -31,9 +31,11 @@ export async function alignScene(
   call: Call,
 ): Promise<SceneResult> {
   const read = await readScene(input, modules);
-  const { stopped, end } = stopOf(call);
+  const stopped = new AbortController();
+  const unfollow = onAnyAbort(signalsOf(call), (reason) => stopped.abort(reason));
   const running = { engine, options, progress: call.progress, stopped };
   try {
+    checkSignals(signalsOf(call));
     const calibrated = isRaw(read.view) ? await calibratedScene(read, running) : undefined;
     const scene = { ...read, view: inCalibration(read.view, calibrated) };
     const { view, objects, occluders, support } = scene;
@@ -56,7 +58,7 @@ export async function alignScene(
       plan = next.plan;
     }
   } finally {
-    end();
+    unfollow();
   }
 }
 
@@ -90,19 +92,6 @@ interface Running {
   progress: ProgressListener;
   /** Ends all its jobs. */
   stopped: AbortController;
-}
-
-/** What ends all jobs of a call; `end` is to be called last. */
-function stopOf(call: Call): { stopped: AbortController; end(): void } {
-  const stopped = new AbortController();
-  const unfollow = signalsOf(call).map((signal) => {
-    if (signal.aborted) stopped.abort(reasonOf(signal));
-    return onAbort(signal, (reason) => stopped.abort(reason));
-  });
-  const end = () => {
-    for (const each of unfollow) each();
-  };
-  return { stopped, end };
 }
 
 /** Calibrates the view of a scene by all its objects, in one job. */
