@@ -293,7 +293,8 @@ fn types() -> String {
         TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration, CalibrationUncertainty,
         DepthCalibration,
     }
-    let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../types/argument-types.js\";\n\n";
+    let imports =
+        "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../types/argument-types.js\";\n\n";
     HEADER.to_owned() + imports + &types.declarations.join("\n")
 }
 
