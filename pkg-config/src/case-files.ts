@@ -1,14 +1,12 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { failure, invalidArgument, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
-import type { LoadFormats } from "./formats-module.js";
+import { plainArgument } from "./input/border.js";
 import { requiredBytes } from "./input/bytes.js";
-import type { DepthKind } from "./input/depth-kind.js";
-import type { ViewInput } from "./input/frame-types.js";
-import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
-import { ownArgument } from "./snapshot.js";
-import { isRecord, withoutUndefined } from "./values.js";
+import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
+import type { LoadFormats } from "./modules/readers.js";
+import { failure, invalidArgument, Sim3AlignError } from "./values/error.js";
+import { isRecord, withoutUndefined } from "./values/values.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
@@ -209,7 +207,7 @@ function decoded(uri: string): string {
 
 /** The files of a call, read once. */
 export function ownFiles(files: CaseFiles): CaseFiles {
-  if (isRecord(files)) return ownArgument("files", files);
+  if (isRecord(files)) return plainArgument("files", files);
   throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
 }
 

@@ -13,9 +13,9 @@ import {
   meshFile,
   type ReadCaseOptions,
 } from "./case-files.js";
-import { formatsModule } from "./formats-module.js";
 import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
-import { withoutUndefined } from "./values.js";
+import { formatsModule } from "./modules/readers.js";
+import { withoutUndefined } from "./values/values.js";
 
 export type { ReadCaseOptions } from "./case-files.js";
 

@@ -5,31 +5,38 @@
  */
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { fileReaders } from "./file-readers.js";
 import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./formats/camera-file.js";
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
-import { type Formats, formatsModule } from "./formats-module.js";
+import { plainArgument, plainOptions } from "./input/border.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
-import type { DepthImage, ReadDepthOptions } from "./input/depth-reading.js";
-import { decodeMesh } from "./input/mesh-file.js";
-import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
-import type { WasmSource } from "./platform.js";
-import type { ColorSamples } from "./prepared-mesh.js";
+import { decodeMesh } from "./input/mesh.js";
+import type { ColorSamples } from "./input/prepared-mesh.js";
+import type {
+  CameraFileInput,
+  CocoRle,
+  DepthImage,
+  EncodedBytes,
+  MeshFormat,
+  PixelArray,
+  ReadDepthOptions,
+} from "./input/types.js";
+import type { Formats } from "./modules/exports.js";
+import { fileReaders, formatsModule } from "./modules/readers.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
-import { ownArgument, ownOptions } from "./snapshot.js";
-import { isRecord, withoutUndefined } from "./values.js";
+import type { WasmSource } from "./types/platform.js";
+import { isRecord, withoutUndefined } from "./values/values.js";
 
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
-export { Sim3AlignError } from "./error.js";
 export type { CameraFile, ReadCameraOptions } from "./formats/camera-file.js";
 export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
-export type { DepthImage, ReadDepthOptions } from "./input/depth-reading.js";
+export type { DepthImage, ReadDepthOptions } from "./input/types.js";
 export type { SceneCase } from "./scene/scene-files.js";
+export { Sim3AlignError } from "./values/error.js";
 
 /** A mesh from a file, in the unit and axes of the file. */
 export interface MeshFromFile {
@@ -81,7 +88,7 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<PixelArray<Uint8Array>> {
-  if (isRecord(file)) return fromCocoRle(ownArgument("rle", file as unknown as CocoRle));
+  if (isRecord(file)) return fromCocoRle(plainArgument("rle", file as unknown as CocoRle));
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return call(bytes, (readers) => readers.readMask(bytes));
@@ -207,11 +214,11 @@ export async function readSam3d(files: CaseFiles, settings: ReadCaseOptions = {}
 }
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {
-  const given = ownArgument(argument, file);
+  const given = plainArgument(argument, file);
   return typeof given === "string" || isRecord(given) || Array.isArray(given) ? given : requiredBytes("file", given);
 }
 
-const optionsOf = <T extends object>(options: T) => withoutUndefined(ownOptions(options));
+const optionsOf = <T extends object>(options: T) => withoutUndefined(plainOptions(options));
 
 const call = <T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> =>
   callReader(() => formatsModule.load(), "file", bytes, read);

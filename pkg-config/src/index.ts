@@ -5,9 +5,9 @@
  * column-major, quaternions x, y, z, w.
  * @packageDocumentation
  */
-export { Aligner, createAligner } from "./aligner.js";
-export type { AlignerOptions } from "./aligner-options.js";
-export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export { Aligner, createAligner } from "./aligner/aligner.js";
+export type { AlignerOptions } from "./aligner/aligner-options.js";
+export { Tracker } from "./aligner/tracker.js";
 export {
   ALIGN_DEFAULTS,
   ESTIMATE_SIM3_DEFAULTS,
@@ -58,17 +58,19 @@ export type {
   WorldFrame,
   WorldUncertainty,
 } from "./generated/types.js";
-export type { DepthKind } from "./input/depth-kind.js";
-export type { FrameInput, ViewInput, ViewsInput } from "./input/frame-types.js";
+export { type ColorSamples, PreparedMesh } from "./input/prepared-mesh.js";
+export type { Sim3, Sim3Like } from "./input/sim3.js";
 export type {
   AlignInput,
   CameraFileInput,
   CameraInput,
   CocoRle,
   DepthInput,
+  DepthKind,
   DepthView,
   EncodedBytes,
   FieldOfViewCamera,
+  FrameInput,
   MaskInput,
   MatrixCamera,
   MeshArrays,
@@ -79,7 +81,22 @@ export type {
   PinholeCamera,
   PixelArray,
   UnknownCamera,
+  ViewInput,
+  ViewsInput,
 } from "./input/types.js";
+export type { WasmModules } from "./modules/modules.js";
+export type {
+  LabelMap,
+  Plane,
+  SceneAlignment,
+  SceneFailure,
+  SceneInput,
+  SceneMetrics,
+  SceneObjectInput,
+  SceneOptions,
+  SceneResult,
+  Support,
+} from "./scene/types.js";
 export type {
   AlignAllOptions,
   AlignOptions,
@@ -97,9 +114,8 @@ export type {
   SymmetryOption,
   TrackOptions,
   ViewsOptions,
-} from "./options.js";
-export type { BlobLike, SignalLike, UrlLike, WasmSource, WorkerLike } from "./platform.js";
-export { type ColorSamples, PreparedMesh } from "./prepared-mesh.js";
+} from "./types/options.js";
+export type { BlobLike, SignalLike, UrlLike, WasmSource, WorkerLike } from "./types/platform.js";
 export type {
   AlignAllResult,
   Alignment,
@@ -111,19 +127,5 @@ export type {
   TrackedFrame,
   ViewAlignment,
   ViewsAlignment,
-} from "./results.js";
-export type {
-  LabelMap,
-  Plane,
-  SceneAlignment,
-  SceneFailure,
-  SceneInput,
-  SceneMetrics,
-  SceneObjectInput,
-  SceneOptions,
-  SceneResult,
-  Support,
-} from "./scene/types.js";
-export type { Sim3, Sim3Like } from "./sim3.js";
-export { Tracker } from "./tracker.js";
-export type { WasmModules } from "./wasm-modules.js";
+} from "./types/results.js";
+export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./values/error.js";

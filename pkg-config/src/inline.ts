@@ -8,8 +8,8 @@
  */
 import core from "inlined:core";
 import workerScript from "inlined:worker";
-import { Aligner } from "./aligner.js";
-import type { AlignerOptions } from "./aligner-options.js";
+import { Aligner } from "./aligner/aligner.js";
+import type { AlignerOptions } from "./aligner/aligner-options.js";
 
 export * from "./index.js";
 

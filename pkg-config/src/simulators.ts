@@ -5,7 +5,7 @@
  * The world is in metres and kilograms, with z up and the ground at z = 0. Its origin is the foot of the objects' centre.
  * @packageDocumentation
  */
-export { Sim3AlignError } from "./error.js";
+
 export { toMjcf } from "./simulators/mjcf.js";
 export type { ConvexPart } from "./simulators/physics-module.js";
 export {
@@ -19,3 +19,4 @@ export {
 } from "./simulators/scene.js";
 export { toUrdf } from "./simulators/urdf.js";
 export { toUsd } from "./simulators/usd.js";
+export { Sim3AlignError } from "./values/error.js";

@@ -5,7 +5,6 @@
  * @packageDocumentation
  */
 
-export { Sim3AlignError } from "./error.js";
 export { applyPinhole, cameraFromPinhole, type LensOptions, type ThreeCamera } from "./three/camera.js";
 export { meshInputFromThree } from "./three/mesh-input.js";
 export { applyToObject3D, type PoseOptions, transformFromObject3D } from "./three/pose.js";
@@ -16,3 +15,4 @@ export type {
   PlacedObject,
   PosableObject,
 } from "./three/types.js";
+export { Sim3AlignError } from "./values/error.js";

@@ -1,16 +1,13 @@
 /** Worker script: runs the jobs of its aligner, or helps another worker with one, one at a time. */
-import type { Core } from "./core.js";
-import type { DepthFiles } from "./depth-files-module.js";
-import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
-import type { Formats } from "./formats-module.js";
-import { type Job, type MeshCache, type Modules, perform } from "./jobs.js";
-import type { JointAligner } from "./joint-module.js";
-import { HelpingWorker } from "./pool/helper.js";
-import { Helpers } from "./pool/helpers.js";
-import type { LazyName, Reply, Request } from "./pool/protocol.js";
-import { buffersOf } from "./pool/transfer.js";
-import type { Registrar } from "./registration-module.js";
-import type { Splats } from "./splats-module.js";
+import { dropMesh, perform } from "./calls/calls.js";
+import { JobContext } from "./calls/context.js";
+import type { Stage } from "./generated/types.js";
+import type { Exports, ModuleName } from "./modules/exports.js";
+import { type CompiledModule, type LoadedModule, type ModuleTable, modulesBy, WasmModule } from "./modules/module.js";
+import { HelperSession, Helpers } from "./pool/helpers.js";
+import type { Answer, FromWorker, Request, ToWorker } from "./pool/messages.js";
+import { internalError, partsOf, Sim3AlignError } from "./values/error.js";
+import { buffersOf } from "./values/transfer.js";
 // Imported statically, because some bundlers put a worker script into a single file without dynamic imports.
 import * as coreGlue from "./wasm/core.js";
 import * as depthFilesGlue from "./wasm/depth-files.js";
@@ -18,154 +15,117 @@ import * as formatsGlue from "./wasm/formats.js";
 import * as jointGlue from "./wasm/joint.js";
 import * as registrationGlue from "./wasm/registration.js";
 import * as splatsGlue from "./wasm/splats.js";
-import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
 
-const caches: readonly MeshCache[] = ["core", "joint"];
+type Post = (message: FromWorker, transfer?: ArrayBuffer[]) => void;
 
-type Post = (message: Reply, transfer?: ArrayBuffer[]) => void;
+/** A module that the worker has not got: the pool sends it with the job, once more. */
+class Missing {
+  constructor(readonly module: ModuleName) {}
+}
 
-/** Loads the modules and runs the jobs of one worker. */
+/** Runs the jobs of one worker. */
 class WorkerHost {
   readonly #post: Post;
-  #core: WasmModule<Core> | undefined;
-  readonly #formats = this.#lazy<Formats>("formats", formatsGlue);
-  readonly #depthFiles = this.#lazy<DepthFiles>("depthFiles", depthFilesGlue as unknown as DepthFiles);
-  readonly #splats = this.#lazy<Splats>("splats", splatsGlue as unknown as Splats);
-  readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
-  readonly #joint = this.#lazy<JointAligner>("joint", jointGlue as unknown as JointAligner);
+  /** The compiled modules that have come with jobs. */
+  readonly #compiled = new Map<ModuleName, CompiledModule>();
+  readonly #table: ModuleTable = {
+    core: this.#module("core", coreGlue),
+    formats: this.#module("formats", formatsGlue),
+    depthFiles: this.#module("depthFiles", depthFilesGlue),
+    splats: this.#module("splats", splatsGlue),
+    joint: this.#module("joint", jointGlue),
+    registration: this.#module("registration", registrationGlue),
+  };
+  readonly #modules = modulesBy((name) => this.#loaded(name));
   /** The helpers of the running job. */
   #helpers: Helpers | undefined;
   /** The help that this worker gives. */
-  #help: HelpingWorker | undefined;
-  /** Receives the answer to `needs-module`. */
-  #receiveModule: ((module: WebAssembly.Module | ErrorParts) => void) | undefined;
+  #session: HelperSession | undefined;
 
   constructor(post: Post) {
     this.#post = post;
   }
 
-  receive(message: Request): void {
-    if (message.type === "module") this.#receiveModule?.(message.module);
-    else if (message.type === "start") this.#start(message.core);
-    else if (message.type === "drop-mesh") this.#dropMesh(message.id);
-    else if (message.type === "helper") this.#addHelper(message.port);
-    else if (message.type === "helper-left") this.#helpers?.remove(message.helper);
-    else if (message.type === "stop-helping") this.#help?.stop();
-    else if (message.type === "help") this.#answer(this.#helping(message));
-    else this.#answer(this.#performed(message), message.returnData ? message.job.data : undefined);
-  }
-
-  #start(core: WebAssembly.Module): void {
-    this.#core = new WasmModule<Core>("core", core, () => coreGlue as unknown as Core);
-    // The failure surfaces at the first job.
-    this.#core.load().catch(() => {});
-    this.#post({ type: "ready" });
+  receive(message: ToWorker): void {
+    if (message.type === "job") this.#answer(message);
+    else if (message.type === "stop") this.#session?.stop();
+    else if (this.#helpers !== undefined) this.#helpers.change(message.helper, message.port);
+    // The job has ended in the meantime.
+    else message.port?.close();
   }
 
   /** Reports a message whose content could not be read, so that its call does not wait forever. */
   receiveUnreadable(): void {
-    this.#post({ type: "unreadable" });
+    this.#post(this.#failed(new Error("a message that the worker could not read")));
   }
 
-  /** @param data the data that are returned with the result */
-  async #answer(work: (modules: Modules) => Promise<unknown>, data?: unknown): Promise<void> {
-    const instances = async () => (await this.#caching()).map((module) => module?.instance);
-    const before = await instances();
-    const answer = await this.#done(work);
-    const after = await instances();
-    const emptied = caches.filter((_, i) => before[i] !== undefined && before[i] !== after[i]);
+  async #answer(request: Request): Promise<void> {
+    const data = request.returnsData && "data" in request.job ? request.job.data : undefined;
+    const answer = await this.#run(request).catch((error) => this.#failed(error));
     try {
-      this.#post({ ...answer, data, emptied }, buffersOf(data));
+      this.#post({ ...answer, data }, buffersOf(data));
     } catch (error) {
-      this.#post({ type: "done", error: partsOf(internalError(error)) });
+      this.#post(this.#failed(error));
     }
   }
 
-  /** The module of each cache of meshes, if it is loaded. */
-  #caching(): Promise<(LoadedModule<Core | JointAligner> | undefined)[]> {
-    return Promise.all([this.#core, this.#joint].map((module) => module?.loading?.catch(() => undefined)));
+  async #run(request: Request): Promise<Answer> {
+    for (const [name, module] of request.modules) this.#compiled.set(name, module);
+    for (const id of request.droppedMeshes) dropMesh(id, this.#table);
+    const result = await this.#performed(request);
+    return { type: "result", result, instances: this.#instances() };
   }
 
-  #performed({ job, wantsProgress }: Request & { type: "job" }): (modules: Modules) => Promise<unknown> {
-    const listener = (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
-      this.#post({ type: "progress", stage, fraction, best });
-    return async (modules) => {
-      const helpers = new Helpers(() => this.#post({ type: "needs-help" }));
-      this.#helpers = helpers;
-      try {
-        return await perform<Job>(job, modules, wantsProgress ? listener : undefined, helpers);
-      } finally {
-        this.#helpers = undefined;
-        helpers.close();
-      }
-    };
-  }
-
-  #helping({ port, mesh }: Request & { type: "help" }): (modules: Modules) => Promise<unknown> {
-    const help = new HelpingWorker(port, mesh);
-    this.#help = help;
-    return async (modules) => {
-      await help.run(modules);
+  async #performed({ job, wantsProgress }: Request): Promise<unknown> {
+    if (job.method === "start") return {};
+    if (job.method === "help") {
+      this.#session = new HelperSession(job.data);
+      await this.#session.run(this.#modules);
       return {};
-    };
-  }
-
-  /** Connects a helper to the running job, which may have ended in the meantime. */
-  #addHelper(port: MessagePort): void {
-    if (this.#helpers === undefined) port.close();
-    else this.#helpers.add(port);
-  }
-
-  async #done(work: (modules: Modules) => Promise<unknown>): Promise<Reply & { type: "done" }> {
+    }
+    const helpers = new Helpers(() => this.#post({ type: "progress" }));
+    this.#helpers = helpers;
+    const listener = (stage: Stage, fraction: number, best?: Float64Array) =>
+      this.#post({ type: "progress", stage, fraction, best });
     try {
-      const core = await this.#core?.load().catch((error) => {
-        // The pool replaces a worker with an internal error; this one would fail forever.
-        throw internalError(error);
-      });
-      if (core === undefined) throw new Error("no core");
-      const modules = {
-        core,
-        formats: () => this.#formats.load(),
-        depthFiles: () => this.#depthFiles.load(),
-        splats: () => this.#splats.load(),
-        registrar: () => this.#registrar.load(),
-        joint: () => this.#joint.load(),
-      };
-      return { type: "done", result: await work(modules) };
-    } catch (error) {
-      return { type: "done", error: partsOf(error instanceof Sim3AlignError ? error : internalError(error)) };
+      return await perform(job, new JobContext(this.#modules, helpers, wantsProgress ? listener : undefined));
+    } finally {
+      this.#helpers = undefined;
+      helpers.close();
     }
   }
 
-  async #dropMesh(id: number): Promise<void> {
-    for (const module of await this.#caching()) module?.call((glue) => glue.dropMesh(id));
+  #failed(error: unknown): Answer {
+    const instances = this.#instances();
+    if (error instanceof Missing) return { type: "result", needs: error.module, instances };
+    const known = error instanceof Sim3AlignError ? error : internalError(error);
+    return { type: "result", error: partsOf(known), instances };
   }
 
-  /** A module that is loaded when a job first needs it. */
-  #lazy<G extends Glue>(name: LazyName, glue: G): WasmModule<G> {
-    return new WasmModule<G>(
+  /** The numbers of the instances of the modules that cache meshes. */
+  #instances(): Answer["instances"] {
+    const { core, joint } = this.#table;
+    return { core: core.loaded?.instance, joint: joint.loaded?.instance };
+  }
+
+  #module<N extends ModuleName>(name: N, glue: object): WasmModule<Exports[N]> {
+    return new WasmModule(
       name,
-      () => this.#request(name),
+      () => this.#compiled.get(name) as CompiledModule,
       () => glue,
     );
   }
 
-  /** Asks the pool for a compiled module. The worker runs one job at a time, and so asks for one at a time. */
-  async #request(name: LazyName): Promise<WebAssembly.Module> {
-    const module = await new Promise<WebAssembly.Module | ErrorParts>((resolve) => {
-      this.#receiveModule = resolve;
-      this.#post({ type: "needs-module", name });
-    });
-    this.#receiveModule = undefined;
-    if ("code" in module) throw new Sim3AlignError(module);
-    return module;
+  async #loaded<N extends ModuleName>(name: N): Promise<LoadedModule<Exports[N]>> {
+    if (!this.#compiled.has(name)) throw new Missing(name);
+    return this.#table[name].load();
   }
 }
 
 /** The parts of a worker's global scope that this script uses. Node worker threads have a module instead. */
 const scope = globalThis as unknown as {
-  postMessage?: (message: Reply, transfer: ArrayBuffer[]) => void;
-  onmessage?: (event: { data: Request }) => void;
+  postMessage?: (message: FromWorker, transfer: ArrayBuffer[]) => void;
+  onmessage?: (event: { data: ToWorker }) => void;
   onmessageerror?: () => void;
 };
 
@@ -180,7 +140,7 @@ if (typeof scope.postMessage === "function") {
   import(/* webpackIgnore: true */ /* @vite-ignore */ name).then(
     ({ parentPort }: typeof import("node:worker_threads")) => {
       const host = new WorkerHost((message, transfer = []) => parentPort?.postMessage(message, transfer));
-      parentPort?.on("message", (message: Request) => host.receive(message));
+      parentPort?.on("message", (message: ToWorker) => host.receive(message));
       parentPort?.on("messageerror", () => host.receiveUnreadable());
     },
   );

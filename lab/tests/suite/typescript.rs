@@ -293,7 +293,8 @@ fn types() -> String {
         TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration, CalibrationUncertainty,
         DepthCalibration,
     }
-    let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
+    let imports =
+        "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../types/argument-types.js\";\n\n";
     HEADER.to_owned() + imports + &types.declarations.join("\n")
 }
 
@@ -366,7 +367,7 @@ fn options() -> String {
     };
     // A call, because bundlers keep an unused object with spreads.
     format!(
-        "{HEADER}import type {{ OptionRow }} from \"../options.js\";\n\
+        "{HEADER}import type {{ OptionRow }} from \"../types/options.js\";\n\
          import type {{\n  {},\n}} from \"./types.js\";\n\n{}\n{constants}\
          /** Every option with its kind, range, default and a one-line description. */\n\
          export const OPTIONS: Readonly<Record<{}, readonly OptionRow[]>> = /* @__PURE__ */ (() => ({{\n{}}}))();\n",

@@ -36,23 +36,21 @@ use crate::helper::JointHelper;
 #[wasm_bindgen(skip_typescript)]
 pub struct PlaceTask(RefCell<Task<'static, (Placement, Option<Alignment>)>>);
 
-/// Begins to align an object of a scene in a round of its plan: `undefined` for the first one.
+/// Begins to align an object of a scene in a round of its `plan`, which is not there in the first one; `index` is its number.
 #[wasm_bindgen(js_name = beginPlace, skip_typescript)]
 pub fn begin_place(
     input: &JsValue,
     options: &JsValue,
-    plan: &JsValue,
-    object: usize,
     on_progress: Option<Function>,
     helpers: Option<JsHelpers>,
 ) -> core::result::Result<PlaceTask, JsValue> {
     let begin = || {
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        let plan: Plan = unpacked(plan)?.unwrap_or_default();
+        let (plan, index) = planned(input)?;
         let mut host = JsHost::new(on_progress);
         Ok(Task::new(pauses(helpers), move |pauses| async move {
-            place(&observation, &mesh, options, plan.told(object)?, &mut host, &pauses).await
+            place(&observation, &mesh, options, plan.told(index)?, &mut host, &pauses).await
         }))
     };
     begin().map(|task| PlaceTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
@@ -70,21 +68,22 @@ impl PlaceTask {
     }
 }
 
-/// Prepares a helper of the alignment that [`begin_place`] begins with the same input, options and plan.
+/// Prepares a helper of the alignment that [`begin_place`] begins with the same input and options.
 #[wasm_bindgen(js_name = beginHelpPlace, skip_typescript)]
-pub fn begin_help(
-    input: &JsValue,
-    options: &JsValue,
-    plan: &JsValue,
-    object: usize,
-) -> core::result::Result<JointHelper, JsValue> {
+pub fn begin_help(input: &JsValue, options: &JsValue) -> core::result::Result<JointHelper, JsValue> {
     let begin = || {
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        let plan: Plan = unpacked(plan)?.unwrap_or_default();
-        helper(observation, mesh, options, plan.told(object)?)
+        let (plan, index) = planned(input)?;
+        helper(observation, mesh, options, plan.told(index)?)
     };
     begin().map(JointHelper::from).map_err(|error: Error| to_js(&error))
+}
+
+/// The plan of the scene, and the number of the object.
+fn planned(input: &JsValue) -> Result<(Plan, usize)> {
+    let plan = unpacked(&of(input, "plan"))?.unwrap_or_default();
+    Ok((plan, required_number(input, "input", "index")? as usize))
 }
 
 /// What follows from the placements of a round: `({ depth, …, camera, masks, support, seed, snap }, plan, placements)` →

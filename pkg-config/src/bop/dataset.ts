@@ -4,10 +4,11 @@ import { basename, join, resolve } from "node:path";
 import { fileNotFound } from "../case-files.js";
 import { namesIn, read, readMeshFile } from "../case-folder.js";
 import type { BopPose } from "../conventions/bop.js";
-import { failure, invalidArgument } from "../error.js";
 import { isNumber, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { MeshFile } from "../input/types.js";
-import { isRecord, oncePerKey } from "../values.js";
+import { failure, invalidArgument } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
+import { oncePerKey } from "../values/values.js";
 
 /** BOP's lengths are in millimetres. */
 export const METRES_PER_UNIT = 0.001;

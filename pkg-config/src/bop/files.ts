@@ -1,11 +1,11 @@
 /** Files that methods exchange with BOP: 2D detections, and the results of the leaderboard. */
 import { type Matrix3, rotationOf } from "../conventions/rotation.js";
 import { sim3Of } from "../conventions/similarity.js";
-import { failure } from "../error.js";
 import { isNumber } from "../formats/json.js";
+import type { Sim3 } from "../generated/types.js";
 import type { CocoRle } from "../input/types.js";
-import type { Sim3 } from "../sim3.js";
-import { isRecord } from "../values.js";
+import { failure } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
 import { type BopPlace, imageKey, METRES_PER_UNIT } from "./dataset.js";
 
 /** An object that a detector found, such as CNOS. */

@@ -1,13 +1,13 @@
 /** The scores of BOP: results next to the true poses of a dataset, and recalls over the thresholds of each error. */
 import { fileNotFound } from "../case-files.js";
 import { fromBop } from "../conventions/bop.js";
-import { fileReaders } from "../file-readers.js";
 import type { BopErrors } from "../generated/types.js";
 import type { CoreFrame } from "../input/core-input.js";
-import { resolveFrame } from "../input/frames.js";
 import { readMesh } from "../input/mesh.js";
-import { registrationModule } from "../registration-module.js";
-import { oncePerKey } from "../values.js";
+import { resolveFrame } from "../input/resolve.js";
+import { registrationModule } from "../modules/modules.js";
+import { fileReaders } from "../modules/readers.js";
+import { oncePerKey } from "../values/values.js";
 import {
   type BopDataset,
   type BopPlace,

@@ -23,7 +23,7 @@ import {
   type Sim3,
   type ViewsOptions,
 } from "../index.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { type CaseRun, failedLine, type Job } from "./batch.js";
 import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
 import {

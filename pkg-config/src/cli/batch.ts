@@ -1,6 +1,6 @@
 /** Runs a batch of cases and records each result. A batch can be interrupted and resumed. */
 import { availableParallelism } from "node:os";
-import { MAX_WORKERS } from "../aligner-options.js";
+import { MAX_WORKERS } from "../aligner/aligner-options.js";
 import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
 import { type Entry, errorsIn, failureEntry, isFailure, isMetric } from "./entry.js";
 import type { Flags } from "./flags.js";

@@ -1,7 +1,7 @@
 /** Details of a single case, for people. */
 import type { DepthCalibration, Evaluation, InputInfo, LayoutErrors, Metrics, PoseErrors, Stretch } from "../index.js";
 import { fixed, type Message, significant } from "../report-page/row.js";
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/kinds.js";
 import { type AlignEntry, type Entry, isMetric, type ViewsEntry, warningsOf } from "./entry.js";
 import { Lengths, type Pair, pairs, type Style } from "./table.js";
 

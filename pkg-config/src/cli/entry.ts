@@ -1,8 +1,10 @@
 /** The JSON entry of a case: the model of a result for files, tables, pictures and reports. */
-import { describe, failure, Sim3AlignError } from "../error.js";
+
 import type { AlignResult, InputInfo, PoseErrors, SceneResult, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
 import type { Message, Row } from "../report-page/row.js";
-import { isRecord, withoutUndefined } from "../values.js";
+import { describe, failure, Sim3AlignError } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
+import { withoutUndefined } from "../values/values.js";
 import { UsageError } from "./files.js";
 
 /** An entry of any kind. */

@@ -1,6 +1,7 @@
 /** `sim3align evaluate`: computes the metrics of transforms on cases. */
-import { failure } from "../error.js";
+
 import { OPTIONS, type OptionRow } from "../index.js";
+import { failure } from "../values/error.js";
 import { evaluationColumns, viewsOf } from "./align.js";
 import { failedLine, type Job } from "./batch.js";
 import { evaluationDetails } from "./details.js";

@@ -5,20 +5,21 @@ import { correctDepth } from "../conventions/corrected-depth.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
 import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
 import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
-import { fileReaders } from "../file-readers.js";
 import { parseCameraFile } from "../formats/camera-file.js";
 import type { AlignInput, DepthCalibration, SceneInput, SceneResult, Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
-import { readView } from "../input/resolve.js";
 import type { MeshArrays, MeshInput } from "../input/types.js";
+import { readView } from "../input/view.js";
+import { fileReaders } from "../modules/readers.js";
 import { fixed } from "../report-page/row.js";
 import type { SceneOnDisk } from "../scene-folder.js";
-import type { Sim3Like } from "../sim3.js";
 import { toMjcf } from "../simulators/mjcf.js";
 import { type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
-import { isRecord, withoutUndefined } from "../values.js";
+import type { Sim3Like } from "../types/argument-types.js";
+import { isRecord } from "../values/kinds.js";
+import { withoutUndefined } from "../values/values.js";
 import type { Flags } from "./flags.js";
 
 /** An input in the lengths of a result. Results without a calibration leave the depth as it is. */
@@ -29,7 +30,7 @@ export async function correctedInput(
   if (calibration === undefined) return input;
   const { image, mask, mesh, resizeMask } = input;
   // The photo is not needed to read the depth.
-  const { view } = await readView({ ...input, image: undefined }, fileReaders);
+  const { core: view } = await readView({ ...input, image: undefined }, fileReaders);
   const depthMap = { data: view.depth as Float32Array, width: Number(view.width), height: Number(view.height) };
   const depth = correctDepth(depthMap, calibration);
   return { depth, camera: calibration.camera, mask, mesh, image, resizeMask };

@@ -3,9 +3,9 @@ import { resolve } from "node:path";
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
 import type { CameraInput, Preset } from "../index.js";
-import { type DepthKind, depthKinds } from "../input/depth-kind.js";
+import { type DepthKind, depthKinds } from "../input/types.js";
 import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { checkWritable, makeFolder, UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
 

@@ -1,6 +1,6 @@
 /** Flags for the options in the generated option tables. */
 import { InvalidArgumentError } from "commander";
-import type { OptionRow } from "../options.js";
+import type { OptionRow } from "../types/options.js";
 import { type Flag, type Flags, reads, valueName } from "./flags.js";
 import { direction, guard, number, scale, symmetry } from "./parse.js";
 

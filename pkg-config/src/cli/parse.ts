@@ -1,8 +1,8 @@
 /** Parsers for flag values. Invalid values are usage errors. */
 import { InvalidArgumentError } from "commander";
-import { MAX_WORKERS } from "../aligner-options.js";
+import { MAX_WORKERS } from "../aligner/aligner-options.js";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/kinds.js";
 
 /** Parses a number. */
 export function number(text: string): number {

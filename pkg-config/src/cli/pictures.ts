@@ -6,7 +6,7 @@ import type { UprightOptions } from "../conventions/upright.js";
 import type { AlignInput, InputInfo } from "../index.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { alternativesOf, type Entry, posesIn } from "./entry.js";
 import { correctedInput, type ExportedAs, exportedMesh } from "./exports.js";
 import type { Flags } from "./flags.js";

@@ -1,7 +1,7 @@
 /** The lock of a record: one process at a time appends to it. */
 import { constants, copyFileSync, readFileSync, renameSync, rmSync, writeFileSync } from "node:fs";
 import { hostname } from "node:os";
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/kinds.js";
 import { UsageError } from "./files.js";
 
 /** The process that holds a lock. */

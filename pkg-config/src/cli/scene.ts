@@ -12,7 +12,7 @@ import {
 } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
 import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
-import { withoutUndefined } from "../values.js";
+import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLine, type Job } from "./batch.js";
 import { depthRows, proportionsRows, warningLine } from "./details.js";

@@ -1,8 +1,8 @@
 /** Transforms from JSON files. */
 import { read } from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
-import { failure, type Sim3AlignError } from "../error.js";
-import { isRecord, oncePerKey } from "../values.js";
+import { failure, type Sim3AlignError } from "../values/error.js";
+import { isRecord, oncePerKey } from "../values/values.js";
 
 /** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
 const jsonIn = oncePerKey(async (path: string, argument: string) =>

@@ -2,7 +2,7 @@
 import { pixelsOf } from "../formats/pixels.js";
 import type { DepthCalibration } from "../generated/types.js";
 import type { PixelArray } from "../input/types.js";
-import { finite, positive, record } from "../values.js";
+import { finite, positive, record } from "../values/values.js";
 
 /** See `src/calibrate/calibration.rs`. */
 const FARTHEST = 1e3;

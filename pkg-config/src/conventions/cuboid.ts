@@ -9,7 +9,7 @@ import {
   record,
   type Vector3,
   vector3,
-} from "../values.js";
+} from "../values/values.js";
 import { type CameraFrame, turnTo } from "./frames.js";
 import type { OrientedBoundingBox } from "./oriented-bounding-box.js";
 import {

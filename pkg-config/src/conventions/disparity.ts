@@ -2,7 +2,7 @@
 
 import { pixelsOf, pointKinds } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { finite, record } from "../values.js";
+import { finite, record } from "../values/values.js";
 
 /**
  * Converts relative inverse depth (disparity), the output of the relative models of Depth Anything and MiDaS, to depth

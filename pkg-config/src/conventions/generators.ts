@@ -1,5 +1,5 @@
 /** The frames of the files that generators of meshes write. */
-import type { Vector3 } from "../values.js";
+import type { Vector3 } from "../values/values.js";
 
 /** The frame of a file. */
 export interface GeneratorFrame {

@@ -1,8 +1,9 @@
 /** Export of placed meshes, and placement of existing GLB files. */
-import { describe, failure } from "../error.js";
+
+import type { Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../input/types.js";
-import type { Sim3Like } from "../sim3.js";
-import { isRecord, oneOf, optionsOf } from "../values.js";
+import { describe, failure } from "../values/error.js";
+import { isRecord, oneOf, optionsOf } from "../values/values.js";
 import { bytesOfFile } from "./file-bytes.js";
 import { inFrame } from "./frames.js";
 import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";

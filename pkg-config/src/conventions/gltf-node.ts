@@ -1,7 +1,7 @@
 /** Transforms as glTF nodes. */
-import type { Sim3Like } from "../sim3.js";
-import type { Quaternion, Vector3 } from "../values.js";
-import { isRecord, optionsOf } from "../values.js";
+import type { Sim3Like } from "../input/sim3.js";
+import type { Quaternion, Vector3 } from "../values/values.js";
+import { isRecord, optionsOf } from "../values/values.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 

@@ -1,5 +1,5 @@
 /** The frame of a scene: the ground, and the directions over it. */
-import { finite, positive, record, type Vector3, vector3 } from "../values.js";
+import { finite, positive, record, type Vector3, vector3 } from "../values/values.js";
 import { cross, dot } from "./rotation.js";
 
 export const scaled = (a: Vector3, s: number): Vector3 => [a[0] * s, a[1] * s, a[2] * s];

@@ -1,8 +1,9 @@
 /** Brush masks in Label Studio's format: a bit stream of the flattened RGBA pixels. */
-import { describe, failure } from "../error.js";
+
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { flattened } from "../values.js";
+import { describe, failure } from "../values/error.js";
+import { flattened } from "../values/values.js";
 
 /**
  * Decodes a brush annotation of Label Studio (`BrushLabels`, `format: "rle"`).

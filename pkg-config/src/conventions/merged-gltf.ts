@@ -1,5 +1,5 @@
 /** Joins the glTF documents of several files into one. Nothing is decoded: indices are moved. */
-import { isRecord } from "../values.js";
+import { isRecord } from "../values/values.js";
 
 type Json = Record<string, unknown>;
 

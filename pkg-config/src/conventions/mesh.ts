@@ -1,8 +1,8 @@
 /** Validation of meshes in arrays. */
-import { checkAttached } from "../attached.js";
-import { describe, failure } from "../error.js";
+
 import type { MeshArrays } from "../input/types.js";
-import { isTypedArray, record, type Vector3, wrongKind } from "../values.js";
+import { describe, failure } from "../values/error.js";
+import { checkAttached, isTypedArray, record, type Vector3, wrongKind } from "../values/values.js";
 
 /** A triangle mesh whose indices are in range. */
 export interface Mesh {

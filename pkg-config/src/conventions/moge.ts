@@ -3,7 +3,7 @@
 import { pinholeOf } from "../formats/pinhole.js";
 import { checkCount, type ImageSize, pixelsOf, pointKinds, sizeOf } from "../formats/pixels.js";
 import type { PinholeCamera, PixelArray } from "../input/types.js";
-import { finiteNumbers, flattened, isTypedArray, record } from "../values.js";
+import { finiteNumbers, flattened, isTypedArray, record } from "../values/values.js";
 
 /** The output of MoGe, with tensors as arrays. */
 export interface MogeOutput extends ImageSize {

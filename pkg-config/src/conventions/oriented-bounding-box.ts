@@ -1,7 +1,8 @@
 /** Bounding boxes of aligned objects, and thereby their dimensions. */
+
+import type { Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../input/types.js";
-import type { Sim3Like } from "../sim3.js";
-import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values.js";
+import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values/values.js";
 import { type Mesh, meshOf, triangleCount, vertexAt } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";
 import { type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";

@@ -1,8 +1,9 @@
 /** Pose files: `gt.json` of a case, an annotation, or a saved result. */
-import { failure } from "../error.js";
+
 import { isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
-import type { Sim3 } from "../sim3.js";
-import { isRecord } from "../values.js";
+import type { Sim3 } from "../input/sim3.js";
+import { failure } from "../values/error.js";
+import { isRecord } from "../values/values.js";
 import { fromBop } from "./bop.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 

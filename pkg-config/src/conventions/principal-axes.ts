@@ -1,6 +1,6 @@
 /** The principal axes of a mesh's surface. */
 
-import type { Vector3 } from "../values.js";
+import type { Vector3 } from "../values/values.js";
 import { type Mesh, triangleCount, vertexAt } from "./mesh.js";
 import { column, determinant, entry, fromColumns, type Matrix3, product, transposed } from "./rotation.js";
 

@@ -1,5 +1,5 @@
 /** Resizes and crops images together with their intrinsics. */
-import { describe, failure } from "../error.js";
+
 import { pinholeOf } from "../formats/pinhole.js";
 import {
   type DepthPixels,
@@ -13,7 +13,8 @@ import {
   sizeOf,
 } from "../formats/pixels.js";
 import type { CameraInput, PinholeCamera, PixelArray } from "../input/types.js";
-import { optionsOf, record, whole } from "../values.js";
+import { describe, failure } from "../values/error.js";
+import { optionsOf, record, whole } from "../values/values.js";
 
 /** A region of an image, in integer pixels. */
 export interface PixelBox extends ImageSize {

@@ -1,6 +1,6 @@
 /** Rotations as 3×3 matrices and as quaternions in either order. */
-import { failure } from "../error.js";
-import { finiteNumbers, type Quaternion, type Vector3 } from "../values.js";
+import { failure } from "../values/error.js";
+import { finiteNumbers, type Quaternion, type Vector3 } from "../values/values.js";
 
 /** A 3×3 matrix, row-major. */
 export type Matrix3 = readonly [number, number, number, number, number, number, number, number, number];

@@ -1,7 +1,8 @@
 /** Layouts of SAM 3D Objects. */
-import { failure } from "../error.js";
-import type { Sim3, Sim3Like } from "../sim3.js";
-import { finiteNumbers, flattened, oneOf, optionsOf, record, type Vector3, vector3 } from "../values.js";
+
+import type { Sim3, Sim3Like } from "../input/sim3.js";
+import { failure } from "../values/error.js";
+import { finiteNumbers, flattened, oneOf, optionsOf, record, type Vector3, vector3 } from "../values/values.js";
 import { turnTo } from "./frames.js";
 import {
   type Matrix3,

@@ -1,8 +1,9 @@
 /** Export of a whole scene as one GLB. */
-import { invalidArgument } from "../error.js";
+
+import type { Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../input/types.js";
-import type { Sim3Like } from "../sim3.js";
-import { flattened, isRecord, optionsOf, positive, record, type Vector3 } from "../values.js";
+import { invalidArgument } from "../values/error.js";
+import { flattened, isRecord, optionsOf, positive, record, type Vector3 } from "../values/values.js";
 import { bounds, bytesOf, glbOfParts, partsOf } from "./glb.js";
 import { type GltfNode, toGltfNode } from "./gltf-node.js";
 import { groundFrame, meanOf, minus } from "./ground-frame.js";

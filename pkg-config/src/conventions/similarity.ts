@@ -1,8 +1,17 @@
 /** Conversions and operations of similarity transforms. */
-import { checkAttached } from "../attached.js";
-import { describe, failure } from "../error.js";
-import type { Sim3, Sim3Like } from "../sim3.js";
-import { finiteNumbers, flattened, isRecord, isTypedArray, type Vector3, vector3, wrongKind } from "../values.js";
+
+import type { Sim3, Sim3Like } from "../input/sim3.js";
+import { describe, failure } from "../values/error.js";
+import {
+  checkAttached,
+  finiteNumbers,
+  flattened,
+  isRecord,
+  isTypedArray,
+  type Vector3,
+  vector3,
+  wrongKind,
+} from "../values/values.js";
 import {
   determinant,
   entry,

@@ -1,6 +1,7 @@
 /** Where the numbers of each Gaussian are in a PLY file of 3D Gaussian Splatting. */
-import { failure } from "../error.js";
+
 import { plyHeader } from "../formats/splat-files.js";
+import { failure } from "../values/error.js";
 import { MAX_DEGREE } from "./harmonics.js";
 
 /** Offsets, in bytes, from the beginning of a Gaussian. */

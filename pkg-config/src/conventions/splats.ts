@@ -1,8 +1,9 @@
 /** Placement of 3D Gaussian splats. */
-import { failure, type Sim3AlignError } from "../error.js";
+
 import { isPly, isSplatFile, RECORD_BYTES, rotationIn } from "../formats/splat-files.js";
-import type { Sim3Like } from "../sim3.js";
-import { optionsOf, type Vector3 } from "../values.js";
+import type { Sim3Like } from "../input/sim3.js";
+import { failure, type Sim3AlignError } from "../values/error.js";
+import { optionsOf, type Vector3 } from "../values/values.js";
 import { bytesOfFile } from "./file-bytes.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { harmonicRotation, MAX_DEGREE } from "./harmonics.js";

@@ -1,7 +1,8 @@
 /** Meshes in the proportions that an alignment found. */
-import { failure } from "../error.js";
+
 import type { MeshArrays } from "../input/types.js";
-import { finiteNumbers, record, type Vector3 } from "../values.js";
+import { failure } from "../values/error.js";
+import { finiteNumbers, record, type Vector3 } from "../values/values.js";
 import { underNode } from "./glb.js";
 import { meshOf } from "./mesh.js";
 import { eigenvectors } from "./principal-axes.js";

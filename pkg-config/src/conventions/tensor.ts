@@ -1,10 +1,19 @@
 /** Masks and depth maps from tensors of transformers.js. */
-import { checkAttached } from "../attached.js";
-import { describe, failure } from "../error.js";
+
 import { checkCount } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { typedArrayKind } from "../kinds.js";
-import { flattened, isKind, isRecord, isTypedArray, record, whole, wrongKind } from "../values.js";
+import { describe, failure } from "../values/error.js";
+import { typedArrayKind } from "../values/kinds.js";
+import {
+  checkAttached,
+  flattened,
+  isKind,
+  isRecord,
+  isTypedArray,
+  record,
+  whole,
+  wrongKind,
+} from "../values/values.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */
 export interface TensorLike {

@@ -1,7 +1,8 @@
 /** Objects in upright frames of their own. */
+
+import type { Sim3, Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../input/types.js";
-import type { Sim3, Sim3Like } from "../sim3.js";
-import { oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../values.js";
+import { oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../values/values.js";
 import { underNode } from "./glb.js";
 import { meshOf } from "./mesh.js";
 import { outermost, smallestBoxAxes, smallestRectangle } from "./minimal-box.js";

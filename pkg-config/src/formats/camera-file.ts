@@ -1,7 +1,8 @@
 /** Camera files of data sets and drivers: sim3align, BOP, ROS, RealSense and Open3D. */
-import { describe, failure, invalidArgument } from "../error.js";
+
 import type { PinholeCamera } from "../input/types.js";
-import { isRecord } from "../values.js";
+import { describe, failure, invalidArgument } from "../values/error.js";
+import { isRecord } from "../values/values.js";
 import { isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";

@@ -1,7 +1,8 @@
 /** COCO's run-length encoding of masks: column-major runs, starting with background. */
-import { describe, failure, type Sim3AlignError } from "../error.js";
+
 import type { CocoRle, PixelArray } from "../input/types.js";
-import { finiteNumbers, flattened, isRecord, record, whole } from "../values.js";
+import { describe, failure, type Sim3AlignError } from "../values/error.js";
+import { finiteNumbers, flattened, isRecord, record, whole } from "../values/values.js";
 import { type JsonFile, numbersIn, parsedJson } from "./json.js";
 import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 import { filledRuns } from "./runs.js";

@@ -1,5 +1,5 @@
 /** The focal length of a photo in pixels, from its EXIF data. */
-import { positive, record } from "../values.js";
+import { positive, record } from "../values/values.js";
 import type { ImageSize } from "./pixels.js";
 
 /** What the EXIF data of a photo say of its camera; what they do not state is missing. */

@@ -1,6 +1,6 @@
 /** Pinhole intrinsics from four numbers, a matrix, or a field of view. */
-import { describe, failure, invalidArgument } from "../error.js";
-import { finiteNumbers, flattened, record } from "../values.js";
+import { describe, failure, invalidArgument } from "../values/error.js";
+import { finiteNumbers, flattened, record } from "../values/values.js";
 import type { ImageSize } from "./pixels.js";
 
 /** Pinhole intrinsics in pixels; pixel centres have integer coordinates. */

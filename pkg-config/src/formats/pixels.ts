@@ -1,9 +1,8 @@
 /** Images: pixels and their size. */
 
-import { checkAttached } from "../attached.js";
-import { failure } from "../error.js";
 import type { PixelArray } from "../input/types.js";
-import { isTypedArray, record, whole, wrongKind } from "../values.js";
+import { failure } from "../values/error.js";
+import { checkAttached, isTypedArray, record, whole, wrongKind } from "../values/values.js";
 
 /** The size of an image in pixels. */
 export interface ImageSize {

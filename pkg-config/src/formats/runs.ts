@@ -1,5 +1,5 @@
 /** Masks from run lengths: background, object, background, … */
-import { describe, failure } from "../error.js";
+import { describe, failure } from "../values/error.js";
 
 /**
  * Decodes alternating runs: 0 in the first run, 1 in the second, and so on.

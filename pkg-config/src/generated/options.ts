@@ -1,6 +1,6 @@
 // Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.
 
-import type { OptionRow } from "../options.js";
+import type { OptionRow } from "../types/options.js";
 import type {
   AlignOptions,
   PaperOptions,

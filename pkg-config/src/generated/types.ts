@@ -1,6 +1,6 @@
 // Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.
 
-import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from "../argument-types.js";
+import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from "../types/argument-types.js";
 
 /** The method of an alignment. */
 export type Preset = "precise" | "paper";

@@ -1,8 +1,9 @@
 /** Files as bytes, and detection of their type. */
-import { checkAttached } from "../attached.js";
-import { describe, failure, invalidArgument, messageOf } from "../error.js";
-import { isBuffer, isKind, isTypedArray } from "../kinds.js";
-import type { Glue, LoadedModule } from "../wasm-module.js";
+
+import type { LoadedModule } from "../modules/module.js";
+import { describe, failure, invalidArgument, messageOf } from "../values/error.js";
+import { isBuffer, isKind, isTypedArray } from "../values/kinds.js";
+import { checkAttached } from "../values/values.js";
 
 /** An array of bytes. */
 export type Bytes = Uint8Array | Uint8ClampedArray;
@@ -12,13 +13,13 @@ export const isBytes = (value: unknown): value is Bytes => isTypedArray(value, "
 
 /**
  * The bytes of a file, or `null`. Cannot distinguish a file from pixels in a `Uint8Array`.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` if a `Blob` or a `File` cannot be read
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for memory that is detached, and `FILE_NOT_FOUND` if a `Blob` or a `File` cannot be read
  */
 export async function fileBytes(argument: string, value: unknown): Promise<Uint8Array | null> {
-  if (isTypedArray<Uint8Array>(value, "Uint8Array")) return value;
-  if (isBuffer(value)) {
+  const isArray = isTypedArray<Uint8Array>(value, "Uint8Array");
+  if (isArray || isBuffer(value)) {
     checkAttached(argument, value);
-    return new Uint8Array(value);
+    return isArray ? value : new Uint8Array(value);
   }
   if (!isKind<Blob>(value, "Blob", "File")) return null;
   try {
@@ -31,28 +32,23 @@ export async function fileBytes(argument: string, value: unknown): Promise<Uint8
 }
 
 /**
- * Calls a reader of files, unless the bytes were moved to another thread while the readers were loaded.
+ * Calls a reader of files.
  * @param rename of the arguments in errors
  */
-export async function callReader<G extends Glue, T>(
+export async function callReader<G, T>(
   load: () => Promise<LoadedModule<G>>,
   argument: string,
   bytes: Uint8Array,
   read: (readers: G) => T,
   rename?: (argument: string) => string,
 ): Promise<T> {
-  const module = await load();
-  checkAttached(argument, bytes);
-  return module.call(read, rename);
+  return (await load()).callWith(argument, bytes, read, rename);
 }
 
 /** The bytes of a file; `argument` is its name in errors. */
 export async function requiredBytes(argument: string, file: unknown): Promise<Uint8Array> {
   const bytes = await fileBytes(argument, file);
-  if (bytes !== null) {
-    checkAttached(argument, bytes);
-    return bytes;
-  }
+  if (bytes !== null) return bytes;
   throw invalidArgument(argument, file, "the bytes of a file", "Pass a Uint8Array, an ArrayBuffer or a Blob.");
 }
 

@@ -1,10 +1,11 @@
 /** The camera of an input: intrinsics or a camera file. */
-import { invalidArgument } from "../error.js";
+
 import { checkCameraSize, depthScaleIn, parseCameraFile } from "../formats/camera-file.js";
 import { type Pinhole, pinholeOf } from "../formats/pinhole.js";
 import type { ImageSize } from "../formats/pixels.js";
 import type { Warning } from "../generated/types.js";
-import { isRecord, stringsIn } from "../values.js";
+import { invalidArgument } from "../values/error.js";
+import { isRecord, stringsIn } from "../values/values.js";
 import { fileBytes } from "./bytes.js";
 import { checkSides } from "./depth.js";
 import { type CameraHints, foundCamera } from "./lens.js";
@@ -39,7 +40,7 @@ const fileRemedy = "Pass the content of a camera file as cameraFile.";
 const fileProperties = ["cam_K", "k", "d", "D", "intrinsic_matrix", "ppx", "ppy", "fov_y_deg", "depth_scale"];
 
 /** `readCamera` adds `warnings` and `depthScale` to the intrinsics of a camera file. */
-export const cameraProperties = [
+const cameraProperties = [
   ...["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "focalUncertainty", "warnings", "depthScale"],
 ];
 

@@ -1,8 +1,8 @@
 /** The input of the core. */
 import type { Pinhole } from "../formats/pinhole.js";
-import type { CoreMesh } from "../prepared-mesh.js";
 import type { Photo } from "./colors.js";
-import type { DepthKind } from "./depth-kind.js";
+import type { CoreMesh } from "./prepared-mesh.js";
+import type { DepthKind } from "./types.js";
 
 /** The input of the core, which checks lengths and values. */
 export interface CoreInput {

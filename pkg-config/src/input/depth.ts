@@ -1,11 +1,12 @@
 /** Converts depth maps and point maps to arrays with their size. */
-import { failure, invalidArgument } from "../error.js";
-import type { FileReaders } from "../file-readers.js";
+
 import type { Pinhole } from "../formats/pinhole.js";
-import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
+import type { FileReaders } from "../modules/readers.js";
+import { failure, invalidArgument } from "../values/error.js";
+import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
-import { isAffineInvariant } from "./depth-kind.js";
-import type { DepthImage, ReadDepthOptions } from "./depth-reading.js";
+import type { DepthImage, ReadDepthOptions } from "./types.js";
+import { isAffineInvariant } from "./types.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {

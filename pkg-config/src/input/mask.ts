@@ -1,8 +1,9 @@
 /** Converts masks to bytes with their size. */
-import { failure, invalidArgument } from "../error.js";
+
 import { decodedRle, isPolygons, polygons, readRleFile } from "../formats/coco-rle.js";
-import type { LoadFormats } from "../formats-module.js";
-import { isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
+import type { LoadFormats } from "../modules/readers.js";
+import { failure, invalidArgument } from "../values/error.js";
+import { isKind, isRecord, isTypedArray, wrongKind } from "../values/values.js";
 import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isBytes } from "./bytes.js";
 import type { SizedArray } from "./depth.js";
 

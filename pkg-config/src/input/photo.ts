@@ -1,8 +1,9 @@
 /** The photo of an input. */
-import { failure, invalidArgument } from "../error.js";
+
 import type { Exif } from "../formats/exif-focal.js";
-import type { LoadFormats } from "../formats-module.js";
-import { isRecord, isTypedArray, wrongKind } from "../values.js";
+import type { LoadFormats } from "../modules/readers.js";
+import { failure, invalidArgument } from "../values/error.js";
+import { isRecord, isTypedArray, wrongKind } from "../values/values.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { type Photo, photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";

@@ -1,166 +1,111 @@
-/** Converts inputs to the typed arrays and numbers of the core. */
-
-import { invalidArgument } from "../error.js";
-import type { FileReaders } from "../file-readers.js";
-import type { InputNotes } from "../results.js";
-import type { ClassNames } from "../snapshot.js";
-import { checkNames, isRecord, isTypedArray, oneOf, withoutUndefined } from "../values.js";
-import { cameraOf, cameraProperties, type ResolvedCamera } from "./camera.js";
-import type { Photo } from "./colors.js";
-import type { CoreInput, CoreView } from "./core-input.js";
-import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
-import { depthKinds, isAffineInvariant } from "./depth-kind.js";
+/** Converts the inputs of calls to the typed arrays and numbers of the core. */
+import type { FileReaders } from "../modules/readers.js";
+import type { InputNotes } from "../types/results.js";
+import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
+import { checkNames, isRecord, withoutUndefined } from "../values/values.js";
+import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./core-input.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
-import { readPhoto, readPhotoExif } from "./photo.js";
+import { coreSim3 } from "./sim3.js";
+import { type Resolved, readView, viewProperties } from "./view.js";
 
-/** A resolved input, and what its files say. */
-export interface ResolvedInput {
-  core: CoreInput;
-  notes: InputNotes;
-}
+const frameProperties = [...viewProperties, "mask", "resizeMask"];
 
-/** The properties of a frame: those of an input but the mesh. */
-export const frameProperties: readonly string[] = [
-  "depth",
-  "depthScale",
-  "depthKind",
-  "pointMap",
-  "width",
-  "height",
-  "camera",
-  "cameraFile",
-  "imageId",
-  "mask",
-  "resizeMask",
-  "image",
-];
-
-/** The remedy for misspelt properties. */
-export const spelling = "Check the spelling. Options belong in the second argument.";
-
-const properties = [...frameProperties, "mesh"];
-
-/** The accessors of an ImageData. */
-const pixelNames = ["data", "width", "height"];
-
-/** The properties that an input and its parts may inherit from a class; others of the class are not arguments. */
-export const classNames: ClassNames = {
-  input: properties,
-  "input.camera": cameraProperties,
-  "input.image": pixelNames,
-  "input.views[].camera": cameraProperties,
-  "input.views[].image": pixelNames,
-};
+const spelling = "Check the spelling. Options belong in the second argument.";
 
 /**
- * Resolves an input. Readers are loaded only if a file needs them.
+ * Resolves the input of `align` and `evaluate`. Readers are loaded only if a file needs them.
  * @param meshId the id of a prepared mesh
  * @throws {@link Sim3AlignError} for arguments of the wrong type, and the errors of the file readers
  */
-export async function resolveInput(input: unknown, readers: FileReaders, meshId?: number): Promise<ResolvedInput> {
-  checkProperties(input);
-  const { resizeMask } = input;
-  const { view, notes } = await readFrame(input, readers);
-  const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
-  const mesh = await readCoreMesh(input.mesh, readers, view.image !== undefined, meshId);
-  // Colours matter only where there is a photo to compare them with.
-  const colors = view.image === undefined ? [] : mesh.warnings;
-  const core = {
-    ...view,
-    resizeMask,
-    mask: mask.data,
-    maskWidth: mask.width,
-    maskHeight: mask.height,
-    mesh: mesh.mesh,
-  };
-  return { core: withoutUndefined(core) as CoreInput, notes: { ...notes, colors } };
+export async function resolveInput(
+  input: unknown,
+  readers: FileReaders,
+  meshId?: number,
+): Promise<Resolved<CoreInput>> {
+  checkInput(input);
+  const frame = await frameOf(input, readers, true);
+  const { mesh, warnings } = await readCoreMesh(input.mesh, readers, frame.core.image !== undefined, meshId);
+  return { core: { ...frame.core, mesh } as CoreInput, notes: withColors(frame, warnings) };
 }
 
-/** A depth map or a point map, its photo and its camera, for the core; and what their files say. */
-export interface ReadFrame {
-  view: CoreView;
-  notes: InputNotes;
+/** Resolves the view of an input, whose mask and mesh are not read. */
+export async function resolveView(input: unknown, readers: FileReaders): Promise<Resolved<CoreView>> {
+  checkInput(input);
+  return readView(input, readers);
+}
+
+/** Resolves a frame, whose mask may be missing. */
+export async function resolveFrame(
+  frame: unknown,
+  readers: FileReaders,
+  more: readonly string[] = [],
+): Promise<Resolved<CoreFrame>> {
+  if (!isRecord(frame)) {
+    throw invalidArgument("frame", frame, "{ depth, camera, mask? }", "See FrameInput in the documentation.");
+  }
+  checkNames("", frame, [...frameProperties, ...more], spelling);
+  return frameOf(frame, readers, frame.mask !== undefined && frame.mask !== null);
+}
+
+/** Resolved views, and what the files of each say. */
+export interface ResolvedViews {
+  core: CoreViews;
+  notes: readonly InputNotes[];
 }
 
 /**
- * The depth map, or the point map, the photo and the camera of an input.
- * @throws {@link Sim3AlignError} as {@link resolveInput}
+ * Resolves the input of `alignViews`.
+ * @param meshId the id of a prepared mesh
+ * @throws {@link Sim3AlignError} whose argument names the view
  */
-export async function readView(input: unknown, readers: FileReaders): Promise<ReadFrame> {
-  checkProperties(input);
-  return readFrame(input, readers);
-}
-
-/** Like {@link readView}, for an input whose property names have been checked. */
-export async function readFrame(input: Record<string, unknown>, readers: FileReaders): Promise<ReadFrame> {
-  checkSides("", input);
-  const { pointMap } = input;
-  return pointMap === undefined ? depthFrame(input, readers) : pointMapFrame(input, pointMap, readers);
-}
-
-async function depthFrame(input: Record<string, unknown>, readers: FileReaders): Promise<ReadFrame> {
-  const size = { width: input.width as number | undefined, height: input.height as number | undefined };
-  const depthScale = input.depthScale as number | undefined;
-  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKinds, "INVALID_ARGUMENT");
-  const camera = await cameraOf(input);
-  const { integerDepthScale } = camera;
-  const reading = { depthScale, integerDepthScale, depthKind };
-  const { data, unit, camera: inDepth, ...sides } = await readDepth(input.depth, size, reading, readers);
-  const isFile = data !== input.depth && !isRecord(input.depth);
-  const isFloat = isTypedArray(data, "Float32Array");
-  // Integers of an unknown unit are read as they are.
-  const integerScale = depthKind === "metric" ? integerDepthScale : 1;
-  const image = await readPhoto(input.image, sides, readers.formats);
-  const exif = camera.isGiven ? undefined : await readPhotoExif(input.image, readers.formats);
-  const hints = { inDepth, photo: exif && image && { exif, size: image } };
-  const read = {
-    depth: data,
-    // The readers have already scaled the values of a file.
-    depthScale: isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale)),
-    depthKind: depthKind === "metric" ? undefined : depthKind,
-  };
-  return frameOf(read, sides, image, camera.resolve(sides.width, sides.height, hints), unit);
-}
-
-async function pointMapFrame(
-  input: Record<string, unknown>,
-  pointMap: unknown,
-  readers: FileReaders,
-): Promise<ReadFrame> {
-  const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
-  if (other !== undefined) {
-    const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
-    throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
+export async function resolveViews(input: unknown, readers: FileReaders, meshId?: number): Promise<ResolvedViews> {
+  const { mesh, views, ...more } = isRecord(input) ? input : {};
+  if (!Array.isArray(views)) {
+    throw invalidArgument("views", views, "an array of views", "Pass { mesh, views: [{ depth, mask, camera }] }.");
   }
-  const kinds = depthKinds.filter((kind) => !isAffineInvariant(kind));
-  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT");
-  const { data, ...sides } = readPointMap(pointMap, input as { width?: number; height?: number });
-  const image = await readPhoto(input.image, sides, readers.formats);
-  const isMetric = depthKind === "metric";
-  const read = { pointMap: data, depthKind: isMetric ? undefined : depthKind };
-  const camera = await cameraOf(input);
-  // Intrinsics that were not given are fitted to the point map.
-  const resolved = camera.isGiven ? camera.resolve(sides.width, sides.height) : { camera: undefined, warnings: [] };
-  return frameOf(read, sides, image, resolved, isMetric ? "metres (point map)" : `unknown (${depthKind})`);
+  checkNames("input.", more, ["mesh", "views"], "What belongs to a view is a property of the view.");
+  const frames: Resolved<CoreFrame>[] = [];
+  for (const [k, view] of views.entries()) frames.push(await viewOf(view, k, readers));
+  const isColored = frames.some(({ core }) => core.image !== undefined);
+  const read = await readCoreMesh(mesh, readers, isColored, meshId);
+  const core = { mesh: read.mesh, views: frames.map((frame) => frame.core) };
+  return { core, notes: frames.map((frame) => withColors(frame, read.warnings)) };
 }
 
-function frameOf(
-  depth: { [K in "depth" | "depthScale" | "depthKind" | "pointMap"]?: CoreInput[K] | undefined },
-  { width, height }: Omit<SizedArray<unknown>, "data">,
-  image: Photo | undefined,
-  { camera, focalDeviation, source, warnings }: ResolvedCamera,
-  depthUnit: string,
-): ReadFrame {
-  const view = withoutUndefined({ ...depth, width, height, image, camera, focalDeviation });
-  const notes = { warnings, colors: [], depthUnit, ...withoutUndefined({ cameraSource: source }) };
-  return { view: view as CoreView, notes };
+async function viewOf(view: unknown, index: number, readers: FileReaders): Promise<Resolved<CoreFrame>> {
+  try {
+    const { core, notes } = await resolveFrame(view, readers, ["cameraToWorld"]);
+    const pose = isRecord(view) ? view.cameraToWorld : undefined;
+    return { core: pose === undefined || pose === null ? core : { ...core, cameraToWorld: coreSim3(pose) }, notes };
+  } catch (error) {
+    if (!(error instanceof Sim3AlignError)) throw error;
+    throw renamed(error, `views[${index}]${error.argument === "frame" ? "" : `.${error.argument}`}`);
+  }
 }
+
+async function frameOf(
+  input: Record<string, unknown>,
+  readers: FileReaders,
+  isMasked: boolean,
+): Promise<Resolved<CoreFrame>> {
+  const { core: view, notes } = await readView(input, readers);
+  const { resizeMask } = input;
+  const frame = { ...view, resizeMask };
+  if (!isMasked) return { core: withoutUndefined(frame) as CoreFrame, notes };
+  const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
+  const masked = { ...frame, mask: mask.data, maskWidth: mask.width, maskHeight: mask.height };
+  return { core: withoutUndefined(masked) as CoreFrame, notes };
+}
+
+/** Colours of a mesh matter only where there is a photo to compare them with. */
+const withColors = ({ core, notes }: Resolved<CoreFrame>, colors: readonly string[]): InputNotes =>
+  core.image === undefined ? notes : { ...notes, colors };
 
 /** Rejects misspelt properties, which would otherwise be ignored. */
-function checkProperties(input: unknown): asserts input is Record<string, unknown> {
+function checkInput(input: unknown): asserts input is Record<string, unknown> {
   if (!isRecord(input)) {
     throw invalidArgument("input", input, "{ depth, mask, mesh, camera }", "See AlignInput in the documentation.");
   }
-  checkNames("input.", input, properties, spelling);
+  checkNames("input.", input, [...frameProperties, "mesh"], spelling);
 }

@@ -1,7 +1,26 @@
-/** The input of `align` and `evaluate`. */
-import type { BlobLike } from "../platform.js";
-import type { ColorSamples, PreparedMesh } from "../prepared-mesh.js";
-import type { DepthKind } from "./depth-kind.js";
+/** The inputs of the calls, and what depth files hold. */
+import type { BlobLike } from "../types/platform.js";
+import type { ColorSamples, PreparedMesh } from "./prepared-mesh.js";
+import type { Sim3Like } from "./sim3.js";
+
+/**
+ * What the values of a depth map are:
+ *
+ * - `"metric"`: distances along the optical axis in a known unit;
+ * - `"scale-invariant"`: such distances times an unknown factor;
+ * - `"affine-invariant"`: such distances times an unknown factor, plus an unknown shift;
+ * - `"affine-invariant-disparity"`: inverse distances times an unknown factor, plus an unknown shift; near is large.
+ */
+export type DepthKind = "metric" | "scale-invariant" | "affine-invariant" | "affine-invariant-disparity";
+
+/** The kinds, the default first; the readers and the aligner know the same. */
+export const depthKinds: readonly DepthKind[] = [
+  ...(["metric", "scale-invariant", "affine-invariant", "affine-invariant-disparity"] as const),
+];
+
+/** Whether values of this kind have no zero: those that are zero or negative are values, and 8 bits may hold them. */
+export const isAffineInvariant = (kind: DepthKind | undefined): boolean =>
+  kind === "affine-invariant" || kind === "affine-invariant-disparity";
 
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
@@ -249,3 +268,49 @@ export type AlignInput = DepthView & {
   /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
   resizeMask?: "nearest" | undefined;
 };
+
+/** A frame: what a camera saw, and the mask of the object, if it is known. */
+export type FrameInput = DepthView & {
+  /** The mask of the object, if it is known. */
+  mask?: MaskInput | undefined;
+  /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
+  resizeMask?: "nearest" | undefined;
+};
+
+/** One of several views of an object. */
+export type ViewInput = FrameInput & {
+  /**
+   * The pose of the camera: world from camera, of scale 1, in metres (camera: x right, y down, z forward). In all views
+   * or in none.
+   */
+  cameraToWorld?: Sim3Like | undefined;
+};
+
+/** The input of `alignViews`. */
+export interface ViewsInput {
+  /** The mesh to align. */
+  mesh: MeshInput;
+  /** The views: 1 to 64. At least one has a mask; without `cameraToWorld`, all have. */
+  views: readonly ViewInput[];
+}
+
+/** How the values of a depth map are read. */
+export interface ReadDepthOptions {
+  /** Metres per unit. */
+  depthScale?: number | undefined;
+  /** Metres per unit of integers, where there is no `depthScale`: that of a camera file. */
+  integerDepthScale?: number | undefined;
+  /** What the values are; `"metric"` by default. */
+  depthKind?: DepthKind | undefined;
+}
+
+/**
+ * A depth map from a file, row-major: metres along the optical axis, 0 is "no reading". For another `depthKind` than
+ * `"metric"`, the values are those of the file; for the affine-invariant kinds, "no reading" is NaN.
+ */
+export interface DepthImage extends PixelArray<Float32Array> {
+  /** The unit of the values in the file, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
+  unit: string;
+  /** The camera in the file, in pixels of the depth map: from its intrinsics, its focal length or its field of view. */
+  camera?: PinholeCamera;
+}

@@ -1,13 +1,13 @@
 /** A shot: an observation and a mesh, decoded for pictures of a pose. */
 import { resizeMask } from "../conventions/resize.js";
-import { coreModule } from "../core.js";
-import { fileReaders } from "../file-readers.js";
 import type { Pinhole } from "../formats/pinhole.js";
 import type { MaskPixels } from "../formats/pixels.js";
 import type { Photo } from "../input/colors.js";
+import { type CoreMesh, nextMeshId } from "../input/prepared-mesh.js";
 import { resolveInput } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
-import { type CoreMesh, nextMeshId } from "../prepared-mesh.js";
+import { coreModule } from "../modules/modules.js";
+import { fileReaders } from "../modules/readers.js";
 import type { View } from "./view.js";
 
 /** The decoded input of pictures. The core keeps its mesh until it is disposed. */

@@ -1,24 +1,58 @@
-/** In a worker: the other workers that help it with its job. */
-import type { CoreHelpers } from "../core.js";
-import type { Offer, Slices } from "../jobs.js";
-import { turn } from "./turn.js";
+/** In workers: the helpers of a long job, and those that help. */
+import { beginHelp, type Scheduler, type SearchHelp, type SharedSearch } from "../calls/context.js";
+import type { CoreHelpers } from "../modules/exports.js";
+import type { Modules } from "../modules/module.js";
+import type { HelpJob } from "./messages.js";
 
 /** About how long a job that has asked for help runs until it hears what has arrived, milliseconds. */
 const SLICE_MS = 8;
 
-/** The helpers of a job, between whose slices their messages arrive. */
-export class Helpers implements CoreHelpers, Slices {
-  readonly #needsHelp: () => void;
-  readonly #ports: MessagePort[] = [];
-  readonly #inbox: Float64Array[] = [];
-  #offer: Offer | undefined;
-  #isAsked = false;
-  #isWaiting = false;
+/** About how long a helper runs tasks until it sends their results, milliseconds. */
+const HELP_MS = 3;
+
+/** Numbers of the message that says that a helper is ready. */
+const READY = 3;
+
+/** What has arrived. */
+class Inbox<T> {
+  readonly #messages: T[] = [];
   #wake = () => {};
 
-  /** @param needsHelp asks the pool for helpers */
-  constructor(needsHelp: () => void) {
-    this.#needsHelp = needsHelp;
+  get isEmpty(): boolean {
+    return this.#messages.length === 0;
+  }
+
+  put(message: T): void {
+    this.#messages.push(message);
+    this.#wake();
+  }
+
+  take(): T | undefined {
+    return this.#messages.shift();
+  }
+
+  /** Waits until there is a message. */
+  async filled(): Promise<void> {
+    while (this.isEmpty) {
+      await new Promise<void>((resolve) => {
+        this.#wake = resolve;
+      });
+    }
+  }
+}
+
+/** The helpers of a job, between whose slices their messages arrive. */
+export class Helpers implements CoreHelpers, Scheduler {
+  readonly #askPool: () => void;
+  readonly #ports: MessagePort[] = [];
+  readonly #inbox = new Inbox<Float64Array>();
+  #search: SharedSearch | undefined;
+  #isAsked = false;
+  #isWaiting = false;
+
+  /** @param askPool asks the pool for helpers */
+  constructor(askPool: () => void) {
+    this.#askPool = askPool;
   }
 
   get sliceMs(): number {
@@ -28,42 +62,37 @@ export class Helpers implements CoreHelpers, Slices {
   check(): void {}
 
   async turn(): Promise<void> {
-    if (this.#isWaiting && this.#inbox.length === 0) {
-      await new Promise<void>((resolve) => {
-        this.#wake = resolve;
-      });
-    } else await turn();
+    await (this.#isWaiting && this.#inbox.isEmpty ? this.#inbox.filled() : turn());
     this.#isWaiting = false;
   }
 
-  helpersFor(offer: Offer): this {
-    this.#offer = offer;
+  helpersFor(search: SharedSearch): this {
+    this.#search = search;
     return this;
   }
 
-  /** A worker that helps from now on. */
-  add(port: MessagePort): void {
-    const helper = this.#ports.push(port) - 1;
+  /** A worker helps from now on; or, without a port, has left. */
+  change(helper: number, port: MessagePort | undefined): void {
+    if (port === undefined) {
+      this.#ports[helper]?.close();
+      this.#inbox.put(Float64Array.of(helper));
+      return;
+    }
+    this.#ports[helper] = port;
     port.onmessage = ({ data }) => {
       data[0] = helper;
-      this.#hear(data);
+      this.#inbox.put(data);
     };
-    port.postMessage(this.#offer);
-  }
-
-  /** A worker that no longer helps. */
-  remove(helper: number): void {
-    this.#ports[helper]?.close();
-    this.#hear(Float64Array.of(helper));
+    port.postMessage(this.#search);
   }
 
   /** Ends all connections. */
   close(): void {
-    for (const port of this.#ports) port.close();
+    for (const port of this.#ports) port?.close();
   }
 
   ask(): void {
-    if (!this.#isAsked) this.#needsHelp();
+    if (!this.#isAsked) this.#askPool();
     this.#isAsked = true;
   }
 
@@ -72,15 +101,79 @@ export class Helpers implements CoreHelpers, Slices {
   }
 
   receive(): Float64Array | undefined {
-    return this.#inbox.shift();
+    return this.#inbox.take();
   }
 
   wait(): void {
     this.#isWaiting = true;
   }
+}
 
-  #hear(message: Float64Array): void {
-    this.#inbox.push(message);
-    this.#wake();
+/** Helps another worker with its job, until it is told to stop. The first message is the search, the others its tasks. */
+export class HelperSession {
+  readonly #data: HelpJob["data"];
+  readonly #inbox = new Inbox<SharedSearch | Float64Array | "stop">();
+  #isOver = false;
+
+  constructor(data: HelpJob["data"]) {
+    this.#data = data;
+    data.port.onmessage = ({ data }) => this.#inbox.put(data);
+  }
+
+  stop(): void {
+    this.#isOver = true;
+    this.#inbox.put("stop");
+  }
+
+  async run(modules: Modules): Promise<void> {
+    const { port, mesh } = this.#data;
+    let help: SearchHelp | undefined;
+    try {
+      for (;;) {
+        await this.#inbox.filled();
+        const message = this.#inbox.take();
+        if (this.#isOver || message === undefined || message === "stop") return;
+        if (!(message instanceof Float64Array)) {
+          help = await beginHelp(message, mesh, modules);
+          port.postMessage(new Float64Array(READY));
+        } else if (help !== undefined) await this.#runTasks(help, message);
+      }
+    } finally {
+      help?.end();
+      port.close();
+    }
+  }
+
+  /** Runs tasks until there are no more, or other ones: a later message replaces these. */
+  async #runTasks({ call }: SearchHelp, tasks: Float64Array): Promise<void> {
+    call((helper) => helper.receive(tasks));
+    while (this.#inbox.isEmpty) {
+      const results = call((helper) => helper.step(HELP_MS));
+      if (results === undefined) return;
+      this.#data.port.postMessage(results, [results.buffer]);
+      await turn();
+    }
   }
 }
+
+const waiting: (() => void)[] = [];
+let ownPort: MessagePort | undefined;
+
+/** Calls back when the messages that were sent to this thread have arrived: unlike a timer, not milliseconds later. */
+function callLater(callback: () => void): void {
+  // Node would handle a thousand messages of this port before those of another one.
+  if (typeof setImmediate === "function") {
+    setImmediate(callback);
+    return;
+  }
+  if (ownPort === undefined) {
+    const { port1, port2 } = new MessageChannel();
+    port1.onmessage = () => waiting.shift()?.();
+    ownPort = port2;
+  }
+  waiting.push(callback);
+  ownPort.postMessage(undefined);
+}
+
+/** Waits until messages have arrived. */
+const turn = () => new Promise<void>(callLater);

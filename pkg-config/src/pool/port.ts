@@ -1,14 +1,15 @@
 /** One interface for browser workers and Node worker threads. */
-import { Sim3AlignError } from "../error.js";
-import type { CreateWorker, WorkerLike } from "../platform.js";
+
+import type { CreateWorker, WorkerLike } from "../types/platform.js";
+import { failure } from "../values/error.js";
 import { startedFromAnywhere } from "./cross-origin.js";
-import type { Request } from "./protocol.js";
+import type { ToWorker } from "./messages.js";
 
 type NodeWorker = import("node:worker_threads").Worker;
 
 /** The pool's end of the connection to a worker. */
 export interface Port {
-  post(message: Request, transfer?: Transferable[]): void;
+  post(message: ToWorker, transfer?: Transferable[]): void;
   /** Sets whether the worker keeps the process alive: while it is busy. */
   keepAlive(isBusy: boolean): void;
   terminate(): void;
@@ -73,16 +74,9 @@ export async function workerFactory(script?: string, createWorker?: CreateWorker
       cores: (os as typeof import("node:os")).availableParallelism(),
     };
   } catch (cause) {
-    throw new Sim3AlignError(
-      {
-        code: "WORKER_FAILED",
-        argument: "workers",
-        found: "an environment without workers",
-        expected: "Worker, or node:worker_threads",
-        remedy: "Omit workers: calls then run on the calling thread.",
-      },
-      { cause },
-    );
+    const remedy = "Omit workers: calls then run on the calling thread.";
+    const expected = "Worker, or node:worker_threads";
+    throw failure("WORKER_FAILED", "workers", "an environment without workers", expected, remedy, cause);
   }
 }
 

@@ -1,17 +1,16 @@
 /** Aligns the objects of a scene, on this thread or in workers. */
-import { checkAttached } from "../attached.js";
-import { type Calibrated, inCalibration, isRaw } from "../calibrate.js";
-import { type Call, type Engine, signalsOf } from "../engine.js";
-import { isOfInput, Sim3AlignError } from "../error.js";
-import type { Job, Modules, PlaceInput } from "../jobs.js";
-import type { Arrangement, Placed } from "../joint-module.js";
-import { onAbort, reasonOf } from "../on-abort.js";
-import type { Progress } from "../options.js";
-import { withArrays } from "../prepared-mesh.js";
-import { ProgressListener } from "../progress.js";
-import { withNotes } from "../results.js";
-import { coreSim3, type Sim3 } from "../sim3.js";
-import { inputOf, othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
+import { inCalibration, isRaw } from "../calls/calibrate.js";
+import { type Call, type Engine, signalsOf } from "../calls/engine.js";
+import { ProgressListener } from "../calls/progress.js";
+import { checkSignals, onAnyAbort } from "../concurrency/on-abort.js";
+import { withArrays } from "../input/prepared-mesh.js";
+import { coreSim3, type Sim3 } from "../input/sim3.js";
+import type { Arrangement, Calibrated, Placed } from "../modules/exports.js";
+import type { Modules } from "../modules/module.js";
+import type { Progress } from "../types/options.js";
+import { withNotes } from "../types/results.js";
+import { isOfInput, Sim3AlignError } from "../values/error.js";
+import { othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
 
 type PlacedOrError = Placed | Sim3AlignError;
@@ -32,24 +31,26 @@ export async function alignScene(
   call: Call,
 ): Promise<SceneResult> {
   const read = await readScene(input, modules);
-  const { stopped, end } = stopOf(call);
+  const stopped = new AbortController();
+  const unfollow = onAnyAbort(signalsOf(call), (reason) => stopped.abort(reason));
   const running = { engine, options, progress: call.progress, stopped };
   try {
+    checkSignals(signalsOf(call));
     const calibrated = isRaw(read.view) ? await calibratedScene(read, running) : undefined;
-    const scene = calibrated === undefined ? read : { ...read, view: inCalibration(read.view, calibrated) };
+    const scene = { ...read, view: inCalibration(read.view, calibrated) };
     const { view, objects, occluders, support } = scene;
     const module = await modules.joint();
     const round = roundsOf(scene, running, calibrated === undefined ? 0 : CALIBRATION);
     const masks = [...objects.map(({ mask }) => mask), ...occluders];
+    const given = { ...view, objects: objects.map(({ mask }) => ({ mask })), occluders };
     const seed = typeof options.seed === "number" ? options.seed : 0;
     let placed: PlacedOrError[] = [];
     for (let plan: Uint8Array | undefined; ; ) {
       placed = await round(plan, placed);
-      // The thread may have been elsewhere since the scene was read.
-      checkAttached("input", { ...view, objects: objects.map(({ mask }) => ({ mask })) });
-      checkAttached("occluders", occluders);
       const placements = placed.map((of) => (of instanceof Sim3AlignError ? null : of.placement));
-      const next = module.call((j) => j.planScene({ ...view, masks, support, seed, snap }, plan, placements));
+      const next = module.callWith("input", given, (j) =>
+        j.planScene({ ...view, masks, support, seed, snap }, plan, placements),
+      );
       if (next.plan === undefined) {
         const result = resultOf(scene, placed, next);
         return calibrated === undefined ? result : { ...result, depthCalibration: calibrated.calibration };
@@ -57,7 +58,7 @@ export async function alignScene(
       plan = next.plan;
     }
   } finally {
-    end();
+    unfollow();
   }
 }
 
@@ -93,26 +94,12 @@ interface Running {
   stopped: AbortController;
 }
 
-/** What ends all jobs of a call; `end` is to be called last. */
-function stopOf(call: Call): { stopped: AbortController; end(): void } {
-  const stopped = new AbortController();
-  const unfollow = signalsOf(call).map((signal) => {
-    if (signal.aborted) stopped.abort(reasonOf(signal));
-    return onAbort(signal, (reason) => stopped.abort(reason));
-  });
-  const end = () => {
-    for (const each of unfollow) each();
-  };
-  return { stopped, end };
-}
-
 /** Calibrates the view of a scene by all its objects, in one job. */
 async function calibratedScene(scene: ReadScene, { engine, options, progress, stopped }: Running): Promise<Calibrated> {
   const sent = scene.objects.map((object) => {
-    const { data, release } = withArrays({ mesh: object.mesh }, engine);
-    const { mesh } = data as { mesh: unknown };
     const { mask } = object;
-    return { object: { mask, others: othersOf(scene, mask), mesh, options: ownOptions(options, object) }, release };
+    const { data, release } = withArrays({ mask, mesh: object.mesh }, engine);
+    return { object: { ...data, others: othersOf(scene, mask), options: plainOptions(options, object) }, release };
   });
   const report = ({ stage, fraction }: Progress) => progress.report(stage, CALIBRATION * fraction);
   const listener = new ProgressListener(progress.isWanted ? report : undefined);
@@ -126,7 +113,7 @@ async function calibratedScene(scene: ReadScene, { engine, options, progress, st
 }
 
 /** The options of an object, in the form of the core. */
-function ownOptions(options: Record<string, unknown>, { known }: ReadObject): Record<string, unknown> {
+function plainOptions(options: Record<string, unknown>, { known }: ReadObject): Record<string, unknown> {
   const own: Record<string, unknown> = { ...options, ...known };
   return own.initial === undefined ? own : { ...own, initial: coreSim3(own.initial as never) };
 }
@@ -140,9 +127,10 @@ function roundsOf(scene: ReadScene, { engine, options, progress: reported, stopp
   const fractions = objects.map(() => 0);
 
   const place = async (index: number, plan: Uint8Array | undefined): Promise<Placed> => {
-    const { input, others } = inputOf(scene, index);
-    const own = ownOptions(options, objects[index] as ReadObject);
-    const { release, ...sent } = withArrays({ ...input, others, plan, index } satisfies PlaceInput, engine);
+    const object = objects[index] as ReadObject;
+    const { mask, mesh } = object;
+    const input = { ...scene.view, mask, mesh, others: othersOf(scene, mask), plan, index };
+    const { data, meshId, release } = withArrays(input, engine);
     const [from, to] = plan === undefined ? [0, ALONE] : [ALONE, 1];
     const report = ({ stage, fraction, best }: Progress) => {
       fractions[index] = Math.max(fractions[index] ?? 0, from + (to - from) * fraction);
@@ -150,7 +138,7 @@ function roundsOf(scene: ReadScene, { engine, options, progress: reported, stopp
       reported.report(stage, begun + (1 - begun) * all, undefined, { index, best });
     };
     const progress = new ProgressListener(reported.isWanted ? report : undefined);
-    const job = { method: "place", ...sent, options: own } as Job & { method: "place" };
+    const job = { method: "place", data, meshId, options: plainOptions(options, object) } as const;
     try {
       const { result } = await engine.run(job, { signal: stopped.signal, progress, transfer: false });
       fractions[index] = to;

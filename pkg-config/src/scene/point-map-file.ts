@@ -1,5 +1,5 @@
 /** A point map in a `.npy` file as depth and camera: the two files of a view that all readers take. */
-import { failure } from "../error.js";
+import { failure } from "../values/error.js";
 
 /** The text before the elements: `{'descr': '<f4', 'fortran_order': False, 'shape': (480, 640, 3), }`. */
 const header = /'descr':\s*'([^']+)',\s*'fortran_order':\s*(\w+),\s*'shape':\s*\((?:1,\s*)?(\d+),\s*(\d+),\s*3\)/;

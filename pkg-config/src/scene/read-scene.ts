@@ -1,15 +1,13 @@
 /** Reads a scene: the view once, and a mask per object. */
-import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../error.js";
-import type { FileReaders } from "../file-readers.js";
+
 import { nearest } from "../formats/pixels.js";
-import type { LoadFormats } from "../formats-module.js";
 import type { CoreView } from "../input/core-input.js";
 import { readMask } from "../input/mask.js";
-import { classNames as inputClassNames, readView } from "../input/resolve.js";
-import type { AlignInput } from "../input/types.js";
-import type { InputNotes } from "../results.js";
-import type { ClassNames } from "../snapshot.js";
-import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
+import { resolveView } from "../input/resolve.js";
+import type { FileReaders, LoadFormats } from "../modules/readers.js";
+import type { InputNotes } from "../types/results.js";
+import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
+import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values/values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */
@@ -38,7 +36,6 @@ export interface ReadObject {
   known: KnownOfObject;
 }
 
-const sceneProperties = ["objects", "labels", "occluders", "support"];
 const objectProperties = ["name", "mask", "label", "resizeMask", "mesh"] as const;
 const knownProperties: readonly string[] = [
   "scale",
@@ -52,12 +49,6 @@ const knownProperties: readonly string[] = [
   "quality",
 ] satisfies (keyof KnownOfObject)[];
 
-/** The properties that a scene may inherit from a class. */
-export const classNames: ClassNames = {
-  ...inputClassNames,
-  input: [...(inputClassNames.input ?? []), ...sceneProperties],
-};
-
 /**
  * Reads a scene.
  * @throws {@link Sim3AlignError} for arguments of the wrong type, masks of another size, and the errors of the readers
@@ -68,7 +59,7 @@ export async function readScene(scene: SceneInput, readers: FileReaders): Promis
   }
   const { objects, labels, occluders, support, ...rest } = scene as SceneInput & Record<string, unknown>;
   const { formats } = readers;
-  const { view, notes } = await readView(rest, readers);
+  const { core: view, notes } = await resolveView(rest, readers);
   const size: [number, number] = [Number(view.width), Number(view.height)];
   const read = { size, formats, labels: labels === undefined ? undefined : checkedLabels(labels, size) };
   const given = listOf("objects", objects);
@@ -185,11 +176,3 @@ function countsOf(masks: readonly Uint8Array[]): Uint16Array | undefined {
 /** The pixels of the objects other than that of a mask. */
 export const othersOf = ({ counts }: ReadScene, mask: Uint8Array): Uint8Array | undefined =>
   counts && Uint8Array.from(counts, (count, i) => (count > (mask[i] !== 0 ? 1 : 0) ? 1 : 0));
-
-/** The input of one object, and the pixels of the others. */
-export function inputOf(scene: ReadScene, index: number): { input: AlignInput; others: Uint8Array | undefined } {
-  const { mask, mesh } = scene.objects[index] as ReadObject;
-  const [width, height] = scene.size;
-  const input = { ...scene.view, mask: { data: mask, width, height }, mesh } as unknown as AlignInput;
-  return { input, others: othersOf(scene, mask) };
-}

@@ -1,13 +1,13 @@
 /** The output of SAM 3D Objects as the files of a scene. The guide "Meshes of generators" describes the folder. */
 import { type CaseFiles, caseFiles, INITIAL_FILE, type ReadCaseOptions } from "../case-files.js";
 import { fromSam3d } from "../conventions/sam3d.js";
-import { failure, renamed, Sim3AlignError } from "../error.js";
 import { parsedJson } from "../formats/json.js";
 import { holdsGaussians } from "../formats/splat-files.js";
-import type { LoadFormats } from "../formats-module.js";
 import { requiredBytes } from "../input/bytes.js";
-import type { DepthKind } from "../input/depth-kind.js";
-import { flattened, isRecord } from "../values.js";
+import type { DepthKind } from "../input/types.js";
+import type { LoadFormats } from "../modules/readers.js";
+import { failure, renamed, Sim3AlignError } from "../values/error.js";
+import { flattened, isRecord } from "../values/values.js";
 import { viewOfPointMap } from "./point-map-file.js";
 import { type SceneCase, sceneFrom } from "./scene-files.js";
 

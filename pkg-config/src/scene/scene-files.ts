@@ -1,8 +1,8 @@
 /** A scene from files: one view, and the mask and the mesh of each object. */
 import { type CaseFiles, fileNotFound, filesOf, INITIAL_FILE, meshFile, type ReadCaseOptions } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
-import type { LoadFormats } from "../formats-module.js";
-import { withoutUndefined } from "../values.js";
+import type { LoadFormats } from "../modules/readers.js";
+import { withoutUndefined } from "../values/values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose files have been read, but not decoded. */

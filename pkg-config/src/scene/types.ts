@@ -1,9 +1,10 @@
 /** The input and the result of `alignScene`. */
-import type { Sim3AlignError } from "../error.js";
+
 import type * as Core from "../generated/types.js";
 import type { DepthView, MaskInput, MeshInput, PixelArray } from "../input/types.js";
-import type { AlignOptions, Progress } from "../options.js";
-import type { Alignment, InputInfo } from "../results.js";
+import type { AlignOptions, Progress } from "../types/options.js";
+import type { Alignment, InputInfo } from "../types/results.js";
+import type { Sim3AlignError } from "../values/error.js";
 
 /** A plane n·x + d = 0 in the OpenCV camera frame, metres; n points to the side of the objects. */
 export interface Plane {

@@ -1,5 +1,5 @@
 /** The physics module: the WebAssembly module that makes bodies at rest. */
-import { type Glue, WasmModule } from "../wasm-module.js";
+import { WasmModule } from "../modules/module.js";
 
 /** A convex surface. */
 export interface ConvexPart {
@@ -31,7 +31,7 @@ export interface SettledBody {
 }
 
 /** The functions of the module. */
-export interface Physics extends Glue {
+export interface Physics {
   settleBodies(objects: readonly object[], settings: object): { bodies: SettledBody[]; supportHeightM: number };
 }
 
@@ -39,5 +39,5 @@ export interface Physics extends Glue {
 export const physicsModule = /* @__PURE__ */ new WasmModule<Physics>(
   "physics",
   () => new URL("../wasm/physics_bg.wasm", import.meta.url),
-  async () => (await import("../wasm/physics.js")) as unknown as Physics,
+  () => import("../wasm/physics.js"),
 );

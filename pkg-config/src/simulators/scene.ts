@@ -3,11 +3,11 @@ import { groundFrame } from "../conventions/ground-frame.js";
 import { meshOf } from "../conventions/mesh.js";
 import { type Matrix3, product, quaternionOf, rotationOfUnit, transposed, turned } from "../conventions/rotation.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
-import { invalidArgument } from "../error.js";
+import type { Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../input/types.js";
-import type { WasmSource } from "../platform.js";
 import type { Plane } from "../scene/types.js";
-import type { Sim3Like } from "../sim3.js";
+import type { WasmSource } from "../types/platform.js";
+import { invalidArgument } from "../values/error.js";
 import {
   flattened,
   isRecord,
@@ -18,7 +18,7 @@ import {
   record,
   type Vector3,
   whole,
-} from "../values.js";
+} from "../values/values.js";
 import { type BodyPose, type ConvexPart, physicsModule } from "./physics-module.js";
 
 /** An object of a scene for a simulator. */

@@ -1,10 +1,10 @@
 /** three.js cameras that match a pinhole camera. */
 
-import { failure } from "../error.js";
 import { pinholeOf } from "../formats/pinhole.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { CameraInput } from "../input/types.js";
-import { positive } from "../values.js";
+import { failure } from "../values/error.js";
+import { positive } from "../values/values.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
 /** The image size, and the near and far planes. */

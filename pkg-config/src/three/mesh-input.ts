@@ -1,8 +1,8 @@
 /** Meshes from three.js objects. */
 
-import { describe, failure } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
-import { finiteNumbers, oneOf } from "../values.js";
+import { describe, failure } from "../values/error.js";
+import { finiteNumbers, oneOf } from "../values/values.js";
 import { surfaceSamples } from "./surface-samples.js";
 import { type Texels, texelsOf } from "./texels.js";
 import { type AttributeLike, type GeometryLike, isObject, type MeshTree, type PlacedObject } from "./types.js";

@@ -1,8 +1,8 @@
 /** Poses of three.js objects. */
 import { fromFrame, toFrame } from "../conventions/frames.js";
 import { compose, invert, toSim3 } from "../conventions/similarity.js";
-import type { Sim3, Sim3Like } from "../sim3.js";
-import { finiteNumbers, oneOf } from "../values.js";
+import type { Sim3, Sim3Like } from "../input/sim3.js";
+import { finiteNumbers, oneOf } from "../values/values.js";
 import type { PlacedObject, PosableObject } from "./types.js";
 
 /** Options of {@link applyToObject3D} and {@link transformFromObject3D}. */

@@ -1,8 +1,8 @@
 /** Colours at points of a surface. */
 import { cross, dot } from "../conventions/rotation.js";
 import { rgbOf } from "../input/colors.js";
-import type { ColorSamples } from "../prepared-mesh.js";
-import type { Vector3 } from "../values.js";
+import type { ColorSamples } from "../input/prepared-mesh.js";
+import type { Vector3 } from "../values/values.js";
 
 /** Number of points: as many as those of mesh files. */
 const COUNT = 32_768;

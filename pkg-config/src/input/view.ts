@@ -1,0 +1,99 @@
+/** Reads what a camera saw: the depth map or the point map, the photo and the camera. */
+import type { FileReaders } from "../modules/readers.js";
+import type { InputNotes } from "../types/results.js";
+import { invalidArgument } from "../values/error.js";
+import { isRecord, isTypedArray, oneOf, withoutUndefined } from "../values/values.js";
+import { cameraOf, type ResolvedCamera } from "./camera.js";
+import type { Photo } from "./colors.js";
+import type { CoreInput, CoreView } from "./core-input.js";
+import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
+import { readPhoto, readPhotoExif } from "./photo.js";
+import { depthKinds, isAffineInvariant } from "./types.js";
+
+/** An input for the core, and what its files say. */
+export interface Resolved<T> {
+  core: T;
+  notes: InputNotes;
+}
+
+/** The properties of a view. */
+export const viewProperties: readonly string[] = [
+  "depth",
+  "depthScale",
+  "depthKind",
+  "pointMap",
+  "width",
+  "height",
+  "camera",
+  "cameraFile",
+  "imageId",
+  "image",
+];
+
+/**
+ * Reads a view, whose property names have been checked. Readers are loaded only if a file needs them.
+ * @throws {@link Sim3AlignError} for arguments of the wrong type, and the errors of the file readers
+ */
+export async function readView(input: Record<string, unknown>, readers: FileReaders): Promise<Resolved<CoreView>> {
+  checkSides("", input);
+  const { pointMap } = input;
+  return pointMap === undefined ? depthView(input, readers) : pointMapView(input, pointMap, readers);
+}
+
+async function depthView(input: Record<string, unknown>, readers: FileReaders): Promise<Resolved<CoreView>> {
+  const size = { width: input.width as number | undefined, height: input.height as number | undefined };
+  const depthScale = input.depthScale as number | undefined;
+  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKinds, "INVALID_ARGUMENT");
+  const camera = await cameraOf(input);
+  const { integerDepthScale } = camera;
+  const reading = { depthScale, integerDepthScale, depthKind };
+  const { data, unit, camera: inDepth, ...sides } = await readDepth(input.depth, size, reading, readers);
+  const isFile = data !== input.depth && !isRecord(input.depth);
+  const isFloat = isTypedArray(data, "Float32Array");
+  // Integers of an unknown unit are read as they are.
+  const integerScale = depthKind === "metric" ? integerDepthScale : 1;
+  const image = await readPhoto(input.image, sides, readers.formats);
+  const exif = camera.isGiven ? undefined : await readPhotoExif(input.image, readers.formats);
+  const hints = { inDepth, photo: exif && image && { exif, size: image } };
+  const read = {
+    depth: data,
+    // The readers have already scaled the values of a file.
+    depthScale: isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale)),
+    depthKind: depthKind === "metric" ? undefined : depthKind,
+  };
+  return viewOf(read, sides, image, camera.resolve(sides.width, sides.height, hints), unit);
+}
+
+async function pointMapView(
+  input: Record<string, unknown>,
+  pointMap: unknown,
+  readers: FileReaders,
+): Promise<Resolved<CoreView>> {
+  const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
+  if (other !== undefined) {
+    const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
+    throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
+  }
+  const kinds = depthKinds.filter((kind) => !isAffineInvariant(kind));
+  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT");
+  const { data, ...sides } = readPointMap(pointMap, input as { width?: number; height?: number });
+  const image = await readPhoto(input.image, sides, readers.formats);
+  const isMetric = depthKind === "metric";
+  const read = { pointMap: data, depthKind: isMetric ? undefined : depthKind };
+  const camera = await cameraOf(input);
+  // Intrinsics that were not given are fitted to the point map.
+  const resolved = camera.isGiven ? camera.resolve(sides.width, sides.height) : { camera: undefined, warnings: [] };
+  return viewOf(read, sides, image, resolved, isMetric ? "metres (point map)" : `unknown (${depthKind})`);
+}
+
+function viewOf(
+  depth: { [K in "depth" | "depthScale" | "depthKind" | "pointMap"]?: CoreInput[K] | undefined },
+  { width, height }: Omit<SizedArray<unknown>, "data">,
+  image: Photo | undefined,
+  { camera, focalDeviation, source, warnings }: ResolvedCamera,
+  depthUnit: string,
+): Resolved<CoreView> {
+  const view = withoutUndefined({ ...depth, width, height, image, camera, focalDeviation });
+  const notes = { warnings, colors: [], depthUnit, ...withoutUndefined({ cameraSource: source }) };
+  return { core: view as CoreView, notes };
+}

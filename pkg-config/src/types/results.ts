@@ -1,0 +1,95 @@
+/**
+ * Results of the calls: plain objects, which `JSON.stringify` writes completely. `null` marks a value that could not be
+ * measured.
+ */
+
+import type * as Core from "../generated/types.js";
+import type { AlignInput, FrameInput, ViewsInput } from "../input/types.js";
+import type { Sim3AlignError } from "../values/error.js";
+
+/** How the depth map and the camera of a view were read. */
+export interface InputInfo {
+  /** The unit of the depth, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
+  depthUnit?: string;
+  /** Where the intrinsics come from, if they were not given: `"depth file"`, `"EXIF: …"`, or `"estimate"`. */
+  cameraSource?: string;
+  /**
+   * What the depth and the lens were taken to be, if they were not fully known. All lengths of the result are metres if
+   * `isMetric`; otherwise, their unit is unknown, and `correctDepth` of `sim3align/conventions` returns the depth map in it.
+   */
+  depthCalibration?: Core.DepthCalibration;
+}
+
+/** The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV: x right, y down, z forward; metres). */
+export interface Alignment extends Core.Alignment, InputInfo {
+  /** With `transfer: true`: the returned arrays of the input. */
+  input?: AlignInput;
+}
+
+/** The result of `align` with `preset: "paper"`. */
+export interface PaperAlignment extends Core.PaperAlignment, InputInfo {
+  /** With `transfer: true`: the returned arrays of the input. */
+  input?: AlignInput;
+}
+
+/** The result of `align` for a preset, with or without `metrics`. */
+export type AlignResult<P extends Core.Preset = Core.Preset, M extends boolean = boolean> = P extends Core.Preset
+  ? M extends true
+    ? { precise: Alignment; paper: PaperAlignment }[P]
+    : Omit<{ precise: Alignment; paper: PaperAlignment }[P], "metrics"> & { metrics?: undefined }
+  : never;
+
+/** The object in one of several views. */
+export interface ViewAlignment extends Core.ViewPose, InputInfo {}
+
+/** The result of `alignViews`: world from mesh, x_world = s·R·p_mesh + t, in metres, and the pose in each view. */
+export interface ViewsAlignment extends Core.ViewsAlignment {
+  /** In the order of the input. */
+  views: ViewAlignment[];
+  /** With `transfer: true`: the returned arrays of the input. */
+  input?: ViewsInput;
+}
+
+/** The result of `Tracker.next`: camera from mesh, x_cam = s·R·p_mesh + t. */
+export interface TrackedFrame extends Core.TrackedFrame, InputInfo {
+  /** With `transfer: true`: the returned arrays of the frame. */
+  input?: FrameInput;
+}
+
+/** The result of `evaluate`. */
+export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit"> {
+  /** With `transfer: true`: the returned arrays of the input. */
+  input?: AlignInput;
+}
+
+/** The result of `register` and `estimateSim3`: target from source, y = s·R·x + t. */
+export interface Registration extends Core.Registration {
+  /** With `transfer: true`: the returned arrays. */
+  input?: {
+    source: Float32Array | Float64Array;
+    target: Float32Array | Float64Array;
+    correspondences?: Uint32Array;
+  };
+}
+
+/** One of the results of `alignAll`: an alignment, or the error of its input. */
+export type AlignAllResult<A = Alignment> =
+  | { index: number; alignment: A; input?: AlignInput; error?: undefined }
+  | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
+
+/** What the files of an input say, for its result. */
+export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource"> {
+  /** Of the view. */
+  warnings: readonly Core.Warning[];
+  /** Why the colours of the mesh file are not read. */
+  colors: readonly string[];
+}
+
+/** How the files of a view were read. */
+export const sourcesOf = ({ warnings: _, colors: __, ...sources }: InputNotes) => sources;
+
+/** A result with what its files say; their warnings before those of the core. */
+export function withNotes<T extends { warnings: Core.Warning[] }>(result: T, notes: InputNotes): T {
+  const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
+  return { ...result, ...sourcesOf(notes), warnings: [...notes.warnings, ...ofColors, ...result.warnings] };
+}
