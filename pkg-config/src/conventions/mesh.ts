@@ -63,3 +63,14 @@ export function vertexAt({ positions, indices }: Mesh, corner: number): Vector3 
 /** Number of triangles. */
 export const triangleCount = ({ positions, indices }: Mesh): number =>
   (indices ?? { length: positions.length / 3 }).length / 3;
+
+/** The least and the largest coordinates, as accessors of positions need them. */
+export function bounds(vertices: ArrayLike<number>): { min: number[]; max: number[] } {
+  const [min, max] = [Array<number>(3).fill(Number.POSITIVE_INFINITY), Array<number>(3).fill(Number.NEGATIVE_INFINITY)];
+  for (let i = 0; i < vertices.length; i++) {
+    const x = vertices[i] as number;
+    min[i % 3] = Math.min(min[i % 3] ?? x, x);
+    max[i % 3] = Math.max(max[i % 3] ?? x, x);
+  }
+  return { min, max };
+}

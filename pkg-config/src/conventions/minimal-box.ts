@@ -3,7 +3,7 @@
 import type { Vector3 } from "../values.js";
 import type { Mesh } from "./mesh.js";
 import { principalAxes } from "./principal-axes.js";
-import { column, dot, fromColumns, type Matrix3 } from "./rotation.js";
+import { column, dot, fromColumns, identity, type Matrix3, plus, scaled } from "./rotation.js";
 
 type Point2 = readonly [number, number];
 
@@ -111,11 +111,11 @@ function refined(points: readonly Vector3[], start: Axes): { axes: Axes; volume:
   for (let round = 0; round < 20; round++) {
     const before = size;
     for (const k of [0, 1, 2] as const) {
-      const [fixed, a, b] = [axes[k], axes[((k + 1) % 3) as 0], axes[((k + 2) % 3) as 0]];
+      const [a, b] = [axes[((k + 1) % 3) as 0], axes[((k + 2) % 3) as 0]];
       const { cos, sin } = smallestRectangle(points.map((point) => [dot(a, point), dot(b, point)]));
-      const mix = (p: number, q: number) => a.map((x, i) => p * x + q * (b[i] ?? 0)) as Vector3;
       const turned: Axes = [...axes];
-      [turned[k], turned[((k + 1) % 3) as 0], turned[((k + 2) % 3) as 0]] = [fixed, mix(cos, sin), mix(-sin, cos)];
+      turned[((k + 1) % 3) as 0] = plus(scaled(a, cos), scaled(b, sin));
+      turned[((k + 2) % 3) as 0] = plus(scaled(a, -sin), scaled(b, cos));
       const turnedSize = volume(points, turned);
       if (turnedSize < size) [axes, size] = [turned, turnedSize];
     }
@@ -140,7 +140,7 @@ function named(axes: Axes): Matrix3 {
   const ways = orders.map((order) => {
     const [x, y, z] = order.map((i, k) => {
       const axis = axes[i];
-      return (axis[k] ?? 0) < 0 ? axis.map((number) => -number) : axis;
+      return (axis[k] ?? 0) < 0 ? scaled(axis, -1) : axis;
     }) as Axes;
     return fromColumns(x, y, z);
   });
@@ -151,15 +151,8 @@ function named(axes: Axes): Matrix3 {
 /** The axes of the smallest box found, as columns in the mesh frame. */
 export function smallestBoxAxes(mesh: Mesh): Matrix3 {
   const points = outermost(mesh);
-  const own: Axes = [
-    [1, 0, 0],
-    [0, 1, 0],
-    [0, 0, 1],
-  ];
-  const principal = principalAxes(mesh);
-  const starts: Axes[] = [own, [column(principal, 0), column(principal, 1), column(principal, 2)]];
-  const found = starts.map((start) => refined(points, start));
-  const [first, second] = found as [(typeof found)[0], (typeof found)[0]];
+  const from = (start: Matrix3) => refined(points, [column(start, 0), column(start, 1), column(start, 2)]);
+  const [first, second] = [from(identity), from(principalAxes(mesh))];
   // Keeps the axes of the mesh unless the others are better by more than rounding errors.
   return named(second.volume < first.volume * (1 - 1e-9) ? second.axes : first.axes);
 }

@@ -1,24 +1,14 @@
 /** Scenes for simulators: rigid bodies at rest, the ground and the camera, in a frame with z up. */
-import { groundFrame } from "../conventions/ground-frame.js";
 import { meshOf } from "../conventions/mesh.js";
-import { type Matrix3, product, quaternionOf, rotationOfUnit, transposed, turned } from "../conventions/rotation.js";
+import { type Matrix3, product, quaternionOf, rotationOfUnit, transposed } from "../conventions/rotation.js";
+import { sceneCamera, sceneFromCamera, sceneObjects } from "../conventions/scene-frame.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
 import { invalidArgument } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import type { WasmSource } from "../platform.js";
 import type { Plane } from "../scene/types.js";
 import type { Sim3Like } from "../sim3.js";
-import {
-  flattened,
-  isRecord,
-  isTypedArray,
-  optionsOf,
-  positive,
-  type Quaternion,
-  record,
-  type Vector3,
-  whole,
-} from "../values.js";
+import { isRecord, isTypedArray, optionsOf, positive, type Quaternion, type Vector3, whole } from "../values.js";
 import { type BodyPose, type ConvexPart, physicsModule } from "./physics-module.js";
 
 /** An object of a scene for a simulator. */
@@ -127,25 +117,17 @@ export async function simulatorScene(
   options: SimulatorOptions = {},
 ): Promise<SimulatorScene> {
   const { support = null, camera, wasm, ...given } = optionsOf(options);
-  const list = flattened(objects);
-  if (list === null) {
-    throw invalidArgument("objects", objects, "an array of { mesh, transform }", "Pass one of these per object.");
-  }
   const settings = settingsOf(given);
-  const named = list.map((object, i) => record(`objects[${i}]`, object, "{ mesh, transform }"));
-  const own = named as unknown as SimulatorObject[];
+  const own = sceneObjects(objects);
   const poses = own.map(({ transform }) => similarityOf(transform));
-  const frame = groundFrame(
-    support,
-    poses.map(({ translation }) => translation),
-  );
-  const worldFromCamera = zUp(frame);
+  const centers = poses.map(({ translation }) => translation);
+  const worldFromCamera = sceneFromCamera(support, centers, "z");
   const meshes = own.map(({ mesh }) => meshWithIndices(mesh));
   const module = await physicsModule.load(wasm);
   const sent = poses.map((pose, i) => ({
     mesh: meshes[i],
     transform: sim3Of(composed(worldFromCamera, pose)).matrix,
-    on: support === null ? null : groundOf(own[i] as SimulatorObject, list.length),
+    on: support === null ? null : groundOf(own[i] as SimulatorObject, own.length),
   }));
   const fitsGround = support?.confidence !== undefined && support.confidence < 1;
   const { bodies: settled, supportHeightM } = module.call((physics) =>
@@ -197,21 +179,10 @@ function settingsOf(given: Omit<SimulatorOptions, "support" | "camera">): object
   };
 }
 
-/** World from camera, with z up. */
-function zUp({ right, up, back, origin }: ReturnType<typeof groundFrame>): Similarity {
-  const away: Vector3 = [-back[0], -back[1], -back[2]];
-  const rotation = [...right, ...away, ...up] as unknown as Matrix3;
-  const [x, y, z] = turned(rotation, origin);
-  return { scale: 1, rotation, translation: [-x, -y, -z] };
-}
-
-function cameraOf(given: unknown, worldFromCamera: Similarity, liftM: number): SimulatorScene["camera"] {
-  const camera = record("options.camera", given, "{ fy, width, height }");
-  const number = (name: string) => positive(`options.camera.${name}`, camera[name]);
-  const [fy, width, height] = [number("fy"), number("width"), number("height")];
-  const fovYDeg = (2 * Math.atan(height / (2 * fy)) * 180) / Math.PI;
-  const { translation, rotation } = worldFromCamera;
+function cameraOf(given: unknown, { translation, rotation }: Similarity, liftM: number): SimulatorScene["camera"] {
+  const { fovYRad, width, height } = sceneCamera(given);
   const [x, y, z] = translation;
+  const fovYDeg = (fovYRad * 180) / Math.PI;
   return { position: [x, y, z + liftM], rotation: quaternionOf(rotation), fovYDeg, width, height };
 }
 
