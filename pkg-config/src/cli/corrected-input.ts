@@ -1,5 +1,5 @@
 /** Inputs in the depth and with the camera that their results found. */
-import { correctDepth } from "../conventions/corrected-depth.js";
+import { correctDepth } from "../conventions/depth.js";
 import { fileReaders } from "../file-readers.js";
 import type { AlignInput, DepthCalibration } from "../index.js";
 import { readView } from "../input/resolve.js";

@@ -1,7 +1,7 @@
 /** Masks in CVAT's format: run lengths along the rows of the bounding box of the mask. */
 import { describe, failure } from "../error.js";
+import { filledRuns } from "../formats/coco-rle.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
-import { filledRuns } from "../formats/runs.js";
 import type { PixelArray } from "../input/types.js";
 import { flattened, isRecord, whole } from "../values.js";
 

@@ -1,6 +1,6 @@
 /** Growing glTF documents, which other files and meshes are added to. Nothing is decoded: indices are moved. */
 import { describe, failure } from "../error.js";
-import { isRecord, stringsIn } from "../values.js";
+import { isRecord, oncePerKey, stringsIn } from "../values.js";
 import { binaryChunk, type GlbFile, padded } from "./glb-file.js";
 import { bounds, type Mesh } from "./mesh.js";
 
@@ -142,8 +142,9 @@ export class GltfDocument {
 /** Moves the indices in a part of a file: to those of its lists, and of its buffers, in the document. */
 function mover(starts: ReadonlyMap<string, number>, buffers: readonly { index: number; start: number }[]) {
   const start = (list: string) => starts.get(list) ?? 0;
+  const startAt = oncePerKey((path: string) => start(listOf(path) ?? ""));
   const move = (value: unknown, path: string): unknown => {
-    if (typeof value === "number") return value + start(listOf(path) ?? "");
+    if (typeof value === "number") return value + startAt(path);
     // A JSON pointer to what is animated, such as /nodes/3/translation.
     if (typeof value === "string" && path.endsWith("/KHR_animation_pointer/pointer")) {
       return value.replace(

@@ -74,3 +74,15 @@ export function bounds(vertices: ArrayLike<number>): { min: number[]; max: numbe
   }
   return { min, max };
 }
+
+/** A mesh with its vertices, and the points and normals of its colours, mapped. */
+export function mappedMesh<M extends MeshArrays>(
+  mesh: M,
+  points: (positions: Float32Array) => Float32Array,
+  directions: (normals: Float32Array) => Float32Array,
+): M {
+  const { positions, samples } = mesh;
+  if (samples === undefined || samples === null) return { ...mesh, positions: points(positions) };
+  const mapped = { ...samples, positions: points(samples.positions), normals: directions(samples.normals) };
+  return { ...mesh, positions: points(positions), samples: mapped };
+}

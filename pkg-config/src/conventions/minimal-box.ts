@@ -65,16 +65,12 @@ function hull(points: readonly Point2[]): Point2[] {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
+/** The difference of the largest and the smallest of numbers, of which there are at most as many as outermost points. */
+const spread = (numbers: readonly number[]): number => Math.max(...numbers) - Math.min(...numbers);
+
 /** The extent of points along a direction in the plane. */
-function width(points: readonly Point2[], x: number, y: number): number {
-  let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-  for (const [a, b] of points) {
-    const along = a * x + b * y;
-    if (along < low) low = along;
-    if (along > high) high = along;
-  }
-  return high - low;
-}
+const width = (points: readonly Point2[], x: number, y: number): number =>
+  spread(points.map(([a, b]) => a * x + b * y));
 
 /**
  * The direction of the smallest rectangle around points. One of its sides lies along an edge of their convex hull, unless its
@@ -95,12 +91,8 @@ export function smallestRectangle(points: readonly Point2[], tighter = 1): { cos
   return best.sin === 0 ? own : best;
 }
 
-function volume(points: readonly Vector3[], axes: readonly Vector3[]): number {
-  return axes.reduce((product, axis) => {
-    const along = points.map((point): Point2 => [dot(axis, point), 0]);
-    return product * width(along, 1, 0);
-  }, 1);
-}
+const volume = (points: readonly Vector3[], axes: readonly Vector3[]): number =>
+  axes.reduce((product, axis) => product * spread(points.map((point) => dot(axis, point))), 1);
 
 type Axes = [Vector3, Vector3, Vector3];
 

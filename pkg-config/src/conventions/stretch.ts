@@ -3,7 +3,7 @@ import { failure } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import { finiteNumbers, record, type Vector3 } from "../values.js";
 import { underNode } from "./glb.js";
-import { meshOf } from "./mesh.js";
+import { mappedMesh, meshOf } from "./mesh.js";
 import { eigenvectors } from "./principal-axes.js";
 import { cofactors, column, dot, type Matrix3, norm, quaternionOf, scaled, transposed, turned } from "./rotation.js";
 
@@ -29,17 +29,11 @@ const SYMMETRIC = 1e-6;
  * @throws {@link Sim3AlignError} for an invalid mesh, and `INVALID_ARGUMENT` for a matrix that is not a stretch
  */
 export function stretchMesh<M extends MeshArrays>(mesh: M, proportions: StretchLike): M {
-  const { positions } = meshOf("mesh", mesh);
+  meshOf("mesh", mesh);
   const matrix = stretchOf(proportions);
-  const { samples } = mesh;
-  if (samples === undefined || samples === null) return { ...mesh, positions: mapped(matrix, positions) };
   // Normals turn with the inverse of the transpose.
-  const normals = mapped(cofactors(matrix), samples.normals, true);
-  return {
-    ...mesh,
-    positions: mapped(matrix, positions),
-    samples: { ...samples, positions: mapped(matrix, samples.positions), normals },
-  };
+  const normals = (vectors: Float32Array) => mapped(cofactors(matrix), vectors, true);
+  return mappedMesh(mesh, (points) => mapped(matrix, points), normals);
 }
 
 /**

@@ -3,7 +3,7 @@ import type { MeshArrays } from "../input/types.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
 import { oneOf, optionsOf, record, type Vector3 } from "../values.js";
 import { underNode } from "./glb.js";
-import { type Mesh, meshOf } from "./mesh.js";
+import { type Mesh, mappedMesh, meshOf } from "./mesh.js";
 import { outermost, smallestBoxAxes, smallestRectangle } from "./minimal-box.js";
 import { extent } from "./oriented-bounding-box.js";
 import {
@@ -64,15 +64,13 @@ export function uprightMesh<M extends MeshArrays>(
 ): Upright<M> {
   const frame = uprightFrame(mesh, transform, options);
   const back = sim3Of(inverted(frame));
-  const positions = applyToPoints(back, mesh.positions);
-  const { samples } = mesh;
   const turn = { ...back, scale: 1, translation: [0, 0, 0] as Vector3, matrix: undefined };
-  const moved = samples && {
-    ...samples,
-    positions: applyToPoints(back, samples.positions),
-    normals: applyToPoints(turn, samples.normals),
-  };
-  return { mesh: { ...mesh, positions, ...(moved && { samples: moved }) }, ...placedBy(transform, frame) };
+  const straight = mappedMesh(
+    mesh,
+    (points) => applyToPoints(back, points),
+    (normals) => applyToPoints(turn, normals),
+  );
+  return { mesh: straight, ...placedBy(transform, frame) };
 }
 
 /**

@@ -9,7 +9,7 @@ import type { WasmSource } from "../platform.js";
 import type { Plane } from "../scene/types.js";
 import type { Sim3Like } from "../sim3.js";
 import { isRecord, isTypedArray, optionsOf, positive, type Quaternion, type Vector3, whole } from "../values.js";
-import { type BodyPose, type ConvexPart, physicsModule } from "./physics-module.js";
+import { type Glue, WasmModule } from "../wasm-module.js";
 
 /** An object of a scene for a simulator. */
 export interface SimulatorObject {
@@ -52,6 +52,14 @@ export interface SimulatorOptions {
 
 /** Defaults of {@link SimulatorOptions}. */
 export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 12, maxMoveM: 0.02, rest: true } as const;
+
+/** A convex surface. */
+export interface ConvexPart {
+  /** Interleaved x, y, z, metres, in the frame of the body. */
+  positions: Float64Array;
+  /** Three vertex indices per triangle, counter-clockwise from outside. */
+  indices: Uint32Array;
+}
 
 /** A pose of a body. */
 export interface SimulatorPose {
@@ -101,6 +109,32 @@ export interface SimulatorScene {
   camera: { position: Vector3; rotation: Quaternion; fovYDeg: number; width: number; height: number } | null;
 }
 
+/** A pose as the physics module returns it. */
+interface BodyPose {
+  rotation: Float64Array;
+  translation: Float64Array;
+}
+
+/** The functions of the physics module. */
+interface Physics extends Glue {
+  settleBodies(
+    objects: readonly object[],
+    settings: object,
+  ): {
+    bodies: (Pick<SimulatorBody, "parts" | "mass" | "movedM" | "turnedDeg" | "inside"> &
+      Record<"pose" | "found", BodyPose> &
+      Record<"center" | "moments" | "axes", Float64Array> & { isFree: boolean })[];
+    supportHeightM: number;
+  };
+}
+
+/** The physics module, shared by all scenes of this realm. */
+const physicsModule = /* @__PURE__ */ new WasmModule<Physics>(
+  "physics",
+  () => new URL("../wasm/physics_bg.wasm", import.meta.url),
+  async () => (await import("../wasm/physics.js")) as unknown as Physics,
+);
+
 /**
  * Makes a scene for simulators. Each object becomes a rigid body with convex parts for collisions (V-HACD), and mass and
  * inertia of a density. An object that rests on the support or on another object is turned and moved a little, so that it
@@ -130,32 +164,21 @@ export async function simulatorScene(
     on: support === null ? null : groundOf(own[i] as SimulatorObject, own.length),
   }));
   const fitsGround = support?.confidence !== undefined && support.confidence < 1;
-  const { bodies: settled, supportHeightM } = module.call((physics) =>
-    physics.settleBodies(sent, { ...settings, fitsGround }),
-  );
+  const { bodies, supportHeightM } = module.call((physics) => physics.settleBodies(sent, { ...settings, fitsGround }));
   const names = uniqueNames(own.map(({ name }, i) => name ?? `object_${i}`));
-  const bodies = settled.map((body, i): SimulatorBody => {
-    const { positions, indices } = meshes[i] as (typeof meshes)[number];
-    const { scale } = poses[i] as Similarity;
-    return {
-      name: names[i] as string,
-      ...poseOf(body.pose),
-      found: poseOf(body.found),
-      isFixed: !body.isFree,
-      mass: body.mass,
-      centerOfMass: Array.from(body.center) as Vector3,
-      principalMoments: Array.from(body.moments) as Vector3,
-      principalAxes: Array.from(body.axes) as Quaternion,
-      parts: body.parts,
-      mesh: { positions: positions.map((x) => x * scale), indices },
-      color: meanColour((own[i] as SimulatorObject).mesh),
-      movedM: body.movedM,
-      turnedDeg: body.turnedDeg,
-      inside: body.inside,
-    };
-  });
   return {
-    bodies,
+    bodies: bodies.map(({ pose, found, center, moments, axes, isFree, ...body }, i): SimulatorBody => {
+      const { positions, indices } = meshes[i] as (typeof meshes)[number];
+      const { scale } = poses[i] as Similarity;
+      return {
+        ...{ name: names[i] as string, ...poseOf(pose), found: poseOf(found), isFixed: !isFree, ...body },
+        centerOfMass: Array.from(center) as Vector3,
+        principalMoments: Array.from(moments) as Vector3,
+        principalAxes: Array.from(axes) as Quaternion,
+        mesh: { positions: positions.map((x) => x * scale), indices },
+        color: meanColour((own[i] as SimulatorObject).mesh),
+      };
+    }),
     hasGround: support !== null,
     supportHeightM,
     camera: camera === undefined ? null : cameraOf(camera, worldFromCamera, supportHeightM),
