@@ -2,11 +2,7 @@
 
 use exif::{Error as ExifError, Exif as Fields, In, Reader, Tag, Value};
 
-use crate::guard::{beginning, unsupported};
-use crate::jpeg;
 use crate::orientation::Orientation;
-use crate::png::{self, PngInfo};
-use sim3align_geometry::error::Result;
 
 /// Millimetres of the units of `FocalPlaneResolutionUnit`: 2 is the inch, its default, 3 the centimetre; cameras also
 /// write 4 for millimetres and 5 for micrometres.
@@ -35,29 +31,6 @@ pub struct Exif {
     pub height: Option<u32>,
 }
 
-/// Reads the EXIF data of a JPEG or a PNG. Fields that are damaged or missing are left out; a photo without EXIF data has
-/// none.
-///
-/// # Errors
-/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat) for other files,
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile).
-pub fn read_exif(bytes: &[u8]) -> Result<Exif> {
-    let tiff = if bytes.starts_with(jpeg::MAGIC) {
-        jpeg::exif("image", bytes)?
-    } else if bytes.starts_with(png::MAGIC) {
-        PngInfo::read("image", bytes)?.exif.map(<[u8]>::to_vec)
-    } else {
-        let remedy = "Pass the bytes of the photo as the camera wrote them.";
-        return Err(unsupported("image", beginning(bytes), "a PNG or a JPEG", remedy));
-    };
-    Ok(tiff.and_then(fields).as_ref().map(Exif::of).unwrap_or_default())
-}
-
-/// The orientation in EXIF data, from their TIFF header; upright where they state none.
-pub(crate) fn orientation(tiff: &[u8]) -> Orientation {
-    fields(tiff.to_vec()).as_ref().map(orientation_of).unwrap_or_default()
-}
-
 /// The fields that can be read.
 fn fields(tiff: Vec<u8>) -> Option<Fields> {
     match Reader::new().continue_on_error(true).read_raw(tiff) {
@@ -67,12 +40,19 @@ fn fields(tiff: Vec<u8>) -> Option<Fields> {
     }
 }
 
+/// The orientation in EXIF data, from their TIFF header; upright where they state none.
+pub(crate) fn orientation(tiff: &[u8]) -> Orientation {
+    fields(tiff.to_vec()).as_ref().map(orientation_of).unwrap_or_default()
+}
+
 fn orientation_of(fields: &Fields) -> Orientation {
     whole(fields, Tag::Orientation).and_then(Orientation::new).unwrap_or_default()
 }
 
 impl Exif {
-    fn of(fields: &Fields) -> Self {
+    /// The fields of EXIF data, from their TIFF header. Those that are damaged or missing are left out.
+    pub(crate) fn parse(tiff: Vec<u8>) -> Self {
+        let Some(fields) = &fields(tiff) else { return Self::default() };
         let number = |tag| number(fields, tag);
         let width = whole(fields, Tag::PixelXDimension);
         let unit = whole(fields, Tag::FocalPlaneResolutionUnit).unwrap_or(2);

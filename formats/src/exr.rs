@@ -11,7 +11,7 @@ use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
 use exr::prelude::f16;
 
-use crate::depth::{DepthImage, DepthReadOptions, Stored};
+use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{MAX_PIXELS, corrupt, pixel_count, too_large, unsupported};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::error::{Error, Result};

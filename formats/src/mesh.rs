@@ -1,7 +1,5 @@
 //! Mesh files of all supported formats.
 
-use core::fmt;
-
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{beginning, unsupported};
 use crate::resources::{ExternalResources, Resources};
@@ -72,15 +70,6 @@ pub struct MeshReadOptions<'a> {
     pub format: Option<MeshFormat>,
     /// The external files, by URI or name as written in the mesh file; see [`external_resources`].
     pub resources: Option<Resources<'a>>,
-}
-
-impl fmt::Debug for MeshReadOptions<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("MeshReadOptions")
-            .field("format", &self.format)
-            .field("resources", &self.resources.is_some())
-            .finish()
-    }
 }
 
 /// The distinct files that a mesh file refers to. Of an `.obj`, these are its libraries; given the content of a library,

@@ -6,8 +6,7 @@ use crate::color::linear;
 use crate::painted_mesh::Material;
 use crate::resources::{Resources, external};
 use crate::text::{lines, number, words};
-use crate::texture::Wrap;
-use crate::texture_loader::TextureLoader;
+use crate::texture::{TextureLoader, Wrap};
 use sim3align_geometry::error::Result;
 
 /// Maximum number of options before a file name; there are twelve kinds.

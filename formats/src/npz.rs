@@ -11,7 +11,7 @@ use zip::ZipArchive;
 use zip::result::ZipError;
 
 use crate::cursor::Cursor;
-use crate::depth::{DepthImage, DepthReadOptions, Stored};
+use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::file_camera::FileCamera;
 use crate::guard::{corrupt, pixel_count, too_large, unsupported};
 use crate::npy::{Kind, NpyArray, NpyHeader};

@@ -1,7 +1,7 @@
 //! Portable float maps: a text header, then 32-bit floats, the bottom row first.
 
 use crate::cursor::Cursor;
-use crate::depth::{DepthImage, DepthReadOptions, Stored};
+use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{corrupt, pixel_count, unsupported};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::error::Result;

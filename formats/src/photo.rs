@@ -1,5 +1,6 @@
 //! Image files as photos and textures.
 
+use crate::exif::Exif;
 use crate::guard::{beginning, unsupported};
 use crate::jpeg;
 use crate::orientation::Orientation;
@@ -26,9 +27,23 @@ pub fn read_photo(bytes: &[u8]) -> Result<Image<Rgb>> {
     orientation.apply("image", image)
 }
 
+/// Reads the EXIF data of a JPEG or a PNG. Fields that are damaged or missing are left out; a photo without EXIF data has
+/// none.
+///
+/// # Errors
+/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat) for other files,
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile).
+pub fn read_exif(bytes: &[u8]) -> Result<Exif> {
+    let tiff = match Format::of("image", bytes, "Pass the bytes of the photo as the camera wrote them.")? {
+        Format::Png => PngInfo::read("image", bytes)?.exif.map(<[u8]>::to_vec),
+        Format::Jpeg => jpeg::exif("image", bytes)?,
+    };
+    Ok(tiff.map(Exif::parse).unwrap_or_default())
+}
+
 /// Width and height of an image, from its header.
 pub(crate) fn size(argument: &'static str, bytes: &[u8]) -> Result<[usize; 2]> {
-    match Format::of(argument, bytes)? {
+    match Format::of(argument, bytes, CONVERT)? {
         Format::Png => PngInfo::read(argument, bytes).map(|info| [info.width, info.height]),
         Format::Jpeg => jpeg::size(argument, bytes),
     }
@@ -36,11 +51,14 @@ pub(crate) fn size(argument: &'static str, bytes: &[u8]) -> Result<[usize; 2]> {
 
 /// Reads an image of at most `max_pixels` pixels, as stored; larger ones are reduced.
 pub(crate) fn decode(argument: &'static str, bytes: &[u8], max_pixels: usize) -> Result<(Image<Rgb>, Orientation)> {
-    match Format::of(argument, bytes)? {
+    match Format::of(argument, bytes, CONVERT)? {
         Format::Png => png::read_rgb(argument, bytes, max_pixels),
         Format::Jpeg => jpeg::read(argument, bytes, max_pixels),
     }
 }
+
+/// What to do with an image of another format.
+const CONVERT: &str = "Convert the image to PNG or JPEG.";
 
 enum Format {
     Png,
@@ -48,13 +66,13 @@ enum Format {
 }
 
 impl Format {
-    fn of(argument: &'static str, bytes: &[u8]) -> Result<Self> {
+    fn of(argument: &'static str, bytes: &[u8], remedy: &'static str) -> Result<Self> {
         if bytes.starts_with(png::MAGIC) {
             return Ok(Self::Png);
         }
         if bytes.starts_with(jpeg::MAGIC) {
             return Ok(Self::Jpeg);
         }
-        Err(unsupported(argument, beginning(bytes), "a PNG or a JPEG", "Convert the image to PNG or JPEG."))
+        Err(unsupported(argument, beginning(bytes), "a PNG or a JPEG", remedy))
     }
 }

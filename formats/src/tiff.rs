@@ -5,7 +5,7 @@ use std::io;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::{ColorType, TiffError};
 
-use crate::depth::{DepthImage, DepthReadOptions, Stored};
+use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{MAX_PIXELS, corrupt, pixel_count, too_large, unsupported};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::error::{Error, Result};

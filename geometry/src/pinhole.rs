@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::angle::sin_cos;
 use crate::error::{Error, ErrorCode, Result};
-use crate::number::{number, numbers};
+use crate::number::number;
 
 /// Largest ratio of the two focal lengths: pixels of cameras are nearly square, also after a resize that is not uniform.
 const MAX_FOCAL_RATIO: f64 = 20.0;
@@ -93,26 +93,6 @@ impl Pinhole {
             return invalid(found, "a principal point in the image or, for a crop, near it");
         }
         Ok(())
-    }
-
-    /// A camera from a 3×3 matrix K in row-major order. Skew is refused: no depth camera reports one.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidCamera`] if K is not [fx 0 cx; 0 fy cy; 0 0 1] up to a common factor.
-    pub fn from_matrix(k: &[f64; 9]) -> Result<Self> {
-        let w = k[8];
-        let zeros = [k[1], k[3], k[6], k[7]];
-        let tolerance = 1e-6 * k[0].abs();
-        if !w.is_finite() || w == 0.0 || !zeros.iter().all(|x| x.abs() <= tolerance) {
-            return Err(Error::new(
-                ErrorCode::InvalidCamera,
-                "camera.K",
-                numbers(k),
-                "[fx, 0, cx, 0, fy, cy, 0, 0, 1]",
-                "Pass K row-major; a column-major K has cx and cy in its last row: transpose it.",
-            ));
-        }
-        Self::new(k[0] / w, k[4] / w, k[2] / w, k[5] / w)
     }
 
     /// A camera from its vertical field of view in degrees: square pixels, principal point at the image centre.

@@ -7,11 +7,10 @@
  * @packageDocumentation
  */
 export { type BopPose, fromBop, toBop } from "./conventions/bop.js";
-export { correctDepth } from "./conventions/corrected-depth.js";
 export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
 export { type CvatCuboid, fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
 export { type CvatMaskElement, fromCvatRle } from "./conventions/cvat-rle.js";
-export { depthFromDisparity } from "./conventions/disparity.js";
+export { correctDepth, depthFromDisparity } from "./conventions/depth.js";
 export {
   type CameraFrame,
   fromFrame,

@@ -7,8 +7,8 @@
  */
 
 export { toMjcf } from "./simulators/mjcf.js";
-export type { ConvexPart } from "./simulators/physics-module.js";
 export {
+  type ConvexPart,
   SIMULATOR_DEFAULTS,
   type SimulatorBody,
   type SimulatorObject,

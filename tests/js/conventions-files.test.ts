@@ -105,6 +105,78 @@ test("a scene of several GLB files: morph targets and compressed primitives keep
   assert.deepEqual([second.extensions, second.attributes], [draco(3), { POSITION: 2 }]);
 });
 
+test("a scene of several GLB files: extensions and further buffers keep what they refer to", () => {
+  const uri = `data:application/octet-stream;base64,${Buffer.alloc(36).toString("base64")}`;
+  const pointTo = (light: number) => ({ pointer: `/extensions/KHR_lights_punctual/lights/${light}/intensity` });
+  const file = {
+    ...{ asset: { version: "2.0" }, scenes: [{ nodes: [1] }] },
+    extensionsUsed: ["EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_materials_variants"],
+    buffers: [{ byteLength: 36 }, { byteLength: 36, uri }],
+    bufferViews: [
+      { buffer: 1, byteOffset: 4, byteLength: 24 },
+      { buffer: 1, byteLength: 36, extensions: { EXT_meshopt_compression: { buffer: 0, byteLength: 8, count: 3 } } },
+    ],
+    accessors: [0, 1].map((bufferView) => ({ bufferView, componentType: 5126, count: 2, type: "VEC3" })),
+    materials: [{ extensions: { KHR_materials_clearcoat: { clearcoatTexture: { index: 0 }, clearcoatFactor: 1 } } }],
+    textures: [{ extensions: { EXT_texture_webp: { source: 0 } }, extras: { source: 0 } }],
+    images: [{ bufferView: 1, mimeType: "image/webp" }],
+    meshes: [
+      {
+        primitives: [
+          {
+            attributes: { POSITION: 1 },
+            extensions: { KHR_materials_variants: { mappings: [{ material: 0, variants: [0, 1] }] } },
+          },
+        ],
+      },
+    ],
+    nodes: [
+      { mesh: 0, extensions: { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: 0 } } } },
+      { children: [0], extensions: { KHR_lights_punctual: { light: 0 } } },
+    ],
+    animations: [
+      {
+        channels: [{ sampler: 0, target: { path: "pointer", extensions: { KHR_animation_pointer: pointTo(0) } } }],
+        samplers: [{ input: 0, output: 1 }],
+      },
+    ],
+    extensions: {
+      KHR_lights_punctual: { lights: [{ type: "point" }] },
+      KHR_materials_variants: { variants: [{ name: "red" }, { name: "blue" }] },
+      EXT_structural_metadata: {
+        schema: { id: "facts" },
+        propertyTables: [{ count: 2, properties: { age: { values: 1, offset: 2 } } }],
+      },
+    },
+  };
+  const object = { mesh: glbOf(file, new Uint8Array(36)), transform: truth };
+  const merged = glbJson(exportSceneGlb([object, object]));
+  assert.deepEqual(merged.buffers, [{ byteLength: 72 }, file.buffers[1], file.buffers[1]]);
+  const compressed = { buffer: 0, byteOffset: 36, byteLength: 8, count: 3 };
+  assert.deepEqual(merged.bufferViews.slice(2), [
+    { buffer: 2, byteOffset: 4, byteLength: 24 },
+    { buffer: 2, byteOffset: 0, byteLength: 36, extensions: { EXT_meshopt_compression: compressed } },
+  ]);
+  // The nodes of the first file, then the one that places it.
+  assert.deepEqual(merged.nodes.slice(3, 5), [
+    { mesh: 1, extensions: { EXT_mesh_gpu_instancing: { attributes: { TRANSLATION: 2 } } } },
+    { children: [3], extensions: { KHR_lights_punctual: { light: 1 } } },
+  ]);
+  const [{ mappings }] = [merged.meshes[1].primitives[0].extensions.KHR_materials_variants];
+  assert.deepEqual(mappings, [{ material: 1, variants: [2, 3] }]);
+  assert.equal(merged.materials[1].extensions.KHR_materials_clearcoat.clearcoatTexture.index, 1);
+  assert.deepEqual(merged.textures[1], { extensions: { EXT_texture_webp: { source: 1 } }, extras: { source: 0 } });
+  assert.equal(merged.images[1].bufferView, 3);
+  const [channel] = merged.animations[1].channels;
+  assert.deepEqual([channel.sampler, channel.target.extensions.KHR_animation_pointer], [0, pointTo(1)]);
+  assert.deepEqual(merged.animations[1].samplers, [{ input: 2, output: 3 }]);
+  const { KHR_lights_punctual, KHR_materials_variants, EXT_structural_metadata } = merged.extensions;
+  assert.deepEqual([KHR_lights_punctual.lights.length, KHR_materials_variants.variants.length], [2, 4]);
+  assert.deepEqual(EXT_structural_metadata.schema, { id: "facts" });
+  assert.deepEqual(EXT_structural_metadata.propertyTables[1].properties.age, { values: 3, offset: 2 });
+  assert.deepEqual(merged.extensionsUsed, file.extensionsUsed);
+});
+
 test("PLY: three.js reads the vertices and triangles", () => {
   const load = (file: Uint8Array) => new PLYLoader().parse(Uint8Array.from(file).buffer);
   const pose = new Random(1).pose();

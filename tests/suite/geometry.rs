@@ -92,24 +92,6 @@ fn x_is_right_y_is_down_and_z_is_forward() {
 }
 
 #[wasm_bindgen_test]
-fn a_matrix_is_read_row_by_row_up_to_a_factor() {
-    let expected = Pinhole::new(600.0, 610.0, 320.0, 240.0).unwrap();
-    let k = [600.0, 0.0, 320.0, 0.0, 610.0, 240.0, 0.0, 0.0, 1.0];
-    for factor in [1.0, 4.0, -2.0] {
-        assert_eq!(Pinhole::from_matrix(&k.map(|x| x * factor)).unwrap(), expected);
-    }
-    let transposed: [f64; 9] = Matrix3::from_row_slice(&k).as_slice().try_into().unwrap();
-    let error = Pinhole::from_matrix(&transposed).unwrap_err();
-    assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidCamera, "camera.K"));
-    assert!(error.remedy.contains("transpose"), "{error}");
-    for (i, x) in [(1, 2.0), (8, 0.0), (8, f64::INFINITY), (3, f64::NAN), (0, 0.0), (4, -610.0), (2, f64::NAN)] {
-        let mut bad = k;
-        bad[i] = x;
-        assert_eq!(Pinhole::from_matrix(&bad).unwrap_err().code, ErrorCode::InvalidCamera, "{bad:?}");
-    }
-}
-
-#[wasm_bindgen_test]
 fn meshes_that_are_none_are_refused() {
     use ErrorCode::{EmptyMesh, IndexOutOfRange, NonFinite, WrongLength};
     let flat = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];

@@ -2,8 +2,7 @@
 
 use sim3align::geometry::depth_kind::DepthKind;
 use sim3align::geometry::surface_colors::Rgb;
-use sim3align_formats::depth::{DepthImage, DepthReadOptions, read_depth};
-use sim3align_formats::depth_files::read_depth_file;
+use sim3align_formats::depth::{DepthImage, DepthReadOptions, read_depth, read_depth_file};
 use sim3align_formats::mask::read_mask;
 use sim3align_formats::photo::read_photo;
 

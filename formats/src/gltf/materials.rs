@@ -11,8 +11,7 @@ use crate::gltf::accessor::AccessorReader;
 use crate::guard::{corrupt, missing};
 use crate::painted_mesh::Material;
 use crate::resources::at_uri;
-use crate::texture::Wrap;
-use crate::texture_loader::{TextureLoader, unsupported_texture};
+use crate::texture::{TextureLoader, Wrap, unsupported_texture};
 use sim3align_geometry::error::Result;
 
 const CLAMP_TO_EDGE: u32 = 33_071;

@@ -1,7 +1,7 @@
 //! The export of the module that reads the files of depth models.
 
 use sim3align_formats::bindings::{depth_image, depth_options, to_bytes, to_js};
-use sim3align_formats::depth_files::read_depth_file as depth_from_bytes;
+use sim3align_formats::depth::read_depth_file as depth_from_bytes;
 use wasm_bindgen::prelude::*;
 
 /// Reads depth from the bytes of an NPZ, EXR, TIFF or PFM file:

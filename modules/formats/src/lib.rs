@@ -6,13 +6,12 @@ use sim3align_formats::bindings::{
 };
 use sim3align_formats::colored_mesh::ColoredMesh;
 use sim3align_formats::depth::read_depth_image;
-use sim3align_formats::exif::read_exif as exif_from_bytes;
 use sim3align_formats::mask::read_mask as mask_from_bytes;
 use sim3align_formats::mesh::{
     MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
     read_mesh as read_mesh_shape,
 };
-use sim3align_formats::photo::read_photo;
+use sim3align_formats::photo::{read_exif as exif_from_bytes, read_photo};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]

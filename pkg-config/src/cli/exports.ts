@@ -1,7 +1,7 @@
 /** Inputs and meshes in the lengths of a result; files of posed meshes, of scenes, and of scenes for simulators. */
 import { mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
-import { correctDepth } from "../conventions/corrected-depth.js";
+import { correctDepth } from "../conventions/depth.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
 import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
 import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";

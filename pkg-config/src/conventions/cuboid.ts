@@ -14,6 +14,8 @@ import { type CameraFrame, turnTo } from "./frames.js";
 import type { OrientedBoundingBox } from "./oriented-bounding-box.js";
 import {
   column,
+  cross,
+  dot,
   fromColumns,
   type Matrix3,
   product,
@@ -73,12 +75,10 @@ export function toCuboid(
   const [length, height] = [axisOf("options.front", front), axisOf("options.up", up)];
   const isParallel = front.endsWith(up.slice(-1));
   oneOf("options.up", up, isParallel ? meshAxes.filter((axis) => !front.endsWith(axis.slice(-1))) : meshAxes);
-  const [fx, fy, fz] = length;
-  const [ux, uy, uz] = height;
-  const left: Vector3 = [uy * fz - uz * fy, uz * fx - ux * fz, ux * fy - uy * fx];
+  const left = cross(height, length);
   const boxFromCuboid = fromColumns(length, left, height);
   const cameraFromCuboid = product(rotationFromQuaternion("box.rotation", rotation), boxFromCuboid);
-  const side = (axis: Vector3) => Math.abs(axis[0] * sides[0] + axis[1] * sides[1] + axis[2] * sides[2]);
+  const side = (axis: Vector3) => Math.abs(dot(axis, sides));
   const body: Matrix3 = product(turnTo("frame", "ros"), cameraFromCuboid);
   const [forward, upward] = [column(body, 0), column(body, 2)];
   const turn = turnTo("options.frame", frame);

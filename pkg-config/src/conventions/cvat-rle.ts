@@ -1,10 +1,11 @@
 /** Masks in CVAT's format: run lengths along the rows of the bounding box of the mask. */
 
+import { filledRuns } from "../formats/coco-rle.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
-import { filledRuns } from "../formats/runs.js";
 import type { PixelArray } from "../input/types.js";
 import { describe, failure } from "../values/error.js";
-import { flattened, isRecord, whole } from "../values/values.js";
+import { isRecord } from "../values/kinds.js";
+import { flattened, whole } from "../values/values.js";
 
 /** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */
 export interface CvatMaskElement {

@@ -63,3 +63,26 @@ export function vertexAt({ positions, indices }: Mesh, corner: number): Vector3 
 /** Number of triangles. */
 export const triangleCount = ({ positions, indices }: Mesh): number =>
   (indices ?? { length: positions.length / 3 }).length / 3;
+
+/** The least and the largest coordinates, as accessors of positions need them. */
+export function bounds(vertices: ArrayLike<number>): { min: number[]; max: number[] } {
+  const [min, max] = [Array<number>(3).fill(Number.POSITIVE_INFINITY), Array<number>(3).fill(Number.NEGATIVE_INFINITY)];
+  for (let i = 0; i < vertices.length; i++) {
+    const x = vertices[i] as number;
+    min[i % 3] = Math.min(min[i % 3] ?? x, x);
+    max[i % 3] = Math.max(max[i % 3] ?? x, x);
+  }
+  return { min, max };
+}
+
+/** A mesh with its vertices, and the points and normals of its colours, mapped. */
+export function mappedMesh<M extends MeshArrays>(
+  mesh: M,
+  points: (positions: Float32Array) => Float32Array,
+  directions: (normals: Float32Array) => Float32Array,
+): M {
+  const { positions, samples } = mesh;
+  if (samples === undefined || samples === null) return { ...mesh, positions: points(positions) };
+  const mapped = { ...samples, positions: points(samples.positions), normals: directions(samples.normals) };
+  return { ...mesh, positions: points(positions), samples: mapped };
+}

@@ -3,7 +3,7 @@
 import type { Vector3 } from "../values/values.js";
 import type { Mesh } from "./mesh.js";
 import { principalAxes } from "./principal-axes.js";
-import { column, dot, fromColumns, type Matrix3 } from "./rotation.js";
+import { column, dot, fromColumns, identity, type Matrix3, plus, scaled } from "./rotation.js";
 
 type Point2 = readonly [number, number];
 
@@ -65,16 +65,12 @@ function hull(points: readonly Point2[]): Point2[] {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
+/** The difference of the largest and the smallest of numbers, of which there are at most as many as outermost points. */
+const spread = (numbers: readonly number[]): number => Math.max(...numbers) - Math.min(...numbers);
+
 /** The extent of points along a direction in the plane. */
-function width(points: readonly Point2[], x: number, y: number): number {
-  let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-  for (const [a, b] of points) {
-    const along = a * x + b * y;
-    if (along < low) low = along;
-    if (along > high) high = along;
-  }
-  return high - low;
-}
+const width = (points: readonly Point2[], x: number, y: number): number =>
+  spread(points.map(([a, b]) => a * x + b * y));
 
 /**
  * The direction of the smallest rectangle around points. One of its sides lies along an edge of their convex hull, unless its
@@ -95,12 +91,8 @@ export function smallestRectangle(points: readonly Point2[], tighter = 1): { cos
   return best.sin === 0 ? own : best;
 }
 
-function volume(points: readonly Vector3[], axes: readonly Vector3[]): number {
-  return axes.reduce((product, axis) => {
-    const along = points.map((point): Point2 => [dot(axis, point), 0]);
-    return product * width(along, 1, 0);
-  }, 1);
-}
+const volume = (points: readonly Vector3[], axes: readonly Vector3[]): number =>
+  axes.reduce((product, axis) => product * spread(points.map((point) => dot(axis, point))), 1);
 
 type Axes = [Vector3, Vector3, Vector3];
 
@@ -111,11 +103,11 @@ function refined(points: readonly Vector3[], start: Axes): { axes: Axes; volume:
   for (let round = 0; round < 20; round++) {
     const before = size;
     for (const k of [0, 1, 2] as const) {
-      const [fixed, a, b] = [axes[k], axes[((k + 1) % 3) as 0], axes[((k + 2) % 3) as 0]];
+      const [a, b] = [axes[((k + 1) % 3) as 0], axes[((k + 2) % 3) as 0]];
       const { cos, sin } = smallestRectangle(points.map((point) => [dot(a, point), dot(b, point)]));
-      const mix = (p: number, q: number) => a.map((x, i) => p * x + q * (b[i] ?? 0)) as Vector3;
       const turned: Axes = [...axes];
-      [turned[k], turned[((k + 1) % 3) as 0], turned[((k + 2) % 3) as 0]] = [fixed, mix(cos, sin), mix(-sin, cos)];
+      turned[((k + 1) % 3) as 0] = plus(scaled(a, cos), scaled(b, sin));
+      turned[((k + 2) % 3) as 0] = plus(scaled(a, -sin), scaled(b, cos));
       const turnedSize = volume(points, turned);
       if (turnedSize < size) [axes, size] = [turned, turnedSize];
     }
@@ -140,7 +132,7 @@ function named(axes: Axes): Matrix3 {
   const ways = orders.map((order) => {
     const [x, y, z] = order.map((i, k) => {
       const axis = axes[i];
-      return (axis[k] ?? 0) < 0 ? axis.map((number) => -number) : axis;
+      return (axis[k] ?? 0) < 0 ? scaled(axis, -1) : axis;
     }) as Axes;
     return fromColumns(x, y, z);
   });
@@ -151,15 +143,8 @@ function named(axes: Axes): Matrix3 {
 /** The axes of the smallest box found, as columns in the mesh frame. */
 export function smallestBoxAxes(mesh: Mesh): Matrix3 {
   const points = outermost(mesh);
-  const own: Axes = [
-    [1, 0, 0],
-    [0, 1, 0],
-    [0, 0, 1],
-  ];
-  const principal = principalAxes(mesh);
-  const starts: Axes[] = [own, [column(principal, 0), column(principal, 1), column(principal, 2)]];
-  const found = starts.map((start) => refined(points, start));
-  const [first, second] = found as [(typeof found)[0], (typeof found)[0]];
+  const from = (start: Matrix3) => refined(points, [column(start, 0), column(start, 1), column(start, 2)]);
+  const [first, second] = [from(identity), from(principalAxes(mesh))];
   // Keeps the axes of the mesh unless the others are better by more than rounding errors.
   return named(second.volume < first.volume * (1 - 1e-9) ? second.axes : first.axes);
 }

@@ -5,7 +5,7 @@ import type { MeshArrays } from "../input/types.js";
 import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values/values.js";
 import { type Mesh, meshOf, triangleCount, vertexAt } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";
-import { type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";
+import { identity, type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";
 import { moved, similarityOf } from "./similarity.js";
 
 /** An oriented box around an object, in the OpenCV camera frame. */
@@ -46,7 +46,7 @@ export function orientedBoundingBox(
   const checked = meshOf("mesh", mesh);
   const similarity = similarityOf(transform);
   const isMinimal = oneOf("options.box", box, ["axes", "minimal"]) === "minimal";
-  const meshFromBox: Matrix3 = isMinimal ? smallestBoxAxes(checked) : [1, 0, 0, 0, 1, 0, 0, 0, 1];
+  const meshFromBox = isMinimal ? smallestBoxAxes(checked) : identity;
   const { low, high } = extent(checked, transposed(meshFromBox));
   const corner = (i: number): Vector3 => {
     const inBox: Vector3 = [(i & 1 ? high : low)[0], (i & 2 ? high : low)[1], (i & 4 ? high : low)[2]];

@@ -1,36 +1,47 @@
-/** The principal axes of a mesh's surface. */
+/** Principal axes: the eigenvectors of symmetric matrices, and those of a mesh's surface. */
 
 import type { Vector3 } from "../values/values.js";
 import { type Mesh, triangleCount, vertexAt } from "./mesh.js";
-import { column, determinant, entry, fromColumns, type Matrix3, product, transposed } from "./rotation.js";
+import {
+  column,
+  cross,
+  determinant,
+  entry,
+  fromColumns,
+  identity,
+  type Matrix3,
+  matrixOf,
+  minus,
+  plus,
+  product,
+  scaled,
+  transposed,
+} from "./rotation.js";
 
 /** The covariance of the surface, weighted by area, independent of the distribution of vertices. */
 function covariance(mesh: Mesh): Matrix3 {
   let area = 0;
-  const sum: Vector3 = [0, 0, 0];
+  let sum: Vector3 = [0, 0, 0];
   const squares = new Float64Array(9);
   for (let t = 0; t < triangleCount(mesh); t++) {
-    const corners = [vertexAt(mesh, 3 * t), vertexAt(mesh, 3 * t + 1), vertexAt(mesh, 3 * t + 2)] as const;
-    const [a, b, c] = corners;
-    const [u, v] = [b.map((x, k) => x - (a[k] ?? 0)), c.map((x, k) => x - (a[k] ?? 0))] as [Vector3, Vector3];
-    const weight = Math.hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]) / 2;
-    const total = a.map((x, k) => x + (b[k] ?? 0) + (c[k] ?? 0)) as Vector3;
+    const [a, b, c] = [vertexAt(mesh, 3 * t), vertexAt(mesh, 3 * t + 1), vertexAt(mesh, 3 * t + 2)] as const;
+    const weight = Math.hypot(...cross(minus(b, a), minus(c, a))) / 2;
+    const total = plus(plus(a, b), c);
     area += weight;
-    for (const i of [0, 1, 2] as const) {
-      sum[i] += (weight * total[i]) / 3;
-      for (const j of [0, 1, 2] as const) {
+    sum = plus(sum, scaled(total, weight / 3));
+    for (const i of axes) {
+      for (const j of axes) {
         // The integral of x·y over a triangle: (Σ xᵢ·yᵢ + Σxᵢ · Σyᵢ) / 12 of its area.
-        const own = corners.reduce((all, corner) => all + corner[i] * corner[j], 0);
-        squares[3 * i + j] = (squares[3 * i + j] ?? 0) + (weight * (own + total[i] * total[j])) / 12;
+        const inner = a[i] * a[j] + b[i] * b[j] + c[i] * c[j] + total[i] * total[j];
+        squares[3 * i + j] = (squares[3 * i + j] ?? 0) + (weight * inner) / 12;
       }
     }
   }
-  if (area === 0) return [1, 0, 0, 0, 1, 0, 0, 0, 1];
-  return Array.from(squares, (square, k) => {
-    const [i, j] = [Math.floor(k / 3) as 0, (k % 3) as 0];
-    return square / area - (sum[i] / area) * (sum[j] / area);
-  }) as unknown as Matrix3;
+  if (area === 0) return identity;
+  return matrixOf((i, j) => (squares[3 * i + j] ?? 0) / area - (sum[i] / area) * (sum[j] / area));
 }
+
+const axes = [0, 1, 2] as const;
 
 /** The planes of the rotations: each pair of axes. */
 const planes = [[0, 1] as const, [0, 2] as const, [1, 2] as const] as const;
@@ -41,7 +52,7 @@ export const principalAxes = (mesh: Mesh): Matrix3 => eigenvectors(covariance(me
 /** The eigenvectors of a symmetric matrix as columns, by Jacobi rotations; right-handed. */
 export function eigenvectors(symmetric: Matrix3): Matrix3 {
   let matrix = symmetric;
-  let axes: Matrix3 = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+  let vectors = identity;
   // Three planes per sweep; the off-diagonal entries shrink quadratically.
   for (let step = 0; step < 36; step++) {
     const [p, q] = planes[(step % 3) as 0];
@@ -50,12 +61,12 @@ export function eigenvectors(symmetric: Matrix3): Matrix3 {
     const theta = (entry(matrix, q, q) - entry(matrix, p, p)) / (2 * off);
     const t = (theta < 0 ? -1 : 1) / (Math.abs(theta) + Math.sqrt(theta * theta + 1));
     const cos = 1 / Math.sqrt(t * t + 1);
-    const turn = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+    const turn: number[] = [...identity];
     [turn[4 * p], turn[4 * q], turn[3 * p + q], turn[3 * q + p]] = [cos, cos, t * cos, -t * cos];
     const rotation = turn as unknown as Matrix3;
     matrix = product(transposed(rotation), product(matrix, rotation));
-    axes = product(axes, rotation);
+    vectors = product(vectors, rotation);
   }
-  const [x, y, z] = [column(axes, 0), column(axes, 1), column(axes, 2)];
-  return determinant(axes) < 0 ? fromColumns(x, y, [-z[0], -z[1], -z[2]]) : axes;
+  if (determinant(vectors) > 0) return vectors;
+  return fromColumns(column(vectors, 0), column(vectors, 1), scaled(column(vectors, 2), -1));
 }

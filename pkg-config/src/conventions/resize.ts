@@ -151,16 +151,16 @@ export interface CropInput {
  * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that exceeds them
  */
 export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
-  const { depth, pointMap, mask, image, camera } = record("input", input, "{ depth, mask, camera }") as T;
+  const { depth, mask, pointMap, image, camera } = record("input", input, "{ depth, mask, camera }") as CropInput;
   const { width, height } = sizeOf("box", box);
   const [left, top] = [whole("box.left", box.left, 0), whole("box.top", box.top, 0)];
-  const whose = Object.entries({ depth, mask, pointMap, image }).filter(([, part]) => part !== undefined);
-  const [first] = whose;
+  const images = Object.entries({ depth, mask, pointMap, image }).filter(([, part]) => part !== undefined);
+  const [first] = images;
   if (first === undefined) {
     throw failure("INVALID_ARGUMENT", "input", describe(input), "depth, mask or pointMap", "Pass the images.");
   }
   const size = sizeOf(`input.${first[0]}`, first[1]);
-  for (const [name, part] of whose) {
+  for (const [name, part] of images) {
     const found = sizeOf(`input.${name}`, part);
     if (found.width === size.width && found.height === size.height) continue;
     const expected = `${size.width} × ${size.height}, the size of ${first[0]}`;
@@ -173,22 +173,24 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
     throw failure("SIZE_MISMATCH", "box", found, expected, "Keep the box within the image.");
   }
   const source = { column: (u: number) => left + u, row: (v: number) => top + v };
-  const part = <A extends DepthPixels | MaskPixels>(name: string, image: unknown, kinds: string[], channels = 1) =>
-    image === undefined
-      ? {}
-      : { [name]: sampled(pixelsOf<A>(`input.${name}`, image, kinds, channels), { width, height }, source, channels) };
-  return {
-    ...input,
-    ...part("depth", depth, depthKinds),
-    ...part("mask", mask, maskKinds),
-    ...part<Float32Array>("pointMap", pointMap, pointKinds, 3),
-    ...part("image", image, maskKinds, image?.data?.length === 4 * size.width * size.height ? 4 : 3),
-    ...(camera === undefined ? {} : { camera: moved(pinholeOf("input.camera", camera, size), { left, top }, box) }),
+  const hasAlpha = image?.data?.length === 4 * size.width * size.height;
+  const formats: Record<string, readonly [kinds: readonly string[], channels: number]> = {
+    ...{
+      depth: [depthKinds, 1],
+      mask: [maskKinds, 1],
+      pointMap: [pointKinds, 3],
+      image: [maskKinds, hasAlpha ? 4 : 3],
+    },
   };
+  const cropped = { ...input } as Record<string, unknown>;
+  for (const [name, part] of images) {
+    const [kinds, channels] = formats[name] as (typeof formats)[string];
+    const pixels = pixelsOf<DepthPixels | MaskPixels>(`input.${name}`, part, kinds, channels);
+    cropped[name] = sampled(pixels, { width, height }, source, channels);
+  }
+  if (camera !== undefined) {
+    const { fx, fy, cx, cy } = pinholeOf("input.camera", camera, size);
+    cropped.camera = { fx, fy, cx: cx - left, cy: cy - top, width, height };
+  }
+  return cropped as T;
 }
-
-const moved = (
-  { fx, fy, cx, cy }: { fx: number; fy: number; cx: number; cy: number },
-  { left, top }: { left: number; top: number },
-  { width, height }: ImageSize,
-): PinholeCamera => ({ fx, fy, cx: cx - left, cy: cy - top, width, height });

@@ -1,22 +1,32 @@
-/** Rotations as 3×3 matrices and as quaternions in either order. */
+/** Vectors, 3×3 matrices, and rotations as matrices and as quaternions in either order. */
 import { failure } from "../values/error.js";
 import { finiteNumbers, type Quaternion, type Vector3 } from "../values/values.js";
+
+type Vector = Readonly<Vector3>;
 
 /** A 3×3 matrix, row-major. */
 export type Matrix3 = readonly [number, number, number, number, number, number, number, number, number];
 
-/** The dot product. */
-export const dot = (a: Readonly<Vector3>, b: Readonly<Vector3>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-
-/** The cross product. */
-export const cross = (a: Readonly<Vector3>, b: Readonly<Vector3>): Vector3 => [
+export const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const norm = (a: Vector): number => Math.sqrt(dot(a, a));
+export const scaled = (a: Vector, s: number): Vector3 => [a[0] * s, a[1] * s, a[2] * s];
+export const unit = (a: Vector): Vector3 => scaled(a, 1 / norm(a));
+export const plus = (a: Vector, b: Vector): Vector3 => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const minus = (a: Vector, b: Vector): Vector3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const cross = (a: Vector, b: Vector): Vector3 => [
   a[1] * b[2] - a[2] * b[1],
   a[2] * b[0] - a[0] * b[2],
   a[0] * b[1] - a[1] * b[0],
 ];
 
+/** The mean of points; the origin of none. */
+export const meanOf = (points: readonly Vector[]): Vector3 =>
+  scaled(points.reduce<Vector3>(plus, [0, 0, 0]), 1 / Math.max(points.length, 1));
+
+export const identity: Matrix3 = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+
 /** A matrix whose entries are computed from row and column. */
-const matrixOf = (entry: (row: 0 | 1 | 2, column: 0 | 1 | 2) => number): Matrix3 => [
+export const matrixOf = (entry: (row: 0 | 1 | 2, column: 0 | 1 | 2) => number): Matrix3 => [
   ...([entry(0, 0), entry(0, 1), entry(0, 2)] as const),
   ...([entry(1, 0), entry(1, 1), entry(1, 2)] as const),
   ...([entry(2, 0), entry(2, 1), entry(2, 2)] as const),
@@ -53,7 +63,7 @@ export const determinant = (m: Matrix3): number =>
   m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
 
 /** The cofactor matrix: the transposed inverse times the determinant. */
-const cofactors = (m: Matrix3): Matrix3 => [
+export const cofactors = (m: Matrix3): Matrix3 => [
   ...([m[4] * m[8] - m[5] * m[7], m[5] * m[6] - m[3] * m[8], m[3] * m[7] - m[4] * m[6]] as const),
   ...([m[2] * m[7] - m[1] * m[8], m[0] * m[8] - m[2] * m[6], m[1] * m[6] - m[0] * m[7]] as const),
   ...([m[1] * m[5] - m[2] * m[4], m[2] * m[3] - m[0] * m[5], m[0] * m[4] - m[1] * m[3]] as const),

@@ -4,9 +4,9 @@ import type { MeshArrays } from "../input/types.js";
 import { failure } from "../values/error.js";
 import { finiteNumbers, record, type Vector3 } from "../values/values.js";
 import { underNode } from "./glb.js";
-import { meshOf } from "./mesh.js";
+import { mappedMesh, meshOf } from "./mesh.js";
 import { eigenvectors } from "./principal-axes.js";
-import { column, determinant, dot, entry, type Matrix3, quaternionOf, transposed, turned } from "./rotation.js";
+import { cofactors, column, dot, type Matrix3, norm, quaternionOf, scaled, transposed, turned } from "./rotation.js";
 
 /** What the functions read of `proportions` of a result. */
 export interface StretchLike {
@@ -30,17 +30,11 @@ const SYMMETRIC = 1e-6;
  * @throws {@link Sim3AlignError} for an invalid mesh, and `INVALID_ARGUMENT` for a matrix that is not a stretch
  */
 export function stretchMesh<M extends MeshArrays>(mesh: M, proportions: StretchLike): M {
-  const { positions } = meshOf("mesh", mesh);
+  meshOf("mesh", mesh);
   const matrix = stretchOf(proportions);
-  const { samples } = mesh;
-  if (samples === undefined || samples === null) return { ...mesh, positions: mapped(matrix, positions) };
-  // Normals turn with the inverse, which is as symmetric.
-  const normals = mapped(inverse(matrix), samples.normals, true);
-  return {
-    ...mesh,
-    positions: mapped(matrix, positions),
-    samples: { ...samples, positions: mapped(matrix, samples.positions), normals },
-  };
+  // Normals turn with the inverse of the transpose.
+  const normals = (vectors: Float32Array) => mapped(cofactors(matrix), vectors, true);
+  return mappedMesh(mesh, (points) => mapped(matrix, points), normals);
 }
 
 /**
@@ -70,27 +64,11 @@ function stretchOf(proportions: StretchLike): Matrix3 {
   const numbers = finiteNumbers("proportions.stretch", stretch, 9, "nine finite numbers, three rows of three");
   const matrix = numbers as unknown as Matrix3;
   const largest = Math.max(...numbers.map(Math.abs));
-  const isSymmetric = ([0, 1, 2] as const).every((i) =>
-    ([0, 1, 2] as const).every((j) => Math.abs(entry(matrix, i, j) - entry(matrix, j, i)) <= SYMMETRIC * largest),
-  );
+  const mirrored = transposed(matrix);
+  const isSymmetric = matrix.every((x, i) => Math.abs(x - (mirrored[i] as number)) <= SYMMETRIC * largest);
   if (isSymmetric && lengthsAlong(matrix, eigenvectors(matrix)).every((length) => length > 0)) return matrix;
-  const expected = "a symmetric matrix with positive eigenvalues";
-  throw failure(
-    "INVALID_ARGUMENT",
-    "proportions.stretch",
-    `[${numbers.join(", ")}]`,
-    expected,
-    "Pass that of a result.",
-  );
-}
-
-function inverse(m: Matrix3): Matrix3 {
-  const cofactor = (i: number, j: number) => {
-    const [a, b, c, d] = [(i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3] as [0, 0, 0, 0];
-    return entry(m, a, c) * entry(m, b, d) - entry(m, a, d) * entry(m, b, c);
-  };
-  const by = determinant(m);
-  return Array.from({ length: 9 }, (_, k) => cofactor(k % 3, Math.floor(k / 3)) / by) as unknown as Matrix3;
+  const [found, expected] = [`[${numbers.join(", ")}]`, "a symmetric matrix with positive eigenvalues"];
+  throw failure("INVALID_ARGUMENT", "proportions.stretch", found, expected, "Pass that of a result.");
 }
 
 /** Vectors times a matrix, one after the other; of length 1, if `isUnit`. */
@@ -98,11 +76,7 @@ function mapped(matrix: Matrix3, vectors: Float32Array, isUnit = false): Float32
   const result = new Float32Array(vectors.length);
   for (let i = 0; i + 2 < vectors.length; i += 3) {
     const vector = turned(matrix, [vectors[i] as number, vectors[i + 1] as number, vectors[i + 2] as number]);
-    const by = isUnit ? 1 / (Math.hypot(...vector) || 1) : 1;
-    result.set(
-      vector.map((x) => x * by),
-      i,
-    );
+    result.set(isUnit ? scaled(vector, 1 / (norm(vector) || 1)) : vector, i);
   }
   return result;
 }

@@ -1,13 +1,27 @@
 /** Objects in upright frames of their own. */
 
-import type { Sim3, Sim3Like } from "../input/sim3.js";
+import type { Sim3 } from "../generated/types.js";
 import type { MeshArrays } from "../input/types.js";
-import { oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../values/values.js";
+import type { Sim3Like } from "../types/argument-types.js";
+import { oneOf, optionsOf, record, type Vector3 } from "../values/values.js";
 import { underNode } from "./glb.js";
-import { meshOf } from "./mesh.js";
+import { type Mesh, mappedMesh, meshOf } from "./mesh.js";
 import { outermost, smallestBoxAxes, smallestRectangle } from "./minimal-box.js";
 import { extent } from "./oriented-bounding-box.js";
-import { column, cross, dot, fromColumns, type Matrix3, transposed, turned } from "./rotation.js";
+import {
+  column,
+  cross,
+  dot,
+  fromColumns,
+  type Matrix3,
+  minus,
+  plus,
+  scaled,
+  transposed,
+  turned,
+  unit,
+} from "./rotation.js";
+import { directionOf } from "./scene-frame.js";
 import { applyToPoints, composed, inverted, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 
 /** Options of {@link uprightMesh} and {@link uprightGlb}. */
@@ -52,20 +66,13 @@ export function uprightMesh<M extends MeshArrays>(
 ): Upright<M> {
   const frame = uprightFrame(mesh, transform, options);
   const back = sim3Of(inverted(frame));
-  const positions = applyToPoints(back, mesh.positions);
-  const { samples } = mesh;
   const turn = { ...back, scale: 1, translation: [0, 0, 0] as Vector3, matrix: undefined };
-  const moved =
-    samples === undefined || samples === null
-      ? {}
-      : {
-          samples: {
-            ...samples,
-            positions: applyToPoints(back, samples.positions),
-            normals: applyToPoints(turn, samples.normals),
-          },
-        };
-  return { mesh: { ...mesh, positions, ...moved }, ...placedBy(transform, frame) };
+  const straight = mappedMesh(
+    mesh,
+    (points) => applyToPoints(back, points),
+    (normals) => applyToPoints(turn, normals),
+  );
+  return { mesh: straight, ...placedBy(transform, frame) };
 }
 
 /**
@@ -103,47 +110,35 @@ function uprightFrame(mesh: MeshArrays, transform: Sim3Like, options: UprightOpt
   const checked = meshOf("mesh", mesh);
   const toMesh = transposed(similarityOf(transform).rotation);
   const axis = oneOf("options.up", up, ["y", "z"]);
-  const boxAxes = support === null ? smallestBoxAxes(checked) : null;
-  const upward =
-    boxAxes === null
-      ? turned(toMesh, normalOf(support))
-      : nearest(
-          [0, 1, 2].flatMap((k) => bothWays(column(boxAxes, k as 0))),
-          turned(toMesh, [0, -1, 0]),
-        );
+  const upward = upwardOf(checked, toMesh, support);
   // The front is z in files with y up, and −y in those with z up.
   const front: Vector3 = Math.abs(upward[2]) < 0.8 ? [0, 0, 1] : [0, -Math.sign(upward[2]), 0];
-  const forward = acrossTo(upward, front);
+  const forward = unit(minus(front, scaled(upward, dot(upward, front))));
   const side = cross(upward, forward);
   const seen = outermost(checked).map((p) => [dot(side, p), dot(forward, p)] as const);
   const { cos, sin } = smallestRectangle(seen, TIGHTER);
-  const mixed = (p: number, q: number) => side.map((x, i) => p * x + q * (forward[i] as number)) as Vector3;
-  const back = nearest([...bothWays(mixed(cos, sin)), ...bothWays(mixed(-sin, cos))], forward);
+  const tight = [plus(scaled(side, cos), scaled(forward, sin)), plus(scaled(side, -sin), scaled(forward, cos))];
+  const back = nearest(tight.flatMap(bothWays), forward);
   const right = cross(upward, back);
-  const away = back.map((x) => -x) as Vector3;
-  const rotation: Matrix3 = axis === "y" ? fromColumns(right, upward, back) : fromColumns(right, away, upward);
+  const rotation = axis === "y" ? fromColumns(right, upward, back) : fromColumns(right, scaled(back, -1), upward);
   const { low, high } = extent(checked, transposed(rotation));
   const bottom = low.map((x, k) => (k === (axis === "y" ? 1 : 2) ? x : (x + (high[k] ?? x)) / 2)) as Vector3;
   return { scale: 1, rotation, translation: turned(rotation, bottom) };
 }
 
-const bothWays = (v: Vector3): [Vector3, Vector3] => [v, v.map((x) => -x) as Vector3];
+/** Up in the frame of a mesh: the normal of its support, or that axis of its smallest box. */
+function upwardOf(mesh: Mesh, meshFromCamera: Matrix3, support: unknown): Vector3 {
+  if (support !== null) {
+    const { normal } = record("options.support", support, "{ normal, d }");
+    return turned(meshFromCamera, directionOf("options.support.normal", normal).direction);
+  }
+  const axes = smallestBoxAxes(mesh);
+  const ways = ([0, 1, 2] as const).flatMap((k) => bothWays(column(axes, k)));
+  return nearest(ways, turned(meshFromCamera, [0, -1, 0]));
+}
+
+const bothWays = (v: Vector3): [Vector3, Vector3] => [v, scaled(v, -1)];
 
 /** Of some directions, the one nearest to another. */
 const nearest = (directions: readonly Vector3[], to: Vector3): Vector3 =>
   directions.reduce((best, direction) => (dot(direction, to) > dot(best, to) ? direction : best));
-
-/** The unit vector across an axis that is nearest to a direction. */
-function acrossTo(axis: Vector3, direction: Vector3): Vector3 {
-  const along = dot(axis, direction);
-  const across = direction.map((x, i) => x - along * (axis[i] as number)) as Vector3;
-  const length = Math.sqrt(dot(across, across));
-  return across.map((x) => x / length) as Vector3;
-}
-
-function normalOf(support: unknown): Vector3 {
-  const { normal } = record("options.support", support, "{ normal, d }");
-  const given = vector3("options.support.normal", normal);
-  const length = positive("the length of options.support.normal", Math.sqrt(dot(given, given)));
-  return given.map((x) => x / length) as Vector3;
-}

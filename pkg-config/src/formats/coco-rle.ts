@@ -5,7 +5,6 @@ import { describe, failure, type Sim3AlignError } from "../values/error.js";
 import { finiteNumbers, flattened, isRecord, record, whole } from "../values/values.js";
 import { type JsonFile, numbersIn, parsedJson } from "./json.js";
 import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
-import { filledRuns } from "./runs.js";
 
 /**
  * Encodes a mask in COCO's run-length encoding, like pycocotools.
@@ -91,13 +90,7 @@ function runsOf(argument: string, counts: unknown): number[] {
 
 /** Whether a value is what COCO has instead of an encoding for most annotations: arrays of coordinates. */
 export function isPolygons(value: unknown): boolean {
-  try {
-    if (!Array.isArray(value) || value.length === 0) return false;
-    return value.every((polygon) => Array.isArray(polygon) && polygon.length >= 6);
-  } catch {
-    // An array whose elements cannot be read, which is an error of its own.
-    return false;
-  }
+  return Array.isArray(value) && value.length > 0 && value.every((item) => Array.isArray(item) && item.length >= 6);
 }
 
 /** The error for polygons. */
@@ -118,6 +111,32 @@ function checkSize(argument: string, { width, height }: ImageSize): void {
   if (width * height <= MAX_PIXELS) return;
   const remedy = "Downscale the mask first; if the file is small, it is corrupt or malicious.";
   throw failure("FILE_TOO_LARGE", argument, found, `at most ${MAX_PIXELS} pixels (8192 × 8192)`, remedy);
+}
+
+/**
+ * Decodes alternating runs: 0 in the first run, 1 in the second, and so on.
+ * @param count the required sum of the runs
+ */
+export function filledRuns(argument: string, runs: readonly unknown[], count: number): Uint8Array {
+  const corrupt = (found: string) => {
+    const expected = `run lengths that add up to ${count}`;
+    return failure("CORRUPT_FILE", argument, found, expected, "Pass the runs with the size of their image.");
+  };
+  // Checked before allocation, because the size may be malicious.
+  let total = 0;
+  for (const run of runs) {
+    if (!Number.isSafeInteger(run) || (run as number) < 0) throw corrupt(`${describe(run)} among the runs`);
+    total += run as number;
+  }
+  if (total !== count) throw corrupt(`runs of ${total} pixels in total`);
+  const pixels = new Uint8Array(count);
+  let start = 0;
+  runs.forEach((run, i) => {
+    const end = start + (run as number);
+    if (i % 2 === 1) pixels.fill(1, start, end);
+    start = end;
+  });
+  return pixels;
 }
 
 // Each character encodes five bits, the least significant first, and a sixth bit that is set if more characters follow;

@@ -1,6 +1,6 @@
 /** The mesh and the observed points for a view in 3D, in a form that is small in a file. */
-import { bounds } from "../conventions/glb.js";
-import { minus } from "../conventions/ground-frame.js";
+import { bounds } from "../conventions/mesh.js";
+import { minus } from "../conventions/rotation.js";
 import { moved, similarityOf } from "../conventions/similarity.js";
 import type { Picture } from "./png.js";
 import type { Shot } from "./shot.js";

@@ -1,25 +1,16 @@
 /** Scenes for simulators: rigid bodies at rest, the ground and the camera, in a frame with z up. */
-import { groundFrame } from "../conventions/ground-frame.js";
 import { meshOf } from "../conventions/mesh.js";
-import { type Matrix3, product, quaternionOf, rotationOfUnit, transposed, turned } from "../conventions/rotation.js";
+import { type Matrix3, product, quaternionOf, rotationOfUnit, transposed } from "../conventions/rotation.js";
+import { sceneCamera, sceneFromCamera, sceneObjects } from "../conventions/scene-frame.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
-import type { Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../input/types.js";
+import { WasmModule } from "../modules/module.js";
 import type { Plane } from "../scene/types.js";
+import type { Sim3Like } from "../types/argument-types.js";
 import type { WasmSource } from "../types/platform.js";
 import { invalidArgument } from "../values/error.js";
-import {
-  flattened,
-  isRecord,
-  isTypedArray,
-  optionsOf,
-  positive,
-  type Quaternion,
-  record,
-  type Vector3,
-  whole,
-} from "../values/values.js";
-import { type BodyPose, type ConvexPart, physicsModule } from "./physics-module.js";
+import { isRecord, isTypedArray } from "../values/kinds.js";
+import { optionsOf, positive, type Quaternion, type Vector3, whole } from "../values/values.js";
 
 /** An object of a scene for a simulator. */
 export interface SimulatorObject {
@@ -62,6 +53,14 @@ export interface SimulatorOptions {
 
 /** Defaults of {@link SimulatorOptions}. */
 export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 12, maxMoveM: 0.02, rest: true } as const;
+
+/** A convex surface. */
+export interface ConvexPart {
+  /** Interleaved x, y, z, metres, in the frame of the body. */
+  positions: Float64Array;
+  /** Three vertex indices per triangle, counter-clockwise from outside. */
+  indices: Uint32Array;
+}
 
 /** A pose of a body. */
 export interface SimulatorPose {
@@ -111,6 +110,32 @@ export interface SimulatorScene {
   camera: { position: Vector3; rotation: Quaternion; fovYDeg: number; width: number; height: number } | null;
 }
 
+/** A pose as the physics module returns it. */
+interface BodyPose {
+  rotation: Float64Array;
+  translation: Float64Array;
+}
+
+/** The functions of the physics module. */
+interface Physics {
+  settleBodies(
+    objects: readonly object[],
+    settings: object,
+  ): {
+    bodies: (Pick<SimulatorBody, "parts" | "mass" | "movedM" | "turnedDeg" | "inside"> &
+      Record<"pose" | "found", BodyPose> &
+      Record<"center" | "moments" | "axes", Float64Array> & { isFree: boolean })[];
+    supportHeightM: number;
+  };
+}
+
+/** The physics module, shared by all scenes of this realm. */
+const physicsModule = /* @__PURE__ */ new WasmModule<Physics>(
+  "physics",
+  () => new URL("../wasm/physics_bg.wasm", import.meta.url),
+  () => import("../wasm/physics.js"),
+);
+
 /**
  * Makes a scene for simulators. Each object becomes a rigid body with convex parts for collisions (V-HACD), and mass and
  * inertia of a density. An object that rests on the support or on another object is turned and moved a little, so that it
@@ -127,53 +152,34 @@ export async function simulatorScene(
   options: SimulatorOptions = {},
 ): Promise<SimulatorScene> {
   const { support = null, camera, wasm, ...given } = optionsOf(options);
-  const list = flattened(objects);
-  if (list === null) {
-    throw invalidArgument("objects", objects, "an array of { mesh, transform }", "Pass one of these per object.");
-  }
   const settings = settingsOf(given);
-  const named = list.map((object, i) => record(`objects[${i}]`, object, "{ mesh, transform }"));
-  const own = named as unknown as SimulatorObject[];
+  const own = sceneObjects(objects);
   const poses = own.map(({ transform }) => similarityOf(transform));
-  const frame = groundFrame(
-    support,
-    poses.map(({ translation }) => translation),
-  );
-  const worldFromCamera = zUp(frame);
+  const centers = poses.map(({ translation }) => translation);
+  const worldFromCamera = sceneFromCamera(support, centers, "z");
   const meshes = own.map(({ mesh }) => meshWithIndices(mesh));
   const module = await physicsModule.load(wasm);
   const sent = poses.map((pose, i) => ({
     mesh: meshes[i],
     transform: sim3Of(composed(worldFromCamera, pose)).matrix,
-    on: support === null ? null : groundOf(own[i] as SimulatorObject, list.length),
+    on: support === null ? null : groundOf(own[i] as SimulatorObject, own.length),
   }));
   const fitsGround = support?.confidence !== undefined && support.confidence < 1;
-  const { bodies: settled, supportHeightM } = module.call((physics) =>
-    physics.settleBodies(sent, { ...settings, fitsGround }),
-  );
+  const { bodies, supportHeightM } = module.call((physics) => physics.settleBodies(sent, { ...settings, fitsGround }));
   const names = uniqueNames(own.map(({ name }, i) => name ?? `object_${i}`));
-  const bodies = settled.map((body, i): SimulatorBody => {
-    const { positions, indices } = meshes[i] as (typeof meshes)[number];
-    const { scale } = poses[i] as Similarity;
-    return {
-      name: names[i] as string,
-      ...poseOf(body.pose),
-      found: poseOf(body.found),
-      isFixed: !body.isFree,
-      mass: body.mass,
-      centerOfMass: Array.from(body.center) as Vector3,
-      principalMoments: Array.from(body.moments) as Vector3,
-      principalAxes: Array.from(body.axes) as Quaternion,
-      parts: body.parts,
-      mesh: { positions: positions.map((x) => x * scale), indices },
-      color: meanColour((own[i] as SimulatorObject).mesh),
-      movedM: body.movedM,
-      turnedDeg: body.turnedDeg,
-      inside: body.inside,
-    };
-  });
   return {
-    bodies,
+    bodies: bodies.map(({ pose, found, center, moments, axes, isFree, ...body }, i): SimulatorBody => {
+      const { positions, indices } = meshes[i] as (typeof meshes)[number];
+      const { scale } = poses[i] as Similarity;
+      return {
+        ...{ name: names[i] as string, ...poseOf(pose), found: poseOf(found), isFixed: !isFree, ...body },
+        centerOfMass: Array.from(center) as Vector3,
+        principalMoments: Array.from(moments) as Vector3,
+        principalAxes: Array.from(axes) as Quaternion,
+        mesh: { positions: positions.map((x) => x * scale), indices },
+        color: meanColour((own[i] as SimulatorObject).mesh),
+      };
+    }),
     hasGround: support !== null,
     supportHeightM,
     camera: camera === undefined ? null : cameraOf(camera, worldFromCamera, supportHeightM),
@@ -197,21 +203,10 @@ function settingsOf(given: Omit<SimulatorOptions, "support" | "camera">): object
   };
 }
 
-/** World from camera, with z up. */
-function zUp({ right, up, back, origin }: ReturnType<typeof groundFrame>): Similarity {
-  const away: Vector3 = [-back[0], -back[1], -back[2]];
-  const rotation = [...right, ...away, ...up] as unknown as Matrix3;
-  const [x, y, z] = turned(rotation, origin);
-  return { scale: 1, rotation, translation: [-x, -y, -z] };
-}
-
-function cameraOf(given: unknown, worldFromCamera: Similarity, liftM: number): SimulatorScene["camera"] {
-  const camera = record("options.camera", given, "{ fy, width, height }");
-  const number = (name: string) => positive(`options.camera.${name}`, camera[name]);
-  const [fy, width, height] = [number("fy"), number("width"), number("height")];
-  const fovYDeg = (2 * Math.atan(height / (2 * fy)) * 180) / Math.PI;
-  const { translation, rotation } = worldFromCamera;
+function cameraOf(given: unknown, { translation, rotation }: Similarity, liftM: number): SimulatorScene["camera"] {
+  const { fovYRad, width, height } = sceneCamera(given);
   const [x, y, z] = translation;
+  const fovYDeg = (fovYRad * 180) / Math.PI;
   return { position: [x, y, z + liftM], rotation: quaternionOf(rotation), fovYDeg, width, height };
 }
 

@@ -1,5 +1,5 @@
 /** Scenes as USD, with the schemas of UsdPhysics. */
-import { bounds } from "../conventions/glb.js";
+import { bounds } from "../conventions/mesh.js";
 import { wxyzFromXyzw } from "../conventions/rotation.js";
 import { lightOf } from "../input/colors.js";
 import { type SimulatorBody, type SimulatorScene, viewRotation } from "./scene.js";

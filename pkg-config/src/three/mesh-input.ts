@@ -1,5 +1,6 @@
 /** Meshes from three.js objects. */
 
+import { cofactors, determinant, type Matrix3, matrixOf as matrix3Of, turned } from "../conventions/rotation.js";
 import type { MeshArrays } from "../input/types.js";
 import { describe, failure } from "../values/error.js";
 import { finiteNumbers, oneOf } from "../values/values.js";
@@ -112,7 +113,7 @@ function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4,
   const firstTriangle = arrays.indices.length / 3;
   const corner = (i: number) => first + (index === null ? i : index.getX(i));
   const count = index === null ? position.count : index.count;
-  const isMirrored = a * (e * k - f * h) - d * (b * k - c * h) + g * (b * f - c * e) < 0;
+  const isMirrored = determinant(linearOf(m)) < 0;
   // Reflections invert the orientation of triangles: swap two corners.
   for (let i = 0; i + 2 < count; i += 3) {
     arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
@@ -186,17 +187,19 @@ function product(a: Matrix4, b: Matrix4): Matrix4 {
   });
 }
 
+/** The linear part of an affine matrix. */
+const linearOf = (m: Matrix4): Matrix3 => matrix3Of((row, column) => m[4 * column + row] ?? 0);
+
 /** The inverse of an affine matrix. */
 function inverse(m: Matrix4): Matrix4 {
-  const [a = 0, b = 0, c = 0, , d = 0, e = 0, f = 0, , g = 0, h = 0, k = 0, , x = 0, y = 0, z = 0] = m;
-  const minors = [e * k - f * h, c * h - b * k, b * f - c * e, f * g - d * k, a * k - c * g, c * d - a * f];
-  const all = [...minors, d * h - e * g, b * g - a * h, a * e - b * d];
-  const volume = a * (all[0] ?? 0) + d * (all[1] ?? 0) + g * (all[2] ?? 0);
+  const linear = linearOf(m);
+  const volume = determinant(linear);
   if (volume === 0 || !Number.isFinite(volume)) {
     const remedy = "Set the scales of the object and its parents to values other than 0.";
     throw failure("INVALID_TRANSFORM", "source.matrixWorld", "a singular matrix", "an invertible matrix", remedy);
   }
-  const [p = 0, q = 0, r = 0, s = 0, t = 0, u = 0, v = 0, w = 0, l = 0] = all.map((minor) => minor / volume);
-  const moved = [p * x + s * y + v * z, q * x + t * y + w * z, r * x + u * y + l * z].map((number) => -number);
-  return [p, q, r, 0, s, t, u, 0, v, w, l, 0, ...moved, 1];
+  // Rows of the cofactors are columns of the inverse.
+  const [a, b, c, d, e, f, g, h, i] = cofactors(linear).map((minor) => minor / volume) as unknown as Matrix3;
+  const [x, y, z] = turned([a, d, g, b, e, h, c, f, i], [m[12] ?? 0, m[13] ?? 0, m[14] ?? 0]);
+  return [a, b, c, 0, d, e, f, 0, g, h, i, 0, -x, -y, -z, 1];
 }

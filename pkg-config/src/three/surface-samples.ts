@@ -1,5 +1,5 @@
 /** Colours at points of a surface. */
-import { cross, dot } from "../conventions/rotation.js";
+import { cross, dot, minus } from "../conventions/rotation.js";
 import { rgbOf } from "../input/colors.js";
 import type { ColorSamples } from "../input/prepared-mesh.js";
 import type { Vector3 } from "../values/values.js";
@@ -59,6 +59,5 @@ function triangleOf(positions: Float32Array, indices: Uint32Array, t: number) {
     const first = 3 * (indices[3 * t + corner] as number);
     return [positions[first], positions[first + 1], positions[first + 2]] as Vector3;
   }) as [Vector3, Vector3, Vector3];
-  const [u, v] = [b, c].map((p) => p.map((x, axis) => x - (a[axis] as number))) as [Vector3, Vector3];
-  return { a, b, c, normal: cross(u, v) };
+  return { a, b, c, normal: cross(minus(b, a), minus(c, a)) };
 }
