@@ -7,8 +7,6 @@
 use core::cell::{Cell, RefCell};
 use core::ops::Range;
 
-use crate::pauses::Pauses;
-
 /// Carries messages between a call and its helpers.
 pub trait Link {
     /// Asks for helpers. They may join at any time, or never.
@@ -103,12 +101,13 @@ impl Helpers {
         self.link.is_some()
     }
 
-    /// Runs tasks, with a pause point after each, until `ends` says so of a result: it sees them in order.
-    pub async fn run<T: Tasks>(
+    /// Runs tasks, with a pause point after each, until `ends` says so of a result: it sees them in order. `pause(true)` pauses in
+    /// any case, `pause(false)` if it is time.
+    pub async fn run<T: Tasks, P: Future<Output = ()>>(
         &self,
         tasks: &mut T,
         mut ends: impl FnMut(&T::Result) -> bool,
-        pauses: &Pauses,
+        pause: impl Fn(bool) -> P,
     ) -> Vec<T::Result> {
         let list = self.lists.get() + 1;
         self.lists.set(list);
@@ -153,11 +152,11 @@ impl Helpers {
             }
             if let Some(task) = shares[0].left.next() {
                 results[task] = Some(tasks.run(task));
-                pauses.here().await;
+                pause(false).await;
             } else {
                 // Helpers have begun what is left.
                 self.link.iter().for_each(|link| link.wait());
-                pauses.now().await;
+                pause(true).await;
             }
         }
         let present = shares.iter().filter(|share| !share.is_orphaned).filter_map(|share| share.helper);

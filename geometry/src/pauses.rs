@@ -59,11 +59,6 @@ impl Pauses {
         Point { is_due: self.is_time() }
     }
 
-    /// Pauses in any case.
-    pub fn now(&self) -> Point {
-        Point { is_due: true }
-    }
-
     /// Asks for helpers, where there may be some, and pauses: long lists of tasks are to come.
     pub fn ask_for_help(&self) -> Point {
         Point { is_due: self.helpers.ask() }
@@ -72,7 +67,7 @@ impl Pauses {
     /// The results of independent tasks in their order, with a pause point after each task. `ends` sees them in this order,
     /// and says whether one is the last that is needed.
     pub async fn list<T: Tasks>(&self, tasks: &mut T, ends: impl FnMut(&T::Result) -> bool) -> Vec<T::Result> {
-        self.helpers.run(tasks, ends, self).await
+        self.helpers.run(tasks, ends, |always| Point { is_due: always || self.is_time() }).await
     }
 
     #[inline(never)]

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::estimate::Estimate;
 use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::pinhole::Pinhole;
 
@@ -92,14 +91,10 @@ impl DepthCalibration {
         depth_kind: DepthKind,
         calibration: Calibration,
         camera: Pinhole,
-        estimate: Option<&Estimate>,
+        uncertainty: CalibrationUncertainty,
         is_metric: bool,
     ) -> Self {
         let Calibration { scale, shift, .. } = calibration;
-        let uncertainty = estimate.map_or_else(CalibrationUncertainty::default, |estimate| CalibrationUncertainty {
-            shift: estimate.shift_deviation,
-            focal: estimate.focal_deviation,
-        });
         let is_focal_estimated = uncertainty.focal > 0.0;
         Self { depth_kind, is_metric, scale, shift, camera, is_focal_estimated, uncertainty }
     }

@@ -5,7 +5,7 @@
 //! search stands about 15 per cent of wrong relief; from the best one, the score rises to a peak that is found by
 //! refining the poses alone.
 
-use super::calibration::Calibration;
+use super::calibration::{Calibration, CalibrationUncertainty};
 use super::prior::Prior;
 use super::profile::{Pictured, Subject};
 use super::raw_view::{Focal, RawView};
@@ -56,6 +56,11 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// The standard deviations of the calibration.
+    pub fn uncertainty(&self) -> CalibrationUncertainty {
+        CalibrationUncertainty { shift: self.shift_deviation, focal: self.focal_deviation }
+    }
+
     /// Sets the focal length, which other views have determined better: the logarithm of its factor, and its deviation.
     pub fn set_focal(&mut self, kind: DepthKind, focal: f64, deviation: f64) {
         self.unknowns.focal = focal;

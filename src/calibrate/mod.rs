@@ -96,10 +96,11 @@ fn calibrated(
     is_metric: bool,
 ) -> Result<Calibrated> {
     let camera = view.camera(&calibration);
+    let uncertainty = estimate.map(Estimate::uncertainty).unwrap_or_default();
     Ok(Calibrated {
         depth: view.depth(&calibration)?,
         camera,
-        calibration: DepthCalibration::new(view.kind, calibration, camera, estimate, is_metric),
+        calibration: DepthCalibration::new(view.kind, calibration, camera, uncertainty, is_metric),
     })
 }
 

@@ -8,9 +8,9 @@ use core::cell::Cell;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec3, Vec3};
+use nalgebra::Vector3;
 
 use super::searchable;
-use super::symmetry::SymmetryAxis;
 use crate::error::Result;
 use crate::geometry::angle::sin_cos;
 use crate::geometry::mesh::Mesh;
@@ -44,6 +44,15 @@ const LIKELY: usize = 3;
 const IRREGULAR: [f64; 6] = [0.37, 0.07, 0.13, 0.19, 0.29, 0.43];
 /// Orders of finite symmetries. Prisms with more sides are round within the tolerance.
 const FOLDS: [u32; 4] = [6, 5, 4, 3];
+
+/// An axis of symmetry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SymmetryAxis {
+    /// Direction in the mesh frame, of any length above 0.
+    pub axis: Vector3<f64>,
+    /// Order of the rotational symmetry; `None` for a surface of revolution.
+    pub fold: Option<u32>,
+}
 
 /// The axes whose rotations are symmetries of a mesh, the one of the highest order first. The others are perpendicular to
 /// it, so that together they generate a group: that of a pyramid, a prism, a cube, a body of revolution or a sphere.
@@ -84,7 +93,7 @@ pub fn symmetry_axes(mesh: &Mesh) -> Result<Vec<SymmetryAxis>> {
 }
 
 fn declared(axis: DVec3, fold: Option<u32>) -> SymmetryAxis {
-    SymmetryAxis { axis: nalgebra::Vector3::new(axis.x, axis.y, axis.z), fold }
+    SymmetryAxis { axis: Vector3::new(axis.x, axis.y, axis.z), fold }
 }
 
 /// Directions across an axis, over half a turn.

@@ -2,6 +2,7 @@
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
+pub use super::mesh_symmetry::SymmetryAxis;
 use super::mesh_symmetry::symmetry_axes;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::angle::sin_cos;
@@ -25,15 +26,6 @@ pub enum Symmetry {
     Declared(Vec<SymmetryAxis>),
     /// What [`symmetry_axes`] finds on the surface.
     Auto,
-}
-
-/// An axis of symmetry.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SymmetryAxis {
-    /// Direction in the mesh frame, of any length above 0.
-    pub axis: Vector3<f64>,
-    /// Order of the rotational symmetry; `None` for a surface of revolution.
-    pub fold: Option<u32>,
 }
 
 impl Symmetry {

@@ -3,8 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::placement::Body;
-use super::plane::Plane;
-use super::support::SupportChoice;
+use super::plane::{Plane, SupportChoice};
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::order::median;
 use crate::geometry::pinhole::Pinhole;

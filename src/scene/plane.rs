@@ -14,6 +14,18 @@ pub struct Plane {
     pub d: f64,
 }
 
+/// What is known of the support.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum SupportChoice {
+    /// It is found in the depth map.
+    #[default]
+    Auto,
+    /// The plane.
+    Plane(Plane),
+    /// There is none.
+    None,
+}
+
 impl Plane {
     /// The plane with the camera on its positive side; `None` if the normal has no direction.
     pub fn new(normal: DVec3, d: f64) -> Option<Self> {

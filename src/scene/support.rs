@@ -8,21 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::layers::extremes_along;
 use super::local::{View, bend, level_below, touch_m};
 use super::placement::{Body, Placement};
-use super::plane::Plane;
+use super::plane::{Plane, SupportChoice};
 use super::planes::{FoundPlane, find_planes};
 use crate::geometry::angle::sin_cos;
-
-/// What is known of the support.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum SupportChoice {
-    /// It is found in the depth map.
-    #[default]
-    Auto,
-    /// The plane.
-    Plane(Plane),
-    /// There is none.
-    None,
-}
 
 /// The plane that the objects stand on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

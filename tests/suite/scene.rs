@@ -1,7 +1,8 @@
 //! Scenes: boxes on a floor, on one another and in the air.
 
 use sim3align::scene::contact::Contact;
-use sim3align::scene::support::{RestsOn, SupportChoice};
+use sim3align::scene::plane::SupportChoice;
+use sim3align::scene::support::RestsOn;
 use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene};
 
 use crate::prelude::*;

@@ -16,7 +16,7 @@ use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::pose_error::pose_errors;
 use sim3align::pauses::{Pauses, finished};
 use sim3align::report::{AnyAlignment, Sim3};
-use sim3align::scene::support::SupportChoice;
+use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
 use sim3align::track::options::TrackOptions;
 use sim3align::track::tracker::Tracker;

@@ -26,8 +26,8 @@ use sim3align::scene::local::View;
 use sim3align::scene::placement::Placement;
 use sim3align::scene::plan::{Plan, missing};
 use sim3align::scene::plane::Plane;
+use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::planes::union_of;
-use sim3align::scene::support::SupportChoice;
 use sim3align::scene::task::{helper, place};
 
 use crate::helper::JointHelper;

@@ -1,5 +1,6 @@
 /** Flags of the table of commands, and the inputs and outputs that they name. */
-import { resolve } from "node:path";
+import { existsSync } from "node:fs";
+import { dirname, resolve, sep } from "node:path";
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
 import type { CameraInput, Preset } from "../index.js";
@@ -177,12 +178,15 @@ export function checkFlags(
   const owners = new Map<string, string>();
   for (const { flag, path } of inputs.filter((file) => !file.isFolder && !file.isReplaceable && file.path !== "-"))
     owners.set(place(path), flag);
+  const folders = outputs.filter(({ isFolder }) => isFolder).map(({ path }) => `${resolve(path)}${sep}`);
+  // A folder of this run may be made in the folder of a file.
+  const isMade = (folder: string) => folders.some((made) => made.startsWith(`${resolve(folder)}${sep}`));
   for (const { flag, path, isFolder } of outputs) {
     if (isFolder) continue;
     const other = owners.get(place(path));
     if (other !== undefined) throw new UsageError(`${other} and ${flag} name the same file: ${path}.`);
     owners.set(place(path), flag);
-    checkWritable(flag, path);
+    if (existsSync(dirname(path)) || !isMade(dirname(path))) checkWritable(flag, path);
   }
 }
 

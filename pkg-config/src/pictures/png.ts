@@ -44,18 +44,31 @@ function chunk(type: string, content: Uint8Array): Uint8Array {
   return Buffer.concat([length, typed, check]);
 }
 
-/** The rows, each after its filter: layers, which are mostly empty, as they are; photos as differences from the row above. */
+/** The rows, each after its filter: layers, which are mostly empty, as they are; photos as differences (Paeth). */
 function filtered(data: Uint8Array, channels: number, width: number, height: number): Uint8Array {
   const stride = channels * width;
-  const filter = channels === 4 ? 0 : 2;
+  const filter = channels === 4 ? 0 : 4;
   const rows = new Uint8Array(height * (1 + stride));
   for (let v = 0; v < height; v++) {
-    const [from, to] = [v * stride, v * (1 + stride)];
+    const to = v * (1 + stride);
     rows[to] = filter;
+    const from = v * stride;
+    if (filter === 0) {
+      rows.set(data.subarray(from, from + stride), to + 1);
+      continue;
+    }
     for (let x = 0; x < stride; x++) {
-      const above = filter === 0 || v === 0 ? 0 : (data[from + x - stride] as number);
-      rows[to + 1 + x] = (data[from + x] as number) - above;
+      const left = x < channels ? 0 : (data[from + x - channels] as number);
+      const above = v === 0 ? 0 : (data[from + x - stride] as number);
+      const corner = v === 0 || x < channels ? 0 : (data[from + x - stride - channels] as number);
+      rows[to + 1 + x] = (data[from + x] as number) - predicted(left, above, corner);
     }
   }
   return rows;
+}
+
+/** Paeth's predictor: the neighbour that is nearest to left + above − corner. */
+function predicted(left: number, above: number, corner: number): number {
+  const [a, b, c] = [Math.abs(above - corner), Math.abs(left - corner), Math.abs(left + above - 2 * corner)];
+  return a <= b && a <= c ? left : b <= c ? above : corner;
 }
