@@ -39,7 +39,7 @@ export const caseFolders = (folders) => foldersOf(folders, isCase);
  */
 export async function readTypedCase(folder) {
   const [{ readCaseFolder }, { resolveInput }, { fileReaders }] = await Promise.all(
-    ["case-folder.js", "input/resolve.js", "file-readers.js"].map(compiledModule),
+    ["case-folder.js", "input/resolve.js", "modules/readers.js"].map(compiledModule),
   );
   const { name, input, truth } = await readCaseFolder(folder);
   const { core } = await resolveInput(input, fileReaders);
@@ -80,9 +80,8 @@ export async function freshCore() {
  * @returns {Promise<WebAssembly.Memory>}
  */
 export async function freshMemory(name) {
-  const files = [name === "core" ? "core.js" : `${name}-module.js`, `wasm/${name}.js`];
-  const [loader, glue] = await Promise.all(files.map(compiledModule));
-  await loader[`${name}Module`].load();
+  const [{ wasmModules }, glue] = await Promise.all(["modules/modules.js", `wasm/${name}.js`].map(compiledModule));
+  await wasmModules[name].load();
   glue.__wbg_reset_state();
   return (await glue.default()).memory;
 }

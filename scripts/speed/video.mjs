@@ -12,7 +12,7 @@ import { bumpyRing, compiledModule, createAligner, pictureOf } from "./inputs.mj
  */
 async function readVideo(folder) {
   const [{ frameNames, meshIn, readFrame, readMeshFile }, { resolveFrame }, { fileReaders }] = await Promise.all(
-    ["case-folder.js", "input/frames.js", "file-readers.js"].map(compiledModule),
+    ["case-folder.js", "input/resolve.js", "modules/readers.js"].map(compiledModule),
   );
   const frames = [];
   for (const name of await frameNames(folder)) {
