@@ -10,7 +10,7 @@ use crate::geometry::rotations::exp;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::precise::scoring::appearance::{Appearance, PhotoCells};
 use crate::precise::scoring::conditioning::Conditioning;
-use crate::precise::scoring::score::{NOISE, Score};
+use crate::precise::scoring::score::NOISE;
 use crate::precise::search::ranking::Found;
 use crate::precise::search::recipe::{COARSE, COLORED, FINE};
 use crate::precise::verdict::choice::{Choice, Look, best_roll};
@@ -85,13 +85,9 @@ impl Photos<'_> {
             chosen.pose = pose;
         }
         let first = self.views.parts.first()?;
-        let seen = |ranked: &Ranked| {
-            let score = Score { total: ranked.score.total, ..Score::default() };
-            Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
-        };
-        let end = seen(&chosen)?;
+        let end = first.found(&chosen)?;
         let is_other = is_changed || rolled.is_some();
-        let pose_of = |k: usize| seen(&compared.get(k)?.ranked);
+        let pose_of = |k: usize| first.found(&compared.get(k)?.ranked);
         let judgment = Judgment::new(&choice, (end, is_other), pose_of, gain, &first.search.equivalence);
         Some((judgment, is_other.then_some(chosen)))
     }

@@ -136,11 +136,7 @@ fn verdict(
     }
     let color = judged.map(|(judgment, _)| judgment);
     let best = ranked.first().ok_or_else(no_candidate)?;
-    let in_first = |ranked: &Ranked| {
-        let score = Score { total: ranked.score.total, ..Score::default() };
-        Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
-    };
-    let mut found: Vec<Found> = ranked.iter().filter_map(in_first).collect();
+    let mut found: Vec<Found> = ranked.iter().filter_map(|ranked| first.found(ranked)).collect();
     if let Some(first) = found.first_mut() {
         first.score = mean_score(&score, best.score.total);
     }

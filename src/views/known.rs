@@ -5,6 +5,7 @@ use super::joint::{Joint, JointScore, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
+use crate::precise::scoring::score::Score;
 use crate::precise::search::cascade::{Stage, Subject};
 use crate::precise::search::problem::Search;
 use crate::precise::search::ranking::Found;
@@ -47,6 +48,12 @@ pub struct Views<'a> {
 }
 
 impl Part<'_> {
+    /// A pose in this view, with its total score in all of them; `None` if the view does not show it.
+    pub fn found(&self, ranked: &Ranked) -> Option<Found> {
+        let score = Score { total: ranked.score.total, ..Score::default() };
+        Some(Found { pose: self.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
+    }
+
     /// Whether the view, with this score, contradicts the pose.
     pub fn contradicts(&self, score: f32) -> bool {
         let own = self.own.map_or(0.0, |own| self.search.score(&own).total);

@@ -48,8 +48,9 @@ impl<T: DeserializeOwned> RecordFile<T> {
     pub fn open(path: &Path) -> Result<Self> {
         let failed = |error| unwritable(path, error);
         let mut file = OpenOptions::new().write(true).create(true).truncate(false).open(path).map_err(failed)?;
-        let done = Self::records(path)?.into_iter().collect();
-        file.set_len(whole_lines(path)?.len() as u64).map_err(failed)?;
+        let bytes = whole_lines(path)?;
+        let done = Self::parsed(path, &bytes)?.into_iter().collect();
+        file.set_len(bytes.len() as u64).map_err(failed)?;
         file.seek(SeekFrom::End(0)).map_err(failed)?;
         Ok(Self { file: Mutex::new(file), path: path.to_owned(), done })
     }
@@ -60,7 +61,10 @@ impl<T: DeserializeOwned> RecordFile<T> {
     /// [`ErrorCode::InvalidArgument`] where the file can't be read; [`ErrorCode::CorruptFile`] for a whole line that is
     /// no record.
     pub fn records(path: &Path) -> Result<Vec<(RecordKey, T)>> {
-        let bytes = whole_lines(path)?;
+        Self::parsed(path, &whole_lines(path)?)
+    }
+
+    fn parsed(path: &Path, bytes: &[u8]) -> Result<Vec<(RecordKey, T)>> {
         let record = |(i, line)| {
             let read = serde_json::from_slice(line).map(|Line { key, record }| (key, record));
             read.map_err(|_| corrupt(path, format!("another line after {i} records"), "one record a line"))

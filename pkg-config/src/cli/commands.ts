@@ -1,10 +1,10 @@
 /** The table of commands. Parsing, help, and the lists of inputs and outputs of a run follow from it. */
-import { statSync } from "node:fs";
 import { OPTIONS } from "../index.js";
 import { alignJob, paper, precise, shared } from "./align.js";
 import { type Job, runBatch } from "./batch.js";
 import { bopJob, bopOptions, resultsFile } from "./bop.js";
 import { evaluateJob, evaluateOptions } from "./evaluate.js";
+import { isFile } from "./files.js";
 import {
   batchFlags,
   caseFlags,
@@ -171,7 +171,6 @@ export const commands: readonly CommandRow[] = [
  * @throws {@link UsageError}
  */
 export async function runCommand(command: CommandRow, args: readonly string[], flags: Flags): Promise<boolean> {
-  const isFile = (path: string) => statSync(path, { throwIfNoEntry: false })?.isFile() === true;
   const named = args.map((path) => ({ flag: command.argument[0], path, isFolder: !isFile(path) }));
   const inputs = [...named, ...filesOf(command.flags, flags, "reads")];
   const outputs = [...filesOf(command.flags, flags, "writes"), ...(command.writes?.(args, flags) ?? [])];

@@ -8,8 +8,8 @@ import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upr
 import { parseCameraFile } from "../formats/camera-file.js";
 import type { AlignInput, DepthCalibration, SceneInput, SceneResult, Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
+import { resolveView } from "../input/resolve.js";
 import type { MeshArrays, MeshInput } from "../input/types.js";
-import { readView } from "../input/view.js";
 import { fileReaders } from "../modules/readers.js";
 import { fixed } from "../report-page/row.js";
 import type { SceneOnDisk } from "../scene-folder.js";
@@ -30,7 +30,7 @@ export async function correctedInput(
   if (calibration === undefined) return input;
   const { image, mask, mesh, resizeMask } = input;
   // The photo is not needed to read the depth.
-  const { core: view } = await readView({ ...input, image: undefined }, fileReaders);
+  const { core: view } = await resolveView({ ...input, image: undefined }, fileReaders);
   const depthMap = { data: view.depth as Float32Array, width: Number(view.width), height: Number(view.height) };
   const depth = correctDepth(depthMap, calibration);
   return { depth, camera: calibration.camera, mask, mesh, image, resizeMask };

@@ -48,6 +48,9 @@ export function bytesOf(path: string, position: number, length: number): Buffer 
   }
 }
 
+/** Whether a path is an ordinary file. */
+export const isFile = (path: string) => statSync(path, { throwIfNoEntry: false })?.isFile() === true;
+
 /** Whether a path is, or will be, an ordinary file; not stdout ("-"), a pipe or a device. */
 export const isOrdinary = (path: string) =>
   path !== "-" && statSync(path, { throwIfNoEntry: false })?.isFile() !== false;
@@ -76,7 +79,7 @@ export function checkWritable(flag: string, path: string): void {
  */
 export function makeFolder(flag: string, path: string): void {
   try {
-    if (statSync(path, { throwIfNoEntry: false })?.isFile()) throw new Error("it is a file");
+    if (isFile(path)) throw new Error("it is a file");
     mkdirSync(path, { recursive: true });
   } catch (error) {
     throw new UsageError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);

@@ -6,7 +6,7 @@ import { text } from "node:stream/consumers";
 import { globSync, isDynamicPattern } from "tinyglobby";
 import { caseFiles } from "../case-files.js";
 import { viewNames } from "../scene/sam3d-files.js";
-import { namesIn, UsageError } from "./files.js";
+import { isFile, namesIn, UsageError } from "./files.js";
 import { absolutePath, type CaseKey } from "./record.js";
 
 /** A kind of folders. */
@@ -61,7 +61,6 @@ export async function foldersToDo(
     ...(list === undefined ? [] : await listed(kind, list)),
   ];
   if (paths.length === 0) throw new UsageError(`Pass at least one ${kind.noun} folder.`);
-  const isFile = (path: string) => statSync(path, { throwIfNoEntry: false })?.isFile() === true;
   const files = paths.filter(isFile);
   const folders = unique(paths.filter((path) => !isFile(path)));
   if (folders.length === 0) throw new UsageError(`No ${kind.noun} folder among ${paths.join(", ")}.`);
