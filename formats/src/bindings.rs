@@ -1,7 +1,7 @@
 //! What the modules of file readers share: JavaScript's bytes, options, images and errors.
 
-use glam::Vec3;
-use js_sys::{Array, ArrayBuffer, Float32Array, Object, Reflect, Uint8Array, Uint32Array};
+use glam::{DVec3, Vec3};
+use js_sys::{Array, ArrayBuffer, Float32Array, Function, Object, Reflect, Uint8Array, Uint32Array};
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
@@ -12,15 +12,21 @@ use crate::guard::{MAX_BUFFER_BYTES, too_large};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::Image;
+use sim3align_geometry::surface_colors::Rgb;
 
 /// A plain object with these properties.
 pub fn object(properties: &[(&str, JsValue)]) -> JsValue {
-    let object = Object::new();
+    let object = Object::new().into();
     for (name, value) in properties {
-        // A fresh object is extensible: setting a property on it can't fail.
-        let _ = Reflect::set(&object, &(*name).into(), value);
+        set(&object, name, value.clone());
     }
-    object.into()
+    object
+}
+
+/// Sets a property of an object of [`object`].
+pub fn set(object: &JsValue, name: &str, value: JsValue) {
+    // A fresh object is extensible: setting a property on it can't fail.
+    let _ = Reflect::set(object, &name.into(), &value);
 }
 
 /// `{ data, width, height }`.
@@ -57,6 +63,14 @@ pub fn to_bytes(argument: &str, value: &JsValue) -> Result<Vec<u8>> {
 /// A string.
 pub fn string(argument: &str, value: &JsValue) -> Result<String> {
     value.as_string().ok_or_else(|| invalid(argument, value, "a string", "Pass a string, or leave it out."))
+}
+
+/// The image that a decoder in JavaScript makes of a file.
+pub fn decoded_image(decode: &Function, bytes: &[u8]) -> Option<Image<Rgb>> {
+    let decoded = decode.call1(&JsValue::UNDEFINED, &Uint8Array::from(bytes)).ok()?;
+    let side = |name: &str| Reflect::get(&decoded, &name.into()).ok()?.as_f64().map(|side| side as usize);
+    let data = to_bytes("", &Reflect::get(&decoded, &"data".into()).ok()?).ok()?;
+    Image::new("mesh", side("width")?, side("height")?, data.as_chunks().0.to_vec()).ok()
 }
 
 /// An options object whose names have been checked.
@@ -132,14 +146,18 @@ pub fn depth_image(depth: &DepthImage) -> JsValue {
     object(&properties)
 }
 
-/// `{ positions, indices, samples, warnings }`.
-pub fn mesh_arrays(ColoredMesh { mesh, colors, problem }: &ColoredMesh) -> JsValue {
+/// `{ positions, indices, origin?, samples?, warnings }`.
+pub fn mesh_arrays(ColoredMesh { mesh, colors, origin, problem }: &ColoredMesh) -> JsValue {
     let warnings = problem.iter().map(|problem| JsValue::from(without_colors(problem)));
     let mut properties = vec![
         ("positions", flat(mesh.positions()).into()),
         ("indices", Uint32Array::from(mesh.triangles().as_flattened()).into()),
         ("warnings", warnings.collect::<Array>().into()),
     ];
+    if *origin != DVec3::ZERO {
+        let numbers: Array = origin.to_array().into_iter().map(JsValue::from).collect();
+        properties.push(("origin", numbers.into()));
+    }
     if let Some(colors) = colors {
         let samples = colors.samples();
         properties.push((

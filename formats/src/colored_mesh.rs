@@ -1,5 +1,6 @@
 //! The content of a mesh file: a mesh and its colours.
 
+use glam::DVec3;
 use sim3align_geometry::error::Error;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::surface_colors::SurfaceColors;
@@ -11,6 +12,8 @@ pub struct ColoredMesh {
     pub mesh: Mesh,
     /// The colours of its surface; `None` if the file has none, or none that can be read.
     pub colors: Option<SurfaceColors>,
+    /// What was subtracted from the coordinates of the file, whose 32-bit values would be too coarse; otherwise zero.
+    pub origin: DVec3,
     /// Why the colours can't be read; the mesh can be used without them.
     pub problem: Option<Error>,
 }
@@ -18,7 +21,7 @@ pub struct ColoredMesh {
 impl From<Mesh> for ColoredMesh {
     /// The mesh without colours.
     fn from(mesh: Mesh) -> Self {
-        Self { mesh, colors: None, problem: None }
+        Self { mesh, colors: None, origin: DVec3::ZERO, problem: None }
     }
 }
 

@@ -79,16 +79,20 @@ fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
     let stored = Stored { width: info.width, height: info.height, bits, is_integer: true };
     let article = if bits == 8 { "an" } else { "a" };
     stored.check_bits(kind, || format!("{article} {bits}-bit PNG"))?;
-    if !info.is_grey {
+    let pixels = info.decode("depth", bytes)?;
+    let channels = pixels.channels.max(1);
+    let colours = if pixels.has_alpha() { channels - 1 } else { channels };
+    // Some programs repeat the depth in three channels.
+    let is_grey = |pixel: &[u16]| pixel.iter().take(colours).all(|sample| Some(sample) == pixel.first());
+    if info.first_palette_colour.is_some() || !pixels.samples.chunks_exact(channels).all(is_grey) {
         return Err(unsupported(
             "depth",
-            format!("{article} {bits}-bit PNG with colour or alpha"),
-            "one grey channel",
+            format!("{article} {bits}-bit PNG with colours"),
+            "one grey channel, or three equal ones",
             "Pass the raw depth map, not a rendering of it.",
         ));
     }
-    let pixels = info.decode("depth", bytes)?;
-    let samples = pixels.samples.chunks_exact(pixels.channels.max(1));
+    let samples = pixels.samples.chunks_exact(channels);
     stored.read(options, kind, samples.map(|pixel| pixel.first().map_or(0.0, |&z| f64::from(z))))
 }
 

@@ -22,6 +22,9 @@ const DEPTH_NAMES: [&str; 2] = ["z", "depth"];
 /// Names of the only channel of an image, as OpenCV (`Y`) and Blender (`V`) write it; `R` where one of three was kept.
 const SINGLE_NAMES: [&str; 3] = ["y", "v", "r"];
 
+/// Names of the channels of a colour image.
+const COLOUR_NAMES: [&str; 3] = ["r", "g", "b"];
+
 /// Blender writes 1e10 where a ray hits nothing.
 const NOTHING: f64 = 9.9e9;
 
@@ -33,25 +36,32 @@ const MAX_BLOCK_BYTES: usize = 1 << 26;
 
 pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     let reader = Reader::read_from_buffered(io::Cursor::new(bytes), false).map_err(|error| broken(&error))?;
-    let (layer, channel) = find(reader.headers())?;
+    let (layer, channels) = find(reader.headers())?;
     let Some(header) = reader.headers().get(layer) else { return Err(no_depth(reader.headers())) };
     let picture = Picture::of(header)?;
-    let Some(description) = header.channels.list.get(channel) else { return Err(no_depth(reader.headers())) };
+    let of_layer = |&channel: &usize| header.channels.list.get(channel);
+    let Some(description) = channels.first().and_then(of_layer) else { return Err(no_depth(reader.headers())) };
     let sample = description.sample_type;
-    if description.sampling != Vec2(1, 1) {
+    if channels.iter().filter_map(of_layer).any(|other| other.sampling != Vec2(1, 1) || other.sample_type != sample) {
         return Err(unsupported("depth", "an EXR with a subsampled channel", "one value per pixel", "Save it again."));
     }
     // The library's decoder of B44 overflows on damaged files. It is lossy, so that nobody keeps depth in it.
-    if matches!(header.compression, Compression::B44 | Compression::B44A) {
-        let remedy = "Save it again, with ZIP compression.";
-        return Err(unsupported("depth", "an EXR with B44 compression", "lossless compression", remedy));
+    let lossy = match header.compression {
+        Compression::B44 | Compression::B44A => Some("B44"),
+        Compression::DWAA(_) => Some("DWAA"),
+        Compression::DWAB(_) => Some("DWAB"),
+        _ => None,
+    };
+    if let Some(name) = lossy {
+        let remedy = "Save it with ZIP compression.";
+        return Err(unsupported("depth", format!("an EXR with {name} compression"), "lossless compression", remedy));
     }
     // In the order of the file: the library panics at offsets beyond 32 bits in the table of a damaged one.
     let chunks = reader.all_chunks(false).map_err(|error| broken(&error))?;
     let meta = chunks.meta_data().clone();
     let Some(list) = meta.headers.get(layer).map(|header| &header.channels) else { return Err(no_depth(&[])) };
     // Allocated when the first block has been read, and NaN where there is none.
-    let mut values = Vec::new();
+    let mut images = vec![Vec::new(); channels.len()];
     for chunk in chunks {
         let chunk = chunk.map_err(|error| broken(&error))?;
         if chunk.layer_index != layer {
@@ -61,10 +71,17 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
         if block.index.level != Vec2(0, 0) {
             continue;
         }
-        values.resize(picture.width * picture.height, f32::NAN);
-        for line in block.lines(list).filter(|line| line.location.channel == channel) {
-            picture.write(&line, sample, &mut values).map_err(|error| broken(&error))?;
+        for (&channel, values) in channels.iter().zip(&mut images) {
+            values.resize(picture.width * picture.height, f32::NAN);
+            for line in block.lines(list).filter(|line| line.location.channel == channel) {
+                picture.write(&line, sample, values).map_err(|error| broken(&error))?;
+            }
         }
+    }
+    let mut values = images.pop().unwrap_or_default();
+    let is_equal = |image: &Vec<f32>| image.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits());
+    if !images.iter().all(is_equal) {
+        return Err(no_depth(&meta.headers));
     }
     values.resize(picture.width * picture.height, f32::NAN);
     let bits = if sample == SampleType::F16 { 16 } else { 32 };
@@ -144,22 +161,28 @@ impl Picture {
     }
 }
 
-/// The layer and the channel of depth.
-fn find(headers: &[Header]) -> Result<(usize, usize)> {
-    let channels = || {
-        headers.iter().enumerate().flat_map(|(layer, header)| {
-            let names = header.channels.list.iter().map(|channel| channel.name.to_string().to_ascii_lowercase());
-            names.enumerate().map(move |(channel, name)| (layer, channel, name))
-        })
+/// The layer and the channel of depth; three channels of colour may hold it, too, if they are equal.
+fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
+    let names_of = |header: &Header| -> Vec<String> {
+        let last = |name: String| name.rsplit('.').next().unwrap_or_default().to_owned();
+        header.channels.list.iter().map(|channel| last(channel.name.to_string().to_ascii_lowercase())).collect()
     };
-    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
-    let named = channels().find(|(_, _, name)| DEPTH_NAMES.contains(&last(name).as_str()));
-    let mut all = channels();
-    let single = match (all.next(), all.next()) {
-        (Some(only), None) => Some(only).filter(|(_, _, name)| SINGLE_NAMES.contains(&last(name).as_str())),
-        _ => None,
+    let layers: Vec<Vec<String>> = headers.iter().map(names_of).collect();
+    let places = |wanted: &[&str]| -> Vec<(usize, usize)> {
+        let channels = |(layer, names): (usize, &Vec<String>)| -> Vec<(usize, usize)> {
+            let is_wanted = |(_, name): &(usize, &String)| wanted.contains(&name.as_str());
+            names.iter().enumerate().filter(is_wanted).map(|(channel, _)| (layer, channel)).collect()
+        };
+        layers.iter().enumerate().flat_map(channels).collect()
     };
-    named.or(single).map(|(layer, channel, _)| (layer, channel)).ok_or_else(|| no_depth(headers))
+    if let Some(&(layer, channel)) = places(&DEPTH_NAMES).first() {
+        return Ok((layer, vec![channel]));
+    }
+    match (layers.as_slice(), places(&SINGLE_NAMES).as_slice(), places(&COLOUR_NAMES).as_slice()) {
+        ([only], &[(layer, channel)], _) if only.len() == 1 => Ok((layer, vec![channel])),
+        ([only], _, &[(layer, a), (_, b), (_, c)]) if only.len() <= 4 => Ok((layer, vec![a, b, c])),
+        _ => Err(no_depth(headers)),
+    }
 }
 
 fn no_depth(headers: &[Header]) -> Error {
@@ -168,18 +191,18 @@ fn no_depth(headers: &[Header]) -> Error {
     unsupported(
         "depth",
         format!("an EXR with the channels {}", names.join(", ")),
-        "a channel Z or depth, or Y, V or R alone",
+        "a channel Z or depth, Y, V or R alone, or three equal channels R, G and B",
         "Save the depth alone: the EXR of a point map or of normals has three channels.",
     )
 }
 
 fn broken(error: &exr::error::Error) -> Error {
     match error {
-        exr::error::Error::NotSupported(feature) => unsupported(
+        exr::error::Error::NotSupported(_) => unsupported(
             "depth",
-            format!("an EXR with {feature}"),
-            "flat images, not deep ones",
-            "Save it again, with ZIP compression.",
+            "an EXR with deep pixels or of a newer version",
+            "flat images",
+            "Save it again as a flat image, with ZIP compression.",
         ),
         error => corrupt("depth", format!("an EXR that can't be decoded: {error}"), "an OpenEXR image"),
     }

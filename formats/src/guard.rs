@@ -22,7 +22,7 @@ pub(crate) fn corrupt(argument: &str, found: impl Into<Text>, expected: impl Int
         argument.to_owned(),
         found,
         expected,
-        "The file may be truncated: download or export it again.",
+        "The file is damaged or incomplete: download or export it again.",
     )
 }
 

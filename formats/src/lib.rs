@@ -39,3 +39,4 @@ mod stl;
 pub mod text;
 mod texture;
 mod tiff;
+pub mod webp;

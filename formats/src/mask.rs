@@ -1,40 +1,60 @@
 //! Mask files.
 
-use crate::guard::{beginning, unsupported};
-use crate::npy::{self, NpyImage};
+use crate::guard::{MAX_PIXELS, beginning, unsupported};
+use crate::jpeg;
+use crate::npy::{self, Kind, NpyImage};
 use crate::png::{self, PngInfo};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{Image, Mask};
+use sim3align_geometry::number::number;
 
-/// Reads a mask; pixels of the object become 1, the others 0:
+/// A mask from a file.
+#[derive(Debug, Clone)]
+pub struct MaskImage {
+    /// 1 for the pixels of the object, 0 for the others.
+    pub object: Mask,
+    /// Which values of the file are the object, for people: `values of 127.5 or more, of 0 to 255`.
+    pub reading: String,
+}
+
+/// Reads a mask:
 ///
-/// - PNG of any bit depth. If the alpha channel varies, the object has alpha above 0 (a cut-out). Otherwise, the
-///   object has any colour channel above 0; in a palette image, a colour other than that of index 0.
-/// - `.npy` array (H×W, H×W×1, 1×H×W) of booleans or numbers: values other than 0 and NaN are the object.
+/// - PNG of any bit depth, or JPEG. A pixel's value is its alpha, if alpha varies (a cut-out); otherwise its largest
+///   channel; in a palette image, the largest difference to the colour of index 0.
+/// - `.npy` array (H×W, H×W×1, 1×H×W) of booleans or numbers. NaN is not the object.
+///
+/// The object is at the only value other than 0, if there is one. A mask with soft edges has its outline at half of the range:
+/// the object has half of the largest value or more, and probabilities (floats from 0 to 1) of 0.5 or more. In a map of labels,
+/// where values lie in flat regions, all of them above 0 are the object. With values below 0, which are logits, too.
 ///
 /// # Errors
 /// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat),
 /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
 /// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
 /// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
-pub fn read_mask(bytes: &[u8]) -> Result<Mask> {
+pub fn read_mask(bytes: &[u8]) -> Result<MaskImage> {
     if bytes.starts_with(png::MAGIC) {
         return read_png(bytes);
     }
+    if bytes.starts_with(jpeg::MAGIC) {
+        let (image, _) = jpeg::read("mask", bytes, MAX_PIXELS)?;
+        let levels = || image.data().iter().map(|rgb| rgb.iter().copied().max().map_or(0.0, f64::from));
+        return outlined(image.width(), image.height(), false, &levels);
+    }
     if bytes.starts_with(npy::MAGIC) {
         let array = NpyImage::read("mask", bytes)?;
-        let object = array.values().map(|value| u8::from(value != 0.0 && !value.is_nan())).collect();
-        return Image::new("mask", array.width, array.height, object);
+        let is_float = array.header().kind == Kind::Float;
+        return outlined(array.width, array.height, is_float, &|| array.values());
     }
     Err(unsupported(
         "mask",
         beginning(bytes),
-        "a PNG, a .npy array or COCO RLE in JSON",
-        "Save the mask as PNG: lossy formats blur its edge.",
+        "a PNG, a JPEG, a .npy array or COCO RLE in JSON",
+        "Save the mask as PNG.",
     ))
 }
 
-fn read_png(bytes: &[u8]) -> Result<Mask> {
+fn read_png(bytes: &[u8]) -> Result<MaskImage> {
     let info = PngInfo::read("mask", bytes)?;
     let pixels = info.decode("mask", bytes)?;
     let channels = pixels.channels.max(1);
@@ -43,12 +63,59 @@ fn read_png(bytes: &[u8]) -> Result<Mask> {
     let first_alpha = pixels.samples.get(..channels).map(alpha);
     let is_cut_out = pixels.has_alpha() && pixels.samples.chunks_exact(channels).any(|p| Some(alpha(p)) != first_alpha);
     let background = info.first_palette_colour.unwrap_or_default().map(u16::from);
-    let is_object = |pixel: &[u16]| {
+    let level = |pixel: &[u16]| {
         if is_cut_out {
-            return alpha(pixel) > 0;
+            return alpha(pixel);
         }
-        pixel.iter().take(colours).zip(background).any(|(&sample, background)| sample != background)
+        let differences = pixel.iter().take(colours).zip(background).map(|(sample, zero)| sample.abs_diff(zero));
+        differences.max().unwrap_or_default()
     };
-    let object = pixels.samples.chunks_exact(channels).map(|pixel| u8::from(is_object(pixel))).collect();
-    Image::new("mask", info.width, info.height, object)
+    let levels = || pixels.samples.chunks_exact(channels).map(|pixel| f64::from(level(pixel)));
+    outlined(info.width, info.height, false, &levels)
+}
+
+/// The mask of these values, row-major.
+fn outlined<I: Iterator<Item = f64>>(
+    width: usize,
+    height: usize,
+    is_float: bool,
+    values: &dyn Fn() -> I,
+) -> Result<MaskImage> {
+    let mut others = values().filter(|&value| value != 0.0 && !value.is_nan());
+    let first = others.next().unwrap_or(1.0);
+    let (mut low, mut high, mut is_binary) = (first.min(0.0), first.max(0.0), true);
+    for value in others {
+        (low, high, is_binary) = (low.min(value), high.max(value), is_binary && value == first);
+    }
+    let half = if is_float && high <= 1.0 { 0.5 } else { 0.5 * high };
+    let of_range = || format!("of {} to {}", number(low), number(high));
+    let (lowest, reading) = if is_binary {
+        (first, format!("values of {}", number(first)))
+    } else if low < 0.0 {
+        (f64::MIN_POSITIVE, format!("values above 0, {}: logits", of_range()))
+    } else if has_labels(width, high, values()) {
+        (f64::MIN_POSITIVE, format!("values above 0, {}: labels", of_range()))
+    } else {
+        (half, format!("values of {} or more, {}", number(half), of_range()))
+    };
+    let object = values().map(|value| u8::from(if is_binary { value == lowest } else { value >= lowest })).collect();
+    Ok(MaskImage { object: Image::new("mask", width, height, object)?, reading })
+}
+
+/// Whether the values between 0 and the largest are those of labels: most of them equal their neighbours above and to the
+/// left, which values of a soft edge or of a network's output hardly do.
+fn has_labels(width: usize, high: f64, values: impl Iterator<Item = f64>) -> bool {
+    let is_between = |value: f64| value >= 0.05 * high && value <= 0.95 * high;
+    let mut above = vec![f64::NAN; width];
+    let (mut left, mut between, mut flat) = (f64::NAN, 0_usize, 0_usize);
+    for (column, value) in (0..width).cycle().zip(values) {
+        let Some(upper) = above.get_mut(column) else { break };
+        if is_between(value) {
+            between += 1;
+            flat += usize::from(column > 0 && value == left && value == *upper);
+        }
+        *upper = value;
+        left = value;
+    }
+    2 * flat > between
 }

@@ -2,7 +2,7 @@
 
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{beginning, unsupported};
-use crate::resources::{ExternalResources, Resources};
+use crate::resources::{ExternalResources, ImageDecoder, Resources};
 use crate::{gltf, obj, ply, stl, text};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
@@ -70,6 +70,8 @@ pub struct MeshReadOptions<'a> {
     pub format: Option<MeshFormat>,
     /// The external files, by URI or name as written in the mesh file; see [`external_resources`].
     pub resources: Option<Resources<'a>>,
+    /// Decodes textures that are neither PNG nor JPEG.
+    pub images: Option<ImageDecoder<'a>>,
 }
 
 /// The distinct files that a mesh file refers to. Of an `.obj`, these are its libraries; given the content of a library,
@@ -90,7 +92,7 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
 }
 
 /// Reads the shape of a mesh: all parts merged, node transforms applied, in the unit and axes of the file. Unused
-/// vertices are removed; normals, colours and textures are not read.
+/// vertices are removed; normals, colours and textures are not read. Skins and instances of glTF are applied.
 ///
 /// # Errors
 /// [`ErrorCode::UnsupportedFormat`], [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`],
@@ -113,10 +115,10 @@ pub fn read_colored_mesh(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<
 
 fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result<ColoredMesh> {
     match options.format.or_else(|| MeshFormat::sniff(bytes)) {
-        Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options.resources, content),
-        Some(MeshFormat::Obj) => obj::read_obj(bytes, options.resources, content),
+        Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options, content),
+        Some(MeshFormat::Obj) => obj::read_obj(bytes, options, content),
         Some(MeshFormat::Ply) => ply::read_ply(bytes, content),
-        Some(MeshFormat::Stl) => stl::read_stl(bytes).map(ColoredMesh::from),
+        Some(MeshFormat::Stl) => stl::read_stl(bytes),
         None => Err(unsupported(
             "mesh",
             beginning(bytes),

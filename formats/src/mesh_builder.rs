@@ -1,6 +1,6 @@
 //! Builds a mesh within the size limits.
 
-use glam::{DMat4, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 
 use crate::color::WHITE;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, too_large};
@@ -9,10 +9,14 @@ use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::{Mesh, UsedVertices};
 use sim3align_geometry::surface_colors::Rgb;
 
-/// Collects the vertices and triangles of a file.
+/// Distance of a mesh from zero, in its diagonals, from which 32 bits would round its vertices by more than 6e-5 diagonals.
+const FAR: f64 = 1000.0;
+
+/// Collects the vertices and triangles of a file. Coordinates are in 64 bits until all are known: those of maps are far from
+/// zero.
 #[derive(Debug, Default)]
 pub(crate) struct MeshBuilder {
-    positions: Vec<Vec3>,
+    positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// Of the vertices and triangles so far, or fewer: the rest has no colour or coordinates of its own.
     paint: Paint,
@@ -21,7 +25,7 @@ pub(crate) struct MeshBuilder {
 impl MeshBuilder {
     /// A builder with initial vertices.
     pub fn with_positions(positions: Vec<Vec3>) -> Self {
-        Self { positions, ..Self::default() }
+        Self { positions: positions.into_iter().map(Vec3::as_dvec3).collect(), ..Self::default() }
     }
 
     /// Number of vertices.
@@ -35,7 +39,7 @@ impl MeshBuilder {
     }
 
     /// Adds a vertex and returns its index.
-    pub fn push_vertex(&mut self, position: Vec3) -> Result<u32> {
+    pub fn push_vertex(&mut self, position: DVec3) -> Result<u32> {
         let index = self.positions.len();
         if index >= MAX_VERTICES {
             return Err(too_large("mesh", format!("more than {index} vertices"), format!("at most {MAX_VERTICES}")));
@@ -111,10 +115,10 @@ impl MeshBuilder {
     /// Adds a mesh under a transform (f64). If the transform mirrors, the orientation of the triangles is reversed, so
     /// that they still face outward.
     pub fn append(&mut self, part: &PaintedMesh, transform: &DMat4) -> Result<()> {
-        let PaintedMesh { mesh, paint } = part;
+        let PaintedMesh { mesh, paint, origin } = part;
         let offset = self.positions.len() as u32;
         for position in mesh.positions() {
-            self.push_vertex(transform.transform_point3(position.as_dvec3()).as_vec3())?;
+            self.push_vertex(transform.transform_point3(position.as_dvec3() + origin))?;
         }
         let mirrored = transform.determinant() < 0.0;
         if !paint.vertex_colors.is_empty() {
@@ -146,10 +150,23 @@ impl MeshBuilder {
         }
         let used = UsedVertices::of(&triangles, positions.len());
         let Some(used) = used.filter(|used| !triangles.is_empty() && !used.are_all()) else {
-            return Ok(PaintedMesh { mesh: Mesh::new(positions, triangles)?, paint });
+            let (positions, origin) = centred(&positions);
+            return Ok(PaintedMesh { mesh: Mesh::new(positions, triangles)?, paint, origin });
         };
         paint.vertex_colors = used.select(&paint.vertex_colors);
-        let mesh = Mesh::new(used.select(&positions), used.renumbered(&triangles))?;
-        Ok(PaintedMesh { mesh, paint })
+        let (positions, origin) = centred(&used.select(&positions));
+        let mesh = Mesh::new(positions, used.renumbered(&triangles))?;
+        Ok(PaintedMesh { mesh, paint, origin })
     }
+}
+
+/// The positions relative to an origin: the centre of their bounding box if they are far from zero, otherwise zero.
+fn centred(positions: &[DVec3]) -> (Vec<Vec3>, DVec3) {
+    let mut finite = positions.iter().copied().filter(|position| position.is_finite());
+    let first = finite.next().unwrap_or_default();
+    let (low, high) = finite.fold((first, first), |(low, high), position| (low.min(position), high.max(position)));
+    let centre = 0.5 * (low + high);
+    let is_far = centre.length() > FAR * low.distance(high) && low != high;
+    let origin = if is_far { centre } else { DVec3::ZERO };
+    (positions.iter().map(|position| (position - origin).as_vec3()).collect(), origin)
 }

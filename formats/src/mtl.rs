@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 
 use crate::color::linear;
+use crate::mesh::MeshReadOptions;
 use crate::painted_mesh::Material;
-use crate::resources::{Resources, external};
+use crate::resources::external;
 use crate::text::{lines, number, words};
 use crate::texture::{TextureLoader, Wrap};
 use sim3align_geometry::error::Result;
@@ -78,8 +79,8 @@ impl MaterialLibrary {
     }
 
     /// The materials with their textures; those that no part `used` are left at the default.
-    pub fn load(&self, used: &[usize], resources: Option<Resources<'_>>) -> Result<Vec<Material>> {
-        let mut loader = TextureLoader::default();
+    pub fn load(&self, used: &[usize], options: &MeshReadOptions<'_>) -> Result<Vec<Material>> {
+        let mut loader = TextureLoader::new(options.images);
         let mut loaded: Vec<Material> = vec![Material::default(); self.entries.len()];
         for &index in used {
             let (Some(slot), Some(entry)) = (loaded.get_mut(index), self.entries.get(index)) else { continue };
@@ -90,7 +91,7 @@ impl MaterialLibrary {
                 continue;
             };
             // With a texture, Kd is ignored: exporters write 0, 0.8 or 1 there, whatever the texture.
-            slot.texture = Some(loader.load(&map.file, || external(&map.file, resources).map(Cow::Owned))?);
+            slot.texture = Some(loader.load(&map.file, || external(&map.file, options.resources).map(Cow::Owned))?);
             slot.wrap = [if map.is_clamped { Wrap::Clamp } else { Wrap::Repeat }; 2];
         }
         Ok(loaded)

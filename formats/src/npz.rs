@@ -30,7 +30,17 @@ const POINTS: [&str; 5] = ["points", "point_map", "pointmap", "pts3d", "points3d
 /// Names of masks of the pixels that have depth.
 const MASKS: [&str; 3] = ["mask", "valid", "valid_mask"];
 
-const INTRINSICS: [&str; 2] = ["intrinsics", "k"];
+const INTRINSICS: [&str; 9] = [
+    "intrinsics",
+    "intrinsic",
+    "k",
+    "cam_k",
+    "camera_k",
+    "camera_matrix",
+    "intrinsic_matrix",
+    "camera_intrinsics",
+    "intrinsics_matrix",
+];
 const FOCAL_LENGTHS: [&str; 4] = ["focallength_px", "focal_length_px", "f_px", "focal"];
 const FIELDS_OF_VIEW: [[&str; 1]; 2] = [["fov_x"], ["fov_y"]];
 
@@ -208,13 +218,23 @@ impl<'a> Archive<'a> {
     fn camera(&mut self) -> Result<FileCamera> {
         let intrinsics = match self.find(&INTRINSICS) {
             None => None,
-            Some(entry) if entry.header.squeezed(2) == [3, 3] => {
+            // 3 × 3, also as part of a projection of 3 × 4 or 4 × 4.
+            Some(entry) if let &[rows @ 3..=4, columns @ 3..=4] = entry.header.squeezed(2) => {
                 let data = self.read(&entry)?;
                 let mut numbers = [0.0; 9];
-                for (to, from) in numbers.iter_mut().zip(NpyArray::read("depth", &data)?.values([3, 3, 1])) {
+                let values = NpyArray::read("depth", &data)?;
+                let upper_left = values.values([rows, columns, 1]).enumerate().filter(|(i, _)| i % columns < 3);
+                for (to, (_, from)) in numbers.iter_mut().zip(upper_left) {
                     *to = from;
                 }
                 Some(numbers)
+            }
+            // fx, fy, cx, cy.
+            Some(entry) if entry.header.squeezed(1) == [4] => {
+                let data = self.read(&entry)?;
+                let values = NpyArray::read("depth", &data)?;
+                let [fx, fy, cx, cy] = [0, 1, 2, 3].map(|i| values.value(i));
+                Some([fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0])
             }
             Some(entry) => return Err(several(&entry, "intrinsics of one image, 3 × 3")),
         };

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
+use crate::mesh::MeshReadOptions;
 use crate::mesh_builder::MeshBuilder;
 use crate::mtl::MaterialLibrary;
 use crate::resources::{Resources, distinct, external};
@@ -20,7 +21,8 @@ use sim3align_geometry::surface_colors::Rgb;
 /// # Errors
 /// [`ErrorCode::CorruptFile`] with the line number, [`ErrorCode::IndexOutOfRange`], [`ErrorCode::FileTooLarge`],
 /// and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
-pub(crate) fn read_obj(bytes: &[u8], resources: Option<Resources<'_>>, content: Content) -> Result<ColoredMesh> {
+pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result<ColoredMesh> {
+    let resources = options.resources;
     let mut builder = MeshBuilder::default();
     let mut colors = (content == Content::ShapeAndColors).then(|| ObjColors::new(resources));
     let mut corners = Vec::new();
@@ -64,7 +66,7 @@ pub(crate) fn read_obj(bytes: &[u8], resources: Option<Resources<'_>>, content: 
     {
         return Ok(painted.plain(Some(missing)));
     }
-    let materials = colors.library.load(&painted.paint.used_materials(), resources);
+    let materials = colors.library.load(&painted.paint.used_materials(), options);
     Ok(painted.colored(materials))
 }
 
@@ -163,14 +165,14 @@ fn file_name(words: &[&[u8]]) -> String {
     String::from_utf8_lossy(&words.join(&b' ')).replace('\\', "/")
 }
 
-fn vertex(words: &[&[u8]], line: usize) -> Result<glam::Vec3> {
+fn vertex(words: &[&[u8]], line: usize) -> Result<DVec3> {
     let mut xyz = [0.0; 3];
     for (axis, x) in xyz.iter_mut().enumerate() {
         let word = words.get(axis).copied().unwrap_or_default();
         *x = number(word)
             .ok_or_else(|| corrupt("mesh", format!("{} in line {line}", quoted(word)), "v x y z: three numbers"))?;
     }
-    Ok(DVec3::from_array(xyz).as_vec3())
+    Ok(DVec3::from_array(xyz))
 }
 
 /// The colour after the coordinates of a vertex. A single number there is a weight.

@@ -2,6 +2,8 @@
 
 use std::rc::Rc;
 
+use glam::DVec3;
+
 use crate::color::{WHITE, linear, srgb};
 use crate::colored_mesh::ColoredMesh;
 use crate::texture::{Texture, Wrap};
@@ -26,6 +28,8 @@ pub(crate) struct Paint {
 pub(crate) struct PaintedMesh {
     pub mesh: Mesh,
     pub paint: Paint,
+    /// What was subtracted from the coordinates of the file.
+    pub origin: DVec3,
 }
 
 /// A material: the surface colour is vertex colour × factor × texture, in linear light.
@@ -53,16 +57,16 @@ impl Material {
 impl PaintedMesh {
     /// The mesh with its colours. `materials` are those that the parts refer to; other parts are white.
     pub fn colored(self, materials: Result<Vec<Material>>) -> ColoredMesh {
-        let Self { mesh, paint } = self;
+        let Self { mesh, paint, origin } = self;
         match materials.map(|materials| paint.surface_colors(&mesh, &materials)) {
-            Ok(colors) => ColoredMesh { mesh, colors, problem: None },
-            Err(problem) => ColoredMesh { mesh, colors: None, problem: Some(problem) },
+            Ok(colors) => ColoredMesh { mesh, colors, origin, problem: None },
+            Err(problem) => ColoredMesh { mesh, colors: None, origin, problem: Some(problem) },
         }
     }
 
     /// The mesh without colours.
     pub fn plain(self, problem: Option<Error>) -> ColoredMesh {
-        ColoredMesh { mesh: self.mesh, colors: None, problem }
+        ColoredMesh { mesh: self.mesh, colors: None, origin: self.origin, problem }
     }
 }
 

@@ -27,13 +27,24 @@ pub fn read_photo(bytes: &[u8]) -> Result<Image<Rgb>> {
     orientation.apply("image", image)
 }
 
-/// Reads the EXIF data of a JPEG or a PNG. Fields that are damaged or missing are left out; a photo without EXIF data has
+/// Reads a photo without applying its EXIF orientation.
+///
+/// # Errors
+/// Those of [`read_photo`].
+pub fn read_stored_photo(bytes: &[u8]) -> Result<Image<Rgb>> {
+    decode("image", bytes, MAX_PHOTO_PIXELS).map(|(image, _)| image)
+}
+
+/// Reads the EXIF data of a JPEG or a PNG, or of bytes that begin with their TIFF header. Fields that are damaged or missing are left out; a photo without EXIF data has
 /// none.
 ///
 /// # Errors
 /// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat) for other files,
 /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile).
 pub fn read_exif(bytes: &[u8]) -> Result<Exif> {
+    if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") {
+        return Ok(Exif::parse(bytes.to_vec()));
+    }
     let tiff = match Format::of("image", bytes, "Pass the bytes of the photo as the camera wrote them.")? {
         Format::Png => PngInfo::read("image", bytes)?.exif.map(<[u8]>::to_vec),
         Format::Jpeg => jpeg::exif("image", bytes)?,

@@ -61,7 +61,7 @@ pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
             return Err(too_large("cloud", format!("{} points", element.count), format!("at most {MAX_VERTICES}")));
         }
         read_vertices(element, &mut body, |point, _| {
-            points.push(point);
+            points.push(point.as_vec3());
             Ok(())
         })?;
         return Ok(points);
@@ -72,7 +72,7 @@ pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
 fn read_vertices(
     element: &Element,
     body: &mut Body<'_>,
-    mut push: impl FnMut(Vec3, Option<Rgb>) -> Result<()>,
+    mut push: impl FnMut(DVec3, Option<Rgb>) -> Result<()>,
 ) -> Result<()> {
     let place_of = |name: &[u8]| element.properties.iter().position(|p| p.name == name && p.list_length.is_none());
     let mut place = [0; 3];
@@ -102,14 +102,10 @@ fn read_vertices(
             }
         }
         if property == last {
-            push(as_vec3(xyz), colors.map(|_| rgb))?;
+            push(DVec3::from_array(xyz), colors.map(|_| rgb))?;
         }
         Ok(())
     })
-}
-
-fn as_vec3(xyz: [f64; 3]) -> Vec3 {
-    DVec3::from_array(xyz).as_vec3()
 }
 
 fn read_faces(element: &Element, body: &mut Body<'_>, push: &mut dyn FnMut(&[u32]) -> Result<()>) -> Result<()> {

@@ -32,8 +32,6 @@ pub(crate) struct PngInfo<'a> {
     pub height: usize,
     /// Bits per sample: 1, 2, 4, 8 or 16.
     pub bit_depth: u8,
-    /// Whether the image is greyscale without alpha channel.
-    pub is_grey: bool,
     /// The colour of index 0 of a palette image.
     pub first_palette_colour: Option<[u8; 3]>,
     /// The EXIF data, from their TIFF header.
@@ -106,7 +104,7 @@ impl<'a> PngInfo<'a> {
             return Err(corrupt(argument, found, "enough bytes for the pixels"));
         }
         let first_palette_colour = first_palette_colour.filter(|_| colour == 3);
-        Ok(Self { width, height, bit_depth, is_grey: colour == 0, first_palette_colour, exif })
+        Ok(Self { width, height, bit_depth, first_palette_colour, exif })
     }
 
     /// Decodes the pixels of the file with this header.

@@ -5,9 +5,14 @@ use std::borrow::Cow;
 use crate::data_uri;
 use crate::guard::corrupt;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::image::Image;
+use sim3align_geometry::surface_colors::Rgb;
 
 /// Returns the content of a file that a mesh file refers to, by the URI or name in it.
 pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
+
+/// Decodes an image in a format that is neither PNG nor JPEG; `None` if it cannot.
+pub type ImageDecoder<'a> = &'a dyn Fn(&[u8]) -> Option<Image<Rgb>>;
 
 /// The files that a mesh file refers to, by the URIs or names in it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]

@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
+use crate::colored_mesh::ColoredMesh;
 use crate::cursor::Cursor;
 use crate::guard::corrupt;
 use crate::mesh_builder::MeshBuilder;
 use crate::text::{lines, number, quoted, words};
 use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
 
 const HEADER_BYTES: usize = 80;
 const TRIANGLE_BYTES: usize = 50;
@@ -26,32 +26,32 @@ pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
 ///
 /// # Errors
 /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
-/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`].
-pub fn read_stl(bytes: &[u8]) -> Result<Mesh> {
+/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
+pub fn read_stl(bytes: &[u8]) -> Result<ColoredMesh> {
     let is_text = !has_binary_length(bytes)
         && bytes.trim_ascii_start().starts_with(b"solid")
         && !bytes.iter().take(1024).any(|&b| b == 0);
     if is_text { read_text(bytes) } else { read_binary(bytes) }
 }
 
-fn read_binary(bytes: &[u8]) -> Result<Mesh> {
+fn read_binary(bytes: &[u8]) -> Result<ColoredMesh> {
     let mut cursor = Cursor::new("mesh", bytes);
     cursor.take(HEADER_BYTES)?;
     let count = cursor.u32_le()?;
     let mut welder = Welder::default();
     for _ in 0..count {
         let triangle: [u8; TRIANGLE_BYTES] = cursor.array()?;
-        let mut corners = [Vec3::ZERO; 3];
+        let mut corners = [DVec3::ZERO; 3];
         for (corner, xyz) in corners.iter_mut().zip(triangle[12..48].as_chunks::<12>().0) {
             let [x, y, z] = [0, 4, 8].map(|i| f32::from_le_bytes([xyz[i], xyz[i + 1], xyz[i + 2], xyz[i + 3]]));
-            *corner = Vec3::new(x, y, z);
+            *corner = DVec3::new(x.into(), y.into(), z.into());
         }
         welder.push(corners)?;
     }
-    welder.builder.finish().map(|painted| painted.mesh)
+    welder.builder.finish().map(|painted| painted.plain(None))
 }
 
-fn read_text(bytes: &[u8]) -> Result<Mesh> {
+fn read_text(bytes: &[u8]) -> Result<ColoredMesh> {
     let mut welder = Welder::default();
     let mut corners = Vec::with_capacity(3);
     let mut ended = false;
@@ -66,7 +66,7 @@ fn read_text(bytes: &[u8]) -> Result<Mesh> {
                     let found = || format!("{} in line {}", quoted(word), i + 1);
                     *x = number(word).ok_or_else(|| corrupt("mesh", found(), "vertex x y z: three numbers"))?;
                 }
-                corners.push(DVec3::from_array(xyz).as_vec3());
+                corners.push(DVec3::from_array(xyz));
             }
             b"endloop" => {
                 let &[a, b, c] = corners.as_slice() else {
@@ -83,23 +83,23 @@ fn read_text(bytes: &[u8]) -> Result<Mesh> {
     if !ended {
         return Err(corrupt("mesh", "no \"endsolid\" line", "\"endsolid\" at the end of an ASCII STL"));
     }
-    welder.builder.finish().map(|painted| painted.mesh)
+    welder.builder.finish().map(|painted| painted.plain(None))
 }
 
 /// Assigns one index to equal coordinates.
 #[derive(Default)]
 struct Welder {
     builder: MeshBuilder,
-    indices: HashMap<[u32; 3], u32>,
+    indices: HashMap<[u64; 3], u32>,
 }
 
 impl Welder {
-    fn push(&mut self, corners: [Vec3; 3]) -> Result<()> {
+    fn push(&mut self, corners: [DVec3; 3]) -> Result<()> {
         let mut triangle = [0; 3];
         for (index, corner) in triangle.iter_mut().zip(corners) {
             // −0 + 0 is +0, so that both zeros are equal.
-            let corner = corner + Vec3::ZERO;
-            let key = corner.to_array().map(f32::to_bits);
+            let corner = corner + DVec3::ZERO;
+            let key = corner.to_array().map(f64::to_bits);
             *index = match self.indices.get(&key) {
                 Some(&known) => known,
                 None => {

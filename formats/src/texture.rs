@@ -7,7 +7,8 @@ use std::rc::Rc;
 
 use crate::guard::{MAX_PIXELS, too_large, unsupported};
 use crate::photo;
-use crate::reducer::reduce;
+use crate::reducer::{reduce, reduced_size};
+use crate::resources::ImageDecoder;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
@@ -92,13 +93,18 @@ impl Texture {
 }
 
 /// The textures loaded so far.
-#[derive(Debug, Default)]
-pub(crate) struct TextureLoader {
+pub(crate) struct TextureLoader<'a> {
     textures: BTreeMap<String, Rc<Texture>>,
     pixels: usize,
+    decoder: Option<ImageDecoder<'a>>,
 }
 
-impl TextureLoader {
+impl<'a> TextureLoader<'a> {
+    /// `decoder`: of images that are neither PNG nor JPEG.
+    pub fn new(decoder: Option<ImageDecoder<'a>>) -> Self {
+        Self { textures: BTreeMap::new(), pixels: 0, decoder }
+    }
+
     /// The texture of this name in the file.
     pub fn load<'b>(&mut self, name: &str, bytes: impl FnOnce() -> Result<Cow<'b, [u8]>>) -> Result<Rc<Texture>> {
         if let Some(texture) = self.textures.get(name) {
@@ -110,25 +116,41 @@ impl TextureLoader {
     }
 
     fn decode(&mut self, bytes: &[u8]) -> Result<Texture> {
-        let [width, height] = photo::size("mesh", bytes).map_err(|error| match error.code {
-            ErrorCode::UnsupportedFormat => unsupported_texture(&format!("a texture that is {}", error.found)),
-            _ => error,
-        })?;
+        match photo::size("mesh", bytes) {
+            Ok(size) => {
+                self.count(size)?;
+                Texture::new(photo::decode("mesh", bytes, MAX_TEXELS)?.0)
+            }
+            Err(error) if error.code == ErrorCode::UnsupportedFormat => {
+                let Some(image) = self.decoder.and_then(|decode| decode(bytes)) else {
+                    return Err(unsupported_texture(&format!("a texture that is {}", error.found)));
+                };
+                let size = [image.width(), image.height()];
+                self.count(size)?;
+                let reduced = reduced_size(size, MAX_TEXELS);
+                Texture::new(if reduced == size { image } else { reduce(&image, reduced)? })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Counts a texture against the limit of all.
+    fn count(&mut self, [width, height]: [usize; 2]) -> Result<()> {
         self.pixels = self.pixels.saturating_add(width.saturating_mul(height));
         if self.pixels > MAX_TEXTURE_PIXELS {
             let found = format!("textures of more than {MAX_TEXTURE_PIXELS} pixels together");
             return Err(too_large("mesh", found, "fewer"));
         }
-        Texture::new(photo::decode("mesh", bytes, MAX_TEXELS)?.0)
+        Ok(())
     }
 }
 
-/// The error for a texture that is no PNG or JPEG.
+/// The error for a texture that can't be decoded.
 pub(crate) fn unsupported_texture(found: &str) -> Error {
     unsupported(
         "mesh",
         found.to_owned(),
-        "a base colour texture as PNG or JPEG",
-        "Convert the textures, those of glTF with glTF-Transform: npx @gltf-transform/cli png in.glb out.glb.",
+        "a base colour texture as PNG, JPEG or WebP",
+        "Convert the textures, those of glTF with glTF-Transform: npx @gltf-transform/cli png --formats '*' in.glb out.glb. Or pass decodeImage to readMesh().",
     )
 }

@@ -1,6 +1,7 @@
 //! Row-major images of any pixel type.
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::number::number;
 
 /// A row-major image: pixel (u, v) is `data[v * width + u]`; u runs right, v runs down.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,12 +112,28 @@ impl<T: Copy> Image<T> {
 
 impl DepthMap {
     /// Depth from metres; NaN, infinities and values ≤ 0 become 0, "no reading".
+    ///
+    /// # Errors
+    /// [`ErrorCode::WrongLength`], [`ErrorCode::EmptyImage`], and [`ErrorCode::NoDepthInMask`] if all values are below 0.
     pub fn from_metres(width: usize, height: usize, mut data: Vec<f32>) -> Result<Self> {
         check_size("depth", width, height, data.len())?;
+        let (mut lowest, mut is_read) = (0.0_f32, false);
         for z in &mut data {
-            if !(z.is_finite() && *z > 0.0) {
+            if z.is_finite() && *z > 0.0 {
+                is_read = true;
+            } else {
+                lowest = if z.is_finite() { lowest.min(*z) } else { lowest };
                 *z = 0.0;
             }
+        }
+        if lowest < 0.0 && !is_read {
+            return Err(Error::new(
+                ErrorCode::NoDepthInMask,
+                "depth",
+                format!("only values below 0, down to {}", number(lowest.into())),
+                "z forward, above 0",
+                "Pass -depth: in OpenGL's camera frame, z points backward.",
+            ));
         }
         Ok(Self { width, height, data })
     }

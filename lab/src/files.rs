@@ -49,6 +49,6 @@ fn failed(path: &Path, error: std::io::Error, expected: &'static str, remedy: &'
 
 /// The error for an inconsistent file.
 pub(crate) fn corrupt(path: &Path, found: impl Into<Text>, expected: impl Into<Text>) -> Error {
-    let remedy = "The file may be truncated: download or export it again.";
+    let remedy = "The file is damaged or incomplete: download or export it again.";
     Error::new(ErrorCode::CorruptFile, path.display().to_string(), found, expected, remedy)
 }

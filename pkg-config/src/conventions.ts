@@ -10,7 +10,7 @@ export { type BopPose, fromBop, toBop } from "./conventions/bop.js";
 export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
 export { type CvatCuboid, fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
 export { type CvatMaskElement, fromCvatRle } from "./conventions/cvat-rle.js";
-export { correctDepth, depthFromDisparity } from "./conventions/depth.js";
+export { correctDepth, depthFromDisparity, depthFromRayDistance } from "./conventions/depth.js";
 export {
   type CameraFrame,
   fromFrame,

@@ -13,6 +13,7 @@ import { plainArgument, plainOptions } from "./input/border.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
+import { decodeExif, decodePhoto } from "./input/photo.js";
 import type { ColorSamples } from "./input/prepared-mesh.js";
 import type {
   CameraFileInput,
@@ -23,6 +24,7 @@ import type {
   PixelArray,
   ReadDepthOptions,
 } from "./input/types.js";
+import type { DecodeImage } from "./input/webp.js";
 import type { Formats } from "./modules/exports.js";
 import { fileReaders, formatsModule } from "./modules/readers.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -83,7 +85,8 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
 }
 
 /**
- * Reads a mask from a PNG, a `.npy` array, or COCO RLE (as an object, or the bytes of a JSON file).
+ * Reads a mask from a PNG, a JPEG, a `.npy` array, or COCO RLE (as an object, or the bytes of a JSON file). The outline of a
+ * mask with soft edges is at half of its range, that of logits at 0; in a map of labels, all are the object.
  * @returns row-major; 1 is the object
  * @throws {@link Sim3AlignError} for any other file
  */
@@ -95,23 +98,23 @@ export async function readMask(file: EncodedBytes | CocoRle): Promise<PixelArray
 }
 
 /**
- * Reads a photo from a PNG or a JPEG. The EXIF orientation is applied; alpha and colour profiles are ignored; a photo of
+ * Reads a photo from a PNG, a JPEG or a WebP. The EXIF orientation is applied; alpha and colour profiles are ignored; a photo of
  * more than two megapixels is reduced by a whole number.
  * @returns red, green and blue per pixel, row-major, sRGB-encoded
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readImage(file: EncodedBytes): Promise<PixelArray<Uint8Array>> {
   const bytes = await requiredBytes("file", file);
-  return call(bytes, (readers) => readers.readImage(bytes));
+  return decodePhoto(bytes, fileReaders);
 }
 
 /**
- * Reads the EXIF data of a PNG or a JPEG. What they do not state, or what is damaged, is missing.
+ * Reads the EXIF data of a PNG, a JPEG or a WebP. What they do not state, or what is damaged, is missing.
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readExif(file: EncodedBytes): Promise<Exif> {
   const bytes = await requiredBytes("file", file);
-  return call(bytes, (readers) => readers.readExif(bytes));
+  return decodeExif(bytes, fileReaders);
 }
 
 /**
@@ -122,6 +125,7 @@ export async function readExif(file: EncodedBytes): Promise<Exif> {
  * @param options.format by default detected from the content
  * @param options.resources the files that the mesh file refers to, by name: see {@link externalResources}
  * @param options.colors whether to read the colours, `true` by default
+ * @param options.decodeImage decodes textures that are neither PNG, JPEG nor WebP, such as KTX2, to RGB pixels
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMesh(
@@ -130,6 +134,7 @@ export async function readMesh(
     format?: MeshFormat | undefined;
     resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
     colors?: boolean | undefined;
+    decodeImage?: DecodeImage | undefined;
   } = {},
 ): Promise<MeshFromFile> {
   const given = optionsOf(options);
@@ -148,9 +153,10 @@ export async function externalResources(file: EncodedBytes): Promise<ExternalRes
 }
 
 /**
- * Reads a camera file: sim3align's `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, or the intrinsics of
- * Open3D and RealSense; bytes, text or parsed JSON. It needs no WebAssembly.
- * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of another image size
+ * Reads a camera file: sim3align's `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, the intrinsics of Open3D,
+ * RealSense, Record3D, Polycam or nerfstudio, OpenCV's YAML, COLMAP's cameras.txt, or numbers as text (`K.txt`); bytes, text
+ * or parsed JSON. It needs no WebAssembly. Intrinsics for an image of another size are scaled to `options`.
+ * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of an image of another shape
  */
 export async function readCamera(file: CameraFileInput, options: ReadCameraOptions = {}): Promise<CameraFile> {
   const given: ReadCameraOptions = optionsOf(options);

@@ -21,6 +21,7 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
       formats: async () => bytesOf((await import("inlined:formats")).default),
       depthFiles: async () => bytesOf((await import("inlined:depth-files")).default),
       splats: async () => bytesOf((await import("inlined:splats")).default),
+      webp: async () => bytesOf((await import("inlined:webp")).default),
       joint: async () => bytesOf((await import("inlined:joint")).default),
       registration: async () => bytesOf((await import("inlined:registration")).default),
     },

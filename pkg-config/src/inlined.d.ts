@@ -36,6 +36,12 @@ declare module "inlined:splats" {
   export default base64;
 }
 
+declare module "inlined:webp" {
+  /** The WebP module, base64. */
+  const base64: string;
+  export default base64;
+}
+
 declare module "inlined:worker" {
   /** The complete worker script. */
   const script: string;

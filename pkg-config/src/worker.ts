@@ -15,6 +15,7 @@ import * as formatsGlue from "./wasm/formats.js";
 import * as jointGlue from "./wasm/joint.js";
 import * as registrationGlue from "./wasm/registration.js";
 import * as splatsGlue from "./wasm/splats.js";
+import * as webpGlue from "./wasm/webp.js";
 
 type Post = (message: FromWorker, transfer?: ArrayBuffer[]) => void;
 
@@ -33,6 +34,7 @@ class WorkerHost {
     formats: this.#module("formats", formatsGlue),
     depthFiles: this.#module("depthFiles", depthFilesGlue),
     splats: this.#module("splats", splatsGlue),
+    webp: this.#module("webp", webpGlue),
     joint: this.#module("joint", jointGlue),
     registration: this.#module("registration", registrationGlue),
   };

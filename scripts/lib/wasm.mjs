@@ -27,10 +27,11 @@ import { step } from "./step.mjs";
 export const wasmModules = [
   { name: "core", crate: "sim3align-core", budget: 190_000 },
   { name: "joint", crate: "sim3align-joint", budget: 295_000 },
-  { name: "registration", crate: "sim3align-registration", budget: 141_000 },
+  { name: "registration", crate: "sim3align-registration", budget: 142_000 },
   { name: "formats", crate: "sim3align-module-formats", budget: 260_000 },
   { name: "depth-files", crate: "sim3align-depth-files", budget: 242_000 },
   { name: "splats", crate: "sim3align-splats", budget: 62_000 },
+  { name: "webp", crate: "sim3align-webp", budget: 82_000 },
   { name: "physics", crate: "sim3align-module-physics", budget: 70_000 },
 ];
 

@@ -1,6 +1,7 @@
 //! Warnings about inputs and results that are valid but suspicious.
 
 use crate::evidence::observation::Observation;
+use crate::geometry::image::bounds_of;
 use crate::geometry::order::median;
 use crate::number::number;
 use crate::precise::drawing::surplus::LeftOut;
@@ -15,6 +16,13 @@ const IMPLAUSIBLY_NEAR_M: f32 = 0.01;
 
 /// Share of the image beyond which a mask probably selects everything instead of an object.
 const WHOLE_IMAGE: f64 = 0.99;
+
+/// Share of the border's pixels beyond which a mask is probably that of the background.
+const WHOLE_BORDER: f64 = 0.8;
+
+/// Size of an object and its distance, in metres, beyond which an assumed unit is doubtful.
+const LARGE_M: f64 = 0.6;
+const NEAR_M: f64 = 0.15;
 
 /// The distance of pixels inside the mask from those outside that are compared, relative to the width of the object: edges of
 /// depth are a few pixels off or wide.
@@ -37,18 +45,22 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let mut mask_pixels = 0_usize;
     // Allocated once: it may be a large image.
     let mut depths = Vec::with_capacity(observation.mask().data().iter().filter(|&&m| m != 0).count());
-    let mut touches_border = false;
+    let mut in_border = 0_usize;
     for (i, (&m, &z)) in observation.mask().data().iter().zip(observation.depth().data()).enumerate() {
         if m == 0 {
             continue;
         }
         let (u, v) = (i % width, i / width);
         mask_pixels += 1;
-        touches_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
+        in_border += usize::from(u == 0 || v == 0 || u + 1 == width || v + 1 == height);
         if z > 0.0 {
             depths.push(z);
         }
     }
+    let all_pixels = observation.mask().data().len();
+    let border = if width.min(height) > 2 { 2 * (width + height) - 4 } else { all_pixels };
+    let is_everything = mask_pixels as f64 >= WHOLE_IMAGE * all_pixels as f64;
+    let is_inverted = !is_everything && in_border as f64 > WHOLE_BORDER * border as f64;
     let mut warnings = Vec::new();
     let readings = depths.len();
     if readings > 0 {
@@ -59,6 +71,21 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
                 message: format!(
                     "The object's median depth is {} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001.",
                     number(f64::from(median))
+                ),
+            });
+        }
+        let bounds = bounds_of(observation.mask().data(), width, |m| *m != 0);
+        let pixels = bounds.map(|[first, last]| (last - first) as f64);
+        let camera = observation.camera();
+        let size = f64::from(median) * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt();
+        let is_plausible = size < LARGE_M && f64::from(median) > NEAR_M;
+        if !is_plausible && (IMPLAUSIBLY_NEAR_M..IMPLAUSIBLE_DEPTH_M).contains(&median) {
+            warnings.push(Warning {
+                code: WarningCode::SizeDoubtful,
+                message: format!(
+                    "The unit of the depth was assumed; with it, the object is {} m large, {} m away. If it is not, pass depthScale, in metres per unit: 0.01 for centimetres, 0.0002 for TUM RGB-D. The pose fits the image in any unit.",
+                    number((100.0 * size).round() / 100.0),
+                    number((100.0 * f64::from(median)).round() / 100.0)
                 ),
             });
         }
@@ -74,6 +101,7 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     }
     if let Some(share) = steps_towards_camera(observation, mask_pixels)
         && share >= TOWARDS_CAMERA
+        && !is_inverted
     {
         warnings.push(Warning {
             code: WarningCode::DepthLooksInverted,
@@ -89,8 +117,13 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
             message: "The depth map spans exactly the range from 0 to 1, or that of 16 bits, as one that was normalised: its values are no lengths. Pass depthKind \"affine-invariant-disparity\" if near is large in it, otherwise \"affine-invariant\".".into(),
         });
     }
-    let all_pixels = observation.mask().data().len();
-    if mask_pixels as f64 >= WHOLE_IMAGE * all_pixels as f64 {
+    if is_inverted {
+        warnings.push(Warning {
+            code: WarningCode::MaskLooksInverted,
+            message: "The mask covers the image's border, and leaves out what is inside: it looks inverted. Pass the mask of the object, not that of the background.".into(),
+        });
+    }
+    if is_everything {
         warnings.push(Warning {
             code: WarningCode::MaskCoversImage,
             message: format!(
@@ -98,7 +131,7 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
             ),
         });
     }
-    if touches_border {
+    if in_border > 0 {
         warnings.push(Warning {
             code: WarningCode::MaskTouchesBorder,
             message: "The mask touches the image border: part of the object may be outside the image, and the initial scale may be too small.".into(),

@@ -28,6 +28,8 @@ pub enum WarningCode {
     DepthLooksNormalised,
     /// The mask covers the whole image: it is probably inverted, or no mask.
     MaskCoversImage,
+    /// The mask covers most of the image's border: it is probably that of the background.
+    MaskLooksInverted,
     /// The mask touches the image border: part of the object is outside the view.
     MaskTouchesBorder,
     /// Less than half of the mask has a depth reading.
@@ -49,6 +51,12 @@ pub enum WarningCode {
     /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of
     /// it.
     CameraNotPinhole,
+    /// The principal point does not fit the image: the intrinsics may be those of an image of another size. The package's camera
+    /// reader warns of it.
+    CameraDoubtful,
+    /// The object would be unusually large or near, and the unit of the depth was assumed: the pose fits the image, but sizes and
+    /// distances may be wrong by a factor.
+    SizeDoubtful,
     /// No camera was given, and neither the depth file nor the photo states a focal length: it was estimated from the object.
     /// The package's camera reader warns of it.
     FocalLengthUnknown,

@@ -75,11 +75,14 @@ pub fn readers(e: &mut Entropy<'_>) -> Checked {
     let options = DepthReadOptions { depth_scale, integer_depth_scale: None };
     let is_depth = |z: &f32| z.is_finite() && *z >= 0.0;
     let resource = |_: &str| Some(bytes.clone());
-    check(read_colored_mesh(&bytes, &MeshReadOptions { format: None, resources: Some(&resource) }), |read| {
-        let count = read.mesh.positions().len();
-        let is_in_range = read.mesh.triangles().as_flattened().iter().all(|&i| (i as usize) < count);
-        require(is_in_range, || "an index out of range".into())
-    })?;
+    check(
+        read_colored_mesh(&bytes, &MeshReadOptions { format: None, resources: Some(&resource), images: None }),
+        |read| {
+            let count = read.mesh.positions().len();
+            let is_in_range = read.mesh.triangles().as_flattened().iter().all(|&i| (i as usize) < count);
+            require(is_in_range, || "an index out of range".into())
+        },
+    )?;
     check(read_splats(&bytes, true), |read| {
         require(read.mesh.positions().iter().all(|p| p.is_finite()), || "Gaussians that are not finite".into())
     })?;
@@ -91,7 +94,7 @@ pub fn readers(e: &mut Entropy<'_>) -> Checked {
         require(is_valid, || "no depth".into())
     })?;
     check(read_photo(&bytes), |photo| require(photo.data().len() <= MAX_PHOTO_PIXELS, || "a huge photo".into()))?;
-    check(read_mask(&bytes), |mask| {
+    check(read_mask(&bytes).map(|read| read.object), |mask| {
         require(mask.width() * mask.height() == mask.data().len(), || "a mask of another size".into())
     })
 }

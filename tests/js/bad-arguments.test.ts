@@ -47,7 +47,7 @@ refusesInputs([
   [{ camera: { ...camera, cx: Number.NaN } }, "INVALID_CAMERA camera.cx", /NaN/],
   [{ camera: { K: [300, 0, 0, 0, 300, 0, 80, 60, 1] } }, "INVALID_CAMERA camera.K", /transpose/],
   [{ camera: { ...camera, focalUncertainty: 100 } }, "INVALID_ARGUMENT camera.focalUncertainty", /0\.1 for 10 %/],
-  [{ camera: { ...camera, width: 640, height: 480 } }, "SIZE_MISMATCH camera", /640 × 480/],
+  [{ camera: { ...camera, width: 640, height: 400 } }, "SIZE_MISMATCH camera", /640 × 400/],
   [{ camera: { cam_K: [] } }, "INVALID_ARGUMENT camera", /cameraFile/],
   [{ camera: { focal: 600 } }, "INVALID_ARGUMENT camera", /\{ fx, fy, cx, cy \}.*`focal`/],
   [{ cameraFile: "{}" }, "INVALID_ARGUMENT cameraFile", /not both/],

@@ -11,7 +11,7 @@ const require = createRequire(import.meta.url);
 const readJson = (specifier: string) => JSON.parse(readFileSync(require.resolve(specifier), "utf8"));
 const manifest = readJson("sim3align/package.json");
 
-for (const name of ["core", "depth-files", "formats", "joint", "physics", "registration", "splats"]) {
+for (const name of ["core", "depth-files", "formats", "joint", "physics", "registration", "splats", "webp"]) {
   test(`the ${name} module can be named by bundlers and is WebAssembly`, () => {
     const bytes = readFileSync(require.resolve(`sim3align/wasm/${name}_bg.wasm`));
     assert.ok(WebAssembly.validate(bytes));

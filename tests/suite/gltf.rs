@@ -49,7 +49,7 @@ fn external_buffers_come_from_the_caller() {
         "gltf_buffer_1.bin" => Some(fixture!("mesh-external-gltf_buffer_1.bin").to_vec()),
         _ => None,
     };
-    let options = MeshReadOptions { format: None, resources: Some(&files) };
+    let options = MeshReadOptions { format: None, resources: Some(&files), images: None };
     let mesh = read_mesh(gltf, &options).unwrap();
     assert_eq!(corners(&mesh), corners(&read(fixture!("mesh.glb")).unwrap()));
     let error = read(gltf).unwrap_err();
@@ -254,4 +254,61 @@ fn extensions_that_are_needed_name_themselves_and_the_remedy() {
     let odd = r#","extensionsUsed":["KHR_draco_mesh_compression"],"materials":[{"alphaMode":5}],"animations":{},
         "textures":[{"extensions":{"EXT_texture_webp":{"source":0}}}]"#;
     assert!(nodes_of(r#"{"mesh":0}"#, odd).is_ok());
+}
+
+#[wasm_bindgen_test]
+fn instances_are_copies_with_transforms_of_their_own() {
+    // Two instances: as it is, and moved by (0, 0, 5), turned by half a turn about z, three times as large.
+    let mut bytes = quad_bytes();
+    bytes.extend(floats(&[
+        0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 3.0, 3.0, 3.0,
+    ]));
+    let instances = r#"{"mesh":0,"translation":[10,0,0],"extensions":{"EXT_mesh_gpu_instancing":{"attributes":
+        {"TRANSLATION":3,"ROTATION":4,"SCALE":5}}}}"#;
+    let part = |offset: u32, kind: &str| {
+        format!(r#",{{"bufferView":2,"byteOffset":{offset},"componentType":5126,"count":2,"type":"{kind}"}}"#)
+    };
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"extensionsRequired":["EXT_mesh_gpu_instancing"],"nodes":[{instances}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":2}}]}}],
+        "accessors":[{ACCESSORS}{}{}{}],"bufferViews":[{VIEWS},{{"buffer":0,"byteOffset":60,"byteLength":80}}],
+        "buffers":[{{"byteLength":140}}]}}"#,
+        part(0, "VEC3"),
+        part(24, "VEC4"),
+        part(56, "VEC3")
+    );
+    let mesh = read(glb(&json, &bytes)).unwrap();
+    let bounds = Bounds::of(mesh.positions()).unwrap();
+    assert_eq!(mesh.triangles().len(), 2);
+    assert_eq!([bounds.min.to_array(), bounds.max.to_array()], [[7.0, -3.0, 0.0], [11.0, 1.0, 5.0]]);
+}
+
+#[wasm_bindgen_test]
+fn skins_have_the_pose_of_their_joints() {
+    // Each vertex follows joint 0, the last one both to equal parts. Joint 0 is 100 times smaller than its bind pose and
+    // moved by (1, 0, 0); joint 1 as well, but moved by (3, 0, 0).
+    let mut bytes = quad_bytes();
+    bytes.extend([0_u8, 1, 0, 0].repeat(4));
+    bytes.extend(floats(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.5, 0.5, 0.0, 0.0]));
+    let bind = [[1.0_f32, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    bytes.extend(floats(&[bind, bind].concat().concat()));
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0,1,2]}}],
+        "nodes":[{{"mesh":0,"skin":0,"translation":[50,0,0]}},{{"translation":[1,0,0],"scale":[0.01,0.01,0.01]}},
+        {{"translation":[3,0,0],"scale":[0.01,0.01,0.01]}}],
+        "skins":[{{"joints":[1,2],"inverseBindMatrices":5}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"JOINTS_0":3,"WEIGHTS_0":4}},"indices":1,"mode":5}}]}}],
+        "accessors":[{ACCESSORS},{{"bufferView":2,"componentType":5121,"count":4,"type":"VEC4"}},
+        {{"bufferView":3,"componentType":5126,"count":4,"type":"VEC4"}},
+        {{"bufferView":4,"componentType":5126,"count":2,"type":"MAT4"}}],
+        "bufferViews":[{VIEWS},{{"buffer":0,"byteOffset":60,"byteLength":16}},{{"buffer":0,"byteOffset":76,"byteLength":64}},
+        {{"buffer":0,"byteOffset":140,"byteLength":128}}],"buffers":[{{"byteLength":268}}]}}"#
+    );
+    let mesh = read(glb(&json, &bytes)).unwrap();
+    let expected = [[1.0, 0.0, 0.0], [1.01, 0.0, 0.0], [1.0, 0.01, 0.0], [2.01, 0.01, 0.0]];
+    for (found, expected) in mesh.positions().iter().zip(expected) {
+        assert!((*found - Vec3::from_array(expected)).abs().max_element() < 1e-6, "{found} is not {expected:?}");
+    }
+    let outside = json.replace(r#""nodes":[0,1,2]"#, r#""nodes":[0,1]"#);
+    assert_eq!(read(glb(&outside, &bytes)).unwrap_err().code, ErrorCode::CorruptFile);
 }

@@ -4,7 +4,8 @@ use sim3align::geometry::depth_kind::DepthKind;
 use sim3align::geometry::surface_colors::Rgb;
 use sim3align_formats::depth::{DepthImage, DepthReadOptions, read_depth, read_depth_file};
 use sim3align_formats::mask::read_mask;
-use sim3align_formats::photo::read_photo;
+use sim3align_formats::photo::{read_photo, read_stored_photo};
+use sim3align_formats::webp::read_webp;
 
 use crate::fixtures::fixture;
 use crate::prelude::*;
@@ -98,7 +99,7 @@ fn masks_of_every_kind_are_the_same_mask() {
         ("f4, object is 0.25", fixture!("mask-f4.npy")),
     ];
     for (name, bytes) in files {
-        let mask = read_mask(bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
+        let mask = read_mask(bytes).unwrap_or_else(|error| panic!("{name}: {error}")).object;
         assert_eq!((mask.width(), mask.height()), (7, 5), "{name}");
         assert_eq!(mask.data(), expected_mask(), "{name}");
     }
@@ -271,4 +272,113 @@ fn photos_are_turned_as_their_exif_data_say() {
         check_photo(&format!("orientation {}", i + 1), bytes, QUARTERS, 4);
     }
     check_photo("PNG", fixture!("photo-exif.png"), QUARTERS, 0);
+}
+
+/// A PNG of these samples.
+fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, samples: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.write_header().unwrap().write_image_data(samples).unwrap();
+    bytes
+}
+
+/// A `.npy` array of f32, height × width.
+fn npy_of([width, height]: [usize; 2], values: &[f32]) -> Vec<u8> {
+    let dictionary = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({height}, {width}), }}");
+    let header = format!("{dictionary:<117}\n");
+    let mut bytes = [b"\x93NUMPY\x01\x00".as_slice(), &118_u16.to_le_bytes(), header.as_bytes()].concat();
+    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    bytes
+}
+
+/// Coverage of a disc of radius 20 in 64 × 64 pixels, with an edge `blur` pixels wide.
+fn disc(blur: f32) -> Vec<f32> {
+    let distance = |i: usize| ((i % 64) as f32 - 32.0).hypot((i / 64) as f32 - 32.0) - 20.0;
+    (0..64 * 64).map(|i| (0.5 - distance(i) / blur).clamp(0.0, 1.0)).collect()
+}
+
+#[wasm_bindgen_test]
+fn the_outline_of_a_soft_mask_is_at_half_of_its_range() {
+    use png::{BitDepth, ColorType};
+    let hard: Vec<u8> = disc(1e-3).iter().map(|coverage| u8::from(*coverage >= 0.5)).collect();
+    for blur in [1.5, 4.0, 9.0] {
+        let soft = disc(blur);
+        let scaled = |most: f32| soft.iter().map(move |coverage| (coverage * most).round());
+        let grey: Vec<u8> = scaled(255.0).map(|value| value as u8).collect();
+        let faint: Vec<u8> = scaled(180.0).map(|value| value as u8).collect();
+        let alpha: Vec<u8> = grey.iter().flat_map(|alpha| [90, 90, 90, *alpha]).collect();
+        let wide: Vec<u8> = scaled(65535.0).flat_map(|value| (value as u16).to_be_bytes()).collect();
+        let logits: Vec<f32> = soft.iter().map(|coverage| 20.0 * (coverage - 0.5)).collect();
+        let files = [
+            ("grey", png_of([64, 64], ColorType::Grayscale, BitDepth::Eight, &grey)),
+            ("grey up to 180", png_of([64, 64], ColorType::Grayscale, BitDepth::Eight, &faint)),
+            ("16 bits", png_of([64, 64], ColorType::Grayscale, BitDepth::Sixteen, &wide)),
+            ("alpha", png_of([64, 64], ColorType::Rgba, BitDepth::Eight, &alpha)),
+            ("probabilities", npy_of([64, 64], &soft)),
+            ("logits", npy_of([64, 64], &logits)),
+        ];
+        for (name, bytes) in files {
+            let read = read_mask(&bytes).unwrap();
+            // Rounding moves pixels whose centre is at the outline.
+            let off = read.object.data().iter().zip(&hard).filter(|(a, b)| a != b).count();
+            assert!(off <= 4, "{name}, {blur} pixels: {off} pixels differ; {}", read.reading);
+            assert_eq!(read.reading.contains("logits"), name == "logits", "{}", read.reading);
+        }
+    }
+    // Labels are flat regions: all are the object, whatever their numbers.
+    for [first, second] in [[1, 2], [100, 255], [40, 10]] {
+        let labels: Vec<u8> = (0..64 * 64)
+            .map(|i| {
+                if i % 64 < 20 {
+                    first
+                } else if i % 64 < 40 {
+                    second
+                } else {
+                    0
+                }
+            })
+            .collect();
+        let read = read_mask(&png_of([64, 64], ColorType::Grayscale, BitDepth::Eight, &labels)).unwrap();
+        let expected: Vec<u8> = labels.iter().map(|label| u8::from(*label > 0)).collect();
+        assert_eq!(read.object.data(), expected, "{first}, {second}: {}", read.reading);
+    }
+}
+
+#[wasm_bindgen_test]
+fn depth_in_three_equal_channels_is_read_and_depth_below_zero_is_named() {
+    use png::{BitDepth, ColorType};
+    let pixel = |z: u16, other: u16| [z, z, other, u16::MAX].into_iter().flat_map(u16::to_be_bytes);
+    let equal: Vec<u8> = (1..=6).flat_map(|i| pixel(500 * i, 500 * i)).collect();
+    let read = depth(&png_of([3, 2], ColorType::Rgba, BitDepth::Sixteen, &equal), None).unwrap();
+    assert_eq!(read.data(), [0.5, 1.0, 1.5, 2.0, 2.5, 3.0]);
+    let other: Vec<u8> = (1..=6).flat_map(|i| pixel(500 * i, 499 * i)).collect();
+    let error = depth(&png_of([3, 2], ColorType::Rgba, BitDepth::Sixteen, &other), None).unwrap_err();
+    assert_eq!((error.code, &*error.found), (ErrorCode::UnsupportedFormat, "a 16-bit PNG with colours"));
+    let error = depth(&npy_of([3, 2], &[-0.5, -1.0, 0.0, f32::NAN, f32::NEG_INFINITY, -2.5]), None).unwrap_err();
+    assert_eq!((error.code, &*error.found), (ErrorCode::NoDepthInMask, "only values below 0, down to -2.5"));
+    assert!(error.remedy.contains("Pass -depth"), "{error}");
+}
+
+#[wasm_bindgen_test]
+fn photos_in_webp_have_the_pixels_of_their_lossless_form() {
+    let mut random = Random::new(71);
+    let rgb: Vec<u8> = (0..3 * 50 * 40).map(|_| (random.uniform() * 256.0) as u8).collect();
+    let mut bytes = Vec::new();
+    image_webp::WebPEncoder::new(&mut bytes).encode(&rgb, 50, 40, image_webp::ColorType::Rgb8).unwrap();
+    let photo = read_webp(&bytes, false).unwrap().pixels;
+    assert_eq!((photo.width(), photo.height(), photo.data().as_flattened()), (50, 40, rgb.as_slice()));
+    for length in 0..bytes.len() {
+        let code = read_webp(&bytes[..length], false).map(drop).unwrap_err().code;
+        assert_eq!(code, ErrorCode::CorruptFile, "{length}");
+    }
+}
+
+#[wasm_bindgen_test]
+fn a_photo_can_be_read_as_it_is_stored() {
+    let [turned, plain] = [fixture!("photo-exif-6.jpg"), fixture!("photo-exif-1.jpg")];
+    let [upright, stored] = [read_photo(turned).unwrap(), read_stored_photo(turned).unwrap()];
+    assert_eq!([upright.width(), upright.height()], [stored.height(), stored.width()]);
+    assert_eq!(read_photo(plain).unwrap(), read_stored_photo(plain).unwrap());
 }

@@ -1,9 +1,9 @@
 //! Mesh files: one mesh in every format, what the text formats allow, and what is refused.
 
-use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh, read_mesh};
 use sim3align_formats::splats::read_splats;
 
-use crate::fixtures::{MESHES, area, corners, fixture, read};
+use crate::fixtures::{MESHES, area, corners, fixture, floats, read};
 use crate::prelude::*;
 
 #[wasm_bindgen_test]
@@ -63,7 +63,7 @@ fn ply_strips_and_both_zeros_of_stl_are_read() {
     assert_eq!((mesh.positions().len(), mesh.triangles()), (4, [[0, 1, 2], [0, 2, 3]].as_slice()));
     // Bytes after the last triangle harm nobody.
     let longer = [fixture!("mesh.stl"), b"trailing"].concat();
-    let as_stl = MeshReadOptions { format: Some(MeshFormat::Stl), resources: None };
+    let as_stl = MeshReadOptions { format: Some(MeshFormat::Stl), ..MeshReadOptions::default() };
     assert_eq!(read_mesh(&longer, &as_stl).unwrap().triangles().len(), 80);
 }
 
@@ -124,7 +124,7 @@ fn faults_of_text_are_named() {
     assert_eq!(read(fixture!("mask-grey.png")).unwrap_err().found, "a PNG image");
     let mut claims = fixture!("mesh.stl").to_vec();
     claims[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
-    let as_stl = MeshReadOptions { format: Some(MeshFormat::Stl), resources: None };
+    let as_stl = MeshReadOptions { format: Some(MeshFormat::Stl), ..MeshReadOptions::default() };
     assert_eq!(read_mesh(&claims, &as_stl).unwrap_err().code, CorruptFile);
 }
 
@@ -142,4 +142,121 @@ fn splats_have_the_surface_that_their_gaussians_cover() {
     }
     // A PLY file without rotations.
     assert_eq!(read_splats(fixture!("mesh-little.ply"), false).map(drop).unwrap_err().code, ErrorCode::CorruptFile);
+}
+
+#[wasm_bindgen_test]
+fn coordinates_of_maps_keep_their_shape() {
+    let near = read(fixture!("mesh.obj")).unwrap();
+    let east = [500_123.25, 5_200_456.5, 312.125];
+    let moved: String = near.positions().iter().fold(String::new(), |text, p| {
+        let [x, y, z] = core::array::from_fn(|axis| f64::from(p[axis]) + east[axis]);
+        format!("{text}v {x} {y} {z}\n")
+    });
+    let faces: String =
+        near.triangles().iter().map(|t| format!("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1)).collect();
+    let far = read_colored_mesh(format!("{moved}{faces}").as_bytes(), &MeshReadOptions::default()).unwrap();
+    let bounds = Bounds::of(near.positions()).unwrap();
+    let centre = (0.5 * (bounds.min + bounds.max)).as_dvec3();
+    let expected = [0, 1, 2].map(|axis| centre[axis] + east[axis]);
+    assert!((0..3).all(|axis| (far.origin[axis] - expected[axis]).abs() < 1e-6), "{} {expected:?}", far.origin);
+    for (found, original) in far.mesh.positions().iter().zip(near.positions()) {
+        assert!((found.as_dvec3() + centre - original.as_dvec3()).abs().max_element() < 1e-6, "{found} {original}");
+    }
+    // Closer to zero, the coordinates are those of the file.
+    assert_eq!(read_colored_mesh(fixture!("mesh.obj"), &MeshReadOptions::default()).unwrap().origin, glam::DVec3::ZERO);
+}
+
+/// Gaussians on a sphere of radius 1, as the properties that 3D Gaussian Splatting writes.
+fn sphere_of_gaussians() -> Vec<[f32; 14]> {
+    let count = 1500;
+    (0..count)
+        .map(|i| {
+            // A spiral from pole to pole.
+            let z = 1.0 - (2 * i + 1) as f32 / count as f32;
+            let (angle, radius) = (2.399_963 * i as f32, (1.0 - z * z).sqrt());
+            let normal = Vec3::new(radius * angle.cos(), radius * angle.sin(), z);
+            let rotation = glam::Quat::from_rotation_arc(Vec3::Z, normal);
+            let [x, y, z] = normal.to_array();
+            let [qx, qy, qz, qw] = rotation.to_array();
+            [x, y, z, 1.0, 0.0, -1.0, 6.0, -2.9, -2.9, -7.0, qw, qx, qy, qz]
+        })
+        .collect()
+}
+
+#[wasm_bindgen_test]
+fn splats_of_two_dimensions_and_packed_ones_are_those_of_three() {
+    let gaussians = sphere_of_gaussians();
+    let ply = |element: &str, names: &[&str], kind: &str, body: Vec<u8>| {
+        let list: String = names.iter().map(|name| format!("property {kind} {name}\n")).collect();
+        ([format!("element {element} \n{list}").into_bytes()].concat(), body)
+    };
+    let file = |elements: &[(Vec<u8>, Vec<u8>)]| {
+        let head = elements.iter().flat_map(|(head, _)| head.clone());
+        let body = elements.iter().flat_map(|(_, body)| body.clone());
+        let start = b"ply\nformat binary_little_endian 1.0\n".iter().copied();
+        start.chain(head).chain(b"end_header\n".iter().copied()).chain(body).collect::<Vec<u8>>()
+    };
+    let names = [
+        "x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "rot_0", "rot_1",
+        "rot_2", "rot_3",
+    ];
+    let count = gaussians.len();
+    let full = file(&[ply(&format!("vertex {count}"), &names, "float", floats(gaussians.as_flattened()))]);
+    let flat: Vec<f32> = gaussians.iter().flat_map(|g| [&g[..9], &g[10..]].concat()).collect();
+    let flat_names = [&names[..9], &names[10..]].concat();
+    let flat = file(&[ply(&format!("vertex {count}"), &flat_names, "float", floats(&flat))]);
+    // One range for all: positions from −1 to 1, scales from −8 to 0.
+    let ranges: Vec<f32> = [[-1.0; 3], [1.0; 3], [-8.0; 3], [0.0; 3]].concat().repeat(count.div_ceil(256));
+    let fraction = |x: f32, low: f32, high: f32, bits: u32| {
+        let most = ((1_u32 << bits) - 1) as f32;
+        ((x - low) / (high - low) * most).round() as u32
+    };
+    let vector = |xyz: &[f32], low: f32, high: f32| {
+        fraction(xyz[0], low, high, 11) << 21 | fraction(xyz[1], low, high, 10) << 11 | fraction(xyz[2], low, high, 11)
+    };
+    let words = |g: &[f32; 14]| {
+        let rotation = &g[10..];
+        let place = (0..4).max_by(|a, b| rotation[*a].abs().total_cmp(&rotation[*b].abs())).unwrap();
+        let sign = rotation[place].signum();
+        let half = core::f32::consts::FRAC_1_SQRT_2;
+        let others = (0..4).filter(|i| *i != place).map(|i| fraction(sign * rotation[i], -half, half, 10));
+        let packed = others.fold(place as u32, |word, other| word << 10 | other);
+        let bytes = [0.5 + 0.282_094_8 * g[3], 0.5, 0.5 + 0.282_094_8 * g[5], 1.0 / (1.0 + (-g[6]).exp())];
+        let color = bytes.iter().fold(0, |word, x| word << 8 | (x * 255.0).round() as u32);
+        [vector(&g[..3], -1.0, 1.0), packed, vector(&g[7..10], -8.0, 0.0), color]
+    };
+    let range_names = [
+        "min_x",
+        "min_y",
+        "min_z",
+        "max_x",
+        "max_y",
+        "max_z",
+        "min_scale_x",
+        "min_scale_y",
+        "min_scale_z",
+        "max_scale_x",
+        "max_scale_y",
+        "max_scale_z",
+    ];
+    let word_names = ["packed_position", "packed_rotation", "packed_scale", "packed_color"];
+    let packed: Vec<u8> = gaussians.iter().flat_map(words).flat_map(u32::to_le_bytes).collect();
+    let packed = file(&[
+        ply(&format!("chunk {}", count.div_ceil(256)), &range_names, "float", floats(&ranges)),
+        ply(&format!("vertex {count}"), &word_names, "uint", packed),
+    ]);
+    let expected = read_splats(&full, true).unwrap();
+    let radius = |mesh: &Mesh| mesh.positions().iter().map(|p| (p.length() - 1.0).abs()).fold(0.0, f32::max);
+    assert!(radius(&expected.mesh) < 0.1, "{}", radius(&expected.mesh));
+    for (name, bytes) in [("flat", flat), ("packed", packed)] {
+        let read = read_splats(&bytes, true).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(radius(&read.mesh) < 0.1, "{name}: {}", radius(&read.mesh));
+        let [found, all] = [&read, &expected].map(|read| f64::from(area(&read.mesh) as f32));
+        assert!((found / all - 1.0).abs() < 0.05, "{name}: an area of {found}, not {all}");
+        let mean = |read: &sim3align_formats::colored_mesh::ColoredMesh| {
+            let colors = read.colors.as_ref().unwrap().colors();
+            colors.iter().map(|rgb| f64::from(rgb[0])).sum::<f64>() / colors.len() as f64
+        };
+        assert!((mean(&read) - mean(&expected)).abs() < 2.0, "{name}: {} {}", mean(&read), mean(&expected));
+    }
 }

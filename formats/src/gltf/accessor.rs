@@ -3,12 +3,13 @@
 use ::gltf::json;
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
-use glam::Vec3;
+use glam::{DMat4, Vec3};
 
 use crate::color::srgb;
 use crate::gltf::buffers::Buffers;
 use crate::gltf::document::Document;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, missing, too_large};
+use crate::resources::ImageDecoder;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::surface_colors::Rgb;
 
@@ -23,6 +24,8 @@ const MAX_ELEMENTS_READ: usize = 1 << 28;
 pub(super) struct AccessorReader<'a> {
     pub document: &'a Document,
     pub buffers: Buffers<'a>,
+    /// Decodes textures that are neither PNG nor JPEG.
+    pub images: Option<ImageDecoder<'a>>,
     pub elements_read: usize,
 }
 
@@ -56,6 +59,38 @@ impl<'a> AccessorReader<'a> {
             (ComponentType::U8, &[r, g, b, ..]) => [r, g, b],
             _ => srgb(component.vector(bytes)),
         })
+    }
+
+    /// An accessor of 4 × 4 matrices.
+    pub fn matrices(&mut self, index: usize) -> Result<Vec<DMat4>> {
+        let accessor = self.accessor(index)?;
+        let kind = component_type(accessor, Type::Mat4, index)?;
+        let component = Component { kind, normalized: false };
+        let matrix = |bytes: &[u8]| DMat4::from_cols_array(&component.vector::<16>(bytes).map(f64::from));
+        self.read(accessor, MAX_VERTICES, 16 * kind.size(), DMat4::ZERO, matrix)
+    }
+
+    /// An accessor of quaternions, x, y, z, w.
+    pub fn rotations(&mut self, index: usize) -> Result<Vec<[f32; 4]>> {
+        self.vectors_of_4(index, true)
+    }
+
+    /// A WEIGHTS_n accessor. Whole numbers count as normalised, as the specification demands.
+    pub fn weights(&mut self, index: usize) -> Result<Vec<[f32; 4]>> {
+        self.vectors_of_4(index, true)
+    }
+
+    /// A JOINTS_n accessor.
+    pub fn joints(&mut self, index: usize) -> Result<Vec<[u32; 4]>> {
+        let joints = self.vectors_of_4(index, false)?;
+        Ok(joints.into_iter().map(|joints| joints.map(|joint| joint as u32)).collect())
+    }
+
+    fn vectors_of_4(&mut self, index: usize, normalized: bool) -> Result<Vec<[f32; 4]>> {
+        let accessor = self.accessor(index)?;
+        let kind = component_type(accessor, Type::Vec4, index)?;
+        let component = Component { kind, normalized };
+        self.read(accessor, MAX_VERTICES, 4 * kind.size(), [0.0; 4], |bytes| component.vector(bytes))
     }
 
     /// A TEXCOORD_n accessor.

@@ -3,6 +3,7 @@
 use ::gltf::json;
 use serde::Deserialize;
 
+use crate::gltf::instancing::{INSTANCING, Instances};
 use crate::guard::{corrupt, too_large, unsupported};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
@@ -15,7 +16,7 @@ const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"
 
 /// Supported required extensions: they are applied, or do not affect the shape.
 const SUPPORTED_EXTENSIONS: &str = "KHR_mesh_quantization, KHR_materials_*, KHR_texture_*, EXT_texture_*, \
-    MSFT_texture_dds, KHR_lights_punctual, KHR_animation_pointer and KHR_xmp_json_ld";
+    MSFT_texture_dds, EXT_mesh_gpu_instancing, KHR_lights_punctual, KHR_animation_pointer and KHR_xmp_json_ld";
 
 /// The parts of a glTF file that define its triangles.
 #[derive(Default, Deserialize)]
@@ -25,11 +26,39 @@ pub(super) struct Document {
     pub buffers: Vec<json::Buffer>,
     pub buffer_views: Vec<json::buffer::View>,
     pub meshes: Vec<json::Mesh>,
-    pub nodes: Vec<json::Node>,
+    pub nodes: Vec<Node>,
+    pub skins: Vec<SkinJson>,
     pub scenes: Vec<Scene>,
     pub scene: Option<usize>,
     extensions_used: Vec<String>,
     extensions_required: Vec<String>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Node {
+    pub mesh: Option<usize>,
+    pub skin: Option<usize>,
+    pub children: Vec<usize>,
+    pub matrix: Option<[f32; 16]>,
+    pub translation: Option<[f32; 3]>,
+    pub rotation: Option<[f32; 4]>,
+    pub scale: Option<[f32; 3]>,
+    pub extensions: NodeExtensions,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub instancing: Option<Instances>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct SkinJson {
+    pub joints: Vec<usize>,
+    pub inverse_bind_matrices: Option<usize>,
 }
 
 #[derive(Deserialize)]
@@ -75,6 +104,7 @@ impl Document {
                     "KHR_lights_punctual",
                     "KHR_animation_pointer",
                     "KHR_xmp_json_ld",
+                    INSTANCING,
                     DRACO,
                     MESHOPT[0],
                     MESHOPT[1],

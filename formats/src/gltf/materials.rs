@@ -81,6 +81,27 @@ struct TextureTransform {
 struct TextureJson {
     source: Option<usize>,
     sampler: Option<usize>,
+    extensions: Option<TextureSources>,
+}
+
+/// Images of a texture in further formats.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct TextureSources {
+    #[serde(rename = "EXT_texture_webp")]
+    webp: Option<TextureSource>,
+}
+
+#[derive(Debug, Deserialize)]
+struct TextureSource {
+    source: usize,
+}
+
+impl TextureJson {
+    /// The image, of a format that can be read.
+    fn image(&self) -> Option<usize> {
+        self.source.or_else(|| Some(self.extensions.as_ref()?.webp.as_ref()?.source))
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -120,14 +141,14 @@ impl Materials {
     pub fn external_images(&self) -> impl Iterator<Item = &str> {
         (0..self.materials.len()).filter_map(|material| {
             let texture = self.textures.get(self.texture_of(Some(material))?.index)?;
-            let uri = self.images.get(texture.source?)?.uri.as_deref()?;
+            let uri = self.images.get(texture.image()?)?.uri.as_deref()?;
             (!uri.starts_with("data:")).then_some(uri)
         })
     }
 
     /// The materials with their textures; those that no part `used` are left at the default.
     pub fn load(&self, used: &[usize], reader: &mut AccessorReader<'_>) -> Result<Vec<Material>> {
-        let mut loader = TextureLoader::default();
+        let mut loader = TextureLoader::new(reader.images);
         let mut loaded: Vec<Material> = vec![Material::default(); self.materials.len()];
         for &index in used {
             let Some(slot) = loaded.get_mut(index) else {
@@ -141,8 +162,8 @@ impl Materials {
             let Some(texture) = self.textures.get(info.index) else {
                 return Err(missing("texture", info.index, self.textures.len()));
             };
-            // The images of other formats are in extensions.
-            let source = texture.source.ok_or_else(|| unsupported_texture("a texture of another format"))?;
+            // The images of further formats are in extensions.
+            let source = texture.image().ok_or_else(|| unsupported_texture("a texture of another format"))?;
             let sampler = texture.sampler.and_then(|sampler| self.samplers.get(sampler));
             slot.wrap = sampler.map_or_else(Default::default, |s| [s.wrap_s, s.wrap_t].map(wrap));
             slot.texture = Some(loader.load(&source.to_string(), || self.image_bytes(source, reader))?);

@@ -8,30 +8,35 @@ mod accessor;
 mod buffers;
 mod container;
 mod document;
+mod instancing;
 mod materials;
 mod scene;
+mod skin;
 
 use self::container::Container;
 use self::document::Document;
 use self::materials::Materials;
 use crate::colored_mesh::{ColoredMesh, Content};
-use crate::resources::{ExternalResources, Resources, distinct};
+use crate::mesh::MeshReadOptions;
+use crate::resources::{ExternalResources, distinct};
 use sim3align_geometry::error::Result;
 
 /// Reads a `.glb` or `.gltf`: the nodes of the default scene (the first scene if there is no default;
 /// without scenes, all root nodes), with transforms applied and all triangles, strips and fans merged. Points and lines
-/// are ignored. Skins and morph targets are not applied.
+/// are ignored. Skins have the pose of their joints, and instances of `EXT_mesh_gpu_instancing` are copies. Morph targets are
+/// not applied.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`] for required
 /// extensions, [`ErrorCode::CompressedMesh`], [`ErrorCode::InvalidArgument`] for a buffer that `resources` lacks,
 /// and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
-pub(crate) fn read_gltf(bytes: &[u8], resources: Option<Resources<'_>>, content: Content) -> Result<ColoredMesh> {
+pub(crate) fn read_gltf(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result<ColoredMesh> {
     let container = Container::split(bytes)?;
     let document = Document::parse(container.json)?;
     document.check_extensions()?;
-    let buffers = buffers::Buffers::new(&document.buffers, container.binary, resources);
-    let mut reader = accessor::AccessorReader { document: &document, buffers, elements_read: 0 };
+    let buffers = buffers::Buffers::new(&document.buffers, container.binary, options.resources);
+    let mut reader =
+        accessor::AccessorReader { document: &document, buffers, images: options.images, elements_read: 0 };
     let materials = match content {
         Content::Shape => None,
         Content::ShapeAndColors => Some(Materials::parse(container.json)),

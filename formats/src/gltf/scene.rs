@@ -7,8 +7,9 @@ use glam::{DMat4, DQuat, DVec3};
 
 use crate::colored_mesh::ColoredMesh;
 use crate::gltf::accessor::AccessorReader;
-use crate::gltf::document::Document;
+use crate::gltf::document::{Document, Node};
 use crate::gltf::materials::Materials;
+use crate::gltf::skin::Skin;
 use crate::guard::{corrupt, missing};
 use crate::mesh_builder::MeshBuilder;
 use crate::painted_mesh::PaintedMesh;
@@ -24,16 +25,22 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
     };
     let mut builder = MeshBuilder::default();
     let mut skipped = 0;
-    for (index, transform) in instances(document)? {
-        let (Some(mesh), Some(slot)) = (document.meshes.get(index), parts.get_mut(index)) else {
-            return Err(missing("mesh", index, document.meshes.len()));
+    let (order, scene_from_node) = placed(document)?;
+    for index in order {
+        let (Some(node), Some(Some(transform))) = (document.nodes.get(index), scene_from_node.get(index)) else {
+            continue;
         };
-        let parts = match slot.take() {
+        let Some(mesh_index) = node.mesh else { continue };
+        let (Some(mesh), Some(slot)) = (document.meshes.get(mesh_index), parts.get_mut(mesh_index)) else {
+            return Err(missing("mesh", mesh_index, document.meshes.len()));
+        };
+        let skin = node.skin.map(|skin| Skin::read(skin, reader, &scene_from_node)).transpose()?;
+        let parts = match slot.take().filter(|_| skin.is_none()) {
             Some(parts) => parts,
             None => {
                 let mut parts = Vec::new();
                 for primitive in &mesh.primitives {
-                    match read_primitive(reader, primitive, materials.as_ref(), &mut problem)? {
+                    match read_primitive(reader, primitive, skin.as_ref(), materials.as_ref(), &mut problem)? {
                         Some(part) => parts.push(part),
                         None => skipped += 1,
                     }
@@ -41,10 +48,23 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
                 parts
             }
         };
-        // Instances of a mesh without triangles are not bounded by the limit on vertices.
-        reader.spend(mesh.primitives.len())?;
-        for part in slot.insert(parts) {
-            builder.append(part, &transform)?;
+        let copies = match &node.extensions.instancing {
+            Some(instances) => {
+                instances.transforms(reader)?.into_iter().map(|node_from_copy| *transform * node_from_copy).collect()
+            }
+            // A skin has the joints' places in the scene already.
+            None if skin.is_some() => vec![DMat4::IDENTITY],
+            None => vec![*transform],
+        };
+        for copy in copies {
+            // Instances of a mesh without triangles are not bounded by the limit on vertices.
+            reader.spend(mesh.primitives.len())?;
+            for part in &parts {
+                builder.append(part, &copy)?;
+            }
+        }
+        if skin.is_none() {
+            *slot = Some(parts);
         }
     }
     if builder.vertex_count() == 0 {
@@ -66,28 +86,25 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
     Ok(painted.colored(loaded))
 }
 
-/// The meshes of the scene, each with its transform to the scene.
-fn instances(document: &Document) -> Result<Vec<(usize, DMat4)>> {
+/// The nodes of the scene, from the roots on, and scene_from_node of each; `None` for nodes outside the scene.
+fn placed(document: &Document) -> Result<(Vec<usize>, Vec<Option<DMat4>>)> {
     let mut stack: Vec<(usize, DMat4)> = roots(document)?.into_iter().map(|node| (node, DMat4::IDENTITY)).collect();
     stack.reverse();
-    let mut visited = vec![false; document.nodes.len()];
-    let mut instances = Vec::new();
+    let mut scene_from_node = vec![None; document.nodes.len()];
+    let mut order = Vec::new();
     while let Some((index, scene_from_parent)) = stack.pop() {
-        let (Some(node), Some(visited)) = (document.nodes.get(index), visited.get_mut(index)) else {
+        let (Some(node), Some(place)) = (document.nodes.get(index), scene_from_node.get_mut(index)) else {
             return Err(missing("node", index, document.nodes.len()));
         };
-        if core::mem::replace(visited, true) {
+        let transform = scene_from_parent * parent_from_node(node);
+        if place.replace(transform).is_some() {
             let found = format!("node {index} twice in the hierarchy");
             return Err(corrupt("mesh", found, "a tree: each node below one parent, and no cycle"));
         }
-        let scene_from_node = scene_from_parent * parent_from_node(node);
-        if let Some(mesh) = node.mesh {
-            instances.push((mesh.value(), scene_from_node));
-        }
-        let children = node.children.iter().flatten().rev();
-        stack.extend(children.map(|child| (child.value(), scene_from_node)));
+        order.push(index);
+        stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
     }
-    Ok(instances)
+    Ok((order, scene_from_node))
 }
 
 fn roots(document: &Document) -> Result<Vec<usize>> {
@@ -97,21 +114,21 @@ fn roots(document: &Document) -> Result<Vec<usize>> {
         return Ok(scene.nodes.clone());
     }
     let mut is_root = vec![true; document.nodes.len()];
-    for child in document.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
-        if let Some(is_root) = is_root.get_mut(child.value()) {
+    for &child in document.nodes.iter().flat_map(|node| &node.children) {
+        if let Some(is_root) = is_root.get_mut(child) {
             *is_root = false;
         }
     }
     Ok(is_root.iter().enumerate().filter(|(_, is_root)| **is_root).map(|(i, _)| i).collect())
 }
 
-fn parent_from_node(node: &json::Node) -> DMat4 {
+fn parent_from_node(node: &Node) -> DMat4 {
     if let Some(matrix) = node.matrix {
         return DMat4::from_cols_array(&matrix.map(f64::from));
     }
     let vector = |xyz: Option<[f32; 3]>| xyz.map(|xyz| DVec3::from_array(xyz.map(f64::from)));
     let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| {
-        let q = DQuat::from_array(q.0.map(f64::from));
+        let q = DQuat::from_array(q.map(f64::from));
         // Some exporters write a zero quaternion for the identity.
         if q.length_squared() > 0.0 { q.normalize() } else { DQuat::IDENTITY }
     });
@@ -122,11 +139,12 @@ fn parent_from_node(node: &json::Node) -> DMat4 {
     )
 }
 
-/// The triangles of a primitive in its mesh's frame; `None` for points, lines and empty ones. `problem` is set if its
+/// The triangles of a primitive in its mesh's frame, those of a skin in the scene's frame; `None` for points, lines and empty ones. `problem` is set if its
 /// colours can't be read.
 fn read_primitive(
     reader: &mut AccessorReader<'_>,
     primitive: &json::mesh::Primitive,
+    skin: Option<&Skin>,
     materials: Option<&Materials>,
     problem: &mut Option<Error>,
 ) -> Result<Option<PaintedMesh>> {
@@ -146,7 +164,10 @@ fn read_primitive(
             reader.document.refuse_draco()?;
         }
     }
-    let positions = reader.positions(positions.value())?;
+    let mut positions = reader.positions(positions.value())?;
+    if let Some(skin) = skin {
+        skin.apply(&mut positions, primitive, reader)?;
+    }
     let corners = match primitive.indices {
         Some(indices) => reader.indices(indices.value())?,
         None => (0..positions.len() as u32).collect(),

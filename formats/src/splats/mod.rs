@@ -4,12 +4,14 @@
 mod density;
 mod gaussian;
 mod lattice;
+mod packed;
 mod ply_file;
 mod region;
 mod ridge;
 mod splat_file;
 mod surface_nets;
 
+use glam::DVec3;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 
@@ -18,8 +20,8 @@ use crate::painted_mesh::{Paint, PaintedMesh};
 use gaussian::Gaussian;
 
 /// Reads 3D Gaussians as a closed mesh of the surface that the opaque ones show, in the unit and axes of the file: a PLY
-/// file as the authors of 3D Gaussian Splatting write it, or else a `.splat` file. With colours, they are those of the
-/// constant harmonic.
+/// file of 3D or 2D Gaussian Splatting or of SuperSplat (compressed), or else a `.splat` file. With colours, they are those of
+/// the constant harmonic.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`], [`ErrorCode::NonFinite`],
@@ -52,5 +54,5 @@ fn surface_of(gaussians: Vec<Gaussian>, with_colors: bool) -> Result<ColoredMesh
     let mesh = Mesh::new(vertices.into_iter().map(|vertex| lattice.point(vertex)).collect(), triangles)?;
     let vertex_colors = if with_colors { colors } else { Vec::new() };
     let paint = Paint { vertex_colors, ..Paint::default() };
-    Ok(PaintedMesh { mesh, paint }.colored(Ok(Vec::new())))
+    Ok(PaintedMesh { mesh, paint, origin: DVec3::ZERO }.colored(Ok(Vec::new())))
 }

@@ -115,7 +115,7 @@ fn frame(folder: &Path, owners: &[PathBuf]) -> Result<CaseFrame> {
     }
     let mask = |folder: &PathBuf| {
         let file = found(folder, MASK_FILES)?;
-        file.map(|(path, bytes)| read_mask(&bytes).map_err(in_file(&path))).transpose()
+        file.map(|(path, bytes)| read_mask(&bytes).map(|mask| mask.object).map_err(in_file(&path))).transpose()
     };
     let truth = |folder: &PathBuf| -> Result<Option<Similarity>> {
         let file = truth_file(folder)?;
@@ -141,7 +141,8 @@ fn object(folder: &Path, frame: Option<&PathBuf>, class: &str) -> Result<CaseObj
     let (path, bytes) = required(folder, MESH_FILES)?;
     let resources = |uri: &str| read_beside(folder, uri);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let options = MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources) };
+    let options =
+        MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources), images: None };
     let read = read_colored_mesh(&bytes, &options).map_err(in_file(&path))?;
     if let Some(problem) = &read.problem {
         eprintln!("\n{}: without colours: {problem}", path.display());

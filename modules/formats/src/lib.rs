@@ -1,8 +1,8 @@
 //! The exports of the formats module: the readers of meshes, photos, masks, and depth maps as PNG and NPY.
 
-use js_sys::{Array, Reflect, Uint8Array};
+use js_sys::{Array, Function, Reflect, Uint8Array};
 use sim3align_formats::bindings::{
-    Options, depth_image, depth_options, image, mesh_arrays, object, string, to_bytes, to_js,
+    Options, decoded_image, depth_image, depth_options, image, mesh_arrays, object, set, string, to_bytes, to_js,
 };
 use sim3align_formats::colored_mesh::ColoredMesh;
 use sim3align_formats::depth::read_depth_image;
@@ -11,7 +11,7 @@ use sim3align_formats::mesh::{
     MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
     read_mesh as read_mesh_shape,
 };
-use sim3align_formats::photo::{read_exif as exif_from_bytes, read_photo};
+use sim3align_formats::photo::{read_exif as exif_from_bytes, read_photo, read_stored_photo};
 use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
@@ -26,12 +26,22 @@ export interface ReadMeshOptions {
   resources?: Record<string, FileBytes>;
   /** Whether to read the colours; `true` by default. */
   colors?: boolean;
+  /**
+   * Decodes a texture in a format that is neither PNG nor JPEG, such as KTX2: sRGB-encoded RGB pixels, row by row from the top left;
+   * `undefined` if it cannot.
+   */
+  decodeImage?: (bytes: Uint8Array) => { data: Uint8Array; width: number; height: number } | undefined;
 }
 
 /** A mesh that was read. */
 export interface MeshArrays {
-  /** x, y, z per vertex, in the file's unit and axes. */
+  /** x, y, z per vertex, in the file's unit and axes, relative to `origin`. */
   positions: Float32Array;
+  /**
+   * What was subtracted from the coordinates of the file: x, y, z of its centre, for coordinates that are too large for 32 bits,
+   * such as those of a map; otherwise missing.
+   */
+  origin?: [number, number, number];
   /** Three vertex indices per triangle. */
   indices: Uint32Array;
   /** The colours of the surface, if the file has any. */
@@ -106,6 +116,8 @@ export interface MaskImage {
   data: Uint8Array;
   width: number;
   height: number;
+  /** Which values of the file are the object: `values of 127.5 or more, of 0 to 255`. */
+  reading: string;
 }
 "#;
 
@@ -116,7 +128,7 @@ pub fn read_mesh(
     #[wasm_bindgen(unchecked_optional_param_type = "ReadMeshOptions")] options: &JsValue,
 ) -> Result<JsValue, JsValue> {
     let read = || {
-        let options = Options::new(options, &["format", "resources", "colors"])?;
+        let options = Options::new(options, &["format", "resources", "colors", "decodeImage"])?;
         let resources = options.get("resources");
         let find = |uri: &str| to_bytes("", &Reflect::get(resources.as_ref()?, &uri.into()).ok()?).ok();
         let format = match options.get("format") {
@@ -124,7 +136,9 @@ pub fn read_mesh(
             Some(format) => Some(MeshFormat::from_name(&string("options.format", &format)?)?),
         };
         let bytes = to_bytes("mesh", bytes)?;
-        let with_resources = MeshReadOptions { format, resources: Some(&find) };
+        let decoder = options.get("decodeImage").and_then(|decoder| decoder.dyn_into::<Function>().ok());
+        let decode = |bytes: &[u8]| decoder.as_ref().and_then(|decode| decoded_image(decode, bytes));
+        let with_resources = MeshReadOptions { format, resources: Some(&find), images: Some(&decode) };
         if options.get("colors").is_some_and(|colors| colors.is_falsy()) {
             return read_mesh_shape(&bytes, &with_resources).map(ColoredMesh::from);
         }
@@ -144,14 +158,19 @@ pub fn external_resources(
     Ok(object(&[("shape", names(&found.shape)), ("colors", names(&found.colors))]))
 }
 
-/// Reads a PNG or a JPEG as a photo: sRGB colours, turned as the EXIF data say; large ones are reduced.
+/// Reads a PNG or a JPEG as a photo: sRGB colours, turned as the EXIF data say, unless it is wanted as stored; large
+/// ones are reduced.
 #[wasm_bindgen(js_name = readImage, unchecked_return_type = "PhotoImage")]
-pub fn read_image(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
-    let photo = to_bytes("image", bytes).and_then(|bytes| read_photo(&bytes)).map_err(|error| to_js(&error))?;
+pub fn read_image(
+    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
+    as_stored: Option<bool>,
+) -> Result<JsValue, JsValue> {
+    let read = if as_stored == Some(true) { read_stored_photo } else { read_photo };
+    let photo = to_bytes("image", bytes).and_then(|bytes| read(&bytes)).map_err(|error| to_js(&error))?;
     Ok(image(&photo, Uint8Array::from(photo.data().as_flattened()).into()))
 }
 
-/// Reads the EXIF data of a PNG or a JPEG; a property is missing where they do not state it.
+/// Reads the EXIF data of a PNG or a JPEG, or of bytes that begin with their TIFF header; a property is missing where they do not state it.
 #[wasm_bindgen(js_name = readExif, unchecked_return_type = "Exif")]
 pub fn read_exif(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
     let exif = to_bytes("image", bytes).and_then(|bytes| exif_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
@@ -183,9 +202,11 @@ pub fn read_depth(
     read().map(|depth| depth_image(&depth)).map_err(|error| to_js(&error))
 }
 
-/// Reads a PNG or a `.npy` array as a mask.
+/// Reads a PNG, a JPEG or a `.npy` array as a mask.
 #[wasm_bindgen(js_name = readMask, unchecked_return_type = "MaskImage")]
 pub fn read_mask(#[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue) -> Result<JsValue, JsValue> {
     let mask = to_bytes("mask", bytes).and_then(|bytes| mask_from_bytes(&bytes)).map_err(|error| to_js(&error))?;
-    Ok(image(&mask, Uint8Array::from(mask.data()).into()))
+    let object = image(&mask.object, Uint8Array::from(mask.object.data()).into());
+    set(&object, "reading", mask.reading.into());
+    Ok(object)
 }

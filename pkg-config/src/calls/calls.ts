@@ -25,7 +25,8 @@ import type {
   ViewsAlignment,
 } from "../types/results.js";
 import { sourcesOf, withNotes } from "../types/results.js";
-import { isOfInput } from "../values/error.js";
+import { failure, isOfInput } from "../values/error.js";
+import { fromOrigin, type Origin, toOrigin } from "../values/origin.js";
 import { isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
@@ -87,7 +88,9 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   align: {
     module: "core",
     run: (job, context) =>
-      aligned(job, context, job.options, (input, context) => context.search("align", input, job.options)),
+      aligned(job, context, job.options, (input, context, origin) =>
+        context.search("align", input, toOrigin(job.options, origin)),
+      ),
   },
   alignPaper: {
     module: "registration",
@@ -102,7 +105,8 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     async run({ data, options: { transform, settings }, meshId }, context) {
       const { core: input, notes } = await resolveInput(data, context.modules, meshId);
       checkMeasurable(input);
-      return withNotes(await context.call("core", input, (c) => c.evaluate(input, transform, settings)), notes);
+      const [pose, known] = [toOrigin(transform, notes.origin), toOrigin(settings, notes.origin)];
+      return withNotes(await context.call("core", input, (c) => c.evaluate(input, pose, known)), notes);
     },
   },
   prepareMesh: {
@@ -125,7 +129,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const result = await then.search("alignViews", { ...read, views }, options);
       const ofView = (view: ViewAlignment, k: number) =>
         withNotes(withCalibration(view, calibrated[k]), notes[k] as InputNotes);
-      return { ...result, views: result.views.map(ofView) };
+      return { ...fromOrigin({ ...result, views: [] }, read.mesh.origin), views: result.views.map(ofView) };
     },
   },
   calibrate: {
@@ -151,7 +155,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const placed = await context.search("place", { ...data, mesh }, options);
       if (placed.alignment === undefined) return placed;
       // The view belongs to the scene, which reports what its files say.
-      const notes = { warnings: [], colors: isColored ? warnings : [] };
+      const notes = { warnings: [], colors: isColored ? warnings : [], ...withoutUndefined({ origin: mesh.origin }) };
       return { ...placed, alignment: withNotes(placed.alignment, notes) };
     },
   },
@@ -160,6 +164,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     async run({ data, options: { tracker, settings }, meshId }, context) {
       // Any frame may have a photo.
       const { mesh } = await readCoreMesh(data.mesh, context.modules, true, meshId);
+      if (mesh.origin !== undefined) throw farMesh(mesh.origin);
       const joint = await context.modules.joint();
       joint.callWith("input", { mesh }, (j) => {
         j.openTracker(tracker, { mesh }, settings);
@@ -221,6 +226,11 @@ export function dropMesh(id: number, modules: ModuleTable): void {
   for (const name of meshCaches) modules[name].loaded?.call((cache: Core | Joint) => cache.dropMesh(id));
 }
 
+function farMesh(origin: readonly number[]) {
+  const found = `coordinates around ${origin.map((x) => Math.round(x)).join(", ")}`;
+  return failure("INVALID_ARGUMENT", "mesh", found, "coordinates near zero", "Subtract the centre from the mesh file.");
+}
+
 /** What a tracker is called where its module keeps it. */
 export const trackerName = (id: number) => `tracker ${id}`;
 
@@ -229,17 +239,25 @@ async function aligned<T extends AlignResult>(
   { data, meshId }: Job<"align" | "alignPaper">,
   context: JobContext,
   known: object,
-  align: (input: CoreInput, context: JobContext) => Promise<T>,
+  align: (input: CoreInput, context: JobContext, origin: Origin | undefined) => Promise<T>,
 ): Promise<T> {
   const { core: read, notes } = await resolveInput(data, context.modules, meshId);
-  if (!isRaw(read)) return withNotes(await align(read, context), notes);
+  if (!isRaw(read)) return withNotes(await align(read, context, notes.origin), notes);
   const [first, then] = context.parts();
   const { mesh, mask, maskWidth, maskHeight, resizeMask, ...view } = read;
   const { id: _, ...own } = mesh;
-  const object = withoutUndefined({ mask, maskWidth, maskHeight, resizeMask, mesh: own, options: known });
+  const object = withoutUndefined({
+    mask,
+    maskWidth,
+    maskHeight,
+    resizeMask,
+    mesh: own,
+    options: toOrigin(known, notes.origin),
+  });
   const input = { ...view, objects: [object as CalibrationObject] };
   const calibrated = await first.task("joint", input, (j) => j.beginCalibrate(input, first.listener));
-  return withNotes(withCalibration(await align(inCalibration(read, calibrated), then), calibrated), notes);
+  const found = await align(inCalibration(read, calibrated), then, notes.origin);
+  return withNotes(withCalibration(found, calibrated), notes);
 }
 
 const withCalibration = <T extends object>(result: T, calibrated: Calibrated | undefined): T =>

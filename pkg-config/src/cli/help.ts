@@ -30,7 +30,8 @@ Frames and units
 
 const depthKinds = `
 Depth of models
-  --depth-kind says what the values are: metric, scale-invariant (times an unknown factor), affine-invariant (times an
+  --depth-kind says what the values are: metric, ray-distance (along the ray of each pixel, not the optical axis),
+  scale-invariant (times an unknown factor), affine-invariant (times an
   unknown factor, plus an unknown shift) or affine-invariant-disparity (the same of the inverse depth; near is large).
   Factor and shift are estimated with the pose. Lengths are then metric only if one is known: --known-extent, or a number
   as --scale. Otherwise they are in units of their own, also in JSON and in GLB files, and "depthCalibration" of the JSON

@@ -1,7 +1,9 @@
 /** Depth in metres from the values of depth models. */
+import { pinholeOf } from "../formats/pinhole.js";
 import { pixelsOf, pointKinds } from "../formats/pixels.js";
+import { depthOfRays } from "../formats/ray-distance.js";
 import type { DepthCalibration } from "../generated/types.js";
-import type { PixelArray } from "../input/types.js";
+import type { CameraInput, PixelArray } from "../input/types.js";
 import { finite, positive, record } from "../values/values.js";
 
 /** See `src/calibrate/calibration.rs`. */
@@ -32,6 +34,25 @@ export function depthFromDisparity(
   const scale = finite("calibration.scale", given.scale);
   const shift = finite("calibration.shift", given.shift ?? 0);
   return metresOf(image, (d) => 1 / (scale * d + shift));
+}
+
+/**
+ * Converts distances from the camera's centre, along the ray of each pixel, to depth along its optical axis. `align` does it
+ * itself with `depthKind: "ray-distance"`.
+ * @param distances as `{ data, width, height }`
+ * @param camera intrinsics in pixels of these
+ * @returns depth in the unit of the distances
+ *
+ * @example
+ * const depth = depthFromRayDistance({ data: rangeImage, width, height }, { fx, fy, cx, cy });
+ * @throws {@link Sim3AlignError} for arrays of the wrong type or length, and for a camera that is none
+ */
+export function depthFromRayDistance(
+  distances: PixelArray<Float32Array>,
+  camera: CameraInput,
+): PixelArray<Float32Array> {
+  const { data, width, height } = pixelsOf<Float32Array>("distances", distances, pointKinds);
+  return { data: depthOfRays(data, width, pinholeOf("camera", camera, { width, height })), width, height };
 }
 
 /**

@@ -181,7 +181,7 @@ function turnOf({ rotation }: Similarity): (quaternion: readonly number[]) => nu
 }
 
 const corrupt = (found: string, expected: string) =>
-  failure("CORRUPT_FILE", "splats", found, expected, "The file may be truncated: download or export it again.");
+  failure("CORRUPT_FILE", "splats", found, expected, "The file is damaged or incomplete: download or export it again.");
 
 const unsupported = (found: string, expected: string, remedy: string) =>
   failure("UNSUPPORTED_FORMAT", "splats", found, expected, remedy);

@@ -1,9 +1,10 @@
-/** Camera files of data sets and drivers: sim3align, BOP, ROS, RealSense and Open3D. */
+/** Camera files of data sets, drivers and apps. */
 
 import type { PinholeCamera } from "../input/types.js";
 import { describe, failure, invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/values.js";
-import { isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
+import { cameraText } from "./camera-text.js";
+import { isNumber, type JsonFile, namesIn, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";
 
@@ -29,6 +30,9 @@ export interface ReadCameraOptions {
   imageId?: string | number | undefined;
 }
 
+/** Longest text of a camera file. */
+const MAX_TEXT = 1 << 16;
+
 /** An image size, possibly incomplete. */
 interface StatedSize {
   width?: number | undefined;
@@ -42,18 +46,23 @@ export interface CameraFileNames {
   options: "" | "options.";
 }
 
-const forms = "{ fx, fy, cx, cy }, { K }, { fovYDeg }, intrinsic_matrix, a BOP scene_camera.json or a ROS CameraInfo";
+const forms =
+  "{ fx, fy, cx, cy }, { K } or another name of a 3 × 3, 3 × 4 or 4 × 4 matrix, { fovYDeg }, a BOP scene_camera.json, or the numbers as text";
 
 /**
- * Reads a camera file. Supported forms, each with or without `width` and `height`:
+ * Reads a camera file, JSON or text, each with or without the size of the image. Supported forms:
  *
- * - `{ fx, fy, cx, cy }`, with RealSense's `ppx`, `ppy` too; `depthScale` is metres per unit of depth, BOP's
- *   `depth_scale` millimetres per unit;
- * - `{ K }`, nine numbers (row-major) or three rows; or the bare array;
- * - Open3D's `intrinsic_matrix`, column-major;
- * - `{ fovYDeg }`, a vertical field of view in degrees, for square pixels;
- * - BOP's `scene_camera.json`, and one entry of it (`cam_K`);
- * - ROS' CameraInfo (`K` and `D`, or `k` and `d`).
+ * | form | written by |
+ * |---|---|
+ * | `fx`, `fy`, `cx`, `cy`; `ppx`, `ppy`; `fl_x`, `fl_y`; also below `intrinsics` | RealSense, Polycam, nerfstudio |
+ * | a matrix of 3 × 3, 3 × 4 or 4 × 4 numbers by rows or by columns: `K`, `cam_K`, `intrinsic(s)`, `camera_matrix`, … | BOP, FoundationPose, VGGT, OpenCV; by columns: Open3D, Record3D, ARKit |
+ * | four numbers `fx`, `fy`, `cx`, `cy`, or a bare matrix, as JSON or as text | `K.txt`, `cam_K.txt`, `intrinsics.txt` |
+ * | `fovYDeg`, a vertical field of view in degrees, for square pixels; nerfstudio's `camera_angle_x`, radians | |
+ * | one entry or all of BOP's `scene_camera.json`, with `imageId` | BOP |
+ * | ROS' CameraInfo; OpenCV's YAML; COLMAP's cameras.txt with one camera | |
+ *
+ * `depthScale` is metres per unit of depth, BOP's `depth_scale` millimetres per unit. Intrinsics for an image of another
+ * size but the same shape are scaled.
  */
 export function parseCameraFile(
   content: JsonFile,
@@ -62,27 +71,63 @@ export function parseCameraFile(
 ): CameraFile {
   const given = { width: side(names, "width", width), height: side(names, "height", height) };
   const id = idOf(names, imageId);
-  const json = parsedJson(names.file, content);
-  if (numbersIn(json, 9) !== null) return { ...fromMatrix(names.file, json), warnings: [] };
+  const json = cameraJson(names.file, content);
+  const bare = Array.isArray(json) ? matrixOf(json, names.file) : undefined;
+  if (bare !== undefined) return { ...inPixels(bare, sizeOf(given)), warnings: [] };
   if (!isRecord(json)) throw noCamera(names, "JSON that is not an object");
   const entry = sceneEntry(json, id, names) ?? json;
-  const own = { width: wholeIn(entry.width), height: wholeIn(entry.height) };
-  checkCameraSize(names.file, own, given);
+  const own = statedSize(entry);
+  const image = sizeOf(given);
   const depthScale = depthScaleOf(entry, names);
+  const intrinsics = inPixels(intrinsicsOf(entry, own ?? image, names), own ?? image);
+  const scaled =
+    own === undefined || image === undefined ? undefined : scaledCamera(names.file, intrinsics, own, image);
   return {
-    ...intrinsicsOf(entry, sizeOf(own) ?? sizeOf(given), names),
-    ...(own.width === undefined ? {} : { width: own.width }),
-    ...(own.height === undefined ? {} : { height: own.height }),
+    ...(scaled ?? intrinsics),
+    ...(scaled === undefined ? own : image),
     ...(depthScale === undefined ? {} : { depthScale }),
     warnings: isDistorted(entry) ? [distortion] : [],
   };
+}
+
+/** The JSON of a camera file, or that with the meaning of its text. */
+function cameraJson(argument: string, content: JsonFile): unknown {
+  try {
+    return parsedJson(argument, content);
+  } catch (error) {
+    const text = typeof content === "string" ? content : new TextDecoder().decode(content as Uint8Array);
+    const read = text.length < MAX_TEXT ? cameraText(text) : undefined;
+    if (read === undefined) throw error;
+    return read;
+  }
+}
+
+/**
+ * Intrinsics for an image that is `image` instead of `own` pixels large.
+ * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for sizes of other shapes: one of the images is cropped
+ */
+export function scaledCamera(argument: string, camera: Pinhole, own: ImageSize, image: ImageSize): Pinhole {
+  const [x, y] = [image.width / own.width, image.height / own.height];
+  // Sides are rounded to whole pixels.
+  const rounding = 1 / Math.min(own.width, own.height, image.width, image.height);
+  if (Math.abs(Math.log(x / y)) <= 2 * rounding) {
+    const { fx, fy, cx, cy } = camera;
+    return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5 };
+  }
+  throw failure(
+    "SIZE_MISMATCH",
+    argument,
+    `intrinsics for ${own.width} × ${own.height} pixels, but an image of ${image.width} × ${image.height}`,
+    "intrinsics of the same image, or of one of the same shape",
+    "Subtract from cx and cy where the crop begins, and leave out width and height.",
+  );
 }
 
 /** The scale of integer depth in a camera file, if the image size is still unknown. */
 export function depthScaleIn(content: JsonFile, imageId?: string | number): number | undefined {
   try {
     // Any size is valid here: only a field of view needs it, and only for the intrinsics.
-    const json = parsedJson("camera", content);
+    const json = cameraJson("camera", content);
     if (!isRecord(json)) return undefined;
     const names: CameraFileNames = { file: "camera", options: "options." };
     return depthScaleOf(sceneEntry(json, idOf(names, imageId), names) ?? json, names);
@@ -90,20 +135,6 @@ export function depthScaleIn(content: JsonFile, imageId?: string | number): numb
     // The call with the image size reports the error.
     return undefined;
   }
-}
-
-/** Rejects intrinsics for an image of another size, if both sizes are known. */
-export function checkCameraSize(argument: string, own: StatedSize, image: StatedSize): void {
-  if (image.width === undefined || image.height === undefined) return;
-  const { width = image.width, height = image.height } = own;
-  if (width === image.width && height === image.height) return;
-  throw failure(
-    "SIZE_MISMATCH",
-    argument,
-    `intrinsics for ${width} × ${height} pixels, but an image of ${image.width} × ${image.height}`,
-    "intrinsics of the same image",
-    "Scale fx, cx by the ratio of the widths and fy, cy by that of the heights, or pass the full-size depth.",
-  );
 }
 
 const distortion =
@@ -131,21 +162,32 @@ function sceneEntry(
   throw failure("INVALID_ARGUMENT", `${names.options}imageId`, found, expected, remedy);
 }
 
+/** Names of a matrix of intrinsics, or of an object with them. */
+const matrixNames = [
+  ...[
+    "K",
+    "k",
+    "cam_K",
+    "camera_K",
+    "intrinsic",
+    "intrinsics",
+    "intrinsic_matrix",
+    "intrinsics_matrix",
+    "intrinsicMatrix",
+  ],
+  ...["camera_matrix", "cameraMatrix", "camera_intrinsic", "camera_intrinsics", "cameraIntrinsics", "color_intrinsics"],
+];
+
 function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefined, names: CameraFileNames): Pinhole {
   const invalid = (found: string) => noCamera(names, found);
-  const matrixName = ["K", "k", "cam_K"].find((name) => name in entry);
+  const matrixName = matrixNames.find((name) => name in entry);
   if (matrixName !== undefined) {
-    const K = numbersIn(entry[matrixName], 9);
-    if (K === null) throw invalid(`${matrixName} that is not 3 × 3 numbers`);
-    return fromMatrix(names.file, K);
-  }
-  if ("intrinsic_matrix" in entry) {
-    const columns = numbersIn(entry.intrinsic_matrix, 9);
-    if (columns === null) throw invalid("intrinsic_matrix that is not 9 numbers");
-    return fromMatrix(
-      names.file,
-      [0, 3, 6, 1, 4, 7, 2, 5, 8].map((i) => columns[i]),
-    );
+    const matrix = entry[matrixName];
+    const numbers = isRecord(matrix) ? matrix.data : matrix;
+    if (isRecord(matrix) && numbers === undefined) return intrinsicsOf(matrix, size, names);
+    const found = Array.isArray(numbers) ? matrixOf(numbers, names.file) : undefined;
+    if (found === undefined) throw invalid(`${matrixName} that is not 3 × 3 numbers`);
+    return found;
   }
   const number = (...aliases: string[]): number | undefined => {
     const name = aliases.find((alias) => alias in entry);
@@ -154,16 +196,51 @@ function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefine
     if (isNumber(value)) return value;
     throw invalid(`${name} that is not a number`);
   };
-  const [fx, fy, cx, cy] = [number("fx"), number("fy"), number("cx", "ppx"), number("cy", "ppy")];
+  const [fx, fy] = [number("fx", "fl_x"), number("fy", "fl_y")];
+  const [cx, cy] = [number("cx", "ppx"), number("cy", "ppy")];
   if (fx !== undefined && fy !== undefined && cx !== undefined && cy !== undefined) {
     return checkedPinhole(names.file, { fx, fy, cx, cy });
   }
   const fovYDeg = number("fovYDeg", "fov_y_deg");
-  if (fovYDeg === undefined) throw invalid(`an object with ${namesIn(entry)}`);
-  if (size !== undefined) return fromFieldOfView(names.file, fovYDeg, size);
+  const angleX = number("camera_angle_x");
+  if (fovYDeg === undefined && angleX === undefined) throw invalid(`an object with ${namesIn(entry)}`);
+  if (size !== undefined) {
+    if (fovYDeg !== undefined) return fromFieldOfView(names.file, fovYDeg, size);
+    const turned = { width: size.height, height: size.width };
+    const { fx: f } = fromFieldOfView(names.file, ((angleX as number) * 180) / Math.PI, turned);
+    return { fx: f, fy: f, cx: 0.5 * (size.width - 1), cy: 0.5 * (size.height - 1) };
+  }
   const remedy = "Pass the width and height of the depth map in pixels.";
   const found = "a field of view without image size";
   throw failure("INVALID_ARGUMENT", `${names.options}width`, found, "width and height", remedy);
+}
+
+/** The intrinsics in four numbers, or in a matrix by rows or by columns; `undefined` for anything else. */
+function matrixOf(value: readonly unknown[], file: string): Pinhole | undefined {
+  const numbers: unknown[] = value.flat(3);
+  if (!numbers.every(isNumber)) return undefined;
+  if (numbers.length === 4) {
+    const [fx, fy, cx, cy] = numbers;
+    return checkedPinhole(file, { fx, fy, cx, cy });
+  }
+  // By columns, what is a row here is a column.
+  const columns = { 9: 3, 12: Array.isArray(value[0]) && value.length !== 3 ? undefined : 4, 16: 4 }[numbers.length];
+  if (columns === undefined) return undefined;
+  const square = [0, 1, 2].flatMap((row) => [0, 1, 2].map((column) => numbers[columns * row + column] as number));
+  const transposed = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((i) => square[i] as number);
+  const isByColumns = (square[6] !== 0 || square[7] !== 0) && square[2] === 0 && square[5] === 0;
+  return fromMatrix(file, isByColumns ? transposed : square);
+}
+
+/** Largest principal point and focal length of intrinsics in image sizes; those in pixels are larger. */
+const maxNormalised = { center: 2, focal: 20 } as const;
+
+/** Intrinsics in pixels. Those in image sizes, as MoGe writes them, count from the outer edge of the first pixel. */
+function inPixels({ fx, fy, cx, cy }: Pinhole, size: ImageSize | undefined): Pinhole {
+  const isNormalised = Math.max(cx, cy) < maxNormalised.center && Math.max(fx, fy) < maxNormalised.focal;
+  if (!isNormalised || size === undefined) return { fx, fy, cx, cy };
+  const { width, height } = size;
+  return { fx: fx * width, fy: fy * height, cx: cx * width - 0.5, cy: cy * height - 0.5 };
 }
 
 /** The error for JSON that is not the content of a camera file. */
@@ -189,6 +266,14 @@ function isDistorted({ D, d = D }: Record<string, unknown>): boolean {
 
 const wholeIn = (value: unknown) =>
   Number.isSafeInteger(value) && (value as number) >= 0 ? (value as number) : undefined;
+
+/** The size of the image that the intrinsics belong to, if the file states it. */
+function statedSize(entry: Record<string, unknown>): ImageSize | undefined {
+  const nested = matrixNames.map((name) => entry[name]).find(isRecord);
+  const of = (...aliases: string[]) =>
+    [entry, nested ?? {}].flatMap((object) => aliases.map((name) => wholeIn(object[name]))).find((value) => value);
+  return sizeOf({ width: of("width", "w", "image_width"), height: of("height", "h", "image_height") });
+}
 
 const sizeOf = ({ width, height }: StatedSize): ImageSize | undefined =>
   width === undefined || height === undefined ? undefined : { width, height };

@@ -27,7 +27,13 @@ export function parsedJson(argument: string, file: JsonFile): unknown {
     });
   } catch (cause) {
     const found = `text that is not JSON: ${cause instanceof Error ? cause.message : cause}`;
-    throw failure("CORRUPT_FILE", argument, found, "JSON", "The file may be truncated: download or export it again.");
+    throw failure(
+      "CORRUPT_FILE",
+      argument,
+      found,
+      "JSON",
+      "The file is damaged or incomplete: download or export it again.",
+    );
   }
 }
 

@@ -27,7 +27,8 @@ export function holdsGaussians(bytes: Uint8Array, format: unknown): boolean {
   const mayBe = (other: string) => format === undefined || format === null || format === other;
   if (isPly(bytes)) {
     const header = mayBe("ply") ? (plyHeader(bytes)?.text ?? "") : "";
-    return ["f_dc_0", "opacity", "scale_0", "rot_0"].every((name) => new RegExp(`\\s${name}\\s`).test(`${header}\n`));
+    const has = (name: string) => new RegExp(`\\s${name}\\s`).test(`${header}\n`);
+    return has("packed_position") || ["f_dc_0", "opacity", "scale_0", "rot_0"].every(has);
   }
   return mayBe("splat") && isSplatFile(bytes);
 }

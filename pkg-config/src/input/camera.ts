@@ -1,7 +1,7 @@
 /** The camera of an input: intrinsics or a camera file. */
 
-import { checkCameraSize, depthScaleIn, parseCameraFile } from "../formats/camera-file.js";
-import { type Pinhole, pinholeOf } from "../formats/pinhole.js";
+import { depthScaleIn, parseCameraFile, scaledCamera } from "../formats/camera-file.js";
+import { doubtOfSize, type Pinhole, pinholeOf } from "../formats/pinhole.js";
 import type { ImageSize } from "../formats/pixels.js";
 import type { Warning } from "../generated/types.js";
 import { invalidArgument } from "../values/error.js";
@@ -73,11 +73,14 @@ function statedCamera(camera: unknown): Camera {
     resolve(imageWidth, imageHeight, hints = {}) {
       const size = sizeOf(imageWidth, imageHeight);
       if (size === undefined) return { camera: undefined, warnings: [] };
-      checkCameraSize("camera", { width, height }, size);
-      const given = () => ({
-        camera: pinholeOf("camera", camera, size),
-        warnings: stringsIn(warnings).map(notPinhole),
-      });
+      const own = sizeOf(width, height);
+      const given = () => {
+        const stated = pinholeOf("camera", camera, own ?? size);
+        return {
+          camera: own === undefined ? stated : scaledCamera("camera", stated, own, size),
+          warnings: stringsIn(warnings).map(notPinhole),
+        };
+      };
       const found: ResolvedCamera = isGiven ? given() : foundCamera(size, hints);
       return stated === undefined ? found : { ...found, focalDeviation: stated || undefined };
     },
@@ -105,8 +108,11 @@ async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
       const size = sizeOf(width, height);
       if (size === undefined) return { camera: undefined, warnings: [] };
       const options = { ...size, imageId: imageId as string | undefined };
-      const { fx, fy, cx, cy, warnings } = parseCameraFile(content, options, { file: "cameraFile", options: "" });
-      return { camera: { fx, fy, cx, cy }, warnings: warnings.map(notPinhole) };
+      const file = parseCameraFile(content, options, { file: "cameraFile", options: "" });
+      const { fx, fy, cx, cy, warnings } = file;
+      const doubt = file.width === undefined ? doubtOfSize(file, size) : undefined;
+      const doubts: Warning[] = doubt === undefined ? [] : [{ code: "CAMERA_DOUBTFUL", message: doubt }];
+      return { camera: { fx, fy, cx, cy }, warnings: [...warnings.map(notPinhole), ...doubts] };
     },
   };
 }

@@ -71,7 +71,7 @@ function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDep
   if (isAffineInvariant(depthKind)) return `none (${depthKind})`;
   // Of anything else than a number, the core says what is wrong.
   if (typeof depthScale === "number") return `${depthScale} m (depthScale)`;
-  if (depthKind !== "metric") return `unknown (${depthKind})`;
+  if (depthKind === "scale-invariant") return `unknown (${depthKind})`;
   if (isFloats(data)) return "metres (float values, assumed)";
   return typeof integerDepthScale === "number"
     ? `${integerDepthScale} m (camera file)`
@@ -93,7 +93,9 @@ export function decodeDepth(
   readers: FileReaders,
   rename?: (argument: string) => string,
 ): Promise<DepthImage> {
-  const options = withoutUndefined(reading);
+  // Distances along rays are read like other lengths; converting them needs the camera.
+  const { depthKind, ...scales } = reading;
+  const options = withoutUndefined({ ...scales, depthKind: depthKind === "ray-distance" ? undefined : depthKind });
   const beginning = String.fromCharCode(...bytes.subarray(0, 4));
   if (ofDepthModels.some((magic) => beginning.startsWith(magic))) {
     return callReader(readers.depthFiles, argument, bytes, (module) => module.readDepthFile(bytes, options), rename);

@@ -8,12 +8,18 @@ import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isB
 import type { SizedArray } from "./depth.js";
 
 const kinds =
-  "a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a PNG or a .npy file";
+  "a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a PNG, a JPEG or a .npy file";
+
+/** A mask for the core. */
+export interface ReadMask extends SizedArray<Bytes> {
+  /** Which values of its file are the object, for people. */
+  reading?: string;
+}
 
 /** The pixels of a mask.
  * @param pixels the number of pixels of the depth map
  */
-export async function readMask(mask: unknown, pixels: number, formats: LoadFormats): Promise<SizedArray<Bytes>> {
+export async function readMask(mask: unknown, pixels: number, formats: LoadFormats): Promise<ReadMask> {
   if (isPolygons(mask)) throw polygons("mask");
   if (isRecord(mask)) {
     if (isPolygons(mask.segmentation)) throw polygons("mask.segmentation");

@@ -9,9 +9,10 @@ import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
 import type { ColorSamples, CoreMesh } from "./prepared-mesh.js";
 import type { MeshFile } from "./types.js";
+import { type DecodeImage, imageDecoder } from "./webp.js";
 
 /** The readers of mesh files. */
-export type MeshReaders = Pick<FileReaders, "formats" | "splats">;
+export type MeshReaders = Pick<FileReaders, "formats" | "splats" | "webp">;
 
 /**
  * Reads a mesh file of any supported format. The module for 3D Gaussians is loaded only for these.
@@ -19,7 +20,7 @@ export type MeshReaders = Pick<FileReaders, "formats" | "splats">;
  * @param options of the formats module, which checks them
  * @param rename of the arguments in errors of the reader
  */
-export function decodeMesh(
+export async function decodeMesh(
   argument: string,
   bytes: Uint8Array,
   options: object,
@@ -31,7 +32,9 @@ export function decodeMesh(
     const withColors = colors === undefined || Boolean(colors);
     return callReader(readers.splats, argument, bytes, (module) => module.readSplats(bytes, withColors), rename);
   }
-  const read = options as ReadMeshOptions;
+  const { resources, decodeImage } = options as { resources?: unknown; decodeImage?: DecodeImage };
+  const decoder = colors === false ? undefined : await imageDecoder(bytes, resources, decodeImage, readers);
+  const read = { ...options, ...withoutUndefined({ decodeImage: decoder }) } as ReadMeshOptions;
   return callReader(readers.formats, argument, bytes, (module) => module.readMesh(bytes, read), rename);
 }
 
@@ -87,7 +90,8 @@ function arrays({ positions, indices, ...more }: Record<string, unknown>, withCo
   }
   // Checked in any case: whether colours are wrong must not depend on the photo.
   const colors = colorsOf(more, positions.length / 3);
-  const found = withColors ? { positions, ...colors } : { positions };
+  const origin = Array.isArray(more.origin) ? { origin: more.origin as number[] } : {};
+  const found = { positions, ...origin, ...(withColors ? colors : {}) };
   if (indices === undefined || indices === null) return found;
   if (isTypedArray<Uint32Array | Uint16Array>(indices, "Uint32Array", "Uint16Array")) return { ...found, indices };
   const expected = "a Uint32Array or a Uint16Array, three indices per triangle";

@@ -1,21 +1,22 @@
 /** The photo of an input. */
 
 import type { Exif } from "../formats/exif-focal.js";
-import type { LoadFormats } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray, wrongKind } from "../values/values.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { type Photo, photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";
+import type { PixelArray } from "./types.js";
+import { type ImageReaders, isWebp } from "./webp.js";
 
 const kinds =
-  "a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a PNG or JPEG file";
+  "a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a PNG, JPEG or WebP file";
 
 /**
  * The pixels of a photo, if there is one.
  * @param size the size of the depth map, which is that of a bare array
  */
-export async function readPhoto(image: unknown, size: StatedSize, formats: LoadFormats): Promise<Photo | undefined> {
+export async function readPhoto(image: unknown, size: StatedSize, readers: ImageReaders): Promise<Photo | undefined> {
   if (image === undefined || image === null) return undefined;
   if (isRecord(image) && "data" in image) {
     const { data, width, height } = image;
@@ -27,14 +28,45 @@ export async function readPhoto(image: unknown, size: StatedSize, formats: LoadF
   if (bytes === null) throw wrongKind("image", image, kinds, "Uint8Array");
   if (bytes === image && !beginsLikeImage(bytes) && channelsOf(bytes, size) !== undefined)
     return pixels("", bytes, size);
-  return callReader(formats, "image", bytes, (readers) => readers.readImage(bytes));
+  const photo = await decodePhoto(bytes, readers);
+  if (isShapeOf(photo, size) || !isShapeOf({ width: photo.height, height: photo.width }, size)) return photo;
+  // EXIF data turn the photo, but the depth map is as the sensor read it.
+  const stored = await decodePhoto(bytes, readers, true);
+  return isShapeOf(stored, size) ? stored : photo;
 }
 
+/**
+ * The pixels of an image file.
+ * @param asStored whether they are wanted without the orientation of the EXIF data
+ */
+export function decodePhoto(
+  bytes: Uint8Array,
+  { formats, webp }: ImageReaders,
+  asStored = false,
+): Promise<PixelArray<Uint8Array>> {
+  return isWebp(bytes)
+    ? callReader(webp, "image", bytes, (reader) => reader.decodeWebp(bytes, asStored))
+    : callReader(formats, "image", bytes, (reader) => reader.readImage(bytes, asStored));
+}
+
+/** The EXIF data of an image file. */
+export async function decodeExif(bytes: Uint8Array, { formats, webp }: ImageReaders): Promise<Exif> {
+  const data = isWebp(bytes)
+    ? (await callReader(webp, "image", bytes, (reader) => reader.decodeWebp(bytes, true))).exif
+    : bytes;
+  if (data === undefined) return { orientation: 1 };
+  return callReader(formats, "image", data, (reader) => reader.readExif(data));
+}
+
+/** Whether an image has the shape of another one. */
+const isShapeOf = (image: StatedSize, { width, height }: StatedSize): boolean =>
+  Math.abs(Math.log((Number(image.width) * Number(height)) / (Number(image.height) * Number(width)))) < 0.05;
+
 /** The EXIF data of a photo, if it is a file. */
-export async function readPhotoExif(image: unknown, formats: LoadFormats): Promise<Exif | undefined> {
+export async function readPhotoExif(image: unknown, readers: ImageReaders): Promise<Exif | undefined> {
   const bytes = isTypedArray(image, "Uint8ClampedArray") ? null : await fileBytes("image", image);
   if (bytes === null || !beginsLikeImage(bytes)) return undefined;
-  return callReader(formats, "image", bytes, (readers) => readers.readExif(bytes));
+  return decodeExif(bytes, readers);
 }
 
 const channelsOf = ({ length }: Bytes, { width, height }: StatedSize): number | undefined =>

@@ -21,6 +21,8 @@ export interface CoreMesh {
   colors?: Uint8Array;
   /** Colours at points of the surface, instead. */
   samples?: ColorSamples;
+  /** What a reader has subtracted from the coordinates of the file; see `origin.ts`. */
+  origin?: readonly number[];
   /** The id under which the core caches the mesh. If it is cached, the arrays are not read. */
   id?: number;
 }

@@ -26,7 +26,8 @@ export async function resolveInput(
   checkInput(input);
   const frame = await frameOf(input, readers, true);
   const { mesh, warnings } = await readCoreMesh(input.mesh, readers, frame.core.image !== undefined, meshId);
-  return { core: { ...frame.core, mesh } as CoreInput, notes: withColors(frame, warnings) };
+  const notes = { ...withColors(frame, warnings), ...withoutUndefined({ origin: mesh.origin }) };
+  return { core: { ...frame.core, mesh } as CoreInput, notes };
 }
 
 /** Resolves the view of an input, whose mask and mesh are not read. */
@@ -70,7 +71,9 @@ export async function resolveViews(input: unknown, readers: FileReaders, meshId?
   const isColored = frames.some(({ core }) => core.image !== undefined);
   const read = await readCoreMesh(mesh, readers, isColored, meshId);
   const core = { mesh: read.mesh, views: frames.map((frame) => frame.core) };
-  return { core, notes: frames.map((frame) => withColors(frame, read.warnings)) };
+  const { origin } = read.mesh;
+  const notes = frames.map((frame) => ({ ...withColors(frame, read.warnings), ...withoutUndefined({ origin }) }));
+  return { core, notes };
 }
 
 async function viewOf(view: unknown, index: number, readers: FileReaders): Promise<Resolved<CoreFrame>> {
@@ -95,7 +98,8 @@ async function frameOf(
   if (!isMasked) return { core: withoutUndefined(frame) as CoreFrame, notes };
   const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
   const masked = { ...frame, mask: mask.data, maskWidth: mask.width, maskHeight: mask.height };
-  return { core: withoutUndefined(masked) as CoreFrame, notes };
+  const maskNotes = withoutUndefined({ maskReading: mask.reading });
+  return { core: withoutUndefined(masked) as CoreFrame, notes: { ...notes, ...maskNotes } };
 }
 
 /** Colours of a mesh matter only where there is a photo to compare them with. */

@@ -7,15 +7,21 @@ import type { Sim3Like } from "./sim3.js";
  * What the values of a depth map are:
  *
  * - `"metric"`: distances along the optical axis in a known unit;
+ * - `"ray-distance"`: distances from the camera's centre, along the ray of each pixel, in a known unit;
  * - `"scale-invariant"`: such distances times an unknown factor;
  * - `"affine-invariant"`: such distances times an unknown factor, plus an unknown shift;
  * - `"affine-invariant-disparity"`: inverse distances times an unknown factor, plus an unknown shift; near is large.
  */
-export type DepthKind = "metric" | "scale-invariant" | "affine-invariant" | "affine-invariant-disparity";
+export type DepthKind =
+  | "metric"
+  | "ray-distance"
+  | "scale-invariant"
+  | "affine-invariant"
+  | "affine-invariant-disparity";
 
-/** The kinds, the default first; the readers and the aligner know the same. */
+/** The kinds, the default first. The readers and the aligner know all but `"ray-distance"`, which needs the camera. */
 export const depthKinds: readonly DepthKind[] = [
-  ...(["metric", "scale-invariant", "affine-invariant", "affine-invariant-disparity"] as const),
+  ...(["metric", "ray-distance", "scale-invariant", "affine-invariant", "affine-invariant-disparity"] as const),
 ];
 
 /** Whether values of this kind have no zero: those that are zero or negative are values, and 8 bits may hold them. */

@@ -1,4 +1,5 @@
 /** Reads what a camera saw: the depth map or the point map, the photo and the camera. */
+import { depthOfRays } from "../formats/ray-distance.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
@@ -15,6 +16,9 @@ export interface Resolved<T> {
   core: T;
   notes: InputNotes;
 }
+
+/** Metres per unit of integer depth of which nothing else is known. */
+const DEFAULT_SCALE = 0.001;
 
 /** The properties of a view. */
 export const viewProperties: readonly string[] = [
@@ -51,17 +55,19 @@ async function depthView(input: Record<string, unknown>, readers: FileReaders): 
   const isFile = data !== input.depth && !isRecord(input.depth);
   const isFloat = isTypedArray(data, "Float32Array");
   // Integers of an unknown unit are read as they are.
-  const integerScale = depthKind === "metric" ? integerDepthScale : 1;
-  const image = await readPhoto(input.image, sides, readers.formats);
-  const exif = camera.isGiven ? undefined : await readPhotoExif(input.image, readers.formats);
+  const isMetric = depthKind === "metric" || depthKind === "ray-distance";
+  const integerScale = isMetric ? integerDepthScale : 1;
+  const image = await readPhoto(input.image, sides, readers);
+  const exif = camera.isGiven ? undefined : await readPhotoExif(input.image, readers);
   const hints = { inDepth, photo: exif && image && { exif, size: image } };
-  const read = {
-    depth: data,
-    // The readers have already scaled the values of a file.
-    depthScale: isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale)),
-    depthKind: depthKind === "metric" ? undefined : depthKind,
-  };
-  return viewOf(read, sides, image, camera.resolve(sides.width, sides.height, hints), unit);
+  const resolved = camera.resolve(sides.width, sides.height, hints);
+  // The readers have already scaled the values of a file.
+  const scale = isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale));
+  const read =
+    depthKind === "ray-distance" && resolved.camera !== undefined
+      ? { depth: depthOfRays(data, sides.width as number, resolved.camera, scale ?? (isFloat ? 1 : DEFAULT_SCALE)) }
+      : { depth: data, depthScale: scale, depthKind: isMetric ? undefined : depthKind };
+  return viewOf(read, sides, image, resolved, unit);
 }
 
 async function pointMapView(
@@ -74,10 +80,10 @@ async function pointMapView(
     const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
     throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
   }
-  const kinds = depthKinds.filter((kind) => !isAffineInvariant(kind));
+  const kinds = depthKinds.filter((kind) => !isAffineInvariant(kind) && kind !== "ray-distance");
   const depthKind = oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT");
   const { data, ...sides } = readPointMap(pointMap, input as { width?: number; height?: number });
-  const image = await readPhoto(input.image, sides, readers.formats);
+  const image = await readPhoto(input.image, sides, readers);
   const isMetric = depthKind === "metric";
   const read = { pointMap: data, depthKind: isMetric ? undefined : depthKind };
   const camera = await cameraOf(input);

@@ -16,7 +16,7 @@ import type {
 } from "../generated/types.js";
 import type { CoreFrame, CoreInput, CoreView, CoreViews } from "../input/core-input.js";
 import type { CoreMesh } from "../input/prepared-mesh.js";
-import type { DepthImage } from "../input/types.js";
+import type { DepthImage, PixelArray } from "../input/types.js";
 import type { Support } from "../scene/types.js";
 import type { MeshArrays } from "../wasm/formats.js";
 
@@ -26,6 +26,7 @@ export interface Exports {
   formats: Formats;
   depthFiles: DepthFiles;
   splats: Splats;
+  webp: Webp;
   joint: Joint;
   registration: Registrar;
 }
@@ -110,6 +111,11 @@ export interface DepthFiles {
 /** The maker of meshes of 3D Gaussians. */
 export interface Splats {
   readSplats(bytes: Uint8Array, withColors: boolean): MeshArrays;
+}
+
+/** The decoder of WebP. */
+export interface Webp {
+  decodeWebp(bytes: Uint8Array, asStored: boolean): PixelArray<Uint8Array> & { exif?: Uint8Array };
 }
 
 /** The module with `register`, `estimateSim3`, the preset `paper` and errors of BOP. */

@@ -30,6 +30,7 @@ export const modulesBy = (load: <N extends ModuleName>(name: N) => Promise<Loade
   formats: () => load("formats"),
   depthFiles: () => load("depthFiles"),
   splats: () => load("splats"),
+  webp: () => load("webp"),
   joint: () => load("joint"),
   registration: () => load("registration"),
 });

@@ -44,6 +44,8 @@ export interface WasmModules {
   depthFiles?: WasmSource | undefined;
   /** The splats module, for meshes as 3D Gaussians: `splats_bg.wasm`. */
   splats?: WasmSource | undefined;
+  /** The WebP module, for photos and textures in that format: `webp_bg.wasm`. */
+  webp?: WasmSource | undefined;
   /** The joint module, for `alignScene`, `alignViews` and `track`: `joint_bg.wasm`. */
   joint?: WasmSource | undefined;
   /** The registration module, for `register`, `estimateSim3` and `preset: "paper"`: `registration_bg.wasm`. */

@@ -1,5 +1,5 @@
 /** The modules that read files, each loaded when a file first needs it. */
-import type { DepthFiles, Formats, Splats } from "./exports.js";
+import type { DepthFiles, Formats, Splats, Webp } from "./exports.js";
 import { type Modules, WasmModule } from "./module.js";
 
 export const formatsModule = /* @__PURE__ */ new WasmModule<Formats>(
@@ -20,11 +20,22 @@ const splatsModule = /* @__PURE__ */ new WasmModule<Splats>(
   () => import("../wasm/splats.js"),
 );
 
+const webpModule = /* @__PURE__ */ new WasmModule<Webp>(
+  "webp",
+  () => new URL("../wasm/webp_bg.wasm", import.meta.url),
+  () => import("../wasm/webp.js"),
+);
+
 /** The modules of the readers, shared by all aligners of this realm. */
-export const readerModules = { formats: formatsModule, depthFiles: depthFilesModule, splats: splatsModule };
+export const readerModules = {
+  formats: formatsModule,
+  depthFiles: depthFilesModule,
+  splats: splatsModule,
+  webp: webpModule,
+};
 
 /** Loads each module when a file first needs it. */
-export type FileReaders = Pick<Modules, "formats" | "depthFiles" | "splats">;
+export type FileReaders = Pick<Modules, "formats" | "depthFiles" | "splats" | "webp">;
 
 /** Loads the readers of mesh files, images and NPY. */
 export type LoadFormats = Modules["formats"];
@@ -34,4 +45,5 @@ export const fileReaders: FileReaders = {
   formats: () => formatsModule.load(),
   depthFiles: () => depthFilesModule.load(),
   splats: () => splatsModule.load(),
+  webp: () => webpModule.load(),
 };

@@ -6,6 +6,7 @@
 import type * as Core from "../generated/types.js";
 import type { AlignInput, FrameInput, ViewsInput } from "../input/types.js";
 import type { Sim3AlignError } from "../values/error.js";
+import { fromOrigin } from "../values/origin.js";
 
 /** How the depth map and the camera of a view were read. */
 export interface InputInfo {
@@ -13,6 +14,8 @@ export interface InputInfo {
   depthUnit?: string;
   /** Where the intrinsics come from, if they were not given: `"depth file"`, `"EXIF: …"`, or `"estimate"`. */
   cameraSource?: string;
+  /** Which values of the mask file are the object: `"values of 127.5 or more, of 0 to 255"`. */
+  maskReading?: string;
   /**
    * What the depth and the lens were taken to be, if they were not fully known. All lengths of the result are metres if
    * `isMetric`; otherwise, their unit is unknown, and `correctDepth` of `sim3align/conventions` returns the depth map in it.
@@ -78,7 +81,9 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
 /** What the files of an input say, for its result. */
-export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource"> {
+export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource" | "maskReading"> {
+  /** What was subtracted from the coordinates of the mesh file. */
+  origin?: readonly number[];
   /** Of the view. */
   warnings: readonly Core.Warning[];
   /** Why the colours of the mesh file are not read. */
@@ -86,10 +91,17 @@ export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource"
 }
 
 /** How the files of a view were read. */
-export const sourcesOf = ({ warnings: _, colors: __, ...sources }: InputNotes) => sources;
+export const sourcesOf = ({ warnings: _, colors: __, origin: ___, ...sources }: InputNotes) => sources;
+
+/** A unit that nothing states. */
+export const ASSUMED = "assumed)";
 
 /** A result with what its files say; their warnings before those of the core. */
 export function withNotes<T extends { warnings: Core.Warning[] }>(result: T, notes: InputNotes): T {
   const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
-  return { ...result, ...sourcesOf(notes), warnings: [...notes.warnings, ...ofColors, ...result.warnings] };
+  // Of a unit that is stated, no size is doubtful.
+  const isAssumed = notes.depthUnit?.endsWith(ASSUMED) === true;
+  const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || isAssumed);
+  const warnings = [...notes.warnings, ...ofColors, ...ofCore];
+  return { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };
 }

@@ -2,6 +2,7 @@
 import type { DepthKind } from "sim3align";
 import type { ImageSize } from "sim3align/conventions";
 import { type DepthImage, type ReadDepthOptions, readCamera, readExif } from "sim3align/formats";
+import { depthOfRays } from "sim3align/formats/ray-distance";
 import { foundCamera } from "sim3align/input/lens";
 import { corrected, provisional, type RawView } from "../state/calibration.js";
 import type { Scene } from "../state/scene.js";
@@ -58,9 +59,12 @@ export async function knownCamera(...given: Parameters<typeof readCamera>): Prom
 
 /** The depth map as it is shown until it is calibrated, and what there is to calibrate. */
 export function viewOf(
-  { data: depth, width, height, depthKind }: Pick<ReadDepthMap, "data" | "width" | "height" | "depthKind">,
+  { data, width, height, depthKind: kind }: Pick<ReadDepthMap, "data" | "width" | "height" | "depthKind">,
   read: ReadCamera | null,
 ): { depthM: Float32Array; raw: RawView | null } {
+  const isAlongRays = kind === "ray-distance";
+  const depth = isAlongRays && read?.camera ? depthOfRays(data, width, read.camera) : data;
+  const depthKind = isAlongRays ? "metric" : kind;
   const depthM = corrected({ depth, width, height, depthKind }, provisional(depth, depthKind));
   if (read === null || (depthKind === "metric" && read.focalUncertainty === 0)) return { depthM, raw: null };
   const { camera, focalUncertainty, warnings } = read;

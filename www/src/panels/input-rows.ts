@@ -5,6 +5,7 @@ import { percent, significant } from "../ui/format.js";
 
 export const kindTitles: { readonly [K in DepthKind]: string } = {
   metric: "Distances",
+  "ray-distance": "Distances along the rays",
   "scale-invariant": "Distances, scale unknown",
   "affine-invariant": "Relative depth, far is large",
   "affine-invariant-disparity": "Disparity, near is large",

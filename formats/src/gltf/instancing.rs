@@ -1,0 +1,54 @@
+//! `EXT_mesh_gpu_instancing`: several copies of a node's mesh, each with a transform of its own.
+
+use glam::{DMat4, DQuat, DVec3};
+use serde::Deserialize;
+
+use crate::gltf::accessor::AccessorReader;
+use crate::guard::corrupt;
+use sim3align_geometry::error::Result;
+
+pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+
+/// The instances of a node.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Instances {
+    attributes: Attributes,
+}
+
+/// Accessors with an element per instance.
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "UPPERCASE")]
+struct Attributes {
+    translation: Option<usize>,
+    rotation: Option<usize>,
+    scale: Option<usize>,
+}
+
+impl Instances {
+    /// The transforms of the copies of the node's mesh, each node_from_instance.
+    pub fn transforms(&self, reader: &mut AccessorReader<'_>) -> Result<Vec<DMat4>> {
+        let attributes = &self.attributes;
+        let translations = attributes.translation.map(|index| reader.positions(index)).transpose()?;
+        let scales = attributes.scale.map(|index| reader.positions(index)).transpose()?;
+        let rotations = attributes.rotation.map(|index| reader.rotations(index)).transpose()?;
+        let vectors = |vectors: &Option<Vec<glam::Vec3>>| vectors.as_ref().map(Vec::len);
+        let counts = [vectors(&translations), vectors(&scales), rotations.as_ref().map(Vec::len)];
+        let count = counts.into_iter().flatten().min().unwrap_or_default();
+        if counts.into_iter().flatten().any(|other| other != count) {
+            return Err(corrupt("mesh", "instances whose attributes differ in number", "one per instance"));
+        }
+        let at = |vectors: &Option<Vec<glam::Vec3>>, i: usize, default: DVec3| {
+            vectors.as_ref().and_then(|vectors| vectors.get(i)).map_or(default, |vector| vector.as_dvec3())
+        };
+        let transform = |i: usize| {
+            let rotation = rotations.as_ref().and_then(|rotations| rotations.get(i)).map_or(DQuat::IDENTITY, |&xyzw| {
+                let rotation = DQuat::from_array(xyzw.map(f64::from));
+                if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
+            });
+            let (scale, translation) = (at(&scales, i, DVec3::ONE), at(&translations, i, DVec3::ZERO));
+            DMat4::from_scale_rotation_translation(scale, rotation, translation)
+        };
+        Ok((0..count).map(transform).collect())
+    }
+}

@@ -1,0 +1,65 @@
+/**
+ * Poses of meshes whose coordinates are far from zero, such as those of a map. The core aligns such a mesh relative to an
+ * origin o in it; callers pass and receive poses of the mesh in its file: s·R·(p − o) + t = s·R·p + (t − s·R·o).
+ */
+import { isRecord } from "./kinds.js";
+
+/** x, y, z of the origin in the mesh file. */
+export type Origin = readonly number[];
+
+/** A result in which all poses are those of the mesh in its file. */
+export function fromOrigin<T>(value: T, origin: Origin | undefined): T {
+  return origin === undefined ? value : (relocated(value, origin, -1) as T);
+}
+
+/** An argument of the core in which all poses are those of the mesh relative to its origin. */
+export function toOrigin<T>(value: T, origin: Origin | undefined): T {
+  return origin === undefined ? value : (relocated(value, origin, 1) as T);
+}
+
+function relocated(value: unknown, origin: Origin, sign: 1 | -1): unknown {
+  if (Array.isArray(value)) return isMatrix(value) ? movedMatrix(value, origin, sign) : each(value, origin, sign);
+  if (!isRecord(value)) return value;
+  const { scale, rotation, rotationMatrix, translation, matrix } = value;
+  const moved = Object.fromEntries(Object.entries(value).map(([name, part]) => [name, relocated(part, origin, sign)]));
+  const columns = isMatrix(matrix) ? matrix : columnsOf(scale, rotationMatrix ?? rotation);
+  if (columns === undefined || !Array.isArray(translation)) return moved;
+  const offset = product(columns, origin);
+  return { ...moved, translation: translation.map((t, axis) => t + sign * (offset[axis] as number)) };
+}
+
+const each = (values: readonly unknown[], origin: Origin, sign: 1 | -1) =>
+  typeof values[0] === "object" ? values.map((value) => relocated(value, origin, sign)) : values;
+
+const isMatrix = (value: unknown): value is number[] =>
+  Array.isArray(value) && value.length === 16 && value.every((number) => typeof number === "number");
+
+/** The rotation and the scale of 16 numbers, column by column, times a vector. */
+const product = (matrix: readonly number[], [x = 0, y = 0, z = 0]: Origin) =>
+  [0, 1, 2].map((row) => {
+    const [a = 0, b = 0, c = 0] = [matrix[row], matrix[row + 4], matrix[row + 8]];
+    return a * x + b * y + c * z;
+  });
+
+function movedMatrix(matrix: readonly number[], origin: Origin, sign: 1 | -1): number[] {
+  const offset = product(matrix, origin);
+  return matrix.map((number, i) => number + (i >= 12 && i < 15 ? sign * (offset[i - 12] as number) : 0));
+}
+
+/** s·R as 16 numbers, column by column; R as a quaternion x, y, z, w or as rows. */
+function columnsOf(scale: unknown, rotation: unknown): number[] | undefined {
+  if (typeof scale !== "number" || !Array.isArray(rotation)) return undefined;
+  const flat = rotation.flat() as number[];
+  const rows = flat.length === 4 ? rowsOf(flat) : flat;
+  if (rows.length !== 9) return undefined;
+  return Array.from({ length: 16 }, (_, i) => (i % 4 < 3 && i < 12 ? scale * Number(rows[3 * (i % 4) + (i >> 2)]) : 0));
+}
+
+function rowsOf([x = 0, y = 0, z = 0, w = 1]: readonly number[]): number[] {
+  const s = 2 / (x * x + y * y + z * z + w * w);
+  return [
+    ...[1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
+    ...[s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
+    ...[s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
+  ];
+}
