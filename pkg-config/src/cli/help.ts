@@ -1,5 +1,5 @@
 /** The help texts of the commands: layouts of folders, frames and units, outputs, and examples. */
-import { csvHeadings } from "./output.js";
+import { csvHeadings } from "./result-files.js";
 
 const caseFolder = `
 A case folder holds
