@@ -42,6 +42,11 @@ symlinkSync(join("..", "..", "linked"), inFolder("linked", "inner", "round"));
 symlinkSync("nowhere", inFolder("linked", "broken"));
 writeFileSync(inFolder("list.txt"), "# two of them\ncases/b1\r\n\n  cases/a1  \nodd/[x]\nodd/x");
 
+// Names that patterns, terminals and spreadsheets may take for something else.
+for (const name of ["a\nb", "u\u2028v", "\u001b[31mred", "=cmd()"]) writeCase(`names/${name}`, incomplete);
+const hasBytes = process.platform === "linux";
+if (hasBytes) mkdirSync(Buffer.concat([Buffer.from(inFolder("names", "bytes")), Buffer.of(0xff)]));
+
 /** Command lines, and the cases that they name, in order. */
 const named: Record<string, string> = {
   "cases/a*": "a1,a2",
@@ -51,6 +56,9 @@ const named: Record<string, string> = {
   "cases/**": "a1,a2,b1,c1",
   "linked/f*": "first",
   "linked/**": "first,second",
+  "names/**": "\\u001b[31mred,=cmd(),a\\nb,u\u2028v",
+  "names/[!=]*": "\\u001b[31mred,a\\nb,u\u2028v",
+  "{cases,names}/[a-c][1-9\n]*": "a1,a2,b1,a\\nb",
   "odd/[x]": "[x]",
   "cases/a* --list list.txt": "a1,a2,b1,[x],x",
   "--list -": "a2,a1",
@@ -69,6 +77,14 @@ test("cases are named by folders, patterns, lists and stdin", () => {
   writeCase("other/a1", incomplete);
   run("align cases/a1 other/a1 --workers 1 --json names.json");
   assert.deepEqual(Object.keys(results("names.json")), ["cases/a1", "other/a1"], "one name: by their paths");
+});
+
+test("names are printed without control characters, and are no formulas in CSV; those that are no text are named", () => {
+  const { stdout, stderr } = run("align names/* --workers 1 --csv names.csv");
+  assert.match(stdout, /^\\u001b\[31mred .*FILE_NOT_FOUND\n=cmd\(\) .*\na\\nb .*\nu\\u2028v /m);
+  for (const control of ["\u001b", "\u2028"]) assert.ok(!`${stdout}${stderr}`.includes(control));
+  if (hasBytes) assert.match(stderr, /skipped, cannot be read: names.bytes\ufffd \(its name is no UTF-8\)/);
+  assert.match(read("names.csv"), /^'=cmd\(\),FILE_NOT_FOUND/m);
 });
 
 /** The entries of a record by case, without times. */
@@ -250,4 +266,19 @@ test("- is stdout, whose table then goes to stderr; pipes that end early end the
   shell(`${program} --json closed.json | head -n 1`);
   assert.equal(Object.keys(results("closed.json")).length, 3);
   succeeds("align a --jsonl begun.jsonl --resume", ...quick);
+});
+
+test("an output that cannot be written is named, without a stack trace", { skip: !existsSync("/dev/full") }, () => {
+  const program = `"${process.execPath}" "${commandLine}" align a b`;
+  const failing: [line: string, message: RegExp][] = [
+    ["> /dev/full", /^error: stdout: cannot be written: ENOSPC.*\n$/],
+    ["--json /dev/full", /^error: \/dev\/full: cannot be written: ENOSPC.*\n$/],
+    ["--overlay /dev/null", /^error: --overlay \/dev\/null: /],
+    ["2> /dev/full --json missing/x", /^$/],
+  ];
+  for (const [line, message] of failing) {
+    const { status, stderr } = shell(`${program} ${quick.join(" ")} ${line}`);
+    assert.ok(status === 1 || status === 2, line);
+    assert.match(stderr, message, line);
+  }
 });

@@ -1,5 +1,5 @@
 /** `sim3align align`: reads cases, aligns them, and prints the results. */
-import { readFileSync, statSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import {
   type CaseOnDisk,
@@ -37,7 +37,7 @@ import {
   warningsOf,
 } from "./entry.js";
 import { correctedInput } from "./exports.js";
-import { absolutePath, isFile, UsageError } from "./files.js";
+import { absolutePath, isFile, statOf, UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { caseKind, foldersToDo } from "./folders.js";
 import { optionValues } from "./option-flags.js";
@@ -106,8 +106,7 @@ function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOp
 }
 
 /** Whether an argument names a photo; folders may be named like one. */
-const isPhoto = (path: string) =>
-  /\.(jpe?g|png)$/i.test(path) && !statSync(path, { throwIfNoEntry: false })?.isDirectory();
+const isPhoto = (path: string) => /\.(jpe?g|png)$/i.test(path) && !statOf(path)?.isDirectory();
 
 function hasTruth(folder: string): boolean {
   const file = join(folder, "gt.json");

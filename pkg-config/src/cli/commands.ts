@@ -4,7 +4,7 @@ import { alignJob, paper, precise, shared } from "./align.js";
 import { type Job, runBatch } from "./batch.js";
 import { bopJob, bopOptions, isScores, resultsFile } from "./bop.js";
 import { evaluateJob, evaluateOptions } from "./evaluate.js";
-import { isFile } from "./files.js";
+import { isFile, isOrdinary } from "./files.js";
 import {
   batchFlags,
   caseFlags,
@@ -25,6 +25,7 @@ import { optionFlags } from "./option-flags.js";
 import { camera, jsonObject } from "./parse.js";
 import { pictureFiles } from "./pictures.js";
 import type { CaseKey } from "./record.js";
+import { lockOf } from "./record-lock.js";
 import { makeFolder, type OutputName, RunFiles } from "./run-files.js";
 import { sceneJob, sceneOptions } from "./scene.js";
 import { trackJob } from "./track.js";
@@ -182,7 +183,12 @@ export async function runCommand(command: CommandRow, args: readonly string[], f
   const [argument] = command.argument;
   const named = args.flatMap((path) => (isFile(path) ? [{ flag: argument, path }] : []));
   const files = new RunFiles([...named, ...filesOf(list, flags, "reads")]);
-  const outputs = [...filesOf(list, flags, "writes"), ...(command.writes?.(args, flags) ?? [])];
+  const { jsonl = "-" } = flags;
+  const outputs = [
+    ...filesOf(list, flags, "writes"),
+    ...(command.writes?.(args, flags) ?? []),
+    ...(isOrdinary(jsonl) ? [lockOf(jsonl)] : []),
+  ];
   files.check(outputs);
   const job = await command.prepare(args, flags, files);
   const inputs = [...new Set(job.folders)].map((path) => ({

@@ -1,5 +1,5 @@
 /** Paths and files on the command line. */
-import { closeSync, openSync, readdirSync, readFileSync, readSync, realpathSync, statSync } from "node:fs";
+import { closeSync, openSync, readdirSync, readFileSync, readSync, realpathSync, type Stats, statSync } from "node:fs";
 import { basename, dirname, join, resolve } from "node:path";
 
 /** An invalid command line, which ends the program. */
@@ -45,21 +45,28 @@ export function bytesOf(path: string, position: number, length: number): Buffer 
   }
 }
 
+/** What is at a path; `undefined` if nothing is, or nothing can be. */
+export function statOf(path: string): Stats | undefined {
+  try {
+    return statSync(path);
+  } catch {
+    return undefined;
+  }
+}
+
 /** Whether a path is an ordinary file. */
-export const isFile = (path: string) => statSync(path, { throwIfNoEntry: false })?.isFile() === true;
+export const isFile = (path: string) => statOf(path)?.isFile() === true;
 
 /** Whether a path is, or will be, an ordinary file; not stdout ("-"), a pipe or a device. */
-export const isOrdinary = (path: string) =>
-  path !== "-" && statSync(path, { throwIfNoEntry: false })?.isFile() !== false;
+export const isOrdinary = (path: string) => path !== "-" && statOf(path)?.isFile() !== false;
 
-/** A path without links; of what does not exist, as much of it as does. */
+/** The absolute path without links; of what does not exist, as much of it as does. */
 export function realPath(path: string): string {
-  const absolute = resolve(path);
   try {
-    return realpathSync.native(absolute);
+    return realpathSync.native(path);
   } catch {
-    const folder = dirname(absolute);
-    return folder === absolute ? absolute : join(realPath(folder), basename(absolute));
+    const folder = dirname(path);
+    return folder === path ? resolve(path) : join(realPath(folder), basename(path));
   }
 }
 

@@ -194,6 +194,6 @@ export const settingsOf = (list: FlagList, flags: Flags, pathOf: (path: string) 
       const isSet = flag.startsWith("--no-") ? value === false : value !== undefined && value !== false;
       if (!isSet || use === "writes" || isIndifferent) return [];
       const isPath = use === "reads" && typeof value === "string" && !words?.includes(value);
-      return [[nameOf(flag).slice(2), isPath ? pathOf(value) : value]];
+      return [[nameOf(flag).slice(2), isPath ? pathOf(value) : flag.startsWith("--no-") || value]];
     }),
   );

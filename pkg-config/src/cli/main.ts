@@ -5,8 +5,8 @@ import { commands, runCommand } from "./commands.js";
 import { UsageError } from "./files.js";
 import { addFlags } from "./flags.js";
 import { programHelp } from "./help.js";
+import { version } from "./record.js";
 import { note } from "./terminal.js";
-import { version } from "./version.js";
 
 const program = new Command("sim3align")
   .description("Aligns generated 3D meshes with a masked depth map, in pose and metric scale.")

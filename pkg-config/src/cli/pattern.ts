@@ -1,6 +1,7 @@
 /** Patterns of folders: `*` and `?` within a name, `[abc]`, `{a,b}`, and `**` for folders at any depth. */
 import { type Dirent, existsSync, readdirSync, realpathSync, statSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
+import { statOf } from "./files.js";
 
 /** Whether a path has characters of patterns. */
 export const isPattern = (path: string): boolean => /[*?]|\[.+\]|\{.+\}/s.test(path);
@@ -31,7 +32,7 @@ function* matches(folder: string, [part, ...more]: readonly string[], unread: Se
     yield folder === "" ? "." : folder;
   } else if (!isPattern(part)) {
     const path = join(folder, part);
-    if (statSync(path, { throwIfNoEntry: false })?.isDirectory()) yield* matches(path, more, unread);
+    if (statOf(path)?.isDirectory()) yield* matches(path, more, unread);
   } else if (part === "**") {
     yield* matches(folder, more, unread);
     for (const name of foldersIn(folder, unread)) {
@@ -47,10 +48,10 @@ function* matches(folder: string, [part, ...more]: readonly string[], unread: Se
 
 /** A name may hold any character, also a line break. Those that begin with a dot only match a pattern that does. */
 function expressionOf(part: string): RegExp {
-  const source = part.replaceAll(/\[([!^]?)(.+?)\]|[\s\S]/g, (character, not: string, characters?: string) => {
+  const source = part.replaceAll(/\[([!^]?)(.+?)\]|./gs, (character, not: string, characters?: string) => {
     if (character === "*") return "[^]*";
     if (character === "?") return "[^]";
-    if (characters === undefined) return character.replace(/[\\^$.*+?()[\]{}|/-]/g, "\\$&");
+    if (characters === undefined) return character.replace(/[\\^$.*+?()[\]{}|/]/, "\\$&");
     return `[${not === "" ? "" : "^"}${characters.replace(/[\\\]^[]/g, "\\$&")}]`;
   });
   return new RegExp(`^${part.startsWith(".") ? "" : "(?!\\.)"}${source}$`, "u");

@@ -1,9 +1,15 @@
 /** The lock of a record: one process at a time appends to it. */
-import { readFileSync, readlinkSync, rmSync, statSync, utimesSync, writeFileSync } from "node:fs";
+import { readFileSync, readlinkSync, rmSync, utimesSync, writeFileSync } from "node:fs";
 import { hostname } from "node:os";
 import { isRecord } from "../values/kinds.js";
-import { isFile, UsageError } from "./files.js";
-import { OutputError } from "./run-files.js";
+import { isFile, statOf, UsageError } from "./files.js";
+import { OutputError, type OutputName } from "./run-files.js";
+
+/** The lock of a record, as an output of the run: another file of this name stays. */
+export const lockOf = (record: string): OutputName => ({
+  ...{ flag: "the lock of --jsonl", path: `${record}.lock` },
+  isOwn: (beginning) => '{"pid":'.startsWith(beginning.slice(0, 7)),
+});
 
 /** The process that holds a lock. */
 interface Owner {
@@ -30,16 +36,16 @@ export interface RecordLock {
  * Locks a record by a file beside it, `RECORD.lock`, which names its owner and which it marks as long as it runs. The lock
  * of a process that has ended is taken over: at once if it was one of this system, otherwise, or if the lock cannot be
  * read, five minutes after the last mark.
- * @throws {@link UsageError} if another process holds it
+ * @throws {@link UsageError} if another process holds it, {@link OutputError} if it cannot be written
  */
 export function lockRecord(flag: string, record: string): RecordLock {
-  const lock = `${record}.lock`;
+  const { path: lock } = lockOf(record);
   const { pid } = process;
   const owner: Owner = { pid, system: system(), started: startOf(pid), since: new Date().toISOString() };
   const isHeld = () => isSame(ownerOf(lock), owner);
   try {
     while (!isHeld()) {
-      const found = statSync(lock, { throwIfNoEntry: false });
+      const found = statOf(lock);
       const reason = found === undefined ? undefined : reasonToWait(ownerOf(lock), found.mtimeMs, owner);
       if (reason !== undefined) throw new UsageError(`${flag} ${record}: ${reason} Otherwise, remove ${lock}.`);
       rmSync(lock, { force: true });
@@ -47,7 +53,7 @@ export function lockRecord(flag: string, record: string): RecordLock {
     }
   } catch (error) {
     if (error instanceof UsageError) throw error;
-    throw new UsageError(`${flag} ${record}: the lock ${lock} cannot be written: ${(error as Error).message}.`);
+    throw new OutputError(`${flag} ${record}: the lock ${lock} cannot be written: ${(error as Error).message}.`);
   }
   const mark = setInterval(() => isHeld() && utimesSync(lock, new Date(), new Date()), 1000 * MARKED_S).unref();
   const release = () => {

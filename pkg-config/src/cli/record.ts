@@ -1,16 +1,20 @@
 /** The record of a batch, from which it can be resumed: a line with its settings, and a line of JSON for each case. */
 import { createHash } from "node:crypto";
-import { appendFileSync, createReadStream, existsSync, readFileSync, statSync, truncateSync } from "node:fs";
+import { appendFileSync, createReadStream, existsSync, readFileSync, truncateSync } from "node:fs";
 import { dirname, join, relative, sep } from "node:path";
 import { createInterface } from "node:readline";
 import { isDeepStrictEqual } from "node:util";
 import { caseFiles, INITIAL_FILE } from "../case-files.js";
 import { isRecord } from "../values/kinds.js";
 import type { Entry } from "./entry.js";
-import { absolutePath, bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, UsageError } from "./files.js";
+import { absolutePath, bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
 import { lockRecord, type RecordLock } from "./record-lock.js";
 import { OutputFile } from "./run-files.js";
-import { version } from "./version.js";
+
+/** The version of the package. */
+export const { version } = JSON.parse(readFileSync(new URL("../package.json", import.meta.url), "utf8")) as {
+  version: string;
+};
 
 /** The identity of a case. */
 export interface CaseKey {
@@ -237,7 +241,7 @@ function parsed(line: string): Entry | undefined {
   }
 }
 
-const sizeOf = (path: string) => statSync(path, { throwIfNoEntry: false })?.size ?? 0;
+const sizeOf = (path: string) => statOf(path)?.size ?? 0;
 
 /** Lines, and whether each is the last one. */
 async function* withLast(lines: AsyncIterable<string>) {

@@ -15,7 +15,7 @@ import {
 } from "node:fs";
 import { basename, dirname, extname, join, sep } from "node:path";
 import { caseFiles, INITIAL_FILE } from "../case-files.js";
-import { bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, UsageError } from "./files.js";
+import { bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
 
 /** A file or folder that a command line names. */
 export interface NamedFile {
@@ -77,7 +77,8 @@ export class RunFiles {
     for (const output of outputs) {
       const { flag, path, isFolder, holds = [] } = output;
       if (isFolder) {
-        if (isFile(path)) throw new UsageError(`${flag} ${path}: the folder cannot be made: it is a file.`);
+        if (statOf(path)?.isDirectory() === false)
+          throw new UsageError(`${flag} ${path}: the folder cannot be made: it is a file.`);
         for (const name of holds) this.#claim({ flag, path: join(path, name) });
         continue;
       }
@@ -124,21 +125,21 @@ export class RunFiles {
 
   /** @throws {@link UsageError} if a file is an input or another output */
   #claim({ flag, path, isOwn }: OutputName): void {
-    const isFolder = statSync(path, { throwIfNoEntry: false })?.isDirectory() === true;
-    if (path !== "-" && !isFolder && !isOrdinary(path)) return;
     const places = placesOf(path);
-    const others = places.flatMap((place) => this.#named.get(place) ?? this.#outputs.get(place) ?? []);
+    const [place = path, identity] = places;
+    const isFolder = statOf(place)?.isDirectory() === true;
+    if (path !== "-" && !isFolder && !isOrdinary(place)) return;
+    const others = places.flatMap((each) => this.#named.get(each) ?? this.#outputs.get(each) ?? []);
     const other = others.find((found) => found !== flag);
     if (other !== undefined) throw new UsageError(`${other} and ${flag} name the same file: ${path}.`);
-    for (const place of places) this.#outputs.set(place, flag);
-    if (path === "-" || isFolder || this.#written.has(places[0] as string)) return;
-    const name = basename(path);
-    if (reserved.has(name) && this.#scan().folders.has(realPath(dirname(path))))
+    for (const each of places) this.#outputs.set(each, flag);
+    if (path === "-" || isFolder || this.#written.has(place)) return;
+    const name = basename(place);
+    if (reserved.has(name) && this.#scan().folders.has(dirname(place)))
       throw new UsageError(`${flag} ${path}: ${name} is a file of a case. Pass another name.`);
-    const [, identity] = places;
     if (identity === undefined) return;
     if (isOwn !== undefined) {
-      const beginning = bytesOf(path, 0, 4096).toString();
+      const beginning = bytesOf(place, 0, 4096).toString();
       if (beginning === "" || isOwn(beginning)) return;
       throw new UsageError(`${flag} ${path}: this file was not written by ${flag}. Remove it, or pass another name.`);
     }
@@ -190,15 +191,16 @@ function identityOf(path: string): string | undefined {
 /** Where a file is, and, if it exists, what it is. */
 function placesOf(path: string): string[] {
   if (path === "-") return [path];
-  const identity = identityOf(path);
-  return [realPath(path), ...(identity === undefined ? [] : [identity])];
+  const place = realPath(path);
+  const identity = identityOf(place);
+  return [place, ...(identity === undefined ? [] : [identity])];
 }
 
 /** @throws {@link UsageError} for a file that cannot be written */
 function checkWritable(flag: string, path: string): void {
   if (path === "-") return;
   try {
-    const found = statSync(path, { throwIfNoEntry: false });
+    const found = statOf(path);
     if (found?.isDirectory()) throw new UsageError(`${flag} ${path}: this is a folder; pass the name of a file.`);
     const folder = dirname(realPath(path));
     if (found === undefined && !statSync(folder).isDirectory()) throw new Error(`${folder} is no folder`);
