@@ -16,8 +16,8 @@ interface Owner {
   pid: number;
   /** The system in which `pid` is a process: a boot of a machine, and a container. */
   system: string;
-  /** When it started, because numbers of processes are used again; `null` if the system has no such time. */
-  started: string | null;
+  /** When it started, because numbers of processes are used again; empty where the system has no such time. */
+  started: string;
   since: string;
 }
 
@@ -41,21 +41,29 @@ export interface RecordLock {
 export function lockRecord(flag: string, record: string): RecordLock {
   const { path: lock } = lockOf(record);
   const { pid } = process;
-  const owner: Owner = { pid, system: system(), started: startOf(pid), since: new Date().toISOString() };
+  const owner: Owner = { pid, system: system(), started: startOf(pid) ?? "", since: new Date().toISOString() };
+  const text = `${JSON.stringify(owner)}\n`;
   const isHeld = () => isSame(ownerOf(lock), owner);
   try {
-    while (!isHeld()) {
+    for (let tries = 0; !isHeld(); tries++) {
+      if (tries > 9) throw new Error("it does not stay");
       const found = statOf(lock);
       const reason = found === undefined ? undefined : reasonToWait(ownerOf(lock), found.mtimeMs, owner);
       if (reason !== undefined) throw new UsageError(`${flag} ${record}: ${reason} Otherwise, remove ${lock}.`);
       rmSync(lock, { force: true });
-      make(lock, `${JSON.stringify(owner)}\n`);
+      make(lock, text);
     }
   } catch (error) {
     if (error instanceof UsageError) throw error;
     throw new OutputError(`${flag} ${record}: the lock ${lock} cannot be written: ${(error as Error).message}.`);
   }
-  const mark = setInterval(() => isHeld() && utimesSync(lock, new Date(), new Date()), 1000 * MARKED_S).unref();
+  const mark = setInterval(() => {
+    try {
+      if (isHeld()) utimesSync(lock, new Date(), new Date());
+    } catch {
+      // Without marks, the lock can be taken over, which the next line of the record finds out.
+    }
+  }, 1000 * MARKED_S).unref();
   const release = () => {
     clearInterval(mark);
     process.off("exit", release);
@@ -63,6 +71,8 @@ export function lockRecord(flag: string, record: string): RecordLock {
   };
   process.on("exit", release);
   const check = () => {
+    // It may have been removed by hand.
+    if (!isHeld()) make(lock, text);
     if (!isHeld()) throw new OutputError(`${flag} ${record}: another process has taken over ${lock}.`);
   };
   return { check, release };
@@ -81,27 +91,16 @@ function make(path: string, text: string): void {
 
 /** Why a lock may still be held; `undefined` if its process has ended. */
 function reasonToWait(owner: Owner | undefined, markedMs: number, own: Owner): string | undefined {
-  const restS = Math.ceil(ENDED_S - (Date.now() - markedMs) / 1000);
   if (owner?.system === own.system) {
+    const { pid, started, since } = owner;
     // Another process has the number of the one that has ended, if it started at another time.
-    const started = owner.pid === own.pid ? null : startOf(owner.pid);
-    const runs = owner.pid !== own.pid && isRunning(owner.pid) && started === owner.started;
-    return runs
-      ? `process ${owner.pid} writes this record since ${owner.since}. Wait for it, or pass another file.`
-      : undefined;
+    if (pid === own.pid || startOf(pid) !== started) return undefined;
+    return `process ${pid} writes this record since ${since}. Wait for it, or pass another file.`;
   }
+  const restS = Math.ceil(ENDED_S - (Date.now() - markedMs) / 1000);
   if (restS <= 0) return undefined;
   const holder = owner === undefined ? "a process" : `process ${owner.pid} of another system (since ${owner.since})`;
   return `${holder} writes this record. If it has ended, its lock ends in ${restS} s.`;
-}
-
-function isRunning(pid: number): boolean {
-  try {
-    process.kill(pid, 0);
-    return true;
-  } catch (error) {
-    return (error as NodeJS.ErrnoException).code === "EPERM";
-  }
 }
 
 /** On Linux, the boot and the namespace of processes, which tells containers apart; elsewhere, the machine. */
@@ -114,13 +113,18 @@ function system(): string {
   }
 }
 
-/** The start of a process on Linux, in ticks since the boot. */
-function startOf(pid: number): string | null {
+/** When a process started, on Linux in ticks since the boot; `undefined` if it does not run. */
+function startOf(pid: number): string | undefined {
+  try {
+    process.kill(pid, 0);
+  } catch (error) {
+    if ((error as NodeJS.ErrnoException).code !== "EPERM") return undefined;
+  }
   try {
     // The second field is a name in parentheses, which may hold anything.
-    return readFileSync(`/proc/${pid}/stat`, "utf8").replace(/^.*\)/s, "").split(" ")[20] ?? null;
+    return readFileSync(`/proc/${pid}/stat`, "utf8").replace(/^.*\)/s, "").split(" ")[20] ?? "";
   } catch {
-    return null;
+    return "";
   }
 }
 

@@ -56,7 +56,7 @@ export class RunFiles {
   readonly #written = new Set<string>();
   #scanned: { files: ReadonlyMap<string, string>; folders: ReadonlySet<string> } | undefined;
 
-  constructor(inputs: readonly InputFile[] = []) {
+  constructor(inputs: readonly InputFile[]) {
     this.add(inputs);
   }
 
@@ -103,16 +103,12 @@ export class RunFiles {
     const ordinary = isOrdinary(path);
     if (ordinary && placesOf(path).some((place) => this.#written.has(place)))
       throw new OutputError(`${flag} ${path}: two files have this name. Rename one of the cases.`);
-    const file = new OutputFile(path);
-    const end = file.end.bind(file);
-    file.end = () => {
-      end();
+    return new OutputFile(path, false, () => {
       for (const place of ordinary ? placesOf(path) : []) {
         this.#written.add(place);
         this.#outputs.set(place, flag);
       }
-    };
-    return file;
+    });
   }
 
   /** Writes an output, and first its folder. */
@@ -235,10 +231,14 @@ export class OutputFile {
   readonly #part: string | undefined;
   readonly #place: string;
 
-  /** @param isAppended whether lines are added to the file itself */
+  /**
+   * @param isAppended whether lines are added to the file itself
+   * @param onEnd called when the content is in its place
+   */
   constructor(
     private readonly path: string,
     private readonly isAppended = false,
+    private readonly onEnd = () => {},
   ) {
     // A link stays, and leads to the new content.
     this.#place = path === "-" ? path : realPath(path);
@@ -282,6 +282,7 @@ export class OutputFile {
       closeSync(this.#opened());
       [this.#file, this.#isClosed] = [undefined, true];
       if (this.#part !== undefined) renameSync(this.#part, this.#place);
+      this.onEnd();
     });
   }
 
