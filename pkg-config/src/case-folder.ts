@@ -41,7 +41,7 @@ export const loadFormats = () => formatsModule.load();
 
 /**
  * Reads a case folder.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
   const found = await caseFrom(filesIn("case", folder, await pathsIn(folder)), settings, loadFormats, folder);
@@ -72,7 +72,7 @@ export async function frameNames(folder: string): Promise<string[]> {
 
 /**
  * Reads a case folder with `frame_*` folders.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readFrames(folder: string, settings: ReadCaseOptions = {}): Promise<FramesOnDisk> {
   const names = await frameNames(folder);

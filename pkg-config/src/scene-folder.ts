@@ -26,7 +26,7 @@ export interface SceneSettings extends ReadCaseOptions {
 
 /**
  * Reads a scene: a scene folder, the output of SAM 3D Objects, or a scene of BOP with `depth/`, `mask_visib/`, `scene_camera.json`, `scene_gt.json` and models.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readSceneFolder(folder: string, settings: SceneSettings = {}): Promise<SceneOnDisk> {
   const names = await namesIn("scene", folder, "a folder with depth and objects");
