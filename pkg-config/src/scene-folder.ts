@@ -43,6 +43,12 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
   }
 }
 
+/** Where the models of a scene of BOP are: beside the scene, or beside the folder of its split. */
+const modelPlaces = ["models", "../models", "../../models", "../../models_eval"];
+
+/** The folders that are read of a scene of BOP. */
+export const bopFolders = (scene: string) => [scene, ...modelPlaces.map((place) => join(scene, place))];
+
 async function readFolder(folder: string, { models, sam3d, ...settings }: SceneSettings): Promise<SceneOnDisk> {
   const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
   if (!sam3d) paths.push(...(await filesBelow(folder, "objects/", LEVELS)));
@@ -70,9 +76,7 @@ async function filesBelow(root: string, folder: string, levels: number): Promise
 async function readBop(folder: string, { models, imageId, sam3d: _, ...settings }: SceneSettings) {
   const scene = await BopScene.open(folder);
   const id = scene.imageId(imageId);
-  // The models of a data set are beside the scene, or beside the folder of its split.
-  const places = ["models", "../models", "../../models", "../../models_eval"];
-  const modelFolder = models ?? (await bopModels(folder, places));
+  const modelFolder = models ?? (await bopModels(folder, modelPlaces));
   const modelOf = oncePerKey((objectId: string) => readBopModel(modelFolder, objectId));
   const { resizeMask, image: withImage = true, ...view } = settings;
   const objects: SceneObjectInput[] = [];

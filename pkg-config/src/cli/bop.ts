@@ -49,7 +49,7 @@ export async function bopJob(args: readonly string[], flags: Flags, files: RunFi
   const dataset = new BopDataset(folder, flags.split ?? "");
   const targets = await dataset.targets(flags.targets);
   const [file] = resultsFile(args, flags);
-  const whole = { folders: [folder], isDeep: true };
+  const whole = { folders: dataset.folders, isDeep: true };
   const scored = (path: string) => score(dataset, targets, path, flags, files);
   if (file === undefined) return { ...caseJob([], flags), ...whole, after: () => scored(String(flags.evaluate)) };
   const place = `${absolutePath(folder)}/${flags.split}#`;

@@ -182,7 +182,8 @@ export async function runCommand(command: CommandRow, args: readonly string[], f
   checkNeeds(list, flags);
   const [argument] = command.argument;
   const named = args.flatMap((path) => (isFile(path) ? [{ flag: argument, path }] : []));
-  const files = new RunFiles([...named, ...filesOf(list, flags, "reads")]);
+  const read = filesOf(list, flags, "reads").map((file) => ({ ...file, isDeep: true }));
+  const files = new RunFiles([...named, ...read]);
   const { jsonl = "-" } = flags;
   const outputs = [
     ...filesOf(list, flags, "writes"),

@@ -72,7 +72,12 @@ export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Parti
 /** The record of a batch, and the number of workers. */
 export const recordFlags = (noun: string): Flag[] => [
   ["--json <file>", 'write the results as JSON; "-" is stdout', { ...writes, isOwn: isResults }],
-  ["--jsonl <file>", `write a line of JSON for each ${noun} when it is done; "-" is stdout`, writes],
+  [
+    "--jsonl <file>",
+    `write a line of JSON for each ${noun} when it is done; "-" is stdout`,
+    // The record checks its lines.
+    { ...writes, isOwn: () => true },
+  ],
   [
     "--resume",
     `go on: skip the ${noun}s in the file of --jsonl, and append to it`,

@@ -8,6 +8,7 @@ import {
   ftruncateSync,
   mkdirSync,
   openSync,
+  readFileSync,
   renameSync,
   rmSync,
   statSync,
@@ -53,8 +54,10 @@ export class RunFiles {
   /** The flags of named files, by the places where these are. */
   readonly #named = new Map<string, string>();
   readonly #outputs = new Map<string, string>();
+  /** The folders that are read as a whole. */
+  readonly #whole: string[] = [];
   readonly #written = new Set<string>();
-  #scanned: { files: ReadonlyMap<string, string>; folders: ReadonlySet<string> } | undefined;
+  #scanned: { files: Map<string, string>; folders: Set<string>; models: string[] } | undefined;
 
   constructor(inputs: readonly InputFile[]) {
     this.add(inputs);
@@ -63,8 +66,10 @@ export class RunFiles {
   /** Adds inputs. */
   add(inputs: readonly InputFile[]): void {
     this.#inputs.push(...inputs);
-    for (const { flag, path, isFolder } of inputs)
+    for (const { flag, path, isFolder, isDeep } of inputs) {
+      if (isFolder && isDeep) this.#whole.push(realPath(path));
       if (!isFolder && path !== "-") for (const place of placesOf(path)) this.#named.set(place, flag);
+    }
     this.#scanned = undefined;
   }
 
@@ -130,49 +135,62 @@ export class RunFiles {
     if (other !== undefined) throw new UsageError(`${other} and ${flag} name the same file: ${path}.`);
     for (const each of places) this.#outputs.set(each, flag);
     if (path === "-" || isFolder || this.#written.has(place)) return;
-    const name = basename(place);
-    if (reserved.has(name) && this.#scan().folders.has(dirname(place)))
-      throw new UsageError(`${flag} ${path}: ${name} is a file of a case. Pass another name.`);
-    if (identity === undefined) return;
+    const refuse = (input: string) => {
+      throw new UsageError(`${flag} ${path}: this is a file of the input ${input}. Pass another name.`);
+    };
+    if (reserved.has(basename(place)) && this.#scan().folders.has(dirname(place))) refuse(dirname(path));
     if (isOwn !== undefined) {
-      const beginning = bytesOf(place, 0, 4096).toString();
+      const beginning = identity === undefined ? "" : bytesOf(place, 0, 4096).toString();
       if (beginning === "" || isOwn(beginning)) return;
       throw new UsageError(`${flag} ${path}: this file was not written by ${flag}. Remove it, or pass another name.`);
     }
-    const input = this.#scan().files.get(identity);
-    if (input !== undefined)
-      throw new UsageError(`${flag} ${path}: this is a file of the input ${input}. Pass another name.`);
+    // The next run would read it.
+    for (const folder of this.#whole) if (place.startsWith(`${folder}${sep}`)) refuse(folder);
+    if (identity === undefined) return;
+    const { files, models } = this.#scan();
+    const input = files.get(identity) ?? models.find((model) => mentions(model, place));
+    if (input !== undefined) refuse(input);
   }
 
-  /** The identities of the files that are read, with their inputs, and the folders in which names are reserved. */
+  /**
+   * The identities of the files that are read, with their inputs; the folders in which names are reserved; and the meshes
+   * that refer to other files. Folders of a dataset may have a million files: they are looked for when that is needed.
+   */
   #scan() {
     if (this.#scanned !== undefined) return this.#scanned;
-    const files = new Map<string, string>();
-    const folders = new Set<string>();
+    const [files, folders] = [new Map<string, string>(), new Set<string>()];
+    const models: string[] = [];
     const add = (folder: string, input: string, levels: number) => {
       for (const name of namesIn(folder)) {
         const path = join(folder, name);
         const identity = identityOf(path);
-        if (identity === undefined) continue;
-        if (isFile(path)) files.set(identity, input);
-        else if (levels > 1) add(path, input, levels - 1);
+        if (refersToFiles(name)) models.push(path);
+        if (identity !== undefined && (levels > 1 || reserved.has(name))) files.set(identity, input);
+        if (levels > 1 && statOf(path)?.isDirectory()) add(path, input, levels - 1);
       }
     };
     for (const { path, isFolder, isDeep } of this.#inputs) {
-      // A .gltf or an .obj refers to files in its folder, and below it.
-      if (!isFolder && refersToFiles(path)) add(dirname(path), path, LEVELS);
+      if (!isFolder && refersToFiles(path)) add(dirname(path), path, 1);
       if (!isFolder) continue;
-      const parts = partsOf(path);
-      for (const part of parts) folders.add(realPath(part));
-      const isWhole = isDeep || parts.some((part) => namesIn(part).some(refersToFiles));
-      for (const part of isWhole ? [path] : parts) add(part, path, isWhole ? LEVELS : 1);
+      for (const part of partsOf(path)) {
+        folders.add(realPath(part));
+        add(part, path, isDeep ? LEVELS : 1);
+      }
     }
-    this.#scanned = { files, folders };
+    this.#scanned = { files, folders, models };
     return this.#scanned;
   }
 }
 
-const refersToFiles = (path: string) => [".gltf", ".obj"].includes(extname(path).toLowerCase());
+/** Whether a file may refer to others, which are in its folder or below it. */
+const refersToFiles = (path: string) => [".gltf", ".obj", ".mtl"].includes(extname(path).toLowerCase());
+
+/** Whether a file has the name of another one in its text. */
+function mentions(model: string, file: string): boolean {
+  if (!file.startsWith(`${dirname(realPath(model))}${sep}`) || !isFile(model)) return false;
+  const text = readFileSync(model);
+  return [basename(file), encodeURIComponent(basename(file))].some((name) => text.includes(name));
+}
 
 /** What all names of a file have in common, whether they are links or differ in case; `undefined` without a file. */
 function identityOf(path: string): string | undefined {

@@ -12,7 +12,7 @@ import {
   type SceneOptions,
 } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
-import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
+import { bopFolders, bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
@@ -54,8 +54,8 @@ export async function sceneJob(args: readonly string[], flags: Flags, files: Run
   const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models, sam3d });
   return {
     tasks,
-    folders: tasks.map(({ scene }) => scene),
-    isDeep: sam3d === true,
+    folders: tasks.flatMap(({ scene, folder }) => (folder === undefined ? bopFolders(scene) : [scene])),
+    isDeep: sam3d === true || tasks.some(({ folder }) => folder === undefined),
     run: (aligner, task, caseRun) => alignScene(aligner, task, flags, settings, support, caseRun, files),
     // The files of a whole scene are made with its result only.
     isComplete: () => sceneOutputs(flags).every(({ path, holds }) => isFile(join(path, holds?.at(-1) ?? ""))),
