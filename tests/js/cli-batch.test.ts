@@ -226,7 +226,7 @@ test("one process at a time writes a record; a lock ends with its process, or af
     if (isOfSystem && owner.started === "") continue;
     writeFileSync(inFolder("two.jsonl.lock"), text);
     if (!isOfSystem) {
-      refusesUsage({ [args.join(" ")]: /its lock ends in \d+ s.*two\.jsonl\.lock/ });
+      refusesUsage({ [args.join(" ")]: /Its lock ends in \d+ s.*two\.jsonl\.lock/ });
       utimesSync(inFolder("two.jsonl.lock"), 0, 0);
     }
     assert.match(run(...args).stderr, /resumed: 2 of 2/, what);

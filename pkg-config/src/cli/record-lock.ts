@@ -49,7 +49,7 @@ export function lockRecord(flag: string, record: string): RecordLock {
       if (tries > 9) throw new Error("it does not stay");
       const found = statOf(lock);
       const reason = found === undefined ? undefined : reasonToWait(ownerOf(lock), found.mtimeMs, owner);
-      if (reason !== undefined) throw new UsageError(`${flag} ${record}: ${reason} Otherwise, remove ${lock}.`);
+      if (reason !== undefined) throw new UsageError(`${flag} ${record}: ${reason} Or remove ${lock}, if it does not run any more.`);
       rmSync(lock, { force: true });
       make(lock, text);
     }
@@ -100,7 +100,7 @@ function reasonToWait(owner: Owner | undefined, markedMs: number, own: Owner): s
   const restS = Math.ceil(ENDED_S - (Date.now() - markedMs) / 1000);
   if (restS <= 0) return undefined;
   const holder = owner === undefined ? "a process" : `process ${owner.pid} of another system (since ${owner.since})`;
-  return `${holder} writes this record. If it has ended, its lock ends in ${restS} s.`;
+  return `${holder} writes this record. Its lock ends in ${restS} s, if it has ended.`;
 }
 
 /** On Linux, the boot and the namespace of processes, which tells containers apart; elsewhere, the machine. */

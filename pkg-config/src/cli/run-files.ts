@@ -57,7 +57,7 @@ export class RunFiles {
   /** The folders that are read as a whole. */
   readonly #whole: string[] = [];
   readonly #written = new Set<string>();
-  #scanned: { files: Map<string, string>; folders: Set<string>; models: string[] } | undefined;
+  #scanned: { files: Map<string, string>; parts: Map<string, string>; models: string[] } | undefined;
 
   constructor(inputs: readonly InputFile[]) {
     this.add(inputs);
@@ -138,7 +138,8 @@ export class RunFiles {
     const refuse = (input: string) => {
       throw new UsageError(`${flag} ${path}: this is a file of the input ${input}. Pass another name.`);
     };
-    if (reserved.has(basename(place)) && this.#scan().folders.has(dirname(place))) refuse(dirname(path));
+    const part = reserved.has(basename(place).toLowerCase()) ? this.#scan().parts.get(dirname(place)) : undefined;
+    if (part !== undefined) refuse(part);
     if (isOwn !== undefined) {
       const beginning = identity === undefined ? "" : bytesOf(place, 0, 4096).toString();
       if (beginning === "" || isOwn(beginning)) return;
@@ -158,7 +159,7 @@ export class RunFiles {
    */
   #scan() {
     if (this.#scanned !== undefined) return this.#scanned;
-    const [files, folders] = [new Map<string, string>(), new Set<string>()];
+    const [files, parts] = [new Map<string, string>(), new Map<string, string>()];
     const models: string[] = [];
     const add = (folder: string, input: string, levels: number) => {
       for (const name of namesIn(folder)) {
@@ -173,11 +174,11 @@ export class RunFiles {
       if (!isFolder && refersToFiles(path)) add(dirname(path), path, 1);
       if (!isFolder) continue;
       for (const part of partsOf(path)) {
-        folders.add(realPath(part));
+        parts.set(realPath(part), path);
         add(part, path, isDeep ? LEVELS : 1);
       }
     }
-    this.#scanned = { files, folders, models };
+    this.#scanned = { files, parts, models };
     return this.#scanned;
   }
 }
