@@ -49,7 +49,8 @@ export function lockRecord(flag: string, record: string): RecordLock {
       if (tries > 9) throw new Error("it does not stay");
       const found = statOf(lock);
       const reason = found === undefined ? undefined : reasonToWait(ownerOf(lock), found.mtimeMs, owner);
-      if (reason !== undefined) throw new UsageError(`${flag} ${record}: ${reason} Or remove ${lock}, if it does not run any more.`);
+      if (reason !== undefined)
+        throw new UsageError(`${flag} ${record}: ${reason} Or remove ${lock}, if it does not run any more.`);
       rmSync(lock, { force: true });
       make(lock, text);
     }
