@@ -29,7 +29,7 @@ export interface Case {
   truth: KnownPose | null;
 }
 
-/** File names of each part of a case, in order of preference. */
+/** File names of each part of a case. */
 export const caseFiles = {
   depth: ["depth.npy", "depth.png", "depth.npz", "depth.exr", "depth.tiff", "depth.tif", "depth.pfm"],
   mask: ["mask.png", "mask.npy", "mask.json"],
@@ -90,7 +90,7 @@ async function viewFrom(
 export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, place: string, owner?: string) {
   /** The name of a part's file; that of the photo only if it is wanted. */
   const find = (part: keyof typeof caseFiles) =>
-    part === "image" && !image ? undefined : caseFiles[part].find((candidate) => candidate in files);
+    part === "image" && !image ? undefined : onlyFile(part, (name) => name in files, place, owner);
   const required = (part: keyof typeof caseFiles) => {
     const name = find(part);
     if (name !== undefined) return name;
@@ -203,6 +203,23 @@ function decoded(uri: string): string {
   } catch {
     return uri;
   }
+}
+
+/**
+ * The name of the file of a part; `undefined` without one.
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` if several files have names of the part: none is better than another
+ * @internal
+ */
+export function onlyFile(
+  part: keyof typeof caseFiles,
+  isThere: (name: string) => boolean,
+  place: string,
+  owner: string = part,
+): string | undefined {
+  const names = caseFiles[part].filter(isThere);
+  if (names.length < 2) return names[0];
+  const remedy = `Remove or rename the others; on the command line, --${part} names one, with --depth, --mask and --mesh.`;
+  throw failure("INVALID_ARGUMENT", owner, `${names.join(" and ")} in ${place}`, "one of them", remedy);
 }
 
 /** The files of a call, read once. */

@@ -1,6 +1,6 @@
 /** Cases on disk (Node only). */
 import { existsSync } from "node:fs";
-import { readdir, readFile } from "node:fs/promises";
+import { readdir, readFile, stat } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
 import {
   type Case,
@@ -11,10 +11,12 @@ import {
   fileNotFound,
   frameFrom,
   meshFile,
+  onlyFile,
   type ReadCaseOptions,
 } from "./case-files.js";
 import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
 import { formatsModule } from "./modules/readers.js";
+import { failure, Sim3AlignError } from "./values/error.js";
 import { withoutUndefined } from "./values/values.js";
 
 export type { ReadCaseOptions } from "./case-files.js";
@@ -39,7 +41,7 @@ export const loadFormats = () => formatsModule.load();
 
 /**
  * Reads a case folder.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
   const found = await caseFrom(filesIn("case", folder, await pathsIn(folder)), settings, loadFormats, folder);
@@ -70,7 +72,7 @@ export async function frameNames(folder: string): Promise<string[]> {
 
 /**
  * Reads a case folder with `frame_*` folders.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readFrames(folder: string, settings: ReadCaseOptions = {}): Promise<FramesOnDisk> {
   const names = await frameNames(folder);
@@ -86,7 +88,7 @@ export function inputOfFrame({ input }: Pick<FrameFiles, "input">, mesh: MeshFil
 
 /** The path of the mesh of a case. */
 export function meshIn(folder: string): string {
-  const name = caseFiles.mesh.find((name) => existsSync(join(folder, name)));
+  const name = onlyFile("mesh", (name) => existsSync(join(folder, name)), folder);
   if (name === undefined) throw fileNotFound("mesh", `no such file in ${folder}`, caseFiles.mesh.join(" or "));
   return join(folder, name);
 }
@@ -148,12 +150,21 @@ export async function readCaseFiles(
   };
 }
 
-/** The bytes of a file. */
+/** The largest file that Node reads at once, bytes. */
+const LARGEST = 2 ** 31 - 1;
+
+/** The bytes of a file. Pipes and devices, which may have no end, are not read. */
 export async function read(argument: string, path: string): Promise<Uint8Array> {
   try {
+    const file = await stat(path);
+    if (!file.isFile()) throw fileNotFound(argument, `no ordinary file at ${path}`, "a readable file");
+    if (file.size > LARGEST) {
+      const remedy = "Crop the image to the object, or simplify the mesh.";
+      throw failure("FILE_TOO_LARGE", argument, `${file.size} bytes at ${path}`, `at most ${LARGEST}`, remedy);
+    }
     return await readFile(path);
   } catch (cause) {
-    throw unreadable(argument, path, "a readable file", cause);
+    throw cause instanceof Sim3AlignError ? cause : unreadable(argument, path, "a readable file", cause);
   }
 }
 

@@ -181,7 +181,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * @example
  * const { input, truth } = await readCase({ "depth.png": depth, "mask.png": mask, "mesh.glb": mesh, "camera.json": camera });
  * const result = await aligner.align(input);
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<Case> {
   return caseFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
@@ -195,7 +195,7 @@ export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {})
  * @example
  * const { input, truths } = await readScene({ "depth.png": depth, "objects/mug/mask.png": mask, "objects/mug/mesh.glb": mesh });
  * const result = await aligner.alignScene(input);
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
   return sceneFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());

@@ -26,7 +26,7 @@ export interface SceneSettings extends ReadCaseOptions {
 
 /**
  * Reads a scene: a scene folder, the output of SAM 3D Objects, or a scene of BOP with `depth/`, `mask_visib/`, `scene_camera.json`, `scene_gt.json` and models.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readSceneFolder(folder: string, settings: SceneSettings = {}): Promise<SceneOnDisk> {
   const names = await namesIn("scene", folder, "a folder with depth and objects");
@@ -42,6 +42,12 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
     return undefined;
   }
 }
+
+/** Where the models of a scene of BOP are: beside the scene, or beside the folder of its split. */
+const modelPlaces = ["models", "../models", "../../models", "../../models_eval"];
+
+/** The folders that are read of a scene of BOP. */
+export const bopFolders = (scene: string) => [scene, ...modelPlaces.map((place) => join(scene, place))];
 
 async function readFolder(folder: string, { models, sam3d, ...settings }: SceneSettings): Promise<SceneOnDisk> {
   const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
@@ -70,9 +76,7 @@ async function filesBelow(root: string, folder: string, levels: number): Promise
 async function readBop(folder: string, { models, imageId, sam3d: _, ...settings }: SceneSettings) {
   const scene = await BopScene.open(folder);
   const id = scene.imageId(imageId);
-  // The models of a data set are beside the scene, or beside the folder of its split.
-  const places = ["models", "../models", "../../models", "../../models_eval"];
-  const modelFolder = models ?? (await bopModels(folder, places));
+  const modelFolder = models ?? (await bopModels(folder, modelPlaces));
   const modelOf = oncePerKey((objectId: string) => readBopModel(modelFolder, objectId));
   const { resizeMask, image: withImage = true, ...view } = settings;
   const objects: SceneObjectInput[] = [];

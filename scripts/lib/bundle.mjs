@@ -50,7 +50,7 @@ export async function bundleScripts() {
     outbase: compiledDir,
     ...{ bundle: true, splitting: true, format: "esm", platform: "neutral", target: "es2022", logLevel: "warning" },
     chunkNames: PART,
-    external: ["node:*", "commander", "tinyglobby"],
+    external: ["node:*", "commander"],
     metafile: true,
     plugins: [
       {

@@ -1,6 +1,7 @@
 /** `sim3align align` and `evaluate`: what they read, print and write, and their exit status. */
 import assert from "node:assert/strict";
-import { rmSync, writeFileSync } from "node:fs";
+import { spawnSync } from "node:child_process";
+import { rmSync, symlinkSync, truncateSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner, OPTIONS, type Sim3 } from "sim3align";
@@ -26,6 +27,15 @@ writeCase("no-mask", { "depth.npy": files["depth.npy"], "mesh.glb": files["mesh.
 writeCase("empty-mask", { ...files, "mask.png": png(new Uint8Array(mask.length), width, height) });
 writeCase("outside", { ...files, "mesh.gltf": gltfJson(mesh, {}, { uri: "../blob/mesh.glb" }) });
 rmSync(join(folder, "outside", "mesh.glb"));
+for (const name of ["pipe", "device", "large"]) {
+  writeCase(name, files);
+  rmSync(join(folder, name, "depth.npy"));
+}
+assert.equal(spawnSync("mkfifo", [join(folder, "pipe", "depth.npy"), join(folder, "pipe", "gt.json")]).status, 0);
+symlinkSync("/dev/zero", join(folder, "device", "depth.npy"));
+// Without content on the disk.
+writeFileSync(join(folder, "large", "depth.npy"), "");
+truncateSync(join(folder, "large", "depth.npy"), 3 * 2 ** 30);
 const quick = ["--quality", "fast"];
 test("--help explains the layout, frames, units and exit status, and has a flag for every option", () => {
   assert.match(succeeds("--help").stdout, /^Usage: sim3align.*align.*evaluate.*Examples/s);
@@ -79,19 +89,22 @@ test("--json has everything that align returns, and the proportions; --json - le
 });
 
 test("bad cases are reported, the good ones aligned, and the exit status is that of a failure", () => {
-  const names = ["no-mask", "blob", "empty-mask", "nowhere", "outside", "others", "meta.json"];
+  const unreadable = ["pipe", "device", "large"];
+  const names = ["no-mask", "blob", "empty-mask", "nowhere", "outside", "others", "meta.json", ...unreadable];
   const { status, stdout, stderr } = run("align", ...names, "--json", "many.json", "--workers", "1", ...quick);
   assert.equal(status, 1);
   const many = results("many.json");
   const found = Object.entries<{ error?: { code: string } }>(many).map(([name, { error }]) => [name, error?.code]);
   const [missing, empty, corrupt] = ["FILE_NOT_FOUND", "EMPTY_MASK", "CORRUPT_FILE"];
-  const codes = [missing, undefined, empty, missing, corrupt, undefined, missing];
+  const unread = [missing, missing, "FILE_TOO_LARGE"];
+  const codes = [missing, undefined, empty, missing, corrupt, undefined, missing, ...unread];
   for (const [i, name] of names.entries()) assert.deepEqual(found[i], [name, codes[i]], stderr);
   const properties = ["code", "argument", "found", "expected", "remedy", "message"];
   assert.deepEqual(Object.keys(many["no-mask"].error), properties);
   assert.match(many["no-mask"].error.message, /mask: .*no-mask.*mask\.png or mask\.npy or mask\.json/);
   assert.equal(many["empty-mask"].error.file, join("empty-mask", "mask.png"));
   assert.match(many.outside.error.message, /in the folder of the \.gltf/);
+  for (const name of ["pipe", "device"]) assert.match(many[name].error.message, /no ordinary file at/);
   assert.equal("errors" in many.others, false, "no truth, no errors");
   const scales = [many.blob, many.others].map(({ diagnostics }) => diagnostics.initialScale);
   assert.ok(Math.abs(scales[0] / scales[1] - 1) < 0.01, "two readings of one case");

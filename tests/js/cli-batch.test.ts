@@ -1,11 +1,10 @@
 /** Many cases on the command line: which they are, tables and records of their results, and batches that end early. */
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, renameSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, renameSync, symlinkSync, utimesSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import {
-  endless,
   files,
   folder,
   interrupted,
@@ -15,6 +14,7 @@ import {
   run,
   shell,
   succeeds,
+  withFaults,
   writeCase,
 } from "../support/command-line.js";
 import { commandLine } from "../support/environment.js";
@@ -22,12 +22,14 @@ import { poseJson, truth } from "../support/scene.js";
 
 const inFolder = (...path: string[]) => join(folder, ...path);
 const linesOf = (path: string) => read(path).trimEnd().split("\n");
+/** The lines of cases in a record, whose first line has its settings. */
+const casesOf = (path: string) => linesOf(path).slice(1);
 const quick = ["--quality", "fast"];
 const complete = { ...files, "gt.json": poseJson(truth) };
 // Without depth map: their failures are quick, and count as done.
 const { "depth.npy": _, ...incomplete } = files;
 
-for (const name of ["a", "b", "c"]) writeCase(name, complete);
+for (const name of ["a", "b", "c", "endless", "held"]) writeCase(name, complete);
 writeCase('x, "y"', {});
 for (const name of ["cases/a1", "cases/a2", "cases/b1", "cases/deep/c1", "odd/[x]", "odd/x"])
   writeCase(name, incomplete);
@@ -40,6 +42,11 @@ symlinkSync(join("..", "..", "linked"), inFolder("linked", "inner", "round"));
 symlinkSync("nowhere", inFolder("linked", "broken"));
 writeFileSync(inFolder("list.txt"), "# two of them\ncases/b1\r\n\n  cases/a1  \nodd/[x]\nodd/x");
 
+// Names that patterns, terminals and spreadsheets may take for something else.
+for (const name of ["a\nb", "u\u2028v", "\u001b[31mred", "=cmd()"]) writeCase(`names/${name}`, incomplete);
+const hasBytes = process.platform === "linux";
+if (hasBytes) mkdirSync(Buffer.concat([Buffer.from(inFolder("names", "bytes")), Buffer.of(0xff)]));
+
 /** Command lines, and the cases that they name, in order. */
 const named: Record<string, string> = {
   "cases/a*": "a1,a2",
@@ -49,6 +56,9 @@ const named: Record<string, string> = {
   "cases/**": "a1,a2,b1,c1",
   "linked/f*": "first",
   "linked/**": "first,second",
+  "names/**": "\\u001b[31mred,=cmd(),a\\nb,u\u2028v",
+  "names/[!=]*": "\\u001b[31mred,a\\nb,u\u2028v",
+  "{cases,names}/[a-c][1-9\n]*": "a1,a2,b1,a\\nb",
   "odd/[x]": "[x]",
   "cases/a* --list list.txt": "a1,a2,b1,[x],x",
   "--list -": "a2,a1",
@@ -69,9 +79,17 @@ test("cases are named by folders, patterns, lists and stdin", () => {
   assert.deepEqual(Object.keys(results("names.json")), ["cases/a1", "other/a1"], "one name: by their paths");
 });
 
+test("names are printed without control characters, and are no formulas in CSV; those that are no text are named", () => {
+  const { stdout, stderr } = run("align names/* --workers 1 --csv names.csv");
+  assert.match(stdout, /^\\u001b\[31mred .*FILE_NOT_FOUND\n=cmd\(\) .*\na\\nb .*\nu\\u2028v /m);
+  for (const control of ["\u001b", "\u2028"]) assert.ok(!`${stdout}${stderr}`.includes(control));
+  if (hasBytes) assert.match(stderr, /skipped, cannot be read: names.bytes\ufffd \(its name is no UTF-8\)/);
+  assert.match(read("names.csv"), /^'=cmd\(\),FILE_NOT_FOUND/m);
+});
+
 /** The entries of a record by case, without times. */
 function entriesOf(path: string): { case: string; path: string }[] {
-  const entries = linesOf(path).map((line) => JSON.parse(line));
+  const entries = casesOf(path).map((line) => JSON.parse(line));
   for (const entry of entries) delete entry.timingsMs;
   return entries.sort((x, y) => (x.case < y.case ? -1 : 1));
 }
@@ -88,8 +106,8 @@ const whole = run("align", ...all, ...quick, "--jsonl", "whole.jsonl", "--csv", 
 test("--jsonl has a line for each case, the entry of --json; --csv its numbers", () => {
   assert.equal(whole.status, 1, whole.stderr);
   const json = results("whole.json");
-  assert.deepEqual([Object.keys(json).sort(), linesOf("whole.jsonl").length], [all, all.length]);
-  for (const line of linesOf("whole.jsonl")) {
+  assert.deepEqual([Object.keys(json).sort(), casesOf("whole.jsonl").length], [all, all.length]);
+  for (const line of casesOf("whole.jsonl")) {
     const { case: name, path, content, ...entry } = JSON.parse(line);
     assert.deepEqual([entry, path], [json[name], name]);
     assert.equal(typeof content, name.startsWith("x") ? "undefined" : "string");
@@ -111,13 +129,10 @@ test("a batch that is killed and resumed gives the same files, with any number o
     const record = ["--jsonl", `killed-${workers}.jsonl`, "--csv", `killed-${workers}.csv`, "--workers", workers];
     const args = ["align", ...all, ...quick, ...record];
     // A case that never ends: the batch is killed in its middle.
-    rmSync(inFolder("c"), { recursive: true });
-    endless("c");
-    const killed = await interrupted(/^[ab] .*\n[ab] .*\n/m, "SIGKILL", ...args);
-    rmSync(inFolder("c"), { recursive: true });
-    writeCase("c", complete);
+    const restore = withFaults({ hanging: "c" });
+    const killed = await interrupted(/^[ab] .*\n[ab] .*\n/m, "SIGKILL", ...args).finally(restore);
     assert.equal(killed.signal, "SIGKILL", killed.stderr);
-    const before = linesOf(`killed-${workers}.jsonl`).length;
+    const before = casesOf(`killed-${workers}.jsonl`).length;
     const { status, stderr, stdout } = run(...args, "--resume", "--json", `killed-${workers}.json`);
     assert.equal(status, 1, "a case has failed, if not in this run");
     assert.match(stderr, new RegExp(`resumed: ${before} of 4 cases are in killed-${workers}.jsonl`));
@@ -129,22 +144,23 @@ test("a batch that is killed and resumed gives the same files, with any number o
 });
 
 test("a last line that was cut off is repaired, however long it is; a complete batch is not aligned again", () => {
-  const [first = "", second = ""] = linesOf("whole.jsonl");
+  const [settings = "", first = "", second = ""] = linesOf("whole.jsonl");
   const long = JSON.stringify({ case: "elsewhere", text: "ü".repeat(100_000) });
   const torn: [text: string, resumed: number][] = [
-    [`${first}\n${second.slice(0, 5)}`, 1],
-    [`${first}\n${second}`, 2],
-    [`${long}\n${first}\n${long.slice(0, -2)}`, 1],
+    [`${settings}\n${first}\n${second.slice(0, 5)}`, 1],
+    [`${settings}\n${first}\n${second}`, 2],
+    // Two records that were joined.
+    [`${settings}\n${long}\n${settings}\n${first}\n${long.slice(0, -2)}`, 1],
   ];
   for (const [text, count] of torn) {
     writeFileSync(inFolder("torn.jsonl"), text);
     const { stderr } = run("align", ...all, ...quick, "--jsonl", "torn.jsonl", "--resume");
     assert.match(stderr, new RegExp(`resumed: ${count} of 4`));
     assert.equal(linesOf("torn.jsonl")[0], text.split("\n")[0], "what is there stays");
-    const entries = entriesOf("torn.jsonl").filter((entry) => entry.case !== "elsewhere");
+    const entries = entriesOf("torn.jsonl").filter((entry) => all.includes(entry.case));
     assert.deepEqual(entries, entriesOf("whole.jsonl"));
   }
-  const again = run("align", ...all, "--jsonl", "whole.jsonl", "--resume", "--csv", "again.csv");
+  const again = run("align", ...all, ...quick, "--jsonl", "whole.jsonl", "--resume", "--csv", "again.csv");
   assert.deepEqual([again.status, again.stdout], [1, ""]);
   assert.match(again.stderr, /resumed: 4 of 4.*failed earlier: x, "y" \(FILE_NOT_FOUND\); remove their lines/s);
   assert.deepEqual(rowsOf("again.csv"), rowsOf("whole.csv"));
@@ -172,44 +188,70 @@ test("a case that has moved is resumed by its content", () => {
 test("a signal keeps what is done, says how to go on, and ends the program as the signal does", async () => {
   for (const signal of ["SIGINT", "SIGTERM"] as const) {
     const record = `${signal}.jsonl`;
-    const args = ["align", "a", "b", endless("endless"), "c", ...quick, "--workers", "1"];
+    const args = ["align", "a", "b", "endless", "c", ...quick, "--workers", "1"];
     const outputs = ["--jsonl", record, "--json", "part.json"];
     writeFileSync(inFolder("part.json"), "{}\n");
-    const stopped = await interrupted(/^b .*\n/m, signal, ...args, ...outputs);
+    const restore = withFaults({ hanging: "endless" });
+    const stopped = await interrupted(/^b .*\n/m, signal, ...args, ...outputs).finally(restore);
     assert.equal(stopped.signal, signal, stopped.stderr);
     assert.match(stopped.stderr, /interrupted: 2 of 4 cases are done; they are in .*SIG/);
     assert.match(stopped.stderr, /To go on, run the same command with --resume\.\n/);
     assert.deepEqual(Object.keys(results("part.json")), ["a", "b"]);
-    rmSync(inFolder("endless"), { recursive: true });
-    writeCase("endless", incomplete);
     assert.match(run(...args, ...outputs, "--resume").stderr, /resumed: 2 of 4/);
-    rmSync(inFolder("endless"), { recursive: true });
   }
 });
 
-test("one process at a time writes a record; the lock of one that was killed does not hold", async () => {
-  const args = ["align", "cases/a1", endless("held"), "--jsonl", "two.jsonl", "--resume", "--workers", "2"];
+test("one process at a time writes a record; a lock ends with its process, or after five minutes without a mark", async () => {
+  const args = ["align", "cases/a1", "held", ...quick, "--jsonl", "two.jsonl", "--resume", "--workers", "2"];
+  const restore = withFaults({ hanging: "held" });
   const first = spawn(process.execPath, [commandLine, ...args], { cwd: folder });
+  restore();
   const ended = new Promise((resolve) => first.on("close", resolve));
   await new Promise((resolve) => first.stdout.once("data", resolve));
+  const held = read("two.jsonl.lock");
   const message = `--jsonl two\\.jsonl: process ${first.pid} writes this record since .*two\\.jsonl\\.lock`;
   refusesUsage({ [args.join(" ")]: new RegExp(message) });
   first.kill("SIGKILL");
   await ended;
-  rmSync(inFolder("held"), { recursive: true });
-  writeCase("held", incomplete);
   assert.match(run(...args).stderr, /resumed: 1 of 2/);
   assert.ok(!existsSync(inFolder("two.jsonl.lock")), "the lock ends with the program");
+  const owner = JSON.parse(held);
+  const locks: Record<string, string> = {
+    "of another container": JSON.stringify({ ...owner, system: "another" }),
+    "of a process whose number is used again": JSON.stringify({ ...owner, pid: process.pid, started: "0" }),
+    empty: "",
+  };
+  for (const [what, text] of Object.entries(locks)) {
+    const isOfSystem = what.includes("number");
+    if (isOfSystem && owner.started === "") continue;
+    writeFileSync(inFolder("two.jsonl.lock"), text);
+    if (!isOfSystem) {
+      refusesUsage({ [args.join(" ")]: /Its lock ends in \d+ s.*two\.jsonl\.lock/ });
+      utimesSync(inFolder("two.jsonl.lock"), 0, 0);
+    }
+    assert.match(run(...args).stderr, /resumed: 2 of 2/, what);
+  }
 });
 
 test("results are never lost by accident: a file with other content is not continued or overwritten", () => {
   const text = "the work of a day\n";
-  const [line = ""] = linesOf("whole.jsonl");
+  const [settings = "", line = ""] = linesOf("whole.jsonl");
   writeFileSync(inFolder("kept.jsonl"), text);
   refusesUsage({ "align a --jsonl kept.jsonl": /--jsonl kept\.jsonl: the file has content\. Pass --resume/ });
-  for (const content of [text, text.trimEnd(), `${line}\n${text}`, '{"case": 1}\n']) {
+  const older = { ...JSON.parse(settings), sim3align: "0.9.0" };
+  const refused: [content: string, message: RegExp][] = [
+    [text, /line 1 does not have the version.*another file, or remove/],
+    [text.trimEnd(), /line 1 does not have/],
+    [`${line}\n`, /line 1 does not have/],
+    [`${settings}\n${line}\n${text}`, /line 3 is not an object with "case"/],
+    [`${settings}\n{"case": 1}\n`, /line 2 is not/],
+    [`${settings}\n${JSON.stringify(older)}\n`, /other settings: version is "[^"]+", was "0\.9\.0"\./],
+    [`${settings}\n`.replace("fast", "best"), /other settings: --quality is "fast", was "best"\. Pass another file/],
+    [`${settings}\n`.replace('"align"', '"track"'), /other settings: command is "align", was "track"/],
+  ];
+  for (const [content, message] of refused) {
     writeFileSync(inFolder("kept.jsonl"), content);
-    refusesUsage({ "align a --jsonl kept.jsonl --resume": /kept\.jsonl: line \d is not an object with "case"/ });
+    refusesUsage({ "align a --quality fast --jsonl kept.jsonl --resume": message });
     assert.equal(read("kept.jsonl"), content);
   }
 });
@@ -224,4 +266,19 @@ test("- is stdout, whose table then goes to stderr; pipes that end early end the
   shell(`${program} --json closed.json | head -n 1`);
   assert.equal(Object.keys(results("closed.json")).length, 3);
   succeeds("align a --jsonl begun.jsonl --resume", ...quick);
+});
+
+test("an output that cannot be written is named, without a stack trace", { skip: !existsSync("/dev/full") }, () => {
+  const program = `"${process.execPath}" "${commandLine}" align a b`;
+  const failing: [line: string, message: RegExp][] = [
+    ["> /dev/full", /^error: stdout: cannot be written: ENOSPC.*\n$/],
+    ["--json /dev/full", /^error: \/dev\/full: cannot be written: ENOSPC.*\n$/],
+    ["--overlay /dev/null", /^error: --overlay \/dev\/null: /],
+    ["2> /dev/full --json missing/x", /^$/],
+  ];
+  for (const [line, message] of failing) {
+    const { status, stderr } = shell(`${program} ${quick.join(" ")} ${line}`);
+    assert.ok(status === 1 || status === 2, line);
+    assert.match(stderr, message, line);
+  }
 });

@@ -64,6 +64,7 @@ test("a cell of a notebook runs the command line, and prints the result of each 
   const record = read("results.jsonl")
     .trim()
     .split("\n")
+    .slice(1)
     .map((line) => JSON.parse(line));
   const [result, failed] = record.sort((a, b) => (a.case < b.case ? -1 : 1));
   const aligned = `blob confidence ${result.confidence.toFixed(2)}, scale ${result.scale.toFixed(4)}`;

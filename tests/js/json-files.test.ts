@@ -199,11 +199,7 @@ test("a case is read from files by their names, lazily where they are functions"
   };
   const { "mask.json": maskFile, ...withoutMask } = files;
   const all = { ...files, "mask.json": lazy("mask.json", maskFile), "notes.txt": lazy("notes.txt", new Uint8Array()) };
-  const {
-    input: found,
-    files: names,
-    truth: pose,
-  } = await readCase({ ...all, "depth.png": lazy("depth.png", maskFile) });
+  const { input: found, files: names, truth: pose } = await readCase(all);
   assert.deepEqual(read, ["mask.json"]);
   assert.deepEqual(names, { depth: "depth.npy", mask: "mask.json", mesh: "mesh.gltf", camera: "camera.json" });
   assert.deepEqual([pose?.symmetry, pose?.transform.translation], ["auto", truth.translation]);
@@ -211,6 +207,12 @@ test("a case is read from files by their names, lazily where they are functions"
   assert.deepEqual(await aligner.evaluate(found, truth), await aligner.evaluate(input, truth));
   const missing = /mask\.png or mask\.npy or mask\.json/;
   await rejectsWith(() => readCase(withoutMask), "FILE_NOT_FOUND mask", missing);
+  for (const [part, name, both] of [
+    ["depth", "depth.png", /depth\.npy and depth\.png.*--depth/],
+    ["mask", "mask.png", /mask\.png and mask\.json.*--mask/],
+    ["mesh", "mesh.glb", /mesh\.glb and mesh\.gltf.*--mesh/],
+  ] as const)
+    await rejectsWith(() => readCase({ ...files, [name]: maskFile }), `INVALID_ARGUMENT ${part}`, both);
   const { "sub/a b.bin": __, ...withoutBuffer } = files;
   await rejectsWith(() => readCase(withoutBuffer), "FILE_NOT_FOUND mesh", /sub\/a b\.bin/);
   for (const uri of ["../mesh.bin", "/mesh.bin", "file:///mesh.bin", "sub\\..\\..\\mesh.bin", "%2e%2e/mesh.bin"]) {

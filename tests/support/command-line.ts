@@ -76,10 +76,38 @@ export const read = (path: string) => readFileSync(join(folder, path), "utf8");
 /** The results that --json wrote. */
 export const results = (path: string) => JSON.parse(read(path));
 
-/** A case that never ends: nobody writes to its depth map. */
-export function endless(name: string): string {
-  const { "depth.npy": _, ...others } = files;
-  writeCase(name, others);
-  assert.equal(spawnSync("mkfifo", [join(folder, name, "depth.npy")]).status, 0);
-  return name;
+/**
+ * Lets the file system of later runs have faults, until the returned function is called: what is below `hanging` is never
+ * read, and files below `full` get their first bytes only, as on a disk without space.
+ */
+export function withFaults(faults: { hanging?: string; full?: string }): () => void {
+  const program = `
+    import fs from "node:fs";
+    import { syncBuiltinESMExports } from "node:module";
+    const { hanging, full } = ${JSON.stringify(faults)};
+    const isBelow = (path, name) => name !== undefined && String(path).split(/[\\\\/]/).includes(name);
+    const { openSync, writeSync } = fs;
+    const { stat } = fs.promises;
+    fs.promises.stat = (path, ...more) =>
+      isBelow(path, hanging) ? new Promise(() => setInterval(() => {}, 1000)) : stat(path, ...more);
+    const files = new Set();
+    fs.openSync = (path, ...more) => {
+      const file = openSync(path, ...more);
+      if (isBelow(path, full)) files.add(file);
+      else files.delete(file);
+      return file;
+    };
+    fs.writeSync = (file, bytes, offset, length, ...more) => {
+      if (!files.has(file)) return writeSync(file, bytes, offset, length, ...more);
+      if (offset > 0) throw Object.assign(new Error("ENOSPC: no space left on device, write"), { code: "ENOSPC" });
+      return writeSync(file, bytes, offset, 7, ...more);
+    };
+    syncBuiltinESMExports();
+  `;
+  const before = process.env.NODE_OPTIONS;
+  process.env.NODE_OPTIONS = `--import=data:text/javascript;base64,${Buffer.from(program).toString("base64")}`;
+  return () => {
+    if (before === undefined) delete process.env.NODE_OPTIONS;
+    else process.env.NODE_OPTIONS = before;
+  };
 }

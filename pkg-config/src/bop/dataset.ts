@@ -201,6 +201,11 @@ export class BopDataset {
     this.scene = oncePerKey((sceneId) => BopScene.open(join(folder, paths.scene(split, sceneId))));
   }
 
+  /** The folders that may be read. */
+  get folders(): string[] {
+    return [this.split, "models", "models_cad", "models_eval"].map((name) => join(this.#folder, name));
+  }
+
   /** The folder of the models that are aligned. */
   models(): Promise<string> {
     return bopModels(this.#folder, ["models", "models_cad", "models_eval"]);

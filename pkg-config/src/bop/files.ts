@@ -46,7 +46,8 @@ function noDetection(found: string) {
   return failure("CORRUPT_FILE", "masks", found, expected, remedy);
 }
 
-const HEADER = "scene_id,im_id,obj_id,score,R,t,time";
+/** The first line of a results file. */
+export const RESULTS_HEADER = "scene_id,im_id,obj_id,score,R,t,time";
 /** Numbers in each column. */
 const COUNTS = [1, 1, 1, 1, 9, 3, 1];
 
@@ -66,14 +67,16 @@ export interface BopResult extends BopPlace {
 export const readResults = (text: string): BopResult[] =>
   text
     .split(/\r?\n/)
-    .flatMap((line, i) => (line.trim() === "" || (i === 0 && line.includes(HEADER)) ? [] : [resultOf(line, i)]));
+    .flatMap((line, i) =>
+      line.trim() === "" || (i === 0 && line.includes(RESULTS_HEADER)) ? [] : [resultOf(line, i)],
+    );
 
 function resultOf(line: string, index: number): BopResult {
   const numbers = line.split(",").map((cell) => cell.trim().split(/\s+/).map(Number));
   const isComplete = numbers.length === COUNTS.length && COUNTS.every((count, i) => numbers[i]?.length === count);
   if (!isComplete || numbers.flat().some((x) => !Number.isFinite(x))) {
     const remedy = "Check the line: R has nine numbers, row by row, and t three, in millimetres.";
-    throw failure("CORRUPT_FILE", "results", `line ${index + 1}: ${line.slice(0, 60)}`, HEADER, remedy);
+    throw failure("CORRUPT_FILE", "results", `line ${index + 1}: ${line.slice(0, 60)}`, RESULTS_HEADER, remedy);
   }
   const [sceneId = 0, imageId = 0, objectId = 0, score = 0, ...rest] = numbers.flat();
   const [rotation, [x = 0, y = 0, z = 0], seconds = -1] = [rest.slice(0, 9), rest.slice(9, 12), rest[12]];
@@ -131,6 +134,6 @@ export class BopResults {
       const row = this.#rows.get(name);
       return row === undefined ? [] : [`${row},${this.#seconds.get(imageKey(instance)) ?? -1}`];
     });
-    return [HEADER, ...lines, ""].join("\n");
+    return [RESULTS_HEADER, ...lines, ""].join("\n");
   }
 }

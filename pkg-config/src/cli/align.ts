@@ -1,5 +1,5 @@
 /** `sim3align align`: reads cases, aligns them, and prints the results. */
-import { readFileSync, statSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import {
   type CaseOnDisk,
@@ -24,7 +24,7 @@ import {
   type ViewsOptions,
 } from "../index.js";
 import { withoutUndefined } from "../values/values.js";
-import { type CaseRun, failedLine, type Job } from "./batch.js";
+import { type CaseRun, failedLines, type Job } from "./batch.js";
 import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
 import {
   type AlignEntry,
@@ -37,12 +37,13 @@ import {
   warningsOf,
 } from "./entry.js";
 import { correctedInput } from "./exports.js";
-import { UsageError } from "./files.js";
+import { absolutePath, isFile, statOf, UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { caseKind, foldersToDo } from "./folders.js";
 import { optionValues } from "./option-flags.js";
-import { absolutePath, type CaseKey } from "./record.js";
-import { caseTable, type Style } from "./table.js";
+import type { CaseKey } from "./record.js";
+import { caseTable } from "./table.js";
+import type { Style } from "./terminal.js";
 import { readTransform } from "./transform-file.js";
 
 /** The options of both presets, and those of one. */
@@ -105,12 +106,12 @@ function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOp
 }
 
 /** Whether an argument names a photo; folders may be named like one. */
-const isPhoto = (path: string) =>
-  /\.(jpe?g|png)$/i.test(path) && !statSync(path, { throwIfNoEntry: false })?.isDirectory();
+const isPhoto = (path: string) => /\.(jpe?g|png)$/i.test(path) && !statOf(path)?.isDirectory();
 
 function hasTruth(folder: string): boolean {
+  const file = join(folder, "gt.json");
   try {
-    return parsePoseFile("truth", readFileSync(join(folder, "gt.json"))) !== null;
+    return isFile(file) && parsePoseFile("truth", readFileSync(file)) !== null;
   } catch {
     // A file that cannot be read is reported for its case.
     return false;
@@ -137,10 +138,11 @@ export function caseJob(tasks: readonly CaseToDo[], flags: Flags): Job<CaseToDo>
   );
   return {
     tasks,
+    folders: tasks.flatMap(({ folder }) => folder ?? []),
     run: (aligner, task, caseRun) => alignCase(aligner, task, flags, caseRun),
     lines: ({ name }, entry, isOnly, style) =>
       isOnly
-        ? { remarks: isFailure(entry) ? [failedLine(name, entry, style)] : details(name, entry, style) }
+        ? { remarks: isFailure(entry) ? failedLines(name, entry, style) : details(name, entry, style) }
         : { rows: row(name, withMeans(entry), style), remarks: notes(name, entry, style) },
     async inputs({ name, folder, read }) {
       const views = folder === undefined ? [await read()] : await viewsOf(folder, caseSettings(flags));
@@ -157,7 +159,7 @@ const details = (name: string, entry: Entry, style: Style) =>
 /** The failure or the warnings of one of several cases. */
 const notes = (name: string, entry: Entry, style: Style) =>
   isFailure(entry)
-    ? [failedLine(name, entry, style)]
+    ? failedLines(name, entry, style)
     : warningsOf(entry).map((warning) => `${name}: ${warningLine(warning, style)}`);
 
 /** A view of the object of a case: the case itself, or one of its frames. */

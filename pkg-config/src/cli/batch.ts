@@ -3,12 +3,16 @@ import { availableParallelism } from "node:os";
 import { MAX_WORKERS } from "../aligner/aligner-options.js";
 import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
 import { type Entry, errorsIn, failureEntry, isFailure, isMetric } from "./entry.js";
+import { UsageError } from "./files.js";
 import type { Flags } from "./flags.js";
-import { type EntrySink, Output } from "./output.js";
+import { Output } from "./output.js";
 import { Pictures } from "./pictures.js";
 import { BatchProgress, StatusLine } from "./progress.js";
-import type { CaseKey } from "./record.js";
-import { noUnitNote, type Style } from "./table.js";
+import type { CaseKey, RecordHeader } from "./record.js";
+import type { EntrySink } from "./result-files.js";
+import { OutputError, type RunFiles } from "./run-files.js";
+import { noUnitNote } from "./table.js";
+import { note, type Style } from "./terminal.js";
 
 /** The context in which a command works on a case. */
 export interface CaseRun {
@@ -21,8 +25,10 @@ export interface CaseRun {
   onProgress?: (progress: Progress) => void;
   /** Prints lines: at once for a single case, otherwise when the case is done. */
   print(...lines: string[]): void;
-  /** Writes the entry so far. */
+  /** Keeps the entry so far, which is written if the batch is interrupted. */
   partial(entry: Entry): void;
+  /** Makes files of the case, without all of which it is not recorded as done. */
+  make(files: () => Promise<void>): Promise<void>;
 }
 
 /** Lines for people about an entry. */
@@ -36,12 +42,17 @@ export interface CaseLines {
 /** The cases of a command, and the functions that work on them. */
 export interface Job<T extends CaseKey> {
   tasks: readonly T[];
+  /** The folders of the inputs; if they are deep, files at any depth are read. */
+  folders: readonly string[];
+  isDeep?: boolean;
   /** Works on a case and returns its entry. A `UsageError` ends the batch; other errors make the case a failure. */
   run(aligner: Aligner, task: T, caseRun: CaseRun): Promise<Entry>;
   /** Lines about an entry; by default, those of failures. */
   lines?(task: T, entry: Entry, isOnly: boolean, style: Style): CaseLines;
   /** Reads the inputs of the poses of an entry, by their names, for pictures. */
   inputs?(task: T, entry: Entry): Promise<ReadonlyMap<string, AlignInput>>;
+  /** Whether the files that `run` makes are there; by default, it makes none. */
+  isComplete?(): boolean;
   /** Further outputs. */
   sinks?: EntrySink[];
   /** The flags of the batch, if these are not all of the command line. */
@@ -50,11 +61,11 @@ export interface Job<T extends CaseKey> {
   after?(): Promise<void>;
 }
 
-/** The line of a failure. */
-export function failedLine(name: string, entry: Entry, style: Style): string {
-  if (!isFailure(entry)) return "";
+/** The lines of a failure. */
+export function failedLines(name: string, entry: Entry, style: Style): string[] {
+  if (!isFailure(entry)) return [];
   const { code, message, file } = entry.error;
-  return `${style.red("failed ")}${name}: ${code}: ${message}${file === undefined ? "" : `\n  in ${file}`}`;
+  return [`${style.red("failed ")}${name}: ${code}: ${message}`, ...(file === undefined ? [] : [`  in ${file}`])];
 }
 
 /** Items that are read while several workers are busy. One worker does the items in their order. */
@@ -64,17 +75,43 @@ const NAMED = 10;
 
 /**
  * Works on each case that is not in the record, and writes and prints the results.
- * @returns whether all cases succeeded
+ * @param header the settings of the record
+ * @returns whether all cases succeeded, and all their files are there
  */
-export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flags): Promise<boolean> {
-  const { tasks, flags = commandLine } = job;
-  const pictures = await Pictures.open(flags);
-  const output = new Output(flags, job.sinks ?? []);
+export async function runBatch<T extends CaseKey>(
+  job: Job<T>,
+  commandLine: Flags,
+  files: RunFiles,
+  header: RecordHeader,
+): Promise<boolean> {
+  const { flags = commandLine } = job;
+  const output = new Output(flags, job.sinks ?? [], files, header);
+  let isWhole = false;
+  try {
+    isWhole = await runCases(job, flags, files, output);
+  } catch (error) {
+    // What is done is kept, unless the command line is wrong.
+    if (error instanceof UsageError) output.discard();
+    else output.end();
+    throw error;
+  }
+  await job.after?.();
+  return isWhole;
+}
+
+async function runCases<T extends CaseKey>(
+  job: Job<T>,
+  flags: Flags,
+  files: RunFiles,
+  output: Output,
+): Promise<boolean> {
+  const { tasks } = job;
+  const pictures = await Pictures.open(flags, files);
   const { style } = output;
   const isOnly = tasks.length === 1;
   const remarks: string[] = [];
   const failedBefore: string[] = [];
-  let [done, failed] = [0, 0];
+  let [done, failed, incomplete] = [0, 0, 0];
   let hasNoUnit = false;
   let progress: BatchProgress | undefined;
 
@@ -87,34 +124,49 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
     pictures.record(name, entry);
     return errors;
   };
-  const draw = async (task: T, entry: Entry, isResumed: boolean) => {
-    const { inputs } = job;
-    if (inputs !== undefined) await pictures.draw(task.name, entry, isResumed, () => inputs(task, entry));
+  /** Makes files of a case. Returns whether all are there. */
+  const makes = async (task: T, make: () => Promise<void>): Promise<boolean> => {
+    try {
+      await make();
+      return true;
+    } catch (error) {
+      if (!(error instanceof OutputError)) throw error;
+      progress?.clear();
+      note(`error: ${task.name}: ${error.message}`);
+      return false;
+    }
   };
+  const draw = (task: T, entry: Entry, isResumed: boolean) =>
+    makes(task, async () => {
+      const { inputs } = job;
+      if (inputs !== undefined) await pictures.draw(task.name, entry, isResumed, () => inputs(task, entry));
+    });
   /** Adds the cases that were done before, and returns the others. */
   const resume = async (): Promise<T[]> => {
     const resumed = new Set<T>();
     let recorded = 0;
     for await (const { task, name, entry } of output.resumed(tasks)) {
       recorded += 1;
-      output.addToOthers(name, entry);
+      if (task !== undefined && !isFailure(entry) && job.isComplete?.() === false) continue;
+      output.add(name, entry);
       if (task === undefined) continue;
       resumed.add(task);
-      await draw(task, entry, true);
+      if (!(await draw(task, entry, true))) incomplete += 1;
       const [error] = count(name, entry);
       if (error !== undefined) failedBefore.push(`${name} (${error})`);
     }
-    if (recorded > 0) console.error(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
+    if (recorded > 0) note(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
     return tasks.filter((task) => !resumed.has(task));
   };
   const linesOf = (task: T, entry: Entry): CaseLines => {
     if (job.lines !== undefined) return job.lines(task, entry, isOnly, style);
-    return isFailure(entry) ? { [isOnly ? "remarks" : "rows"]: [failedLine(task.name, entry, style)] } : {};
+    return isFailure(entry) ? { [isOnly ? "remarks" : "rows"]: failedLines(task.name, entry, style) } : {};
   };
   /** Works on a case. Returns a function that writes the result. */
   const run = async (aligner: Aligner, task: T): Promise<() => void> => {
     const early: string[] = [];
     const line = isOnly ? new StatusLine(process.stderr) : undefined;
+    let isComplete = true;
     const show = (state: string) => line?.show(`[1/1] ${task.name}  ${state}`);
     const caseRun: CaseRun = {
       ...{ files: {}, style, isClosed: () => output.isClosed },
@@ -123,7 +175,10 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
         if (line === undefined) early.push(...lines);
         else output.lines(lines);
       },
-      partial: (entry) => line && output.addToOthers(task.name, entry, false),
+      partial: (entry) => line && output.begin(task.name, entry),
+      async make(files) {
+        if (!(await makes(task, files))) isComplete = false;
+      },
     };
     if (isOnly)
       caseRun.onProgress = ({ stage, fraction }) =>
@@ -131,16 +186,18 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
     show("reading");
     const work = job.run(aligner, task, caseRun).catch((error) => failureEntry(error, caseRun.files));
     const entry = await work.finally(() => line?.clear());
-    // Before the record: what is there needs no other pictures.
-    await draw(task, entry, false);
+    // Before the record: a case that is there has all its files.
+    if (!(await draw(task, entry, false))) isComplete = false;
     return () => {
       const hasErrors = count(task.name, entry).length > 0;
-      output.add(task, entry);
+      if (isComplete) output.record(task, entry);
+      else incomplete += 1;
+      output.add(task.name, entry);
       const { rows = [], remarks: more = [] } = linesOf(task, entry);
       remarks.push(...more);
       progress?.clear();
       output.lines([...early, ...rows]);
-      progress?.add(hasErrors);
+      progress?.add(hasErrors || !isComplete);
     };
   };
   /** Closes the files and prints the remarks. */
@@ -152,17 +209,21 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
     if (hasNoUnit) output.lines(["", noUnitNote]);
     if (failedBefore.length === 0) return;
     const more = failedBefore.length > NAMED ? ` and ${failedBefore.length - NAMED} more` : "";
-    const named = `${failedBefore.slice(0, NAMED).join(", ")}${more}`;
-    console.error(`failed earlier: ${named}; remove their lines from the record to try again`);
+    const names = `${failedBefore.slice(0, NAMED).join(", ")}${more}`;
+    note(`failed earlier: ${names}; remove their lines from the record to try again`);
   };
   const interrupt = () => {
-    end();
+    try {
+      end();
+    } catch (error) {
+      note(`error: ${(error as Error).message}`);
+    }
     const { json, jsonl = "-", csv } = flags;
     const files = [jsonl, json, csv].filter((path) => path !== undefined && path !== "-");
     const place = files.length === 0 ? "" : `; they are in ${files.join(", ")}`;
-    console.error(`interrupted: ${done} of ${tasks.length} cases are done${place}`);
+    note(`interrupted: ${done} of ${tasks.length} cases are done${place}`);
     const remedy = "With --jsonl FILE, a batch can be resumed: --resume skips the cases in the file.";
-    if (!isOnly) console.error(jsonl === "-" ? remedy : "To go on, run the same command with --resume.");
+    if (!isOnly) note(jsonl === "-" ? remedy : "To go on, run the same command with --resume.");
   };
 
   const left = flags.resume ? await resume() : tasks;
@@ -188,8 +249,7 @@ export async function runBatch<T extends CaseKey>(job: Job<T>, commandLine: Flag
     progress?.clear();
   }
   end();
-  await job.after?.();
-  return failed === 0;
+  return failed === 0 && incomplete === 0;
 }
 
 /** Runs a task for each item, at most `limit` at a time, and yields the results as the tasks finish. */

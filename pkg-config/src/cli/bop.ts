@@ -1,7 +1,7 @@
 /** `sim3align bop`: aligns the targets of a BOP dataset, writes the results file of the leaderboard, and scores it. */
 import { basename, resolve } from "node:path";
 import { BopDataset, type BopModelInfo, type BopTarget, METRES_PER_UNIT, targetKey } from "../bop/dataset.js";
-import { type BopInstance, BopResults, readDetections, readResults } from "../bop/files.js";
+import { type BopInstance, BopResults, RESULTS_HEADER, readDetections, readResults } from "../bop/files.js";
 import { type BopEvaluation, best, bopModelsIn, evaluateBop, grouped } from "../bop/scores.js";
 import { fromBop } from "../conventions/bop.js";
 import type { KnownPose } from "../conventions/pose-file.js";
@@ -9,10 +9,13 @@ import type { AlignInput } from "../index.js";
 import { fixed } from "../report-page/row.js";
 import { type CaseToDo, caseJob, precise, shared } from "./align.js";
 import type { Job } from "./batch.js";
-import { OutputFile, textOf, UsageError } from "./files.js";
-import type { Flags, NamedFile } from "./flags.js";
+import { absolutePath, textOf, UsageError } from "./files.js";
+import type { Flags } from "./flags.js";
 import { StatusLine } from "./progress.js";
+import { isResults } from "./result-files.js";
+import type { OutputName, RunFiles } from "./run-files.js";
 import { pairs } from "./table.js";
+import { note } from "./terminal.js";
 
 /** The options of `align` that apply to targets of known size. */
 export const bopOptions = [...shared, ...precise].filter(({ name }) =>
@@ -23,7 +26,7 @@ export const bopOptions = [...shared, ...precise].filter(({ name }) =>
  * The results file that is written: `METHOD_DATASET-SPLIT[_NAME].csv`, as the leaderboard reads it.
  * @throws {@link UsageError} for names that would be read as other parts
  */
-export function resultsFile([dataset = ""]: readonly string[], flags: Flags): NamedFile[] {
+export function resultsFile([dataset = ""]: readonly string[], flags: Flags): OutputName[] {
   const { method = "", csv, split = "", evaluate } = flags;
   if (typeof evaluate === "string") return [];
   for (const [flag, part] of Object.entries({ method, csv })) {
@@ -33,42 +36,43 @@ export function resultsFile([dataset = ""]: readonly string[], flags: Flags): Na
       );
   }
   const name = `${method}_${basename(resolve(dataset))}-${split.replaceAll("_", "-")}`;
-  return [{ flag: "the results file", path: `${name}${csv === undefined ? "" : `_${csv}`}.csv`, isFolder: false }];
+  const isOwn = (beginning: string) => beginning.startsWith(`${RESULTS_HEADER}\n`);
+  return [{ flag: "the results file", path: `${name}${csv === undefined ? "" : `_${csv}`}.csv`, isOwn }];
 }
 
-/** The job of a command line; none if `--evaluate` names a file, which is only scored. */
-export async function bopJob(args: readonly string[], flags: Flags): Promise<Job<CaseToDo> | undefined> {
+/** Whether a file begins as one of --scores, or of --json. */
+export const isScores = (beginning: string) => beginning.startsWith('{\n  "averageRecall":') || isResults(beginning);
+
+/** The job of a command line; without cases if `--evaluate` names a file, which is only scored. */
+export async function bopJob(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<CaseToDo>> {
   const [folder = ""] = args;
   const dataset = new BopDataset(folder, flags.split ?? "");
   const targets = await dataset.targets(flags.targets);
   const [file] = resultsFile(args, flags);
-  if (file === undefined) {
-    await score(dataset, targets, String(flags.evaluate), flags);
-    return undefined;
-  }
-  const { cases, instances } = await casesOf(dataset, targets, flags);
+  const whole = { folders: dataset.folders, isDeep: true };
+  const scored = (path: string) => score(dataset, targets, path, flags, files);
+  if (file === undefined) return { ...caseJob([], flags), ...whole, after: () => scored(String(flags.evaluate)) };
+  const place = `${absolutePath(folder)}/${flags.split}#`;
+  const { cases, instances } = await casesOf(dataset, targets, flags, place);
   if (cases.length === 0) throw new UsageError(`${folder}: there is nothing to align; check --targets and --masks.`);
   const results = new BopResults(instances);
   // The flag names a part of the results file, and no other table.
   const { csv: _, ...batch } = flags;
-  const end = () => {
-    const written = new OutputFile(file.path, "w");
-    written.write(results.text());
-    written.end();
-  };
+  const end = () => files.write(file, results.text());
   return {
     flags: batch,
     ...caseJob(cases, { ...flags, options: { scale: METRES_PER_UNIT, ...flags.options } }),
-    sinks: [{ add: (name, entry, isFinal) => isFinal && results.add(name, entry), end }],
+    ...whole,
+    sinks: [{ add: (name, entry) => results.add(name, entry), end }],
     async after() {
-      console.error(`results: ${file.path}`);
-      if (flags.evaluate === true) await score(dataset, targets, file.path, flags);
+      note(`results: ${file.path}`);
+      if (flags.evaluate === true) await scored(file.path);
     },
   };
 }
 
 /** A case for each instance of each target, and the instances by the names of the cases. */
-async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags: Flags) {
+async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags: Flags, folder: string) {
   const { masks = "gt" } = flags;
   const detections = masks === "gt" ? undefined : grouped(readDetections(textOf("--masks", masks)), targetKey);
   const withPhoto = flags.image !== false;
@@ -91,7 +95,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
       const input = { ...image, mask: await maskOf(), mesh: await modelOf(place.objectId) } as AlignInput;
       return { input, files: {}, truth };
     };
-    cases.push({ name, hasTruth: truth !== null, read });
+    cases.push({ name, path: `${folder}${name}`, hasTruth: truth !== null, read });
   };
   for (const target of targets) {
     const { imageId, objectId, count } = target;
@@ -117,17 +121,20 @@ function symmetryOf(info: BopModelInfo | undefined): KnownPose["symmetry"] {
 }
 
 /** Scores a results file, and prints and writes the scores. */
-async function score(dataset: BopDataset, targets: readonly BopTarget[], path: string, flags: Flags): Promise<void> {
+async function score(
+  dataset: BopDataset,
+  targets: readonly BopTarget[],
+  path: string,
+  flags: Flags,
+  files: RunFiles,
+): Promise<void> {
   const status = new StatusLine(process.stderr);
   const results = readResults(textOf("--evaluate", path));
   const evaluation = await evaluateBop(dataset, targets, results, (done) =>
     status.show(`evaluated ${done} of ${targets.length} targets`),
   ).finally(() => status.clear());
-  if (flags.scores !== undefined) {
-    const file = new OutputFile(flags.scores, "w");
-    file.write(`${JSON.stringify(evaluation, null, 2)}\n`);
-    file.end();
-  }
+  if (flags.scores !== undefined)
+    files.write({ flag: "--scores", path: flags.scores, isOwn: isScores }, `${JSON.stringify(evaluation, null, 2)}\n`);
   const lines = [path, ...scoreLines(evaluation)].map((line) => `${line}\n`).join("");
   (flags.scores === "-" ? process.stderr : process.stdout).write(lines);
 }

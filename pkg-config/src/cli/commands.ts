@@ -2,28 +2,31 @@
 import { OPTIONS } from "../index.js";
 import { alignJob, paper, precise, shared } from "./align.js";
 import { type Job, runBatch } from "./batch.js";
-import { bopJob, bopOptions, resultsFile } from "./bop.js";
+import { bopJob, bopOptions, isScores, resultsFile } from "./bop.js";
 import { evaluateJob, evaluateOptions } from "./evaluate.js";
-import { isFile } from "./files.js";
+import { isFile, isOrdinary } from "./files.js";
 import {
   batchFlags,
   caseFlags,
-  checkFlags,
+  checkNeeds,
   type FlagList,
   type Flags,
   filesOf,
-  makeFolders,
-  type NamedFile,
+  ofCase,
   pictureFlags,
   reads,
   recordFlags,
   sceneFileFlags,
+  settingsOf,
   writes,
 } from "./flags.js";
 import { alignHelp, bopHelp, evaluateHelp, sceneHelp, trackHelp } from "./help.js";
 import { optionFlags } from "./option-flags.js";
 import { camera, jsonObject } from "./parse.js";
+import { pictureFiles } from "./pictures.js";
 import type { CaseKey } from "./record.js";
+import { lockOf } from "./record-lock.js";
+import { makeFolder, type OutputName, RunFiles } from "./run-files.js";
 import { sceneJob, sceneOptions } from "./scene.js";
 import { trackJob } from "./track.js";
 
@@ -38,18 +41,14 @@ export interface CommandRow {
   /** The text after the flags in the help. */
   help: string;
   /** Outputs that no flag names. */
-  writes?(args: readonly string[], flags: Flags): NamedFile[];
-  /** Finds the cases. Returns a function that works on them and returns whether all succeeded. */
-  prepare(args: readonly string[], flags: Flags): Promise<() => Promise<boolean>>;
+  writes?(args: readonly string[], flags: Flags): OutputName[];
+  /** Finds the cases. */
+  prepare(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<CaseKey>>;
 }
 
-/** The preparation of a batch; without a job, all is done. */
-const batch =
-  <T extends CaseKey>(jobOf: (args: readonly string[], flags: Flags) => Promise<Job<T> | undefined>) =>
-  async (args: readonly string[], flags: Flags) => {
-    const job = await jobOf(args, flags);
-    return async () => job === undefined || runBatch(job, flags);
-  };
+/** A function that finds the cases of a command. The type of the cases is its own matter. */
+type Prepare<T extends CaseKey> = (args: readonly string[], flags: Flags, files: RunFiles) => Promise<Job<T>>;
+const batch = <T extends CaseKey>(prepare: Prepare<T>) => prepare as unknown as CommandRow["prepare"];
 
 const folders = (noun: string) => [`[${noun}...]`, `${noun} folders, or patterns such as '${noun}s/*'`] as const;
 
@@ -61,15 +60,15 @@ export const commands: readonly CommandRow[] = [
     argument: folders("case"),
     flags: [
       ...batchFlags("case"),
-      ["--depth <file>", "depth map (.npy, 16-bit .png, .npz, .exr, .tiff or .pfm), instead of a case folder", reads],
-      ["--mask <file>", "mask (.png, .npy, or .json with COCO RLE)", reads],
-      ["--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)", reads],
+      ["--depth <file>", "depth map (.npy, 16-bit .png, .npz, .exr, .tiff or .pfm), instead of a case folder", ofCase],
+      ["--mask <file>", "mask (.png, .npy, or .json with COCO RLE)", ofCase],
+      ["--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)", ofCase],
       [
         "--camera <file|fx,fy,cx,cy|fov:deg>",
         "camera: a file, intrinsics or a vertical field of view",
-        { parse: camera, ...reads },
+        { parse: camera, ...ofCase },
       ],
-      ["--image <file>", "photo (.png or .jpg) with the field of view of the depth map, also without the flag", reads],
+      ["--image <file>", "photo (.png or .jpg) with the field of view of the depth map, also without the flag", ofCase],
       ["--preset <name>", "method (default precise)", { choices: ["precise", "paper"] }],
       ...pictureFlags,
       ...caseFlags,
@@ -150,10 +149,18 @@ export const commands: readonly CommandRow[] = [
       ],
       ["--models <folder>", "the models to align", reads],
       ["--targets <file>", "what to find, as in test_targets_bop19.json", reads],
-      ["--method <name>", "the first part of the name of the results file", { default: "sim3align" }],
-      ["--csv <name>", "the last part of the name of the results file"],
-      ["--evaluate [file]", "score the results, or only those of a file", reads],
-      ["--scores <file>", 'write the scores as JSON; "-" is stdout', { ...writes, needs: ["evaluate", "--evaluate"] }],
+      [
+        "--method <name>",
+        "the first part of the name of the results file",
+        { default: "sim3align", isIndifferent: true },
+      ],
+      ["--csv <name>", "the last part of the name of the results file", { isIndifferent: true }],
+      ["--evaluate [file]", "score the results, or only those of a file", ofCase],
+      [
+        "--scores <file>",
+        'write the scores as JSON; "-" is stdout',
+        { ...writes, isOwn: isScores, needs: ["evaluate", "--evaluate"] },
+      ],
       ["--no-image", "do not read the photos: align by shape alone"],
       ...pictureFlags,
       ...optionFlags(bopOptions),
@@ -167,15 +174,32 @@ export const commands: readonly CommandRow[] = [
 
 /**
  * Runs a command: checks its inputs and outputs, finds its cases, and works on them.
- * @returns whether all cases succeeded
- * @throws {@link UsageError}
+ * @returns whether everything succeeded that was asked for
+ * @throws {@link UsageError} before anything is written; {@link OutputError}
  */
 export async function runCommand(command: CommandRow, args: readonly string[], flags: Flags): Promise<boolean> {
-  const named = args.map((path) => ({ flag: command.argument[0], path, isFolder: !isFile(path) }));
-  const inputs = [...named, ...filesOf(command.flags, flags, "reads")];
-  const outputs = [...filesOf(command.flags, flags, "writes"), ...(command.writes?.(args, flags) ?? [])];
-  checkFlags(command.flags, flags, inputs, outputs);
-  const work = await command.prepare(args, flags);
-  makeFolders(outputs);
-  return work();
+  const { name, flags: list } = command;
+  checkNeeds(list, flags);
+  const [argument] = command.argument;
+  const named = args.flatMap((path) => (isFile(path) ? [{ flag: argument, path }] : []));
+  const read = filesOf(list, flags, "reads").map((file) => ({ ...file, isDeep: true }));
+  const files = new RunFiles([...named, ...read]);
+  const { jsonl = "-" } = flags;
+  const outputs = [
+    ...filesOf(list, flags, "writes"),
+    ...(command.writes?.(args, flags) ?? []),
+    ...(isOrdinary(jsonl) ? [lockOf(jsonl)] : []),
+  ];
+  files.check(outputs);
+  const job = await command.prepare(args, flags, files);
+  const inputs = [...new Set(job.folders)].map((path) => ({
+    flag: argument,
+    path,
+    isFolder: true,
+    isDeep: job.isDeep,
+  }));
+  files.add(inputs);
+  files.check([...outputs, ...pictureFiles(flags, job.tasks)]);
+  for (const { flag, path, isFolder } of outputs) if (isFolder) makeFolder(flag, path);
+  return runBatch(job, flags, files, (pathOf) => ({ command: name, options: settingsOf(list, flags, pathOf) }));
 }

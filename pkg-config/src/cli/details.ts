@@ -3,7 +3,8 @@ import type { DepthCalibration, Evaluation, InputInfo, LayoutErrors, Metrics, Po
 import { fixed, type Message, significant } from "../report-page/row.js";
 import { isRecord } from "../values/kinds.js";
 import { type AlignEntry, type Entry, isMetric, type ViewsEntry, warningsOf } from "./entry.js";
-import { Lengths, type Pair, pairs, type Style } from "./table.js";
+import { Lengths, type Pair, pairs } from "./table.js";
+import type { Style } from "./terminal.js";
 
 const numbers = (values: readonly number[], digits: number, between: string) =>
   values.map((x) => fixed(x, digits)).join(between);

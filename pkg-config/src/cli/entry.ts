@@ -6,6 +6,7 @@ import { describe, failure, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/values.js";
 import { UsageError } from "./files.js";
+import { OutputError } from "./run-files.js";
 
 /** An entry of any kind. */
 export type Entry = Readonly<Record<string, unknown>>;
@@ -18,10 +19,10 @@ export interface FailureEntry extends Entry {
 /**
  * The entry of a failure.
  * @param files the file of each argument
- * @throws {@link UsageError} for errors that concern all cases
+ * @throws {@link UsageError}, {@link OutputError} for errors that concern all cases
  */
 export function failureEntry(thrown: unknown, files: Readonly<Record<string, string>> = {}): FailureEntry {
-  if (thrown instanceof UsageError) throw thrown;
+  if (thrown instanceof UsageError || thrown instanceof OutputError) throw thrown;
   const { code, argument, found, expected, remedy, message } = asSim3AlignError(thrown);
   // All cases would fail with this error, but for that of an initial pose, which may differ from case to case.
   if (argument.startsWith("options") && !argument.startsWith("options.initial")) throw new UsageError(message);

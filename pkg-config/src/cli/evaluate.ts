@@ -3,7 +3,7 @@
 import { OPTIONS, type OptionRow } from "../index.js";
 import { failure } from "../values/error.js";
 import { evaluationColumns, viewsOf } from "./align.js";
-import { failedLine, type Job } from "./batch.js";
+import { failedLines, type Job } from "./batch.js";
 import { evaluationDetails } from "./details.js";
 import { type Entry, failureEntry, isFailure, posesIn } from "./entry.js";
 import { caseSettings, type Flags } from "./flags.js";
@@ -28,6 +28,7 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
   );
   return {
     tasks,
+    folders: tasks.map(({ folder }) => folder),
     async run(aligner, { name, folder }) {
       const frames = new Map<string, Entry>();
       for (const { frame, input, truth, files } of await viewsOf(folder, caseSettings(flags))) {
@@ -50,7 +51,7 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
       return {
         rows: isOnly ? [] : poses.flatMap((pose) => row(pose.name, pose.entry, style)),
         remarks: poses.flatMap((pose) => {
-          if (isFailure(pose.entry)) return [failedLine(pose.name, pose.entry, style)];
+          if (isFailure(pose.entry)) return failedLines(pose.name, pose.entry, style);
           return isOnly ? evaluationDetails(pose.name, pose.entry, style) : [];
         }),
       };

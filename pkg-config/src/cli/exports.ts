@@ -1,6 +1,5 @@
 /** Inputs and meshes in the lengths of a result; files of posed meshes, of scenes, and of scenes for simulators. */
-import { mkdirSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { join } from "node:path";
 import { correctDepth } from "../conventions/depth.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
 import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
@@ -21,6 +20,7 @@ import type { Sim3Like } from "../types/argument-types.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/values.js";
 import type { Flags } from "./flags.js";
+import type { RunFiles } from "./run-files.js";
 
 /** An input in the lengths of a result. Results without a calibration leave the depth as it is. */
 export async function correctedInput(
@@ -92,17 +92,26 @@ function withFacts(transform: Sim3Like, result: Sim3Like): Sim3Like {
 }
 
 /** Writes the files. Returns lines that say which bodies are fixed, and how far others were moved. */
-export async function writeSceneFiles(scene: SceneOnDisk, result: SceneResult, flags: Flags): Promise<string[]> {
+export async function writeSceneFiles(
+  scene: SceneOnDisk,
+  result: SceneResult,
+  flags: Flags,
+  files: RunFiles,
+): Promise<string[]> {
   const { sceneGlb, mjcf, urdf, usd, density, parts, rest, upright } = flags;
   const camera = cameraOf(scene.input, result);
-  if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera, upright));
+  if (sceneGlb !== undefined)
+    files.write({ flag: "--scene-glb", path: sceneGlb }, await glbOf(scene, result, camera, upright));
   if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
   const { support } = result;
   const options = { support, ...withoutUndefined({ camera, density, maxParts: parts, rest }) };
   const simulated = await simulatorScene(await simulatorObjects(scene, result, upright), options);
-  if (mjcf !== undefined) writeTexts(mjcf, toMjcf(simulated));
-  if (urdf !== undefined) writeTexts(urdf, toUrdf(simulated));
-  if (usd !== undefined) writeFileSync(usd, toUsd(simulated));
+  const writeAll = (flag: string, folder: string, texts: Record<string, string>) => {
+    for (const [name, text] of Object.entries(texts)) files.write({ flag, path: join(folder, name) }, text);
+  };
+  if (mjcf !== undefined) writeAll("--mjcf", mjcf, toMjcf(simulated));
+  if (urdf !== undefined) writeAll("--urdf", urdf, toUrdf(simulated));
+  if (usd !== undefined) files.write({ flag: "--usd", path: usd }, toUsd(simulated));
   return linesOf(simulated);
 }
 
@@ -117,14 +126,6 @@ function linesOf({ bodies, supportHeightM }: SimulatorScene): string[] {
     return `${name}: ${fixed(mass, 3)} kg, ${parts.length} convex parts, ${state}`;
   });
   return supportHeightM === 0 ? lines : [ground, ...lines];
-}
-
-function writeTexts(folder: string, files: Record<string, string>): void {
-  for (const [path, text] of Object.entries(files)) {
-    const file = join(folder, path);
-    mkdirSync(dirname(file), { recursive: true });
-    writeFileSync(file, text);
-  }
 }
 
 /** The aligned objects with their meshes and colours. Indices of contacts count aligned objects only. */

@@ -1,14 +1,14 @@
 /** Flags of the table of commands, and the inputs and outputs that they name. */
-import { existsSync } from "node:fs";
-import { dirname, resolve, sep } from "node:path";
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
 import type { CameraInput, Preset } from "../index.js";
 import { type DepthKind, depthKinds } from "../input/types.js";
 import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
 import { withoutUndefined } from "../values/values.js";
-import { checkWritable, makeFolder, UsageError } from "./files.js";
+import { UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
+import { isCsv, isResults } from "./result-files.js";
+import type { NamedFile, OutputName } from "./run-files.js";
 
 /** Settings of a flag. */
 interface FlagSettings {
@@ -21,6 +21,11 @@ interface FlagSettings {
   words?: readonly string[];
   /** Whether the file is read whole before it may be written. */
   isReplaceable?: boolean;
+  /** See {@link OutputName}. */
+  isOwn?: OutputName["isOwn"];
+  holds?: OutputName["holds"];
+  /** Whether results do not depend on it: it names a case, or says how cases are worked on. */
+  isIndifferent?: boolean;
   /** Another flag that it needs, and the name of that flag in the error. */
   needs?: readonly [flag: string, what: string];
 }
@@ -30,6 +35,8 @@ export type Flag = readonly [flag: string, meaning: string, facts?: FlagSettings
 
 export const reads = { use: "reads" } as const;
 export const writes = { use: "writes" } as const;
+/** A file of one case, which does not belong to the settings of a batch. */
+export const ofCase = { use: "reads", isIndifferent: true } as const;
 
 /** Flags, and titles in the help of the flags that follow. */
 export type FlagList = readonly (Flag | string)[];
@@ -64,26 +71,39 @@ export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Parti
 
 /** The record of a batch, and the number of workers. */
 export const recordFlags = (noun: string): Flag[] => [
-  ["--json <file>", 'write the results as JSON; "-" is stdout', writes],
-  ["--jsonl <file>", `write a line of JSON for each ${noun} when it is done; "-" is stdout`, writes],
+  ["--json <file>", 'write the results as JSON; "-" is stdout', { ...writes, isOwn: isResults }],
+  [
+    "--jsonl <file>",
+    `write a line of JSON for each ${noun} when it is done; "-" is stdout`,
+    // The record checks its lines.
+    { ...writes, isOwn: () => true },
+  ],
   [
     "--resume",
     `go on: skip the ${noun}s in the file of --jsonl, and append to it`,
-    { needs: ["jsonl", "--jsonl FILE, the record of what is done"] },
+    { needs: ["jsonl", "--jsonl FILE, the record of what is done"], isIndifferent: true },
   ],
-  ["--workers <n|auto>", `${noun}s at a time (1 to 64; default auto: one per core)`, { parse: workers }],
+  [
+    "--workers <n|auto>",
+    `${noun}s at a time (1 to 64; default auto: one per core)`,
+    { parse: workers, isIndifferent: true },
+  ],
 ];
 
 /** The flags of all commands that work on many folders. */
 export const batchFlags = (noun: string): Flag[] => [
-  ["--list <file>", `a file with the path of a ${noun} folder per line; "-" is stdin`, reads],
+  ["--list <file>", `a file with the path of a ${noun} folder per line; "-" is stdin`, ofCase],
   ...recordFlags(noun),
-  ["--csv <file>", 'write a table of comma-separated values; "-" is stdout', writes],
+  ["--csv <file>", 'write a table of comma-separated values; "-" is stdout', { ...writes, isOwn: isCsv }],
 ];
 
 /** Pictures and posed meshes. */
 export const pictureFlags: readonly Flag[] = [
-  ["--report <folder>", "write a page with a table, pictures and a 3D view of each case", writes],
+  [
+    "--report <folder>",
+    "write a page with a table, pictures and a 3D view of each case",
+    { ...writes, holds: ["index.html", "rows.js"] },
+  ],
   ["--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh", writes],
   ["--glb <folder>", "write the posed mesh of each case as a GLB file", writes],
   ["--upright", "give the meshes in exported files upright frames: up along the support, a tight box"],
@@ -101,8 +121,16 @@ export const caseFlags: readonly Flag[] = [
 /** Files of a whole scene, of which there is one. */
 export const sceneFileFlags: readonly Flag[] = [
   ["--scene-glb <file>", "write the scene as one GLB file", writes],
-  ["--mjcf <folder>", "write the scene for MuJoCo: scene.xml and meshes", writes],
-  ["--urdf <folder>", "write the scene as URDF: a file per object, scene.json, load.py for PyBullet", writes],
+  [
+    "--mjcf <folder>",
+    "write the scene for MuJoCo: scene.xml and meshes",
+    { ...writes, holds: ["meshes", "scene.xml"] },
+  ],
+  [
+    "--urdf <folder>",
+    "write the scene as URDF: a file per object, scene.json, load.py for PyBullet",
+    { ...writes, holds: ["meshes", "scene.json"] },
+  ],
   ["--usd <file>", "write the scene as USD with physics (.usda)", writes],
   ["--density <kg/m³>", `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`, { parse: number }],
   [
@@ -133,15 +161,6 @@ export function addFlags(command: Command, list: FlagList): void {
   }
 }
 
-/** A file or folder that a command line names. */
-export interface NamedFile {
-  /** The flag, or what an argument is called. */
-  flag: string;
-  path: string;
-  isFolder: boolean;
-  isReplaceable?: boolean;
-}
-
 /** The name of a flag without its value: `--jsonl`. */
 const nameOf = (flag: string) => flag.split(" ")[0] as string;
 
@@ -152,45 +171,34 @@ export const valueName = (flag: string) =>
     .replace(/-(.)/g, (_, letter: string) => letter.toUpperCase());
 
 /** The files and folders that the flags read or write, in the order of the flags. */
-export const filesOf = (list: FlagList, flags: Flags, use: "reads" | "writes"): NamedFile[] =>
+export const filesOf = (list: FlagList, flags: Flags, use: "reads" | "writes"): (NamedFile & OutputName)[] =>
   withoutTitles(list).flatMap(([flag, , settings = {}]) => {
     const path = flags[valueName(flag)];
     if (settings.use !== use || typeof path !== "string" || settings.words?.includes(path)) return [];
-    const isReplaceable = settings.isReplaceable === true;
-    return [{ flag: nameOf(flag), path, isFolder: flag.includes("<folder>"), isReplaceable }];
+    if (settings.isReplaceable) return [];
+    const { isOwn, holds } = settings;
+    return [{ flag: nameOf(flag), path, isFolder: flag.includes("<folder>"), isOwn, holds }];
   });
 
-/**
- * Checks flags before anything is read: flags that need others, and outputs that cannot be written or are one file.
- * @throws {@link UsageError}
- */
-export function checkFlags(
-  list: FlagList,
-  flags: Flags,
-  inputs: readonly NamedFile[],
-  outputs: readonly NamedFile[],
-): void {
+/** @throws {@link UsageError} for flags that need others */
+export function checkNeeds(list: FlagList, flags: Flags): void {
   for (const [flag, , { needs } = {}] of withoutTitles(list)) {
     if (needs !== undefined && flags[valueName(flag)] !== undefined && flags[needs[0]] === undefined)
       throw new UsageError(`${nameOf(flag)} needs ${needs[1]}.`);
   }
-  const place = (path: string) => (path === "-" ? path : resolve(path));
-  const owners = new Map<string, string>();
-  for (const { flag, path } of inputs.filter((file) => !file.isFolder && !file.isReplaceable && file.path !== "-"))
-    owners.set(place(path), flag);
-  const folders = outputs.filter(({ isFolder }) => isFolder).map(({ path }) => `${resolve(path)}${sep}`);
-  // A folder of this run may be made in the folder of a file.
-  const isMade = (folder: string) => folders.some((made) => made.startsWith(`${resolve(folder)}${sep}`));
-  for (const { flag, path, isFolder } of outputs) {
-    if (isFolder) continue;
-    const other = owners.get(place(path));
-    if (other !== undefined) throw new UsageError(`${other} and ${flag} name the same file: ${path}.`);
-    owners.set(place(path), flag);
-    if (existsSync(dirname(path)) || !isMade(dirname(path))) checkWritable(flag, path);
-  }
 }
 
-/** Makes the folders that are written. */
-export function makeFolders(outputs: readonly NamedFile[]): void {
-  for (const { flag, path, isFolder } of outputs) if (isFolder) makeFolder(flag, path);
-}
+/**
+ * The values of the flags that results depend on, by their names.
+ * @param pathOf returns the path of a file as it is compared
+ */
+export const settingsOf = (list: FlagList, flags: Flags, pathOf: (path: string) => string): Record<string, unknown> =>
+  Object.fromEntries(
+    withoutTitles(list).flatMap(([flag, , { use, words, isIndifferent } = {}]) => {
+      const value = flags[valueName(flag)];
+      const isSet = flag.startsWith("--no-") ? value === false : value !== undefined && value !== false;
+      if (!isSet || use === "writes" || isIndifferent) return [];
+      const isPath = use === "reads" && typeof value === "string" && !words?.includes(value);
+      return [[nameOf(flag).slice(2), isPath ? pathOf(value) : flag.startsWith("--no-") || value]];
+    }),
+  );

@@ -1,13 +1,14 @@
 /** Folders on the command line: paths, patterns and lists. */
-import { existsSync, readdirSync, realpathSync, statSync } from "node:fs";
+import { existsSync } from "node:fs";
 import { readFile } from "node:fs/promises";
-import { basename, join, resolve, sep } from "node:path";
+import { basename, join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
-import { globSync, isDynamicPattern } from "tinyglobby";
 import { caseFiles } from "../case-files.js";
 import { viewNames } from "../scene/sam3d-files.js";
-import { isFile, namesIn, UsageError } from "./files.js";
-import { absolutePath, type CaseKey } from "./record.js";
+import { absolutePath, isFile, namesIn, UsageError } from "./files.js";
+import { isPattern, matchingFolders } from "./pattern.js";
+import type { CaseKey } from "./record.js";
+import { note } from "./terminal.js";
 
 /** A kind of folders. */
 export interface FolderKind {
@@ -65,7 +66,7 @@ export async function foldersToDo(
   const folders = unique(paths.filter((path) => !isFile(path)));
   if (folders.length === 0) throw new UsageError(`No ${kind.noun} folder among ${paths.join(", ")}.`);
   for (const { folder } of folders) refuseParent(kind, folder);
-  if (files.length > 0) console.error(`skipped, not a folder: ${files.join(", ")}`);
+  if (files.length > 0) note(`skipped, not a folder: ${files.join(", ")}`);
   const nameOf = (folder: string) => basename(resolve(folder));
   const counts = new Map<string, number>();
   for (const { folder } of folders) counts.set(nameOf(folder), (counts.get(nameOf(folder)) ?? 0) + 1);
@@ -88,7 +89,7 @@ function unique(folders: readonly string[]): { folder: string; path: string }[] 
     seen.add(path);
     return [{ folder, path }];
   });
-  if (repeated.length > 0) console.error(`skipped, given twice: ${repeated.join(", ")}`);
+  if (repeated.length > 0) note(`skipped, given twice: ${repeated.join(", ")}`);
   return first;
 }
 
@@ -106,35 +107,13 @@ function refuseParent({ noun, is }: FolderKind, folder: string): void {
 /** Expands a pattern that the shell did not expand. What exists is no pattern. */
 function expanded({ mark, is }: FolderKind, arg: string): string[] {
   const pattern = process.platform === "win32" ? arg.replaceAll("\\", "/") : arg;
-  if (!isDynamicPattern(pattern) || existsSync(arg)) return [arg];
-  const found = globSync(pattern, { onlyDirectories: true, expandDirectories: false, fs: linksAsFolders });
-  const folders = found.map((path) => path.replace(/\/$/, "")).sort();
+  if (!isPattern(pattern) || existsSync(arg)) return [arg];
+  const { folders, unread } = matchingFolders(pattern);
+  if (unread.length > 0) note(`skipped, cannot be read: ${unread.join(", ")}`);
   // Of folders at any depth, most are above or inside of those that are meant.
   const meant = pattern.includes("**") ? folders.filter(is) : folders;
   if (meant.length > 0) return meant;
   throw new UsageError(`${arg}: no ${pattern.includes("**") ? `folder with ${mark}` : "folder"} matches the pattern.`);
-}
-
-/** Lists links to folders as folders, by their own names; but for those to a folder above them, which have no end. */
-const linksAsFolders = {
-  readdirSync: ((path: string, options: { withFileTypes: true }) => {
-    const entries = readdirSync(path, options);
-    for (const entry of entries.filter((each) => each.isSymbolicLink())) {
-      const isFolder = isFolderBelow(join(path, entry.name), path);
-      Object.assign(entry, { isSymbolicLink: () => false, isDirectory: () => isFolder });
-    }
-    return entries;
-  }) as typeof readdirSync,
-};
-
-function isFolderBelow(link: string, folder: string): boolean {
-  try {
-    const target = realpathSync(link);
-    return statSync(target).isDirectory() && !`${realpathSync(folder)}${sep}`.startsWith(`${target}${sep}`);
-  } catch {
-    // A link to nothing.
-    return false;
-  }
 }
 
 /** Lines of the list; empty ones and comments are skipped. */

@@ -1,5 +1,5 @@
 /** The help texts of the commands: layouts of folders, frames and units, outputs, and examples. */
-import { csvHeadings } from "./output.js";
+import { csvHeadings } from "./result-files.js";
 
 const caseFolder = `
 A case folder holds
@@ -44,8 +44,8 @@ A transform file is JSON with
   - the output of "sim3align align --json", or a record of --jsonl, from which the entry of the case is read.`;
 
 const status = `
-Exit status: 0 all cases done, 1 some case failed (the others are done), 2 the command line is wrong, 130 interrupted
-by Ctrl-C.`;
+Exit status: 0 everything asked for is there, 1 some case failed or some file cannot be written (the others are done), 2 the
+command line is wrong, 130 interrupted by Ctrl-C.`;
 
 /** Lists, workers and outputs, for folders of a kind. */
 const batches = (noun: string, mark: string) => `
@@ -55,13 +55,15 @@ Batches
   * and ? within a name, [abc], {a,b}, and ** for folders at any depth, of which those with ${mark} are taken. Paths in a
   list are relative to the current folder, and stand for themselves; empty lines and lines that begin with # are skipped.
   A terminal shows a bar with rate, time left and failures; elsewhere, a batch of 20 or more prints a line per tenth.
-  Rows and entries are written when a ${noun} is done, in the order in which they end; with --workers 1, in that of the
-  command line. An interruption loses nothing: the files hold what is done.
-  --jsonl writes the entries of --json, a line each: { "case", "path", "content", … }. It is the record of a batch: after an
-  interruption, of whatever kind, the same command with --resume does what is missing. A ${noun} is known by its path
-  relative to the record, whatever else is given and from wherever; one that has moved, by the checksum of its files. One
-  program at a time writes a record, which FILE.lock says. A line that was cut off is removed. What failed counts as done;
-  remove its lines to try again. --json and --csv are then written anew from the record.`;
+  Rows and entries are in the order in which ${noun}s are done; with --workers 1, in that of the command line. Files appear
+  whole, or not at all: --json and --csv when the batch ends, also by Ctrl-C, with what is done. No output may be an input or
+  another output.
+  --jsonl writes the entries of --json, a line each: { "case", "path", "content", … }, after a line with the version, the
+  command and the options. It is the record of a batch: after an interruption, of whatever kind, the same command with
+  --resume does what is missing; other options are refused. A ${noun} is known by its path relative to the record, from
+  wherever; one that has moved, by the checksum of its files. FILE.lock keeps other programs from writing the record. A line
+  that was cut off is removed. What failed counts as done; remove its lines to try again. --json and --csv are then written
+  anew from the record.`;
 
 /** The columns of CSV files, in lines that fit the help. */
 const columns = csvHeadings.join(", ").replace(/(.{80,100}), /g, "$1,\n  ");

@@ -1,15 +1,12 @@
 #!/usr/bin/env node
 /** The command line program `sim3align`. */
-import { readFileSync } from "node:fs";
 import { Command, CommanderError } from "commander";
 import { commands, runCommand } from "./commands.js";
 import { UsageError } from "./files.js";
 import { addFlags } from "./flags.js";
 import { programHelp } from "./help.js";
-
-const { version } = JSON.parse(readFileSync(new URL("../package.json", import.meta.url), "utf8")) as {
-  version: string;
-};
+import { version } from "./record.js";
+import { note } from "./terminal.js";
 
 const program = new Command("sim3align")
   .description("Aligns generated 3D meshes with a masked depth map, in pose and metric scale.")
@@ -33,16 +30,20 @@ for (const command of [program, ...program.commands]) {
 }
 
 // "sim3align … | head" closes the pipe early, which is not an error.
-process.stdout.on("error", (error: NodeJS.ErrnoException) => {
-  if (error.code !== "EPIPE") throw error;
-});
+const onError = (name: string) => (error: NodeJS.ErrnoException) => {
+  if (error.code === "EPIPE") return;
+  process.exitCode = 1;
+  if (name === "stdout") note(`error: stdout: cannot be written: ${error.message}.`);
+};
+process.stdout.once("error", onError("stdout")).on("error", () => {});
+process.stderr.once("error", onError("stderr")).on("error", () => {});
 
 try {
   await program.parseAsync();
 } catch (error) {
   // Commander has already printed its errors.
   const isPrinted = error instanceof CommanderError;
-  if (!isPrinted) console.error(`error: ${error instanceof Error ? error.message : String(error)}`);
+  if (!isPrinted) note(`error: ${error instanceof Error ? error.message : String(error)}`);
   const isUsage = error instanceof UsageError || (isPrinted && error.exitCode !== 0);
-  process.exitCode = isUsage ? 2 : isPrinted ? 0 : 1;
+  process.exitCode = isUsage ? 2 : isPrinted ? (process.exitCode ?? 0) : 1;
 }

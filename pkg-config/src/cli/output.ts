@@ -1,118 +1,36 @@
 /** The outputs of a batch: JSON, a record, comma-separated values, and text for people. */
-import { isLength } from "../report-page/row.js";
-import { type Entry, isMetric, posesIn, rowFields } from "./entry.js";
-import { checkReplaceable, isOrdinary, OutputFile } from "./files.js";
+import type { Entry } from "./entry.js";
 import type { Flags } from "./flags.js";
-import { type CaseKey, JsonlFile, type Resumed } from "./record.js";
-import { Style } from "./table.js";
-
-/** An output for the entries of cases. */
-export interface EntrySink {
-  /** @param isFinal whether no other entry will replace it */
-  add(name: string, entry: Entry, isFinal: boolean): void;
-  /** Writes what is not written yet. */
-  end(): void;
-}
-
-const END = "\n}\n";
-
-/** Whether a file begins as {@link ResultsFile} writes it: the names of cases, and what became of each. */
-const isResults = (beginning: string) =>
-  /^\{\n {2}"(?:[^"\\]|\\.)*": \{\n {4}"/.test(beginning) || beginning.trim() === "{}" || beginning === `{\n${END}`;
-
-/** An object with an entry for each case, which is complete after each of them: an interruption loses no result. */
-class ResultsFile implements EntrySink {
-  readonly #file: OutputFile;
-  /** Whether entries are written as they come. Pipes and devices get all of them at the end. */
-  readonly #isIncremental: boolean;
-  #entries: string[] = [];
-  /** Bytes of the file before its end. */
-  #length = 0;
-
-  constructor(path: string) {
-    checkReplaceable("--json", path, isResults);
-    this.#isIncremental = isOrdinary(path);
-    this.#file = new OutputFile(path, "w");
-  }
-
-  add(name: string, entry: Entry, isFinal: boolean): void {
-    if (!this.#isIncremental && !isFinal) return;
-    const text = `  ${JSON.stringify(name)}: ${JSON.stringify(entry, null, 2).replaceAll("\n", "\n  ")}`;
-    if (!this.#isIncremental) {
-      this.#entries.push(text);
-      return;
-    }
-    const added = `${this.#length === 0 ? "{\n" : ",\n"}${text}${END}`;
-    this.#file.write(added, this.#length);
-    if (isFinal) this.#length += Buffer.byteLength(added) - END.length;
-  }
-
-  end(): void {
-    if (!this.#isIncremental) this.#file.write(`{\n${this.#entries.join(",\n")}${END}`);
-    this.#entries = [];
-    this.#file.end();
-  }
-}
-
-/** The headings of a table of comma-separated values. */
-export const csvHeadings: readonly string[] = ["case", ...rowFields.map(([name]) => name)];
-
-/**
- * A row for each case, or for each frame or object of one, after a row of headings (RFC 4180 with line feeds). What a case
- * lacks is empty, as are metres and millimetres of lengths without a unit.
- */
-class CsvFile implements EntrySink {
-  readonly #file: OutputFile;
-  #isEmpty = true;
-
-  constructor(path: string) {
-    checkReplaceable("--csv", path, (beginning) => beginning.startsWith(`${csvHeadings.join(",")}\n`));
-    this.#file = new OutputFile(path, "w");
-  }
-
-  add(name: string, entry: Entry, isFinal: boolean): void {
-    if (!isFinal) return;
-    // A case of several views has a pose of its own; a scene or a video only has those of its parts.
-    const poses = "confidence" in entry ? [{ name, entry }] : posesIn(name, entry);
-    const rows = poses.map((pose) =>
-      [pose.name, ...rowFields.map(([fact, read]) => (isLength(fact) && !isMetric(pose.entry) ? "" : read(pose.entry)))]
-        .map(csvCell)
-        .join(","),
-    );
-    this.#file.lines(this.#isEmpty ? [csvHeadings.join(","), ...rows] : rows);
-    this.#isEmpty = false;
-  }
-
-  end(): void {
-    this.#file.end();
-  }
-}
-
-function csvCell(value: unknown): string {
-  const text = value === undefined || value === null ? "" : String(value);
-  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
-}
+import { type CaseKey, JsonlFile, type RecordHeader, type Resumed } from "./record.js";
+import { CsvFile, type EntrySink, ResultsFile } from "./result-files.js";
+import type { RunFiles } from "./run-files.js";
+import { Style } from "./terminal.js";
 
 /** Writes the entries of cases to files, and tables to stdout; to stderr, if stdout gets entries. */
 export class Output {
   readonly #record: JsonlFile | undefined;
   readonly #sinks: readonly EntrySink[];
   readonly #tables: NodeJS.WriteStream;
+  /** The entry so far of a case that is not done. */
+  #begun: readonly [name: string, entry: Entry] | undefined;
   /** Text style of the tables. */
   readonly style: Style;
   #isClosed = false;
+  #isEnded = false;
 
-  /** @throws {@link UsageError} if a file has other content than that of an earlier run */
+  /** @throws {@link UsageError} if the record cannot be continued */
   constructor(
     { json, jsonl, csv, resume = false }: Pick<Flags, "json" | "jsonl" | "csv" | "resume">,
     sinks: EntrySink[],
+    files: RunFiles,
+    header: RecordHeader,
   ) {
+    this.#record = jsonl === undefined ? undefined : new JsonlFile(jsonl, resume, header);
     this.#sinks = [
-      ...(json === undefined ? [] : [new ResultsFile(json)]),
-      ...(csv === undefined ? [] : [new CsvFile(csv)]),
+      ...(json === undefined ? [] : [new ResultsFile(files.open({ flag: "--json", path: json }))]),
+      ...(csv === undefined ? [] : [new CsvFile(files.open({ flag: "--csv", path: csv }))]),
       ...sinks,
     ];
-    this.#record = jsonl === undefined ? undefined : new JsonlFile(jsonl, resume);
     this.#tables = [json, jsonl, csv].includes("-") ? process.stderr : process.stdout;
     this.style = new Style(this.#tables);
     this.#tables.on("error", () => {
@@ -130,26 +48,46 @@ export class Output {
     return this.#record?.resumed(tasks) ?? [];
   }
 
-  /** Adds the entry of a case to all files. */
-  add(key: CaseKey, entry: Entry): void {
-    // First the record from which the others can be written again.
+  /** Adds the entry of a case to the record. */
+  record(key: CaseKey, entry: Entry): void {
     this.#record?.add(key, entry);
-    this.addToOthers(key.name, entry);
   }
 
-  /** Adds an entry to all files but the record. One that is not final will be replaced. */
-  addToOthers(name: string, entry: Entry, isFinal = true): void {
-    for (const sink of this.#sinks) sink.add(name, entry, isFinal);
+  /** Adds the entry of a case to the other files. */
+  add(name: string, entry: Entry): void {
+    this.#begun = undefined;
+    for (const sink of this.#sinks) sink.add(name, entry);
   }
 
-  /** Writes what is not written yet, and closes the files. */
+  /** Keeps the entry so far of a case, which the files get if the batch ends before it. */
+  begin(name: string, entry: Entry): void {
+    this.#begun = [name, entry];
+  }
+
+  /** Writes what is not written yet, and closes the files. All are closed, before the first error is thrown. */
   end(): void {
+    if (this.#isEnded) return;
+    this.#isEnded = true;
+    if (this.#begun !== undefined) this.add(...this.#begun);
+    const errors: unknown[] = [];
+    for (const file of [this.#record, ...this.#sinks]) {
+      try {
+        file?.end();
+      } catch (error) {
+        errors.push(error);
+      }
+    }
+    if (errors.length > 0) throw errors[0];
+  }
+
+  /** Closes the files, which keep their earlier content. */
+  discard(): void {
     this.#record?.end();
-    for (const sink of this.#sinks) sink.end();
+    for (const sink of this.#sinks) sink.discard?.();
   }
 
   /** Writes human-readable lines. */
   lines(lines: readonly string[]): void {
-    this.#tables.write(lines.map((line) => `${line}\n`).join(""));
+    this.#tables.write(lines.map((line) => `${this.style.printable(line)}\n`).join(""));
   }
 }

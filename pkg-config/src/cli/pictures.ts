@@ -1,5 +1,4 @@
 /** Pictures and posed meshes of cases, and their report. */
-import { writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { exportGlb, placeGlb } from "../conventions/glb.js";
 import type { UprightOptions } from "../conventions/upright.js";
@@ -9,25 +8,47 @@ import { Shot } from "../pictures/shot.js";
 import { withoutUndefined } from "../values/values.js";
 import { alternativesOf, type Entry, posesIn } from "./entry.js";
 import { correctedInput, type ExportedAs, exportedMesh } from "./exports.js";
+import { isFile } from "./files.js";
 import type { Flags } from "./flags.js";
+import type { CaseKey } from "./record.js";
 import { fileName, ReportFolder } from "./report.js";
+import { OutputError, type OutputName, type RunFiles } from "./run-files.js";
+
+/** The picture and the posed mesh of a pose. */
+const filesOfPose = ({ overlay, glb }: Flags, name: string) => ({
+  overlay: overlay === undefined ? undefined : { flag: "--overlay", path: join(overlay, `${fileName(name)}.png`) },
+  glb: glb === undefined ? undefined : { flag: "--glb", path: join(glb, `${fileName(name)}.glb`) },
+});
+
+/** The pictures and posed meshes of cases with one pose. Those of frames and objects have names that are not known yet. */
+export const pictureFiles = (flags: Flags, cases: readonly CaseKey[]): OutputName[] =>
+  cases.flatMap(({ name }) => Object.values(filesOfPose(flags, name)).filter((file) => file !== undefined));
 
 /** Writes the pictures that the flags ask for, into folders that are there. */
 export class Pictures {
   private constructor(
     private readonly flags: Flags,
     private readonly report: ReportFolder | undefined,
+    private readonly files: RunFiles,
   ) {}
 
   /** @throws {@link UsageError} if the folder of the report has other content */
-  static async open(flags: Flags): Promise<Pictures> {
-    return new Pictures(flags, flags.report === undefined ? undefined : await ReportFolder.open(flags.report));
+  static async open(flags: Flags, files: RunFiles): Promise<Pictures> {
+    const { report } = flags;
+    return new Pictures(flags, report === undefined ? undefined : await ReportFolder.open(report, files), files);
+  }
+
+  /** Whether all files of a pose are there. */
+  #has(name: string): boolean {
+    const { overlay, glb } = filesOfPose(this.flags, name);
+    return (this.report?.has(name) ?? true) && [overlay, glb].every((file) => file === undefined || isFile(file.path));
   }
 
   /**
-   * Draws the poses in an entry. What cannot be drawn is said, and changes no result.
+   * Draws the poses in an entry.
    * @param isResumed whether pictures may be there already
    * @param inputsOf reads what the poses were found in, by their names
+   * @throws {@link OutputError} if a file cannot be made
    */
   async draw(
     name: string,
@@ -38,26 +59,26 @@ export class Pictures {
     const { report, flags } = this;
     if ((report ?? flags.overlay ?? flags.glb) === undefined || "error" in entry) return;
     const poses = posesIn(name, entry);
-    if (isResumed && poses.every((pose) => report?.has(pose.name) ?? true)) return;
+    const missing = poses.filter((pose) => !isResumed || !this.#has(pose.name));
+    if (missing.length === 0) return;
     try {
       const inputs = await inputsOf();
-      for (const pose of poses) await this.#drawPose(pose.name, pose.entry, inputs.get(pose.name));
+      for (const pose of missing) await this.#drawPose(pose.name, pose.entry, inputs.get(pose.name));
     } catch (error) {
-      console.error(`no pictures of ${name}: ${(error as Error).message}`);
+      throw error instanceof OutputError ? error : new OutputError(`no pictures: ${(error as Error).message}`);
     }
   }
 
   async #drawPose(name: string, entry: Entry, input: AlignInput | undefined): Promise<void> {
     if (input === undefined || !Array.isArray(entry.matrix)) return;
     const matrix = entry.matrix as number[];
-    const { overlay, glb, upright } = this.flags;
+    const { overlay, glb } = filesOfPose(this.flags, name);
     const shot = await Shot.of(await correctedInput(input, entry.depthCalibration as InputInfo["depthCalibration"]));
-    const file = (folder: string, ending: string) => join(folder, `${fileName(name)}.${ending}`);
     try {
       const others = alternativesOf(entry).map((other) => other.matrix as number[]);
-      if (this.report !== undefined) await this.report.write(name, entry, await drawCase(shot, matrix, others));
-      if (overlay !== undefined) await writeFile(file(overlay, "png"), await drawOverlay(shot, matrix));
-      if (glb !== undefined) await writeFile(file(glb, "glb"), await posed(input, entry, upright));
+      if (this.report !== undefined) this.report.write(name, entry, await drawCase(shot, matrix, others));
+      if (overlay !== undefined) this.files.write(overlay, await drawOverlay(shot, matrix));
+      if (glb !== undefined) this.files.write(glb, await posed(input, entry, this.flags.upright));
     } finally {
       await shot.dispose();
     }

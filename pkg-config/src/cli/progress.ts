@@ -1,4 +1,6 @@
 /** Progress on a terminal: a line that is overwritten. */
+import { printable } from "./terminal.js";
+
 const eraseLine = "\r\u001b[2K";
 
 /** The part of a stream that a line needs. */
@@ -11,7 +13,7 @@ export class StatusLine {
   /** Replaces the line, cut to the width of the terminal. */
   show(text: string): void {
     if (!this.stream.isTTY) return;
-    this.stream.write(eraseLine + text.slice(0, Math.max(10, (this.stream.columns || 80) - 1)));
+    this.stream.write(eraseLine + printable(text).slice(0, Math.max(10, (this.stream.columns || 80) - 1)));
   }
 
   /** Clears the line before other output. */

@@ -1,20 +1,20 @@
-/** The record of a batch, from which it can be resumed: a line of JSON for each case. */
+/** The record of a batch, from which it can be resumed: a line with its settings, and a line of JSON for each case. */
 import { createHash } from "node:crypto";
-import {
-  appendFileSync,
-  createReadStream,
-  existsSync,
-  readFileSync,
-  realpathSync,
-  statSync,
-  truncateSync,
-} from "node:fs";
-import { basename, dirname, join, relative, resolve, sep } from "node:path";
+import { appendFileSync, createReadStream, existsSync, readFileSync, truncateSync } from "node:fs";
+import { dirname, join, relative, sep } from "node:path";
 import { createInterface } from "node:readline";
-import { caseFiles } from "../case-files.js";
+import { isDeepStrictEqual } from "node:util";
+import { caseFiles, INITIAL_FILE } from "../case-files.js";
+import { isRecord } from "../values/kinds.js";
 import type { Entry } from "./entry.js";
-import { bytesOf, isOrdinary, namesIn, OutputFile, UsageError } from "./files.js";
-import { lockRecord } from "./record-lock.js";
+import { absolutePath, bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
+import { lockRecord, type RecordLock } from "./record-lock.js";
+import { OutputFile } from "./run-files.js";
+
+/** The version of the package. */
+export const { version } = JSON.parse(readFileSync(new URL("../package.json", import.meta.url), "utf8")) as {
+  version: string;
+};
 
 /** The identity of a case. */
 export interface CaseKey {
@@ -42,34 +42,20 @@ export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" |
 
 const keyOf = ({ path, name }: Pick<CaseKey, "path" | "name">) => path ?? name;
 
-/** The absolute path of a case. A link to a folder is a case of its own; links above it are followed. */
-export function absolutePath(path: string): string {
-  const absolute = resolve(path);
-  return join(realPath(dirname(absolute)), basename(absolute));
-}
+/** What the results of a record depend on beside the cases; `pathOf` returns the paths of files as the record has them. */
+export type RecordHeader = (pathOf: (path: string) => string) => { command: string; options: Record<string, unknown> };
 
-function realPath(path: string): string {
-  try {
-    return realpathSync(path);
-  } catch {
-    // It does not exist, which is reported for its case.
-    return path;
-  }
-}
-
-const inputs = new Set<string>([...Object.values(caseFiles).flat(), "pose.json"]);
+const inputs = new Set<string>([...Object.values(caseFiles).flat(), INITIAL_FILE, "pose.json"]);
 
 /** A checksum of the inputs in a folder: its files, those of its frames and of its objects. `undefined` without files. */
 function contentHash(folder: string): string | undefined {
   const hash = createHash("sha256");
   let isEmpty = true;
-  const below = (path: string, pattern: RegExp) =>
-    namesIn(path).flatMap((name) => (pattern.test(name) ? [join(path, name)] : []));
-  for (const part of [folder, ...below(folder, /^frame_/), ...below(join(folder, "objects"), /./)]) {
+  for (const part of partsOf(folder)) {
     for (const name of namesIn(part)) {
       const path = join(part, name);
       try {
-        if (!inputs.has(name) || !statSync(path).isFile()) continue;
+        if (!inputs.has(name) || !isFile(path)) continue;
         const bytes = readFileSync(path);
         hash.update(`${relative(folder, part).split(sep).join("/")}/${name} ${bytes.length}\n`).update(bytes);
         isEmpty = false;
@@ -81,19 +67,23 @@ function contentHash(folder: string): string | undefined {
   return isEmpty ? undefined : hash.digest("hex").slice(0, 32);
 }
 
-/** The first bytes of every line. */
-const START = '{"case":';
+/** The first bytes of the lines of cases, and of the first line. */
+const STARTS = ['{"case":', '{"sim3align":'];
 const NEWLINE = 0x0a;
 
 /**
- * A line for each case: its entry, preceded by `case`, its name, `path`, its path relative to the record, and `content`, a
+ * A line with `sim3align`, the version, `command` and `options`, and a line for each case: its entry, preceded by `case`, its name, `path`, its path relative to the record, and `content`, a
  * checksum of its inputs.
  */
 export class JsonlFile {
   /** The folder to which paths are relative; that of stdout is the current one. */
   readonly #folder: string;
   readonly #file: OutputFile;
-  readonly #release: () => void = () => {};
+  readonly #header: Readonly<Record<string, unknown>>;
+  #isBegun = false;
+  readonly #lock: RecordLock | undefined;
+  /** The keys of the cases in the file. */
+  readonly #keys = new Set<string>();
 
   /**
    * @param isResumed whether the lines of the file are kept
@@ -102,26 +92,38 @@ export class JsonlFile {
   constructor(
     private readonly path: string,
     isResumed: boolean,
+    header: RecordHeader,
   ) {
-    const isFile = isOrdinary(path);
-    if (isResumed && !isFile) throw new UsageError(`--resume needs a file: --jsonl ${path} is none.`);
-    if (isFile) this.#release = lockRecord("--jsonl", path);
-    if (isFile && !isResumed && sizeOf(path) > 0) {
+    const ordinary = isOrdinary(path);
+    if (isResumed && !ordinary) throw new UsageError(`--resume needs a file: --jsonl ${path} is none.`);
+    this.#folder = path === "-" ? realPath(".") : dirname(realPath(path));
+    this.#header = { sim3align: version, ...header((file) => this.#relative(absolutePath(file))) };
+    if (ordinary) this.#lock = lockRecord("--jsonl", path);
+    if (ordinary && !isResumed && sizeOf(path) > 0) {
       throw new UsageError(`--jsonl ${path}: the file has content. Pass --resume to go on, or remove the file.`);
     }
-    this.#folder = realPath(path === "-" ? process.cwd() : dirname(resolve(path)));
-    this.#file = new OutputFile(path, "a");
+    this.#file = new OutputFile(path, true);
   }
 
-  add({ name, path, folder }: CaseKey, entry: Entry): void {
-    const recorded = path === undefined ? undefined : relative(this.#folder, path).split(sep).join("/") || ".";
+  #relative(path: string): string {
+    return relative(this.#folder, path).split(sep).join("/") || ".";
+  }
+
+  /** Adds a case that the file does not hold yet. */
+  add(task: CaseKey, entry: Entry): void {
+    const { name, path, folder } = task;
+    if (this.#keys.has(keyOf(task))) return;
+    this.#lock?.check();
     const content = folder === undefined ? undefined : contentHash(folder);
-    this.#file.lines([JSON.stringify({ case: name, path: recorded, content, ...entry })]);
+    const recorded = path === undefined ? undefined : this.#relative(path);
+    const line = JSON.stringify({ case: name, path: recorded, content, ...entry });
+    this.#file.lines(this.#isBegun ? [line] : [JSON.stringify(this.#header), line]);
+    this.#isBegun = true;
   }
 
   end(): void {
     this.#file.end();
-    this.#release();
+    this.#lock?.release();
   }
 
   /**
@@ -139,19 +141,44 @@ export class JsonlFile {
     for await (const { line, isLast } of withLast(createInterface({ input: bytes, crlfDelay: Infinity }))) {
       number += 1;
       if (line.trim() === "") continue;
-      const found = this.#parsed(line);
       const isTorn = isCutOff && isLast;
-      if (found === undefined && isTorn && line.startsWith(START.slice(0, line.length))) {
+      const found = parsed(line);
+      if (found === undefined && isTorn && STARTS.some((start) => line.startsWith(start.slice(0, line.length)))) {
         truncateSync(this.path, size - line.length);
         return;
       }
-      if (found === undefined) throw this.#foreign(number);
+      // Records that were joined have several such lines.
+      if (number === 1 || found?.sim3align !== undefined) this.#checkHeader(found ?? {});
+      else if (typeof found?.case !== "string") throw this.#foreign(number);
       // Only the line break is missing.
       if (isTorn) appendFileSync(this.path, "\n");
-      const key = keyOf(found);
-      if (!seen.has(key)) yield found;
+      this.#isBegun = true;
+      if (found?.sim3align !== undefined) continue;
+      const entry = this.#entry(found as Entry);
+      const key = keyOf(entry);
+      if (!seen.has(key)) yield entry;
       seen.add(key);
     }
+  }
+
+  /** @throws {@link UsageError} for a record of other settings */
+  #checkHeader(found: Entry): void {
+    const wayOut = "Pass another file, or remove this one.";
+    if (found.sim3align === undefined) {
+      const expected = "line 1 does not have the version, the command and the options that it was made with";
+      throw new UsageError(`--jsonl ${this.path}: ${expected}. ${wayOut}`);
+    }
+    const flat = ({ sim3align, command, options }: Entry) => ({
+      ...{ version: sim3align, command },
+      ...Object.fromEntries(Object.entries(isRecord(options) ? options : {}).map(([name, to]) => [`--${name}`, to])),
+    });
+    const [before, now] = [flat(found), flat(JSON.parse(JSON.stringify(this.#header)))] as [Entry, Entry];
+    const names = [...new Set([...Object.keys(before), ...Object.keys(now)])];
+    const differing = names.filter((name) => !isDeepStrictEqual(before[name], now[name]));
+    if (differing.length === 0) return;
+    const shown = (value: unknown) => (value === undefined ? "nothing" : JSON.stringify(value));
+    const list = differing.map((name) => `${name} is ${shown(now[name])}, was ${shown(before[name])}`).join("; ");
+    throw new UsageError(`--jsonl ${this.path}: the record was made with other settings: ${list}. ${wayOut}`);
   }
 
   /** The entries in the file, each with its case. The file is read twice, and not kept. */
@@ -163,6 +190,7 @@ export class JsonlFile {
       const key = keyOf(recorded);
       const task = byKey.get(key) ?? moved.get(key);
       const { name, entry } = recorded;
+      if (task !== undefined) this.#keys.add(keyOf(task));
       // Another batch may have called another case so.
       yield { task, entry, name: task?.name ?? (names.has(name) ? key : name) };
     }
@@ -193,23 +221,27 @@ export class JsonlFile {
     );
   }
 
-  #parsed(line: string): RecordedEntry | undefined {
-    try {
-      const { case: name, path, content, ...entry } = JSON.parse(Buffer.from(line, "latin1").toString());
-      if (typeof name !== "string") return undefined;
-      return {
-        name,
-        path: typeof path === "string" ? join(this.#folder, path) : undefined,
-        content: typeof content === "string" ? content : undefined,
-        entry,
-      };
-    } catch {
-      return undefined;
-    }
+  #entry({ case: name, path, content, ...entry }: Entry): RecordedEntry {
+    return {
+      name: String(name),
+      path: typeof path === "string" ? join(this.#folder, path) : undefined,
+      content: typeof content === "string" ? content : undefined,
+      entry,
+    };
   }
 }
 
-const sizeOf = (path: string) => statSync(path, { throwIfNoEntry: false })?.size ?? 0;
+/** The object in a line of bytes. */
+function parsed(line: string): Entry | undefined {
+  try {
+    const json: unknown = JSON.parse(Buffer.from(line, "latin1").toString());
+    return isRecord(json) ? json : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
+const sizeOf = (path: string) => statOf(path)?.size ?? 0;
 
 /** Lines, and whether each is the last one. */
 async function* withLast(lines: AsyncIterable<string>) {

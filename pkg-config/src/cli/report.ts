@@ -1,12 +1,13 @@
 /** A report: a page, its rows, and a folder of pictures for each case. It is complete after each of them. */
 import { createHash } from "node:crypto";
 import { existsSync } from "node:fs";
-import { mkdir, readFile, rename, writeFile } from "node:fs/promises";
+import { readFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import type { CasePictures } from "../pictures/case-pictures.js";
 import { columns, type ReportDetails, type ReportRow } from "../report-page/row.js";
 import { alternativesOf, type Entry, rowOf } from "./entry.js";
-import { namesIn, OutputFile, UsageError } from "./files.js";
+import { namesIn, UsageError } from "./files.js";
+import { OutputFile, type RunFiles } from "./run-files.js";
 
 /** The fields of a row on the page. */
 const pageFields: readonly string[] = [...Object.keys(columns), "error", "warnings", "isMetric"];
@@ -15,21 +16,30 @@ const pageFields: readonly string[] = [...Object.keys(columns), "error", "warnin
 export class ReportFolder {
   readonly #rows: OutputFile;
 
-  private constructor(private readonly folder: string) {
-    this.#rows = new OutputFile(join(folder, "rows.js"), "w");
+  private constructor(
+    private readonly folder: string,
+    private readonly files: RunFiles,
+  ) {
+    this.#write("rows.js", '"use strict";\n');
+    // The page has the rows so far.
+    this.#rows = new OutputFile(join(folder, "rows.js"), true);
+  }
+
+  #write(name: string, content: string | Uint8Array): void {
+    this.files.write({ flag: "--report", path: join(this.folder, name) }, content);
   }
 
   /**
    * Writes a page without rows, into a folder that is there. A report in it gets new rows.
    * @throws {@link UsageError} if the folder has other content
    */
-  static async open(folder: string): Promise<ReportFolder> {
+  static async open(folder: string, files: RunFiles): Promise<ReportFolder> {
     const names = namesIn(folder);
     if (names.length > 0 && !names.includes("rows.js"))
       throw new UsageError(`--report ${folder}: the folder has other content. Pass a new folder.`);
-    const report = new ReportFolder(folder);
-    await writeFile(join(folder, "index.html"), await reportHtml(basename(resolve(folder))));
-    report.#rows.lines(['"use strict";']);
+    const html = await reportHtml(basename(resolve(folder)));
+    const report = new ReportFolder(folder, files);
+    report.#write("index.html", html);
     return report;
   }
 
@@ -47,17 +57,15 @@ export class ReportFolder {
   }
 
   /** Writes the pictures of a case: `details.js` last: its presence means that all are there. */
-  async write(name: string, entry: Entry, { files, ...known }: CasePictures): Promise<void> {
-    const folder = join(this.folder, "cases", fileName(name));
-    await mkdir(folder, { recursive: true });
-    await Promise.all(Object.entries(files).map(([file, bytes]) => writeFile(join(folder, file), bytes)));
+  write(name: string, entry: Entry, { files, ...known }: CasePictures): void {
+    const folder = join("cases", fileName(name));
+    for (const [file, bytes] of Object.entries(files)) this.#write(join(folder, file), bytes);
     const alternatives = alternativesOf(entry).map(({ turnDeg, score }, k) => ({
       ...{ file: `alternative-${k + 1}.png`, turnDeg: Number(turnDeg), score: Number(score) },
     }));
     const details: ReportDetails = { ...known, alternatives, matrix: entry.matrix as number[] };
     const text = `sim3align.details[${JSON.stringify(fileName(name))}] = ${JSON.stringify(details)};\n`;
-    await writeFile(join(folder, "details.part"), text);
-    await rename(join(folder, "details.part"), join(folder, "details.js"));
+    this.#write(join(folder, "details.js"), text);
   }
 
   end(): void {

@@ -1,4 +1,5 @@
 /** `sim3align scene`: aligns the objects of scenes. */
+import { join } from "node:path";
 import { read } from "../case-folder.js";
 import { parsedJson } from "../formats/json.js";
 import {
@@ -11,10 +12,10 @@ import {
   type SceneOptions,
 } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
-import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
+import { bopFolders, bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align.js";
-import { type CaseRun, failedLine, type Job } from "./batch.js";
+import { type CaseRun, failedLines, type Job } from "./batch.js";
 import { depthRows, proportionsRows, warningLine } from "./details.js";
 import {
   type AlignEntry,
@@ -27,11 +28,13 @@ import {
   warningsOf,
 } from "./entry.js";
 import { writeSceneFiles } from "./exports.js";
-import { UsageError } from "./files.js";
+import { isFile, UsageError } from "./files.js";
 import { caseSettings, type Flags, filesOf, sceneFileFlags } from "./flags.js";
 import { type FolderToDo, foldersToDo, sam3dKind, sceneKind } from "./folders.js";
 import { optionValues } from "./option-flags.js";
-import { headings, Lengths, numeric, pairs, Style, tableLine } from "./table.js";
+import type { RunFiles } from "./run-files.js";
+import { headings, Lengths, numeric, pairs, tableLine } from "./table.js";
+import { Style } from "./terminal.js";
 
 /** The options of `align`, for every object; a first pose is that of one. */
 export const sceneOptions: readonly OptionRow[] = OPTIONS.align.filter(({ name }) => name !== "initial");
@@ -43,7 +46,7 @@ interface SceneToDo extends Omit<FolderToDo, "folder"> {
 }
 
 /** The job of a command line. */
-export async function sceneJob(args: readonly string[], flags: Flags): Promise<Job<SceneToDo>> {
+export async function sceneJob(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<SceneToDo>> {
   const { models, sam3d } = flags;
   const tasks = await scenesIn(await foldersToDo(sam3d ? sam3dKind : sceneKind, args, flags.list), flags.imageId);
   checkSceneFiles(flags, tasks.length);
@@ -51,7 +54,11 @@ export async function sceneJob(args: readonly string[], flags: Flags): Promise<J
   const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models, sam3d });
   return {
     tasks,
-    run: (aligner, task, caseRun) => alignScene(aligner, task, flags, settings, support, caseRun),
+    folders: tasks.flatMap(({ scene, folder }) => (folder === undefined ? bopFolders(scene) : [scene])),
+    isDeep: sam3d === true || tasks.some(({ folder }) => folder === undefined),
+    run: (aligner, task, caseRun) => alignScene(aligner, task, flags, settings, support, caseRun, files),
+    // The files of a whole scene are made with its result only.
+    isComplete: () => sceneOutputs(flags).every(({ path, holds }) => isFile(join(path, holds?.at(-1) ?? ""))),
     async inputs({ name, scene }) {
       const onDisk = await readSceneFolder(scene, settings);
       const inputs = new Map<string, AlignInput>();
@@ -63,6 +70,8 @@ export async function sceneJob(args: readonly string[], flags: Flags): Promise<J
     },
   };
 }
+
+const sceneOutputs = (flags: Flags) => filesOf(sceneFileFlags, flags, "writes");
 
 /** The scenes in folders. Images of one scene of BOP are scenes of their own, and have no files of their own. */
 async function scenesIn(folders: readonly FolderToDo[], imageId: string | undefined): Promise<SceneToDo[]> {
@@ -79,7 +88,7 @@ async function scenesIn(folders: readonly FolderToDo[], imageId: string | undefi
 function checkSceneFiles(flags: Flags, scenes: number): void {
   const { sam3d, depthKind = sam3d ? "scale-invariant" : "metric", knownExtent, scale } = flags;
   const isMetric = depthKind === "metric" || knownExtent !== undefined || typeof scale === "number";
-  for (const { flag } of filesOf(sceneFileFlags, flags, "writes")) {
+  for (const { flag } of sceneOutputs(flags)) {
     if (flag !== "--scene-glb" && !isMetric)
       throw new UsageError(
         `${flag} needs metres, which depth of this kind has not: pass --known-extent, or a number as --scale; or --depth-kind metric, if it is in metres.`,
@@ -95,6 +104,7 @@ async function alignScene(
   settings: SceneSettings,
   support: SceneInput["support"],
   caseRun: CaseRun,
+  files: RunFiles,
 ): Promise<Entry> {
   const scene = await readSceneFolder(task.scene, settings);
   const options: SceneOptions = { ...optionValues(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
@@ -110,9 +120,9 @@ async function alignScene(
     return errorsOf(aligner, own, { ...object, ...read }, scene.truths[i]);
   });
   const entry = sceneEntry(result, await Promise.all(errors));
-  const written = await writeSceneFiles(scene, result, flags);
   const names = result.objects.map(({ name }, i) => name ?? `${i}`);
-  caseRun.print(...linesOf(task.name, entry, names), ...written);
+  caseRun.print(...linesOf(task.name, entry, names));
+  await caseRun.make(async () => caseRun.print(...(await writeSceneFiles(scene, result, flags, files))));
   return entry;
 }
 
@@ -150,7 +160,7 @@ function linesOf(name: string, entry: SceneEntry, names: readonly string[]): str
   const plain = new Style({ isTTY: false });
   const rows = names.flatMap((object) => {
     const own = entry.objects[object] as Entry;
-    if (isFailure(own)) return [failedLine(object, own, plain)];
+    if (isFailure(own)) return failedLines(object, own, plain);
     const { contact, scale, ...aligned } = own as unknown as AlignEntry & { contact: Contact };
     const { restsOn, gapM, sharedVolume } = contact;
     const row = rowOf(own);

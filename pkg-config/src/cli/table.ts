@@ -1,25 +1,8 @@
-/** Text on a terminal: styles, tables, and lengths with or without a unit. */
-import type { WriteStream } from "node:tty";
+/** Tables, and lengths with or without a unit. */
 import { stripVTControlCharacters } from "node:util";
 import { type ColumnName, cellOf, columns, fixed } from "../report-page/row.js";
 import { type Entry, isFailure, rowOf } from "./entry.js";
-
-/** Bold and coloured text, if the terminal supports it and NO_COLOR is not set. */
-export class Style {
-  readonly #isColoured: boolean;
-
-  constructor(stream: Pick<WriteStream, "isTTY">) {
-    this.#isColoured = Boolean(stream.isTTY) && !process.env.NO_COLOR && process.env.TERM !== "dumb";
-  }
-
-  bold = (text: string): string => this.#wrap(1, 22, text);
-  red = (text: string): string => this.#wrap(31, 39, text);
-  yellow = (text: string): string => this.#wrap(33, 39, text);
-
-  #wrap(open: number, close: number, text: string): string {
-    return this.#isColoured ? `\u001b[${open}m${text}\u001b[${close}m` : text;
-  }
-}
+import type { Style } from "./terminal.js";
 
 /** A column of text. Longer cells shift the rest of their row. */
 export interface TextColumn {

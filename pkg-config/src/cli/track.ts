@@ -25,7 +25,8 @@ export async function trackJob(args: readonly string[], flags: Flags): Promise<J
   for (const { folder } of tasks) {
     if ((await frameNames(folder)).length === 0) throw new UsageError(`${folder} has no folder frame_*.`);
   }
-  return { tasks, run: (aligner, video, caseRun) => trackVideo(aligner, video, flags, caseRun) };
+  const folders = tasks.map(({ folder }) => folder);
+  return { tasks, folders, run: (aligner, video, caseRun) => trackVideo(aligner, video, flags, caseRun) };
 }
 
 async function trackVideo(

@@ -34,8 +34,8 @@ export async function readTransform(
 /** A JSON file, or the entries of a record by case. */
 function parse(text: string, argument: string, path: string): unknown {
   try {
-    if (!/^\{"case":/.test(text)) return JSON.parse(text);
-    const lines = text.split("\n").filter((line) => line.trim() !== "");
+    if (!/^\{"(?:case|sim3align)":/.test(text)) return JSON.parse(text);
+    const lines = text.split("\n").filter((line) => line.trim() !== "" && !/^\{"sim3align":/.test(line));
     return Object.fromEntries(
       lines.map((line) => {
         const { case: name, ...entry } = JSON.parse(line) as { case: string };

@@ -1,0 +1,83 @@
+/** The files of results: JSON, and comma-separated values. They appear when the batch ends, also early. */
+import { isLength } from "../report-page/row.js";
+import { type Entry, isMetric, posesIn, rowFields } from "./entry.js";
+import type { OutputFile } from "./run-files.js";
+
+/** An output for the entries of cases. */
+export interface EntrySink {
+  add(name: string, entry: Entry): void;
+  /** Writes what is not written yet, and puts the file in its place. */
+  end(): void;
+  /** Leaves an earlier file as it is. */
+  discard?(): void;
+}
+
+/** Whether a file begins as one of --json: the names of cases, and what became of each. */
+export const isResults = (beginning: string) =>
+  /^\{\n {2}"(?:[^"\\]|\\.)*": \{\n {4}"/.test(beginning) || /^\{\s*\}\s*$/.test(beginning);
+
+/** An object with an entry for each case. */
+export class ResultsFile implements EntrySink {
+  #separator = "{\n";
+
+  constructor(private readonly file: OutputFile) {}
+
+  add(name: string, entry: Entry): void {
+    const text = JSON.stringify(entry, null, 2).replaceAll("\n", "\n  ");
+    this.file.write(`${this.#separator}  ${JSON.stringify(name)}: ${text}`);
+    this.#separator = ",\n";
+  }
+
+  end(): void {
+    this.file.write(this.#separator === "{\n" ? "{}\n" : "\n}\n");
+    this.file.end();
+  }
+
+  discard(): void {
+    this.file.discard();
+  }
+}
+
+/** The headings of a table of comma-separated values. */
+export const csvHeadings: readonly string[] = ["case", ...rowFields.map(([name]) => name)];
+
+/** Whether a file begins as one of --csv. */
+export const isCsv = (beginning: string) => beginning.startsWith(`${csvHeadings.join(",")}\n`);
+
+/**
+ * A row for each case, or for each frame or object of one, after a row of headings (RFC 4180 with line feeds). What a case
+ * lacks is empty, as are metres and millimetres of lengths without a unit.
+ */
+export class CsvFile implements EntrySink {
+  #head = [csvHeadings.join(",")];
+
+  constructor(private readonly file: OutputFile) {}
+
+  add(name: string, entry: Entry): void {
+    // A case of several views has a pose of its own; a scene or a video only has those of its parts.
+    const poses = "confidence" in entry ? [{ name, entry }] : posesIn(name, entry);
+    const rows = poses.map((pose) =>
+      [pose.name, ...rowFields.map(([fact, read]) => (isLength(fact) && !isMetric(pose.entry) ? "" : read(pose.entry)))]
+        .map(csvCell)
+        .join(","),
+    );
+    this.file.lines([...this.#head, ...rows]);
+    this.#head = [];
+  }
+
+  end(): void {
+    this.file.lines(this.#head);
+    this.file.end();
+  }
+
+  discard(): void {
+    this.file.discard();
+  }
+}
+
+/** A cell. A text that spreadsheets would take for a formula is preceded by an apostrophe. */
+function csvCell(value: unknown): string {
+  const formula = typeof value === "string" && /^[=+\-@\t\r]/.test(value);
+  const text = value === undefined || value === null ? "" : `${formula ? "'" : ""}${value}`;
+  return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+}

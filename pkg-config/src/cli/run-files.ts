@@ -1,0 +1,333 @@
+/** The files of a run: no output is an input or another output, and each is written whole or not at all. */
+import {
+  accessSync,
+  closeSync,
+  constants,
+  existsSync,
+  fstatSync,
+  ftruncateSync,
+  mkdirSync,
+  openSync,
+  readFileSync,
+  renameSync,
+  rmSync,
+  statSync,
+  writeSync,
+} from "node:fs";
+import { basename, dirname, extname, join, sep } from "node:path";
+import { caseFiles, INITIAL_FILE } from "../case-files.js";
+import { bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
+
+/** A file or folder that a command line names. */
+export interface NamedFile {
+  /** The flag, or what an argument is called. */
+  flag: string;
+  path: string;
+  isFolder?: boolean;
+}
+
+/** An input. In a folder, these are the files of a case or a scene, or, if it is deep, those at any depth. */
+export interface InputFile extends NamedFile {
+  isDeep?: boolean | undefined;
+}
+
+/** An output. */
+export interface OutputName extends NamedFile {
+  /** Whether a file that begins so is an output of the same flag, which may be replaced. Others are not. */
+  isOwn?: ((beginning: string) => boolean) | undefined;
+  /** Names in a folder, the last of which is written when all others are there. */
+  holds?: readonly string[] | undefined;
+}
+
+/** An output that cannot be written whole. */
+export class OutputError extends Error {}
+
+/** Names that a case has for its files. */
+const reserved = new Set<string>([...Object.values(caseFiles).flat(), INITIAL_FILE, "gt.json", "pose.json"]);
+
+/** Levels of folders in which inputs are looked for. */
+const LEVELS = 5;
+
+/** The files of a run. */
+export class RunFiles {
+  readonly #inputs: InputFile[] = [];
+  /** The flags of named files, by the places where these are. */
+  readonly #named = new Map<string, string>();
+  readonly #outputs = new Map<string, string>();
+  /** The folders that are read as a whole. */
+  readonly #whole: string[] = [];
+  readonly #written = new Set<string>();
+  #scanned: { files: Map<string, string>; parts: Map<string, string>; models: string[] } | undefined;
+
+  constructor(inputs: readonly InputFile[]) {
+    this.add(inputs);
+  }
+
+  /** Adds inputs. */
+  add(inputs: readonly InputFile[]): void {
+    this.#inputs.push(...inputs);
+    for (const { flag, path, isFolder, isDeep } of inputs) {
+      if (isFolder && isDeep) this.#whole.push(realPath(path));
+      if (!isFolder && path !== "-") for (const place of placesOf(path)) this.#named.set(place, flag);
+    }
+    this.#scanned = undefined;
+  }
+
+  /**
+   * Checks outputs before anything is written.
+   * @throws {@link UsageError} for one that is an input or another output, or that cannot be written
+   */
+  check(outputs: readonly OutputName[]): void {
+    const folders = outputs.filter(({ isFolder }) => isFolder).map(({ path }) => `${realPath(path)}${sep}`);
+    for (const output of outputs) {
+      const { flag, path, isFolder, holds = [] } = output;
+      if (isFolder) {
+        if (statOf(path)?.isDirectory() === false)
+          throw new UsageError(`${flag} ${path}: the folder cannot be made: it is a file.`);
+        for (const name of holds) this.#claim({ flag, path: join(path, name) });
+        continue;
+      }
+      this.#claim(output);
+      // A folder of this run may be made in the folder of a file.
+      const isMade = !existsSync(dirname(path)) && folders.some((made) => realPath(path).startsWith(made));
+      if (!isMade) checkWritable(flag, path);
+    }
+  }
+
+  /**
+   * Opens an output, which gets its content when it is closed.
+   * @throws {@link OutputError} for a file that the run reads, or has written before
+   */
+  open(output: OutputName): OutputFile {
+    try {
+      this.#claim(output);
+    } catch (error) {
+      throw new OutputError((error as Error).message);
+    }
+    const { flag, path } = output;
+    const ordinary = isOrdinary(path);
+    if (ordinary && placesOf(path).some((place) => this.#written.has(place)))
+      throw new OutputError(`${flag} ${path}: two files have this name. Rename one of the cases.`);
+    return new OutputFile(path, false, () => {
+      for (const place of ordinary ? placesOf(path) : []) {
+        this.#written.add(place);
+        this.#outputs.set(place, flag);
+      }
+    });
+  }
+
+  /** Writes an output, and first its folder. */
+  write(output: OutputName, content: string | Uint8Array): void {
+    const file = this.open(output);
+    if (isOrdinary(output.path)) makeFolder(output.flag, dirname(output.path));
+    file.write(content);
+    file.end();
+  }
+
+  /** @throws {@link UsageError} if a file is an input or another output */
+  #claim({ flag, path, isOwn }: OutputName): void {
+    const places = placesOf(path);
+    const [place = path, identity] = places;
+    const isFolder = statOf(place)?.isDirectory() === true;
+    if (path !== "-" && !isFolder && !isOrdinary(place)) return;
+    const others = places.flatMap((each) => this.#named.get(each) ?? this.#outputs.get(each) ?? []);
+    const other = others.find((found) => found !== flag);
+    if (other !== undefined) throw new UsageError(`${other} and ${flag} name the same file: ${path}.`);
+    for (const each of places) this.#outputs.set(each, flag);
+    if (path === "-" || isFolder || this.#written.has(place)) return;
+    const refuse = (input: string) => {
+      throw new UsageError(`${flag} ${path}: this is a file of the input ${input}. Pass another name.`);
+    };
+    const part = reserved.has(basename(place).toLowerCase()) ? this.#scan().parts.get(dirname(place)) : undefined;
+    if (part !== undefined) refuse(part);
+    if (isOwn !== undefined) {
+      const beginning = identity === undefined ? "" : bytesOf(place, 0, 4096).toString();
+      if (beginning === "" || isOwn(beginning)) return;
+      throw new UsageError(`${flag} ${path}: this file was not written by ${flag}. Remove it, or pass another name.`);
+    }
+    // The next run would read it.
+    for (const folder of this.#whole) if (place.startsWith(`${folder}${sep}`)) refuse(folder);
+    if (identity === undefined) return;
+    const { files, models } = this.#scan();
+    const input = files.get(identity) ?? models.find((model) => mentions(model, place));
+    if (input !== undefined) refuse(input);
+  }
+
+  /**
+   * The identities of the files that are read, with their inputs; the folders in which names are reserved; and the meshes
+   * that refer to other files. Folders of a dataset may have a million files: they are looked for when that is needed.
+   */
+  #scan() {
+    if (this.#scanned !== undefined) return this.#scanned;
+    const [files, parts] = [new Map<string, string>(), new Map<string, string>()];
+    const models: string[] = [];
+    const add = (folder: string, input: string, levels: number) => {
+      for (const name of namesIn(folder)) {
+        const path = join(folder, name);
+        const identity = identityOf(path);
+        if (refersToFiles(name)) models.push(path);
+        if (identity !== undefined && (levels > 1 || reserved.has(name))) files.set(identity, input);
+        if (levels > 1 && statOf(path)?.isDirectory()) add(path, input, levels - 1);
+      }
+    };
+    for (const { path, isFolder, isDeep } of this.#inputs) {
+      if (!isFolder && refersToFiles(path)) add(dirname(path), path, 1);
+      if (!isFolder) continue;
+      for (const part of partsOf(path)) {
+        parts.set(realPath(part), path);
+        add(part, path, isDeep ? LEVELS : 1);
+      }
+    }
+    this.#scanned = { files, parts, models };
+    return this.#scanned;
+  }
+}
+
+/** Whether a file may refer to others, which are in its folder or below it. */
+const refersToFiles = (path: string) => [".gltf", ".obj", ".mtl"].includes(extname(path).toLowerCase());
+
+/** Whether a file has the name of another one in its text. */
+function mentions(model: string, file: string): boolean {
+  if (!file.startsWith(`${dirname(realPath(model))}${sep}`) || !isFile(model)) return false;
+  const text = readFileSync(model);
+  return [basename(file), encodeURIComponent(basename(file))].some((name) => text.includes(name));
+}
+
+/** What all names of a file have in common, whether they are links or differ in case; `undefined` without a file. */
+function identityOf(path: string): string | undefined {
+  try {
+    const { dev, ino } = statSync(path, { bigint: true });
+    return `${dev}:${ino}`;
+  } catch {
+    return undefined;
+  }
+}
+
+/** Where a file is, and, if it exists, what it is. */
+function placesOf(path: string): string[] {
+  if (path === "-") return [path];
+  const place = realPath(path);
+  const identity = identityOf(place);
+  return [place, ...(identity === undefined ? [] : [identity])];
+}
+
+/** @throws {@link UsageError} for a file that cannot be written */
+function checkWritable(flag: string, path: string): void {
+  if (path === "-") return;
+  try {
+    const found = statOf(path);
+    if (found?.isDirectory()) throw new UsageError(`${flag} ${path}: this is a folder; pass the name of a file.`);
+    const folder = dirname(realPath(path));
+    if (found === undefined && !statSync(folder).isDirectory()) throw new Error(`${folder} is no folder`);
+    accessSync(isOrdinary(path) ? folder : path, constants.W_OK);
+  } catch (error) {
+    if (error instanceof UsageError) throw error;
+    throw new UsageError(`${flag} ${path}: the file cannot be written: ${(error as Error).message}.`);
+  }
+}
+
+/**
+ * Creates a folder for output.
+ * @throws {@link OutputError}
+ */
+export function makeFolder(flag: string, path: string): void {
+  try {
+    mkdirSync(path, { recursive: true });
+  } catch (error) {
+    throw new OutputError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);
+  }
+}
+
+let parts = 0;
+
+/**
+ * A file that takes the place of an earlier one when it is closed; until then, its content is in a file beside it. Stdout
+ * ("-"), pipes and devices are written at once.
+ */
+export class OutputFile {
+  #file: number | undefined;
+  #isClosed = false;
+  readonly #part: string | undefined;
+  readonly #place: string;
+
+  /**
+   * @param isAppended whether lines are added to the file itself
+   * @param onEnd called when the content is in its place
+   */
+  constructor(
+    private readonly path: string,
+    private readonly isAppended = false,
+    private readonly onEnd = () => {},
+  ) {
+    // A link stays, and leads to the new content.
+    this.#place = path === "-" ? path : realPath(path);
+    if (!isAppended && isOrdinary(path))
+      this.#part = join(dirname(this.#place), `.sim3align-${process.pid}-${++parts}.part`);
+  }
+
+  /**
+   * Adds content, of which nothing is left if it cannot be written.
+   * @throws {@link OutputError} that names the file, such as where no space is left
+   */
+  write(content: string | Uint8Array): void {
+    if (this.#isClosed) return;
+    if (this.path === "-") {
+      process.stdout.write(content);
+      return;
+    }
+    this.#try(() => {
+      const file = this.#opened();
+      const bytes = typeof content === "string" ? Buffer.from(content) : content;
+      const before = this.isAppended ? fstatSync(file).size : undefined;
+      try {
+        for (let written = 0; written < bytes.length; )
+          written += writeSync(file, bytes, written, bytes.length - written);
+      } catch (error) {
+        if (before !== undefined) ftruncateSync(file, before);
+        throw error;
+      }
+    });
+  }
+
+  /** Writes lines, at once: another program that follows the file reads whole ones. */
+  lines(lines: readonly string[]): void {
+    this.write(lines.map((line) => `${line}\n`).join(""));
+  }
+
+  /** Puts the content in its place. */
+  end(): void {
+    if (this.path === "-" || this.#isClosed || (this.isAppended && this.#file === undefined)) return;
+    this.#try(() => {
+      closeSync(this.#opened());
+      [this.#file, this.#isClosed] = [undefined, true];
+      if (this.#part !== undefined) renameSync(this.#part, this.#place);
+      this.onEnd();
+    });
+  }
+
+  /** Leaves an earlier file as it is. */
+  discard(): void {
+    this.#isClosed = true;
+    if (this.#file !== undefined) closeSync(this.#file);
+    this.#file = undefined;
+    if (this.#part !== undefined) rmSync(this.#part, { force: true });
+  }
+
+  #opened(): number {
+    this.#file ??= openSync(this.#part ?? this.path, this.isAppended ? "a" : "w");
+    return this.#file;
+  }
+
+  #try(act: () => void): void {
+    try {
+      act();
+    } catch (cause) {
+      try {
+        this.discard();
+      } catch {
+        // The first error is that of the file.
+      }
+      throw new OutputError(`${this.path}: cannot be written: ${(cause as Error).message}.`, { cause });
+    }
+  }
+}
