@@ -38,13 +38,13 @@ pub fn read_mask(bytes: &[u8]) -> Result<MaskImage> {
     }
     if bytes.starts_with(jpeg::MAGIC) {
         let (image, _) = jpeg::read("mask", bytes, MAX_PIXELS)?;
-        let levels = || image.data().iter().map(|rgb| rgb.iter().copied().max().map_or(0.0, f64::from));
-        return outlined(image.width(), image.height(), false, &levels);
+        let level = |i: usize| image.data().get(i).and_then(|rgb| rgb.iter().max()).map_or(0.0, |&level| level.into());
+        return outlined(image.width(), image.height(), false, &level);
     }
     if bytes.starts_with(npy::MAGIC) {
         let array = NpyImage::read("mask", bytes)?;
         let is_float = array.header().kind == Kind::Float;
-        return outlined(array.width, array.height, is_float, &|| array.values());
+        return outlined(array.width, array.height, is_float, &|i| array.value(i));
     }
     Err(unsupported(
         "mask",
@@ -70,52 +70,50 @@ fn read_png(bytes: &[u8]) -> Result<MaskImage> {
         let differences = pixel.iter().take(colours).zip(background).map(|(sample, zero)| sample.abs_diff(zero));
         differences.max().unwrap_or_default()
     };
-    let levels = || pixels.samples.chunks_exact(channels).map(|pixel| f64::from(level(pixel)));
-    outlined(info.width, info.height, false, &levels)
+    let level_of = |i: usize| pixels.samples.get(i * channels..).and_then(|rest| rest.get(..channels)).map_or(0, level);
+    outlined(info.width, info.height, false, &|i| level_of(i).into())
 }
 
-/// The mask of these values, row-major.
-fn outlined<I: Iterator<Item = f64>>(
-    width: usize,
-    height: usize,
-    is_float: bool,
-    values: &dyn Fn() -> I,
-) -> Result<MaskImage> {
-    let mut others = values().filter(|&value| value != 0.0 && !value.is_nan());
-    let first = others.next().unwrap_or(1.0);
-    let (mut low, mut high, mut is_binary) = (first.min(0.0), first.max(0.0), true);
+/// The mask of these values by their index, row-major.
+fn outlined(width: usize, height: usize, is_float: bool, value: &dyn Fn(usize) -> f64) -> Result<MaskImage> {
+    let count = width * height;
+    let others = (0..count).map(value).filter(|&value| value != 0.0 && !value.is_nan());
+    let (mut first, mut low, mut high, mut is_binary) = (None, 0.0_f64, 0.0_f64, true);
     for value in others {
-        (low, high, is_binary) = (low.min(value), high.max(value), is_binary && value == first);
+        (low, high, is_binary) = (low.min(value), high.max(value), is_binary && value == *first.get_or_insert(value));
     }
+    let first = first.unwrap_or(1.0);
     let half = if is_float && high <= 1.0 { 0.5 } else { 0.5 * high };
-    let of_range = || format!("of {} to {}", number(low), number(high));
-    let (lowest, reading) = if is_binary {
-        (first, format!("values of {}", number(first)))
+    let (lowest, kind) = if is_binary {
+        (first, "")
     } else if low < 0.0 {
-        (f64::MIN_POSITIVE, format!("values above 0, {}: logits", of_range()))
-    } else if has_labels(width, high, values()) {
-        (f64::MIN_POSITIVE, format!("values above 0, {}: labels", of_range()))
+        (f64::MIN_POSITIVE, ": logits")
+    } else if has_labels(width, count, high, value) {
+        (f64::MIN_POSITIVE, ": labels")
     } else {
-        (half, format!("values of {} or more, {}", number(half), of_range()))
+        (half, "")
     };
-    let object = values().map(|value| u8::from(if is_binary { value == lowest } else { value >= lowest })).collect();
+    let range = format!("of {} to {}", number(low), number(high));
+    let reading = match (is_binary, kind) {
+        (true, _) => format!("values of {}", number(first)),
+        (_, "") => format!("values of {} or more, {range}", number(half)),
+        _ => format!("values above 0, {range}{kind}"),
+    };
+    let is_object = |value: f64| if is_binary { value == lowest } else { value >= lowest };
+    let object = (0..count).map(|i| u8::from(is_object(value(i)))).collect();
     Ok(MaskImage { object: Image::new("mask", width, height, object)?, reading })
 }
 
 /// Whether the values between 0 and the largest are those of labels: most of them equal their neighbours above and to the
 /// left, which values of a soft edge or of a network's output hardly do.
-fn has_labels(width: usize, high: f64, values: impl Iterator<Item = f64>) -> bool {
-    let is_between = |value: f64| value >= 0.05 * high && value <= 0.95 * high;
-    let mut above = vec![f64::NAN; width];
-    let (mut left, mut between, mut flat) = (f64::NAN, 0_usize, 0_usize);
-    for (column, value) in (0..width).cycle().zip(values) {
-        let Some(upper) = above.get_mut(column) else { break };
-        if is_between(value) {
+fn has_labels(width: usize, count: usize, high: f64, value: &dyn Fn(usize) -> f64) -> bool {
+    let (mut between, mut flat) = (0_usize, 0_usize);
+    for i in (width + 1)..count {
+        let level = value(i);
+        if level >= 0.05 * high && level <= 0.95 * high {
             between += 1;
-            flat += usize::from(column > 0 && value == left && value == *upper);
+            flat += usize::from(level == value(i - 1) && level == value(i - width));
         }
-        *upper = value;
-        left = value;
     }
     2 * flat > between
 }

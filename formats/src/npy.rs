@@ -153,6 +153,16 @@ impl<'a> NpyImage<'a> {
         &self.array.header
     }
 
+    /// The element with this index in row-major order.
+    pub fn value(&self, index: usize) -> f64 {
+        let place = if self.array.header.fortran_order {
+            index / self.width + self.height * (index % self.width)
+        } else {
+            index
+        };
+        self.array.value(place)
+    }
+
     /// The elements, row-major, for both storage orders of the file.
     pub fn values(&self) -> impl Iterator<Item = f64> {
         self.array.values([self.height, self.width, 1])
