@@ -19,9 +19,9 @@ use crate::precise::options::AlignOptions;
 use crate::precise::scoring::conditioning::DROP;
 use crate::precise::scoring::surroundings::Neighbourhood;
 use crate::precise::search::efforts;
+use crate::precise::search::plate::without_invented_plate;
 use crate::precise::search::recipe::{SURE, SearchSettings};
 use crate::precise::search::rounds::Rounds;
-use crate::precise::search::shown::shown;
 use crate::precise::search::start::{self, Findings, Told};
 use crate::precise::verdict::color::{Judgment, agreement, judgment};
 use crate::precise::verdict::conclusion;
@@ -101,10 +101,10 @@ impl Searched {
 }
 
 impl<'a> Search<'a> {
-    /// Begins with a check of the mesh, and with what of it the image shows.
+    /// Begins with a check of the mesh, and with the choice of its form.
     ///
     /// # Errors
-    /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh), and those of [`shown`].
+    /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
     pub async fn begin(
         observation: &'a Observation,
         mesh: &'a PreparedMesh<'a>,
@@ -119,7 +119,10 @@ impl<'a> Search<'a> {
         }
         pauses.here().await;
         let mesh = match request.efforts.first() {
-            Some(first) => shown(observation, mesh, &request.options, first, pauses).await?,
+            Some(first) => {
+                let views = core::iter::once(observation);
+                without_invented_plate(views, mesh, &request.options, first, pauses).await
+            }
             None => mesh,
         };
         Ok(Self { observation, mesh, request, stages, pauses })

@@ -49,10 +49,7 @@ pub async fn calibrate_views(
     let mut all = Vec::new();
     for (k, frame) in frames.iter().enumerate() {
         let own = own(frame, mesh, options, None, pauses, &mut stages).await;
-        all.push(own.map_err(|error| {
-            let argument = format!("views[{k}].{}", error.argument);
-            error.about(argument)
-        })?);
+        all.push(own.map_err(|error| error.in_view(k))?);
     }
     share_focal(frames, &mut all);
     let is_metric = frames.iter().all(|frame| frame.view.kind.is_metric());

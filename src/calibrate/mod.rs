@@ -107,8 +107,7 @@ fn calibrated(
 /// The scale that is known of an object, metres per unit of its normalised mesh.
 fn known_scale(object: &Object<'_>) -> Option<f64> {
     let frame = MeshFrame::of(object.mesh.mesh());
-    let [low, high] = ScalePrior::of(object.options, object.mesh.mesh(), &frame).scale?;
-    (low == high).then_some(low)
+    ScalePrior::of(object.options, object.mesh.mesh(), &frame).fixed_scale()
 }
 
 /// An object for the estimate. Lengths in metres are no help while the unit of the depth is unknown.

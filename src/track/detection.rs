@@ -12,7 +12,7 @@ use glam::DQuat;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
-use crate::pauses::{Pauses, finished};
+use crate::pauses::Pauses;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
@@ -58,12 +58,13 @@ impl Detection {
     ///
     /// # Errors
     /// As [`start::begin`].
-    pub fn search(
+    pub async fn search(
         observation: &Observation,
         mesh: &PreparedMesh<'_>,
         options: &AlignOptions,
         known: &Known,
         host: &mut dyn Host,
+        pauses: &Pauses,
     ) -> Result<Self> {
         let mut rounds: Option<Rounds> = None;
         let mut certainty = 0.0;
@@ -78,7 +79,8 @@ impl Detection {
             if let Some(log_scale) = log_scale {
                 next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
             }
-            finished(start::run(&mut next, &(0.2..0.85), &Pauses::none(), stages));
+            pauses.here().await;
+            start::run(&mut next, &(0.2..0.85), pauses, stages).await;
             let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
             let (conditioning, _) = next.search.conditioning(&best.pose);
             let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
@@ -86,7 +88,7 @@ impl Detection {
             rounds = Some(next);
         }
         let rounds = rounds.ok_or_else(no_candidate)?;
-        let judgment = by_color(&rounds, observation, mesh);
+        let judgment = by_color(&rounds, observation, mesh, pauses).await;
         let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
         let turn_certainty = judgment.map_or(1.0, |judgment| judgment.certainty);
         Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, turn_certainty } })
@@ -94,9 +96,14 @@ impl Detection {
 }
 
 /// What colour says about the poses that a search has found; `None` without colours.
-fn by_color(rounds: &Rounds, observation: &Observation, mesh: &PreparedMesh<'_>) -> Option<Judgment> {
+async fn by_color(
+    rounds: &Rounds,
+    observation: &Observation,
+    mesh: &PreparedMesh<'_>,
+    pauses: &Pauses,
+) -> Option<Judgment> {
     let (photo, colors) = (observation.photo()?, mesh.colors()?);
-    Some(finished(judgment(rounds, photo, colors, &Pauses::none())))
+    Some(judgment(rounds, photo, colors, pauses).await)
 }
 
 /// The pose that counts, and its lead over the others.

@@ -1,21 +1,18 @@
 //! The evidence of a frame near expected poses, and the pose that fits it best.
 
-use std::rc::Rc;
-
 use glam::Vec3;
 
 use super::detection::Lead;
-use super::evidence::{Evidence, of_mask, of_pose};
+use super::evidence::{Evidence, TrackedMesh, of_mask, of_pose};
 use crate::evidence::frame::Frame;
 use crate::geometry::pinhole::Pinhole;
-use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
 use crate::precise::scoring::score::Score;
 use crate::precise::search::cascade::Subject;
 use crate::precise::search::problem::Search;
 use crate::precise::search::ranking::Found;
-use crate::precise::search::recipe::{FINE, SearchSettings, TRACKED};
+use crate::precise::search::recipe::{FINE, TRACKED};
 use crate::precise::search::refine::Refiner;
 
 /// Most times that the mask of a frame without one is predicted, and how far a pose may be from that of its mask for the next
@@ -57,20 +54,12 @@ impl Seen {
     }
 }
 
-/// Finds the object near expected poses.
-pub struct Sight {
-    /// The mesh.
-    pub mesh: Rc<MeshPyramid>,
-    /// Grids and weights.
-    pub settings: SearchSettings,
-}
-
-impl Sight {
+impl TrackedMesh {
     /// The evidence of a frame where its mask is or, without one, where a pose predicts it; `None` if nothing is seen there.
     pub fn evidence(&self, frame: &Frame, expected: &CropPose) -> Option<Evidence> {
         match frame.mask {
-            Some(_) => of_mask(frame, &self.mesh, &self.settings),
-            None => of_pose(frame, expected, &self.mesh, &self.settings),
+            Some(_) => of_mask(frame, self),
+            None => of_pose(frame, expected, self),
         }
         .ok()
         .flatten()
@@ -92,7 +81,7 @@ impl Sight {
             for round in 1..PREDICTIONS {
                 let is_last = round + 1 == PREDICTIONS || apart(&from, &found.pose) < NEAR;
                 from = found.pose;
-                evidence = of_pose(frame, &from, &self.mesh, &self.settings).ok().flatten()?;
+                evidence = of_pose(frame, &from, self).ok().flatten()?;
                 found = self.refined(&evidence.search, &[from], !is_last)?;
                 if is_last {
                     break;

@@ -113,9 +113,18 @@ pub fn mean(evidence: impl Iterator<Item = SizeEvidence> + Clone) -> Option<(f64
 }
 
 /// The common size of views with alternative poses: the one at which the sum of the best scores is largest, where a view
-/// that fits no common size adds a constant. Returns the logarithm of the scale, its standard deviation, and for each view
-/// the index of its pose, `None` if it contradicts.
-pub fn common_size(views: &[Vec<SizeEvidence>]) -> Option<(f64, f64, Vec<Option<usize>>)> {
+/// that fits no common size adds a constant. A `fixed` size needs no evidence. Returns the logarithm of the scale, its standard
+/// deviation, and for each view the index of its pose, `None` if it contradicts.
+pub fn common_size(views: &[Vec<SizeEvidence>], fixed: Option<f64>) -> Option<(f64, f64, Vec<Option<usize>>)> {
+    let size = fixed.or_else(|| most_likely(views))?;
+    let chosen: Vec<Option<usize>> = views.iter().map(|view| value(view, size).1).collect();
+    let agreeing = views.iter().zip(&chosen).filter_map(|(view, chosen)| chosen.map(|i| view[i]));
+    let (size, sd) = fixed.map(|size| (size, 0.0)).or_else(|| mean(agreeing))?;
+    Some((size, sd, chosen))
+}
+
+/// The size at which the sum of the best scores is largest.
+fn most_likely(views: &[Vec<SizeEvidence>]) -> Option<f64> {
     let sizes = || views.iter().flatten().map(|e| e.log_scale);
     let (low, high) = (sizes().reduce(f64::min)?, sizes().reduce(f64::max)?);
     let steps = (((high - low) / STEP) as usize).min(MAX_STEPS);
@@ -127,11 +136,7 @@ pub fn common_size(views: &[Vec<SizeEvidence>]) -> Option<(f64, f64, Vec<Option<
             best = Some((size, total));
         }
     }
-    let (size, _) = best?;
-    let chosen: Vec<Option<usize>> = views.iter().map(|view| value(view, size).1).collect();
-    let agreeing = views.iter().zip(&chosen).filter_map(|(view, chosen)| chosen.map(|i| view[i]));
-    let (size, sd) = mean(agreeing)?;
-    Some((size, sd, chosen))
+    best.map(|(size, _)| size)
 }
 
 /// The score of a view at a size, and the index of its best pose there unless the view contradicts it.

@@ -103,9 +103,9 @@ impl<'a> Views<'a> {
         self.cascade(core::slice::from_ref(stage), vec![pose]).first().map_or(pose, |polished| polished.pose)
     }
 
-    /// The joint objective on the fine grids, for the final numbers.
+    /// The joint objective on the fine grids at a free size, for the final numbers.
     pub fn on_fine_grids(&self) -> Joint<'a> {
-        self.on_grids(FINE)
+        Joint { lock_scale: false, ..self.on_grids(FINE) }
     }
 
     fn on_grids(&self, index: usize) -> Joint<'a> {
@@ -129,7 +129,7 @@ impl<'a> Views<'a> {
 
     /// The pose at the size on which silhouettes and depths agree best, and the standard deviation of that size.
     pub fn fused_size(&mut self, pose: WorldPose) -> Option<(WorldPose, f64)> {
-        let mut joint = Self { lock_scale: false, ..self.clone() }.on_fine_grids();
+        let mut joint = self.on_fine_grids();
         let (size, moved) = SizeEvidence::fused(&mut joint, &pose, [SILHOUETTE_ERROR, DEPTH_ERROR])?;
         // Each view by itself, where its own evidence puts the object: that does not depend on errors of the camera poses.
         let mut canvas = Canvas::default();

@@ -26,7 +26,8 @@ choices! {
         Used = "used",
         /// Its evidence contradicts that of the others, and does not count.
         Contradicting = "contradicting",
-        /// It shows nothing of the object: too few readings where the object should be.
+        /// It shows nothing of the object: its mask cannot be used, or has too few readings, or there are too few where the
+        /// object should be. Without given camera poses, the pose in it is unknown: it has a confidence of 0.
         Blind = "blind",
     }
 }

@@ -22,7 +22,7 @@ use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
 use sim3align::views::options::ViewsOptions;
 
-use super::views::{in_view, world_from_camera};
+use super::views::world_from_camera;
 
 /// A running calibration.
 #[wasm_bindgen(skip_typescript)]
@@ -120,7 +120,7 @@ pub fn begin_calibrate_views(
         let views = views.ok_or_else(|| wrong_type("views", &JsValue::UNDEFINED, "an array", "Pass the views."))?;
         let frame = |(k, value): (usize, JsValue)| {
             let read = || input::raw_frame(&value, world_from_camera(&value)?);
-            read().map_err(in_view(k))
+            read().map_err(|error| error.in_view(k))
         };
         let frames = Array::from(&views).iter().enumerate().map(frame).collect::<Result<Vec<_>>>()?;
         let mesh = mesh::mesh_of(input)?;

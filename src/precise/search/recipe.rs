@@ -9,8 +9,6 @@ use crate::report::Effort;
 
 /// Rounds of the search.
 pub const ROUNDS: usize = 7;
-/// The first round that refines.
-pub const FIRST_REFINEMENT: usize = 2;
 
 /// The task of a round for each of its poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +24,13 @@ pub enum Task {
     /// Refines all seven parameters and the proportions of the mesh. The scores of the first round of this task rank the
     /// poses, and are those of the result.
     Fit,
+}
+
+impl Task {
+    /// Whether its poses come from the rotation grid.
+    pub fn is_on_rotation_grid(self) -> bool {
+        matches!(self, Self::Rotate | Self::Place)
+    }
 }
 
 /// A round: the same task for many poses, of which the best are kept for the next round.

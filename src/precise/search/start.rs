@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::problem::Search;
 use super::ranking::Found;
-use super::recipe::{SURE, SearchSettings, Task};
+use super::recipe::{SURE, SearchSettings};
 use super::rounds::Rounds;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
@@ -203,8 +203,7 @@ pub fn decimate(
 /// Runs a search to its end. `share` is the progress at its start and end, 0 to 1.
 pub async fn run(rounds: &mut Rounds, share: &Range<f64>, pauses: &Pauses, stages: &mut Stopwatch<'_>) {
     while let Some(round) = rounds.round() {
-        let is_refinement = matches!(round.task, Task::Refine | Task::Turn | Task::Fit);
-        if is_refinement && stages.running() != Some(Stage::Refine) {
+        if !round.task.is_on_rotation_grid() && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
         rounds.run(pauses).await;

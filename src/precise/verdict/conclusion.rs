@@ -91,12 +91,13 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
     // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
     // wrong; what it tells is which of several poses is the better one.
     let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
+    let as_fixed = if search.settings.lock_scale { search.conditioning_as_fixed(&best.pose) } else { conditioning };
     let Reliability { confidence, alternatives, .. } = reliability(&found, color, by_image.as_ref(), search)?;
     let certainty = Certainty {
         confidence,
         turn_confidence: color.and_then(|color| color.turn),
         alternatives,
-        uncertainty: conditioning.map(|c| Uncertainty {
+        uncertainty: as_fixed.map(|c| Uncertainty {
             scale: c.scale,
             rotation_deg: c.rotation.0.to_degrees(),
             rotation_axis: c.rotation.1.to_array(),
