@@ -81,11 +81,6 @@ impl Request {
     pub fn efforts(&self) -> &[SearchSettings] {
         &self.efforts
     }
-
-    /// With other settings of the searches than those that follow from the options, for ablations.
-    pub fn with_efforts(self, efforts: Vec<SearchSettings>) -> Self {
-        Self { efforts, ..self }
-    }
 }
 
 impl Searched {
