@@ -33,7 +33,7 @@ use crate::progress::{Host, Stage, Stopwatch};
 /// Progress at the start of each stage.
 const PLAN: &[(Stage, f64)] = &[(Stage::Prepare, 0.0), (Stage::Search, 0.0), (Stage::Refine, 0.0)];
 
-/// An object of a view, as it was given.
+/// An object of a view.
 pub struct Object<'a> {
     /// Its pixels.
     pub mask: &'a Mask,
@@ -41,7 +41,7 @@ pub struct Object<'a> {
     pub others: Option<Mask>,
     /// Its mesh.
     pub mesh: &'a PreparedMesh<'a>,
-    /// What is known of it.
+    /// Its options.
     pub options: &'a AlignOptions,
 }
 

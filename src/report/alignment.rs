@@ -25,7 +25,7 @@ pub struct Alignment {
     /// Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
     /// are one, unless their colours differ.
     pub alternatives: Vec<Alternative>,
-    /// How well the observation determines each part of the pose; `null` where the search could not tell.
+    /// How well the observation determines each part of the pose; `null` where it is unknown.
     pub uncertainty: Option<Uncertainty>,
     /// The mesh in its true proportions; present where they were asked for, and fitted.
     #[serde(skip_serializing_if = "Option::is_none")]

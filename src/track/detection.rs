@@ -25,15 +25,15 @@ use crate::precise::verdict::color::{Judgment, judgment};
 use crate::precise::verdict::confidence::sureness;
 use crate::progress::{Host, Stopwatch};
 
-/// What a search knows beforehand.
-pub struct Known {
+/// The prior of a search.
+pub struct DetectionPrior {
     /// The prior on scale and orientation.
     pub prior: Prior,
     /// The logarithm of the scale, if it is known, and the rotation in which the object was seen last.
     pub before: Option<(Option<f64>, DQuat)>,
 }
 
-/// How far what was found stands out from the other poses that a search over all rotations has found.
+/// The lead of a pose over the others of a search over all rotations.
 #[derive(Debug, Clone, Copy)]
 pub struct Lead {
     /// The difference between the scores of the pose and of the best other one.
@@ -62,7 +62,7 @@ impl Detection {
         observation: &Observation,
         mesh: &PreparedMesh<'_>,
         options: &AlignOptions,
-        known: &Known,
+        known: &DetectionPrior,
         host: &mut dyn Host,
         pauses: &Pauses,
     ) -> Result<Self> {
@@ -95,7 +95,7 @@ impl Detection {
     }
 }
 
-/// What colour says about the poses that a search has found; `None` without colours.
+/// The verdict of colour on the poses of a search; `None` without colours.
 async fn by_color(
     rounds: &Rounds,
     observation: &Observation,
@@ -107,7 +107,7 @@ async fn by_color(
 }
 
 /// The pose that counts, and its lead over the others.
-fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &Known) -> Result<(Found, f64)> {
+fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) -> Result<(Found, f64)> {
     let first = *rounds.found.first().ok_or_else(no_candidate)?;
     let mut chosen = judgment.and_then(|judgment| judgment.chosen).unwrap_or(first);
     let is_colored = judgment.is_some_and(|judgment| judgment.is_used && !judgment.rivals.is_empty());

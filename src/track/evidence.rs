@@ -51,9 +51,9 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// The same evidence for another look at it.
+    /// The same evidence for another search.
     pub fn shared(&self) -> Self {
-        Self { search: self.search.look(), region: self.region }
+        Self { search: self.search.for_rivals(), region: self.region }
     }
 
     /// The photo of the frame on the fine grid, if there is one.

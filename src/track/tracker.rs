@@ -7,13 +7,13 @@ use crate::precise::search::start;
 use core::borrow::Borrow;
 use glam::DQuat;
 
-use super::detection::{Detection, Known, Lead};
+use super::detection::{Detection, DetectionPrior, Lead};
 use super::evidence::{Evidence, TrackedMesh, is_set};
 use super::history::{History, MOST};
+use super::local_search::{FramePose, agreement};
 use super::motion::{MAX_TURN, Motion};
 use super::options::TrackOptions;
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
-use super::sight::{Seen, agreement};
 use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
@@ -57,12 +57,12 @@ const BETTER: f32 = 1.1;
 /// Weight of a frame in the usual fit.
 const NEW: f32 = 0.1;
 /// Share of the silhouette that must be seen in a frame without a mask, for it to be certain, and not to be lost.
-const SEEN: [f32; 2] = [0.35, 0.12];
+const VISIBLE: [f32; 2] = [0.35, 0.12];
 /// Share of the object that a frame must show for it to be searched for over all rotations, and for its rotation to count
 /// as known.
 const ENOUGH: f32 = 0.5;
 /// The same for a rotation that differs from the last certain one by more than an object turns unseen.
-const MOSTLY: f32 = 0.8;
+const MOST_SHOWN: f32 = 0.8;
 /// Standard deviation of the size of a correction, relative.
 const CORRECTION_SD: f64 = 0.005;
 
@@ -190,7 +190,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// The pose in the first frame.
-    async fn first(&self, frame: &Frame, host: &mut dyn Host, pauses: &Pauses) -> Result<Seen> {
+    async fn first(&self, frame: &Frame, host: &mut dyn Host, pauses: &Pauses) -> Result<FramePose> {
         let has_mask = frame.mask.as_ref().is_some_and(is_set);
         if let (Some(initial), false) = (&self.options.initial, has_mask) {
             let pose = CropPose::of_similarity(initial, &self.tracked.pyramid.frame).ok_or_else(no_candidate)?;
@@ -210,7 +210,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// The pose in a frame after the first; `None` if the object is lost.
-    async fn follow(&self, frame: &Frame, last: WorldPose, host: &mut dyn Host, pauses: &Pauses) -> Option<Seen> {
+    async fn follow(&self, frame: &Frame, last: WorldPose, host: &mut dyn Host, pauses: &Pauses) -> Option<FramePose> {
         let size = self.size.value();
         let sized = |pose: WorldPose| size.map_or(pose, |(log_scale, _)| WorldPose { log_scale, ..pose });
         let expected = [self.motion.carried(&last), last].map(sized);
@@ -218,7 +218,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let evidence = seen.first().and_then(|first| self.tracked.evidence(frame, first));
         let look = |wide| self.tracked.around(frame, evidence.as_ref()?, &seen, wide);
         let near = look(false);
-        let fit = |seen: &Option<Seen>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
+        let fit = |seen: &Option<FramePose>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
         if fit(&near, self) >= FITS && self.state != TrackState::Lost {
             return near;
         }
@@ -230,52 +230,52 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         }
         // An object that leaves the image, or passes behind another, is not where all rotations should be searched: little
         // of it may look like anything.
-        let is_leaving = |seen: &Seen| seen.shown(frame) < ENOUGH;
+        let is_leaving = |seen: &FramePose| seen.shown_share(frame) < ENOUGH;
         if self.state != TrackState::Lost && near.as_ref().is_some_and(is_leaving) {
-            return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= SEEN[1]);
+            return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= VISIBLE[1]);
         }
-        // Found anew, where a mask says that there is something to find.
+        // Found anew, where a mask shows the object.
         let before = self.certain.unwrap_or(last.rotation);
         let anew = match frame.observation().ok().flatten() {
             Some(observation) => self.detect(&observation, Some(before), host, pauses).await.ok(),
             None => None,
         };
-        let is_told = |seen: &Seen| {
+        let shows_enough_anew = |seen: &FramePose| {
             let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
-            seen.shown(frame) >= if has_turned { MOSTLY } else { ENOUGH }
+            seen.shown_share(frame) >= if has_turned { MOST_SHOWN } else { ENOUGH }
         };
-        let anew = anew.filter(is_told).map(|seen| self.unturned(frame, seen, before));
+        let anew = anew.filter(shows_enough_anew).map(|seen| self.unturned(frame, seen, before));
         let best = if fit(&anew, self) > BETTER * fit(&near, self) { anew } else { near };
         let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
-        best.filter(|seen| self.fit(seen) >= least && seen.visible >= SEEN[1])
+        best.filter(|seen| self.fit(seen) >= least && seen.visible >= VISIBLE[1])
     }
 
-    /// What was found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
+    /// The pose found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
     /// part of it that comes out behind another may look like its other end.
-    fn unturned(&self, frame: &Frame, seen: Seen, before: DQuat) -> Seen {
+    fn unturned(&self, frame: &Frame, seen: FramePose, before: DQuat) -> FramePose {
         if angle_between(seen.found.pose.rotation, before) <= MAX_TURN {
             return seen;
         }
         let expected = CropPose { rotation: before, ..seen.found.pose };
-        // The more of it is hidden, the less its fit says.
-        let is_near = |other: &Seen| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
+        // The more of it is hidden, the less its fit counts.
+        let is_near = |other: &FramePose| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
         let near = self.tracked.evidence(frame, &expected);
         match near.and_then(|near| self.tracked.around(frame, &near, &[expected], true)) {
-            Some(other) if is_near(&other) => Seen { lead: seen.lead, ..other },
+            Some(other) if is_near(&other) => FramePose { lead: seen.lead, ..other },
             _ => seen,
         }
     }
 
-    /// Searches all rotations, with what is known if the object was seen before in this rotation.
+    /// Searches all rotations, with the prior of a track if the object was seen before in this rotation.
     async fn detect(
         &self,
         observation: &Observation,
         before: Option<DQuat>,
         host: &mut dyn Host,
         pauses: &Pauses,
-    ) -> Result<Seen> {
+    ) -> Result<FramePose> {
         let log_scale = self.size.value().map(|(log_scale, _)| log_scale);
-        let known = Known { prior: self.prior, before: before.map(|before| (log_scale, before)) };
+        let known = DetectionPrior { prior: self.prior, before: before.map(|before| (log_scale, before)) };
         // The object turns after the first frame.
         let options = if before.is_some() { self.options.of_detection() } else { self.options.of_first_frame() };
         let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host, pauses).await?;
@@ -283,21 +283,21 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let search = self.tracked.search(detection.observation);
         let found = Found { score: search.score(&detection.found.pose), ..detection.found };
         let evidence = Evidence { search, region: PhotoRegion::WHOLE };
-        Ok(Seen { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
+        Ok(FramePose { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
 
     /// The agreement of a pose relative to that of earlier frames, about 1 for one as good.
-    fn fit(&self, seen: &Seen) -> f32 {
+    fn fit(&self, seen: &FramePose) -> f32 {
         let fit = agreement(&seen.found.score);
         self.usual.map_or(1.0, |usual| fit / usual.max(1e-3))
     }
 
     /// Updates size, motion and state, and reports.
-    fn conclude(&mut self, frame: &Frame, seen: Option<Seen>) -> Result<TrackedFrame> {
+    fn conclude(&mut self, frame: &Frame, seen: Option<FramePose>) -> Result<TrackedFrame> {
         let Some(seen) = seen else { return Ok(self.lost()) };
-        let is_certain = self.fit(&seen) >= UNCERTAIN && seen.visible >= SEEN[0];
-        let shows_enough = is_certain && seen.shown(frame) >= ENOUGH;
-        let Seen { mut found, evidence, lead, is_predicted, .. } = seen;
+        let is_certain = self.fit(&seen) >= UNCERTAIN && seen.visible >= VISIBLE[0];
+        let shows_enough = is_certain && seen.shown_share(frame) >= ENOUGH;
+        let FramePose { mut found, evidence, lead, is_predicted, .. } = seen;
         let is_detected = lead.is_some();
         let search = &evidence.search;
         self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };

@@ -22,7 +22,7 @@ const DEPTH_ERROR_ALONE: f64 = 0.01;
 const DEPTH_SD: f64 = 0.5;
 /// Difference of the sizes beyond which the depths are not trusted alone, relative.
 const MAX_BIAS: f64 = 0.05;
-/// Standard deviation of the size from which a view says nothing, relative: its mean could be any number.
+/// Standard deviation of the size from which a view is no evidence, relative: its mean could be any number.
 const NOTHING: f64 = 1.0;
 /// Steps of the refinement on depths alone.
 const STEPS: usize = 10;
@@ -32,7 +32,7 @@ const CONTRADICTION: f64 = 0.3;
 const STEP: f64 = 0.0025;
 const MAX_STEPS: usize = 2000;
 
-/// What one pose in one view says about the size.
+/// The evidence of one pose in one view about the size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SizeEvidence {
     /// Logarithm of the most likely scale.
@@ -44,8 +44,8 @@ pub struct SizeEvidence {
 }
 
 impl SizeEvidence {
-    /// What one view, whose silhouette has this error, says near a pose, all other parameters free; `None` if it says
-    /// nothing.
+    /// The evidence of one view, whose silhouette has this error, near a pose, all other parameters free; `None` if there is
+    /// none.
     pub fn at(objective: Objective<'_>, pose: &CropPose, silhouette_error: f64) -> Option<Self> {
         let camera = PlacedCamera::AT_ORIGIN;
         let mut joint = Joint::new(vec![JointView { objective, camera, floor: 0.0 }], false);
@@ -53,7 +53,7 @@ impl SizeEvidence {
         Some(fused)
     }
 
-    /// What silhouettes and depths say together near a pose, each with the error that all of them have in common, and the
+    /// The evidence of silhouettes and depths together near a pose, each with the error that all of them have in common, and the
     /// pose on which the depths agree best alone.
     ///
     /// The size in the silhouettes is biased if the masks are too large or too small everywhere; the depths do not depend on
@@ -78,7 +78,7 @@ impl SizeEvidence {
         Some((Self { log_scale, sd, score: silhouettes.score }, moved))
     }
 
-    /// What the quadratic at a pose says, all other parameters free.
+    /// The evidence of the quadratic at a pose, all other parameters free.
     pub fn of(joint: &mut Joint<'_>, pose: &WorldPose) -> Option<Self> {
         let score = joint.score(pose);
         let equations = joint.equations(pose, &score);

@@ -5,12 +5,12 @@ use std::rc::Rc;
 use super::View;
 use super::by_color::Photos;
 use super::joint::JointScore;
-use super::known::{Part, Ranked, Views};
 use super::predicted_mask::with_predicted_mask;
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
 use super::searched_view::SearchedView;
 use super::stretch::stretch;
 use super::summary::{Summary, SummaryView};
+use super::view_set::{Part, Ranked, ViewSet};
 use super::world_pose::{OF_SCALE, PlacedCamera, WorldPose};
 use crate::error::Result;
 use crate::geometry::similarity::Similarity;
@@ -46,7 +46,7 @@ pub fn in_world(
 ) -> Result<Summary> {
     let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
     let parts: Vec<Part<'_>> = searched.iter().map(SearchedView::part).collect();
-    let mut used = Views {
+    let mut used = ViewSet {
         lock_scale: parts.first().is_some_and(|part| part.search.settings.lock_scale),
         renders: parts.iter().map(|part| part.search.renders).sum(),
         parts: parts.clone(),
@@ -113,7 +113,7 @@ struct Verdict {
 
 /// The verdict on the `ranked` poses. `size_sd` is the standard deviation of the size, where it does not follow from the score.
 fn verdict(
-    used: &mut Views<'_>,
+    used: &mut ViewSet<'_>,
     mut ranked: Vec<Ranked>,
     size_sd: Option<f64>,
     views: &[View],
@@ -156,7 +156,7 @@ fn verdict(
 /// The result, with the role of each view and its score.
 fn summary(
     verdict: Verdict,
-    used: &Views<'_>,
+    used: &ViewSet<'_>,
     views: &[View],
     cameras: &[PlacedCamera],
     roles: Vec<ViewRole>,
@@ -201,9 +201,9 @@ fn summary(
     })
 }
 
-/// What colour says of the best pose; `None` without colours.
+/// The verdict of colour on the best pose; `None` without colours.
 fn by_color(
-    used: &mut Views<'_>,
+    used: &mut ViewSet<'_>,
     views: &[View],
     mesh: &PreparedMesh<'_>,
     (ranked, conditioning): (&[Ranked], Option<&Conditioning>),
@@ -213,7 +213,7 @@ fn by_color(
     let photo = |part: &Part<'_>| views[part.index].frame.photo.as_ref().map(|photo| cells(photo, part.search));
     let photos: Vec<Option<PhotoCells>> = used.parts.iter().map(photo).collect();
     photos.iter().flatten().next()?;
-    let mut photos = Photos { views: Views { lock_scale, ..used.clone() }, photos: &photos, colors };
+    let mut photos = Photos { views: ViewSet { lock_scale, ..used.clone() }, photos: &photos, colors };
     let judged = photos.judge(ranked, conditioning);
     used.renders = photos.views.renders;
     judged

@@ -5,7 +5,6 @@ pub mod by_color;
 pub mod common_size;
 mod in_world;
 pub mod joint;
-pub mod known;
 pub mod options;
 pub mod predicted_mask;
 pub mod report;
@@ -14,6 +13,7 @@ pub mod searched_view;
 mod stretch;
 mod summary;
 mod unrelated;
+pub mod view_set;
 pub mod world_pose;
 
 use core::borrow::Borrow;

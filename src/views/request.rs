@@ -30,7 +30,7 @@ pub struct Request {
     /// The errors of unusable masks.
     unusable: Vec<Error>,
     options: ViewsOptions,
-    is_known: bool,
+    has_cameras: bool,
 }
 
 impl Request {
@@ -54,9 +54,9 @@ impl Request {
                 "Leave out the views whose camera pose is unknown, or all camera poses.",
             ));
         }
-        let is_known = known > 0;
+        let has_cameras = known > 0;
         let masked = views.iter().filter(|view| view.frame.mask.is_some()).count();
-        if masked == 0 || (!is_known && masked != views.len()) {
+        if masked == 0 || (!has_cameras && masked != views.len()) {
             return Err(no_mask());
         }
         let (mut observations, mut unusable) = (Vec::new(), Vec::new());
@@ -70,10 +70,10 @@ impl Request {
         if observations.iter().all(Option::is_none) {
             return Err(unusable.into_iter().next().unwrap_or_else(no_mask));
         }
-        Ok(Self { views, observations, unusable, options, is_known })
+        Ok(Self { views, observations, unusable, options, has_cameras })
     }
 
-    /// What the search in each view is asked for, and its observation.
+    /// The options of the search in each view, and the observations.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`].
@@ -155,7 +155,7 @@ impl Request {
         mesh: &PreparedMesh<'_>,
         pauses: &Pauses,
     ) -> Result<Summary> {
-        if self.is_known {
+        if self.has_cameras {
             return in_world(searched, &self.views, mesh, self.options.proportions);
         }
         for view in searched.iter_mut() {

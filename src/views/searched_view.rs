@@ -1,6 +1,6 @@
 //! The search in one view, whose poses are hypotheses for all.
 
-use super::known::Part;
+use super::view_set::Part;
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
@@ -28,7 +28,7 @@ pub struct SearchedView {
     pub rounds: Rounds,
     /// Distinct poses after the first refinement: more than the ranking keeps.
     pub candidates: Vec<CropPose>,
-    /// What colour says about its poses, once it has been asked.
+    /// The verdict of colour on its poses, after [`Self::judge_colors`].
     pub color: Option<Judgment>,
 }
 

@@ -1,7 +1,7 @@
 //! The proportions of a mesh that several views show together: one stretch for all of them, where their cameras are known.
 
 use super::joint::{Joint, JointScore};
-use super::known::Views;
+use super::view_set::ViewSet;
 use super::world_pose::{OF_SCALE, WorldPose};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
@@ -19,7 +19,7 @@ use crate::precise::verdict::stretch::{
 use crate::report::Stretch;
 
 /// The best proportions near a pose in the world; `None` if they are not asked for, or the size of the mesh is given.
-pub fn stretch(views: &Views<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedom) -> Option<Stretch> {
+pub fn stretch(views: &ViewSet<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedom) -> Option<Stretch> {
     let search = views.parts.first()?.search;
     if freedom == Freedom::Keep || views.lock_scale {
         return None;

@@ -1,4 +1,4 @@
-//! What an alignment of several views has found, before its metrics.
+//! The result of an alignment of several views, before its metrics.
 
 use super::options::ViewsOptions;
 use super::report::{CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty};
@@ -18,11 +18,11 @@ use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Stretch, Warni
 pub struct Summary {
     /// The pose in the world.
     pub world_from_mesh: Similarity,
-    /// What the world is.
+    /// The world.
     pub world: WorldFrame,
     /// See [`ViewsAlignment`].
     pub confidence: f64,
-    /// Whether more effort would not change what shape says.
+    /// Whether more effort would not change the verdict of shape.
     pub is_sure: bool,
     /// See [`ViewsAlignment`].
     pub alternatives: Vec<Alternative>,
@@ -48,7 +48,7 @@ pub struct SummaryView {
     pub camera_from_mesh: Similarity,
     /// See [`ViewPose`].
     pub confidence: f64,
-    /// What the view contributed.
+    /// The part of the view in the result.
     pub role: ViewRole,
     /// The camera.
     pub world_from_camera: Similarity,

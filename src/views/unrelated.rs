@@ -191,7 +191,7 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
     })
 }
 
-/// The poses of a view that may be right: the one that colour says is, or all that shape allows.
+/// The poses of a view that may be right: the one that colour chooses, or all that shape allows.
 fn likely(view: &SearchedView) -> Vec<Found> {
     let found = view.found();
     let best = view.best();

@@ -31,10 +31,10 @@ struct Tracked {
     sequence: Sequence,
 }
 
-type Kept = Rc<RefCell<Tracked>>;
+type SharedTracker = Rc<RefCell<Tracked>>;
 
 thread_local! {
-    static TRACKERS: RefCell<Vec<(u32, Kept)>> = const { RefCell::new(Vec::new()) };
+    static TRACKERS: RefCell<Vec<(u32, SharedTracker)>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Creates a tracker under this id; see `Aligner.track` in the TypeScript package.
@@ -125,7 +125,7 @@ pub fn close_tracker(id: u32) {
 }
 
 /// The tracker with this id. It is lost if the module trapped since.
-fn tracker(id: u32) -> Result<Kept> {
+fn tracker(id: u32) -> Result<SharedTracker> {
     let kept =
         TRACKERS.with_borrow(|trackers| trackers.iter().find(|(known, _)| *known == id).map(|(_, kept)| kept.clone()));
     kept.ok_or_else(|| {
@@ -140,7 +140,7 @@ fn tracker(id: u32) -> Result<Kept> {
 }
 
 /// The tracker, for one call at a time.
-fn borrowed(kept: &Kept) -> Result<RefMut<'_, Tracked>> {
+fn borrowed(kept: &SharedTracker) -> Result<RefMut<'_, Tracked>> {
     kept.try_borrow_mut().map_err(|_| {
         Error::new(
             ErrorCode::Internal,

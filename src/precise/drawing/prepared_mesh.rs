@@ -86,7 +86,7 @@ impl<'a> PreparedMesh<'a> {
         &self.whole
     }
 
-    /// What is left out of it.
+    /// The parts left out of it.
     pub fn left_out(&self) -> LeftOut {
         self.trimmed().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
     }

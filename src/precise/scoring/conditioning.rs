@@ -11,7 +11,7 @@ use crate::precise::drawing::pose::CropPose;
 pub const DROP: f64 = 0.01;
 /// Regularisation, so that unconstrained directions remain finite.
 pub const DAMPING: f64 = 1e-9;
-/// Standard deviation of a roll that a symmetry makes meaningless, radians: it is what it is.
+/// Standard deviation of a roll that a symmetry makes meaningless, radians.
 const FIXED: f64 = 1e-3;
 
 /// The covariance of the parameters of a pose.

@@ -66,14 +66,14 @@ impl Search {
         }
     }
 
-    /// A look for rivals of a pose, without the surroundings of the object: a search on the same grids.
-    pub(crate) fn look(&self) -> Self {
+    /// A search for rivals of a pose on the same grids, without the surroundings of the object.
+    pub(crate) fn for_rivals(&self) -> Self {
         Self {
             mesh: Rc::clone(&self.mesh),
             observation: Rc::clone(&self.observation),
             view: self.view,
             renders: 0,
-            settings: self.settings.look(),
+            settings: self.settings.of_rival_search(),
             prior: self.prior,
             surroundings: None,
             equivalence: Rc::clone(&self.equivalence),

@@ -90,8 +90,8 @@ const ROLLS: usize = 24;
 /// Maximum number of steps per turn, and of turns that are ranked, of a search whose work is limited: turns are not scaled.
 const LIMITED_TURNS: [usize; 2] = [6, 6];
 
-/// Work and poses kept of the rounds of a look for rivals, which ends with them.
-const LOOK: [[usize; 2]; 4] = [[300, 40], [1, 6], [4, 3], [5, 0]];
+/// Work and poses kept of the rounds of a search for rivals, which ends with them.
+const RIVAL_SEARCH: [[usize; 2]; 4] = [[300, 40], [1, 6], [4, 3], [5, 0]];
 
 /// Hypotheses of several views with known camera poses: every one of them coarsely; then the best, and turns of the best of
 /// these.
@@ -182,10 +182,10 @@ impl SearchSettings {
         Self { rounds: rounds(effort), turned: TURNED[effort as usize], ..self }
     }
 
-    /// The settings of a look for rivals of a pose that a search is sure of: few rotations, refined on the middle grid only.
-    pub fn look(self) -> Self {
+    /// The settings of a search for rivals of a pose that another search is sure of: few rotations, refined on the middle grid only.
+    pub fn of_rival_search(self) -> Self {
         let mut look = Self { turned: 1, ..self };
-        for (round, [work, keep]) in look.rounds.iter_mut().zip(LOOK) {
+        for (round, [work, keep]) in look.rounds.iter_mut().zip(RIVAL_SEARCH) {
             (round.work, round.keep) = (work, keep);
         }
         look

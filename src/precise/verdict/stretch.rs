@@ -2,7 +2,7 @@
 //!
 //! The result of a search is a similarity. What the search fitted beside it, x = s·R·e^E·p + t with a symmetric E of trace 0
 //! (see [`search::proportions`](crate::precise::search::proportions)), is refined here from that similarity with the
-//! freedom that was asked for, and kept. Lengths that it changes by no more than the evidence tells apart stay as the
+//! freedom that was asked for, and kept. Lengths that it changes by no more than their deviation stay as the
 //! similarity has them.
 
 use glam::{DMat3, DVec3};

@@ -21,7 +21,7 @@ const PREDICTIONS: usize = 3;
 const NEAR: f64 = 0.04;
 
 /// The pose found in a frame.
-pub struct Seen {
+pub struct FramePose {
     /// The pose.
     pub found: Found,
     /// The evidence.
@@ -34,10 +34,10 @@ pub struct Seen {
     pub is_predicted: bool,
 }
 
-impl Seen {
+impl FramePose {
     /// The share of the object that the frame shows: of its vertices, those inside the image, times the share of its
     /// silhouette in the image that the mask covers.
-    pub fn shown(&self, frame: &Frame) -> f32 {
+    pub fn shown_share(&self, frame: &Frame) -> f32 {
         let pose = &self.found.pose;
         let (scale, translation) = pose.scale_translation();
         let Pinhole { fx, fy, cx, cy } = frame.camera;
@@ -65,9 +65,9 @@ impl TrackedMesh {
         .flatten()
     }
 
-    /// The best pose near the expected ones, of which the first tells where the evidence is; `wide`: also in their
+    /// The best pose near the expected ones, of which the first is where the evidence was taken; `wide`: also in their
     /// neighbourhood.
-    pub fn around(&self, frame: &Frame, evidence: &Evidence, expected: &[CropPose], wide: bool) -> Option<Seen> {
+    pub fn around(&self, frame: &Frame, evidence: &Evidence, expected: &[CropPose], wide: bool) -> Option<FramePose> {
         let first = *expected.first()?;
         let has_mask = frame.mask.is_some();
         let mut evidence = evidence.shared();
@@ -89,7 +89,7 @@ impl TrackedMesh {
             }
         }
         let visible = if has_mask { 1.0 } else { visible(&evidence.search, &found.pose) };
-        Some(Seen { found, evidence, lead: None, visible, is_predicted: !has_mask })
+        Some(FramePose { found, evidence, lead: None, visible, is_predicted: !has_mask })
     }
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
@@ -135,7 +135,7 @@ impl Subject for AtItsSize<'_> {
     }
 }
 
-/// What a fit is measured by: the agreement of silhouette and depth.
+/// The measure of a fit: the agreement of silhouette and depth.
 pub fn agreement(score: &Score) -> f32 {
     score.overlap * score.depth
 }
