@@ -53,7 +53,7 @@ pub async fn calibrate_views(
     }
     share_focal(frames, &mut all);
     let is_metric = frames.iter().all(|frame| frame.view.kind.is_metric());
-    let known = known_length(mesh, options);
+    let known = known_scale(mesh, options);
     let size = if is_metric { None } else { known.or_else(|| size_between(frames, &all)) };
     let first = all.first().map_or(1.0, |own| own.pose.scale());
     let calibrated = frames.iter().zip(&all).map(|(frame, FrameEstimate { estimate, pose })| {
@@ -104,7 +104,7 @@ impl Sequence {
             let FrameEstimate { estimate, pose } =
                 estimate_frame(frame, mesh, options, None, pauses, &mut stages).await?;
             let is_metric = frame.view.kind.is_metric();
-            let known = known_length(mesh, options).filter(|_| !is_metric);
+            let known = known_scale(mesh, options).filter(|_| !is_metric);
             let factor = known.map_or(1.0, |known| known / pose.scale());
             let is_metric = is_metric || known.is_some();
             let result = scaled(&frame.view, &estimate, factor, is_metric)?;
@@ -202,12 +202,6 @@ fn size_between(frames: &[RawFrame], all: &[FrameEstimate]) -> Option<f64> {
     }
     let size = along / squares;
     (size.is_finite() && size > 0.0).then_some(size)
-}
-
-/// The size that is known of the object, metres.
-fn known_length(mesh: &PreparedMesh<'_>, options: &AlignOptions) -> Option<f64> {
-    let mask = Mask::filled(1, 1, 0);
-    known_scale(&Object { mask: &mask, others: None, mesh, options })
 }
 
 fn times(calibration: Calibration, factor: f64) -> Calibration {

@@ -44,7 +44,7 @@ pub fn in_world(
     mesh: &PreparedMesh<'_>,
     freedom: Proportions,
 ) -> Result<Summary> {
-    let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
+    let cameras: Vec<PlacedCamera> = views.iter().map(View::camera).collect();
     let parts: Vec<Part<'_>> = searched.iter().map(SearchedView::part).collect();
     let mut used = ViewSet {
         lock_scale: parts.first().is_some_and(|part| part.search.settings.lock_scale),
@@ -217,10 +217,6 @@ fn by_color(
     let judged = photos.judge(ranked, conditioning);
     used.renders = photos.views.renders;
     judged
-}
-
-fn camera(view: &View) -> PlacedCamera {
-    view.world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
 }
 
 /// The evidence of the views without a mask, where the pose predicts one with enough readings.

@@ -6,7 +6,6 @@ use super::report::ViewsAlignment;
 use super::searched_view::SearchedView;
 use super::summary::Summary;
 use super::unrelated::unrelated;
-use super::world_pose::PlacedCamera;
 use super::{MAX_VIEWS, View, no_mask};
 use crate::align::search;
 use crate::error::{Error, ErrorCode, Result};
@@ -81,10 +80,6 @@ impl Request {
         Ok((search::Request::new(self.options.of_one_view())?, self.observations))
     }
 
-    fn camera(&self, index: usize) -> PlacedCamera {
-        self.views[index].world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
-    }
-
     /// Searches in every view with a mask, and combines what they have found, with increasing effort until that is sure.
     ///
     /// # Errors
@@ -117,7 +112,8 @@ impl Request {
                 }
                 for (index, observation) in self.observations.iter().enumerate() {
                     let Some(observation) = observation else { continue };
-                    let (place, previous) = ((index, self.camera(index)), before.iter().find(|v| v.index == index));
+                    let (place, previous) =
+                        ((index, self.views[index].camera()), before.iter().find(|v| v.index == index));
                     let begun =
                         SearchedView::begin(place, observation, mesh, (&options, settings), previous, &mut stages);
                     let mut view = match begun {

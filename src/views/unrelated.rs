@@ -45,12 +45,12 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
         .iter()
         .zip(&likely)
         .map(|(view, found)| {
-            let objective = fine(view.search());
+            let objective = fine(&view.rounds.search);
             renders += found.len();
             found.iter().filter_map(|found| SizeEvidence::at(objective, &found.pose, SILHOUETTE_ERROR)).collect()
         })
         .collect();
-    let fixed = searched.first()?.search().prior.fixed_scale().map(libm::log);
+    let fixed = searched.first()?.rounds.search.prior.fixed_scale().map(libm::log);
     let (mut size, mut sd, chosen) = common_size(&evidence, fixed)?;
     let agrees: Vec<bool> = chosen.iter().map(Option::is_some).collect();
     let mut poses: Vec<Found> = Vec::new();
@@ -64,7 +64,7 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
                 let refined = tried.into_iter().map(|found| {
                     let own = found.pose.size + found.pose.distance;
                     let at = if agrees[k] { size } else { own };
-                    let refined = refine_at(view.search().objective(rank.grid), found.pose, at, rank.steps);
+                    let refined = refine_at(view.rounds.search.objective(rank.grid), found.pose, at, rank.steps);
                     renders += refined.renders;
                     refined
                 });
@@ -73,7 +73,7 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
             .collect::<Option<Vec<_>>>()?;
         let evidence = searched.iter().zip(&poses).zip(&agrees).filter(|(_, agrees)| **agrees);
         let evidence: Vec<SizeEvidence> = evidence
-            .filter_map(|((view, found), _)| SizeEvidence::at(fine(view.search()), &found.pose, SILHOUETTE_ERROR))
+            .filter_map(|((view, found), _)| SizeEvidence::at(fine(&view.rounds.search), &found.pose, SILHOUETTE_ERROR))
             .collect();
         if fixed.is_none() {
             (size, sd) = mean(evidence.iter().copied()).unwrap_or((size, sd));
@@ -81,7 +81,7 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     }
     let views = searched.iter().zip(poses).zip(agrees).map(|((view, found), agrees)| {
         let own = found.pose.size + found.pose.distance;
-        let search = view.search();
+        let search = &view.rounds.search;
         let refined =
             refine_at(search.objective(polish.grid), found.pose, if agrees { size } else { own }, polish.steps);
         renders += refined.renders;
@@ -99,20 +99,20 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no view has a pose.
 pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
     let common = with_common_size(searched).ok_or_else(no_candidate)?;
-    let effort = searched.first().map_or_else(Default::default, |view| view.search().settings.effort);
+    let effort = searched.first().map_or_else(Default::default, |view| view.rounds.search.settings.effort);
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
     let mut views: Vec<SummaryView> = Vec::new();
     let mut conditioned: Vec<Option<Conditioning>> = Vec::new();
     let mut least: f64 = 1.0;
     for (view, (found, agrees)) in searched.iter().zip(&common.views) {
-        let search = view.search();
+        let search = &view.rounds.search;
         let is_fixed = search.settings.lock_scale;
         // The size is as certain as all views together make it.
         let of_all = |own: Conditioning| Conditioning { scale: common.sd, ..own };
         let own = search.conditioning(&found.pose).0;
         let conditioning = if *agrees && !is_fixed { own.map(of_all) } else { own };
         // All are scored with the mesh as it is, at the common size or their own.
-        let others = view.found().get(1..).unwrap_or_default();
+        let others = view.rounds.found.get(1..).unwrap_or_default();
         let likely = others.get(..RIVALS).unwrap_or(others);
         let lead = lead(&search.equivalence, found, likely, |other| search.score(&other.pose).total);
         let color = view.color.as_ref();
@@ -166,7 +166,7 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
             color: None,
         })
         .collect();
-    let free_axis = searched[first].search().equivalence.free_axis(common.views[first].0.pose.rotation);
+    let free_axis = searched[first].rounds.search.equivalence.free_axis(common.views[first].0.pose.rotation);
     let uncertainty = conditioned[first].map(|own| WorldUncertainty {
         scale: common.sd,
         rotation_deg: own.rotation.0.to_degrees(),
@@ -185,7 +185,7 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
         uncertainty,
         score,
         converged: common.views.iter().all(|(found, _)| found.converged),
-        renders: common.renders + searched.iter().map(|view| view.search().renders).sum::<usize>(),
+        renders: common.renders + searched.iter().map(|view| view.rounds.search.renders).sum::<usize>(),
         effort,
         views: all,
     })
@@ -193,8 +193,8 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
 
 /// The poses of a view that may be right: the one that colour chooses, or all that shape allows.
 fn likely(view: &SearchedView) -> Vec<Found> {
-    let found = view.found();
-    let best = view.best();
+    let found = &view.rounds.found;
+    let best = found.first().map_or(0.0, |best| best.score.total);
     let tried = if view.color.as_ref().is_some_and(|color| color.is_used) { 1 } else { TRIED };
     found.iter().filter(|f| f.score.total > best - NEAR).take(tried).copied().collect()
 }
