@@ -117,8 +117,8 @@ export class Tracker {
    * @param pose camera from mesh, metres
    * @param frame the number of the frame (`frame` of its result); by default the last one
    * @returns the new poses of all frames that change
-   * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, `INVALID_ARGUMENT` for a frame that was not tracked, and
-   * `TRACKER_LOST` if the worker of the tracker has ended
+   * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, `INVALID_ARGUMENT` for a frame that was not tracked, or that
+   * is not among the last 100 000, and `TRACKER_LOST` if the worker of the tracker has ended
    */
   async correct(pose: Sim3Like, frame?: number): Promise<CorrectedFrame[]> {
     // Any other value could not be sent to the worker in which the tracker lives.
