@@ -12,7 +12,7 @@ use glam::DQuat;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
-use crate::pauses::Pauses;
+use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
@@ -58,40 +58,42 @@ impl Detection {
     ///
     /// # Errors
     /// As [`start::begin`].
-    pub async fn search(
-        observation: &Observation,
-        mesh: &PreparedMesh<'_>,
-        options: &AlignOptions,
-        known: &DetectionPrior,
-        host: &mut dyn Host,
-        pauses: &Pauses,
-    ) -> Result<Self> {
-        let mut rounds: Option<Rounds> = None;
-        let mut certainty = 0.0;
-        for settings in efforts::of(options) {
-            if certainty >= SURE || (known.before.is_some() && rounds.is_some()) {
-                break;
+    pub fn search<'a>(
+        observation: &'a Observation,
+        mesh: &'a PreparedMesh<'_>,
+        options: &'a AlignOptions,
+        known: &'a DetectionPrior,
+        host: &'a mut dyn Host,
+        pauses: &'a Pauses,
+    ) -> Boxed<'a, Result<Self>> {
+        boxed(async move {
+            let mut rounds: Option<Rounds> = None;
+            let mut certainty = 0.0;
+            for settings in efforts::of(options) {
+                if certainty >= SURE || (known.before.is_some() && rounds.is_some()) {
+                    break;
+                }
+                let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
+                let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
+                let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
+                let mut next = start::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
+                if let Some(log_scale) = log_scale {
+                    next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
+                }
+                pauses.here().await;
+                start::run(&mut next, &(0.2..0.85), pauses, stages).await;
+                let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+                let (conditioning, _) = next.search.conditioning(&best.pose);
+                let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
+                certainty = sureness(best, lead, conditioning.as_ref());
+                rounds = Some(next);
             }
-            let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
-            let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
-            let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
-            let mut next = start::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
-            if let Some(log_scale) = log_scale {
-                next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
-            }
-            pauses.here().await;
-            start::run(&mut next, &(0.2..0.85), pauses, stages).await;
-            let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-            let (conditioning, _) = next.search.conditioning(&best.pose);
-            let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
-            certainty = sureness(best, lead, conditioning.as_ref());
-            rounds = Some(next);
-        }
-        let rounds = rounds.ok_or_else(no_candidate)?;
-        let judgment = by_color(&rounds, observation, mesh, pauses).await;
-        let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
-        let turn_certainty = judgment.map_or(1.0, |judgment| judgment.certainty);
-        Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, turn_certainty } })
+            let rounds = rounds.ok_or_else(no_candidate)?;
+            let judgment = by_color(&rounds, observation, mesh, pauses).await;
+            let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
+            let turn_certainty = judgment.map_or(1.0, |judgment| judgment.certainty);
+            Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, turn_certainty } })
+        })
     }
 }
 
