@@ -61,7 +61,7 @@ impl Stored {
         Ok(DepthImage { values, camera: None, unit })
     }
 
-    /// What a value is multiplied by, and its unit for people. The values of affine-invariant kinds have no unit.
+    /// The factor of a value, and its unit for people. The values of affine-invariant kinds have no unit.
     fn unit(&self, options: &DepthReadOptions, kind: DepthKind) -> Result<(f64, String)> {
         let checked = |scale: f64, source: &str| {
             if scale.is_finite() && scale > 0.0 {

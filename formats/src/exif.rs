@@ -8,7 +8,7 @@ use crate::orientation::Orientation;
 /// write 4 for millimetres and 5 for micrometres.
 const UNIT_MM: [(u32, f64); 4] = [(2, 25.4), (3, 10.0), (4, 1.0), (5, 0.001)];
 
-/// What the EXIF data of a photo say of its camera. Numbers that are not above 0 mean "unknown" and are left out.
+/// The camera in the EXIF data of a photo. Numbers that are not above 0 mean "unknown" and are left out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Exif {
     /// The focal length of a lens with the same diagonal field of view on a frame of 36 × 24 mm, in mm.

@@ -9,7 +9,7 @@ use sim3align_geometry::pinhole::Pinhole;
 /// shows something.
 const MAX_NORMALISED: [f64; 2] = [2.0, 20.0];
 
-/// What a file says of its camera.
+/// The camera in a file.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct FileCamera {
     /// Intrinsics, row-major: in pixels, with pixel centres at integers, or in image widths and heights.
@@ -21,7 +21,7 @@ pub(crate) struct FileCamera {
 }
 
 impl FileCamera {
-    /// The camera of an image of this size; `None` if the file says nothing of it.
+    /// The camera of an image of this size; `None` if the file has none.
     ///
     /// Without a principal point it is that of the image's centre.
     pub fn pinhole(&self, width: usize, height: usize) -> Result<Option<Pinhole>> {

@@ -83,7 +83,7 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
     let is_text = |bytes: &[u8]| !bytes.contains(&0);
     match MeshFormat::sniff(bytes) {
         Some(MeshFormat::Gltf) => gltf::external_resources(bytes),
-        // A library is not told from other text.
+        // A library looks like other text.
         Some(MeshFormat::Obj) | None if is_text(bytes) => {
             Ok(ExternalResources { shape: Vec::new(), colors: obj::external_resources(bytes)? })
         }

@@ -110,7 +110,7 @@ struct Archive<'a> {
 }
 
 impl<'a> Archive<'a> {
-    /// Reads the headers of all arrays. What is no array of numbers is left out.
+    /// Reads the headers of all arrays. Other arrays than those of numbers are left out.
     fn open(bytes: &'a [u8]) -> Result<Self> {
         let mut zip = ZipArchive::new(io::Cursor::new(bytes)).map_err(|error| broken(&error))?;
         if zip.len() > MAX_ENTRIES {
@@ -198,7 +198,7 @@ impl<'a> Archive<'a> {
         ))
     }
 
-    /// Which pixels have depth, if a mask of booleans says so.
+    /// The pixels with depth, if there is a mask of booleans.
     fn mask(&mut self, size: [usize; 2]) -> Result<Option<Vec<bool>>> {
         let Some(entry) = self.find(&MASKS).filter(|entry| entry.header.kind == Kind::Bool) else { return Ok(None) };
         if entry.header.squeezed(2) != size {

@@ -46,7 +46,7 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
     let pixel_bytes = count * bits.div_ceil(8);
     let mut limits = Limits::default();
     limits.decoding_buffer_size = pixel_bytes;
-    // What a strip or tile says of its size in the file, which it does not exceed.
+    // The stated size of a strip or tile, which it does not exceed.
     limits.intermediate_buffer_size = pixel_bytes.max(bytes.len());
     limits.ifd_value_size = MAX_ENTRY_BYTES;
     let mut decoder = decoder.with_limits(limits);

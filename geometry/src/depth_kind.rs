@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-/// What the values d of a depth map say of the depth z along the optical axis, in the words of the field.
+/// The relation of the values d of a depth map to the depth z along the optical axis, in the words of the field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum DepthKind {
     /// z = d, in a known unit: sensors and metric models.

@@ -161,6 +161,12 @@ impl Error {
         self
     }
 
+    /// The same error in one of several views: `depth` becomes `views[1].depth`.
+    pub fn in_view(self, index: usize) -> Self {
+        let argument = format!("views[{index}].{}", self.argument);
+        self.about(argument)
+    }
+
     /// The same error with another expected value.
     pub fn expecting(mut self, expected: impl Into<Text>) -> Self {
         self.0.expected = expected.into();

@@ -1,11 +1,11 @@
-//! The allocator of the WebAssembly modules, which says so when memory is exhausted.
+//! The allocator of the WebAssembly modules, which throws when memory is exhausted.
 
 use core::alloc::{GlobalAlloc, Layout};
 
 /// Two-level segregated fit, with constant time to allocate and to free, and a fifth of the code of the standard allocator.
 pub struct Heap(rlsf::SmallGlobalTlsf);
 
-/// The thrown string, by which `error.ts` of the package tells exhausted memory from a bug: both would be a trap.
+/// The thrown string, by which `error.ts` of the package distinguishes exhausted memory from a bug: both would be a trap.
 const EXHAUSTED: &str = "sim3align: memory exhausted";
 
 impl Heap {

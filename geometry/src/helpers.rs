@@ -81,10 +81,10 @@ struct Share {
     /// The helper; `None` for the call itself.
     helper: Option<usize>,
     left: Range<usize>,
-    /// Whether the helper knows the list.
-    is_told: bool,
-    /// Whether the helper knows this share.
-    is_current: bool,
+    /// Whether the helper has the list.
+    has_list: bool,
+    /// Whether the helper has this share.
+    has_share: bool,
     /// Whether the helper has left.
     is_orphaned: bool,
 }
@@ -101,7 +101,7 @@ impl Helpers {
         self.link.is_some()
     }
 
-    /// Runs tasks, with a pause point after each, until `ends` says so of a result: it sees them in order. `pause(true)` pauses in
+    /// Runs tasks, with a pause point after each, until `ends` is true of a result: it gets them in order. `pause(true)` pauses in
     /// any case, `pause(false)` if it is time.
     pub async fn run<T: Tasks, P: Future<Output = ()>>(
         &self,
@@ -141,14 +141,14 @@ impl Helpers {
             }
             balance(&mut shares);
             for share in &mut shares {
-                let (Some(helper), Some(link), false) = (share.helper, &self.link, share.is_current) else { continue };
+                let (Some(helper), Some(link), false) = (share.helper, &self.link, share.has_share) else { continue };
                 let mut message = Vec::new();
                 put(&mut message, &[list, share.left.start, share.left.end].map(|x| x as f64));
-                if !share.is_told {
+                if !share.has_list {
                     tasks.write(&mut message);
                 }
                 link.send(helper, &message);
-                (share.is_told, share.is_current) = (true, true);
+                (share.has_list, share.has_share) = (true, true);
             }
             if let Some(task) = shares[0].left.next() {
                 results[task] = Some(tasks.run(task));
@@ -198,7 +198,7 @@ fn balance(shares: &mut [Share]) {
 
 impl Share {
     fn of(helper: Option<usize>, left: Range<usize>) -> Self {
-        Self { helper, left, is_told: false, is_current: true, is_orphaned: false }
+        Self { helper, left, has_list: false, has_share: true, is_orphaned: false }
     }
 
     fn is_idle(&self) -> bool {
@@ -212,7 +212,7 @@ impl Share {
 
     fn change(&mut self, left: Range<usize>) {
         self.left = left;
-        self.is_current = self.is_orphaned;
+        self.has_share = self.is_orphaned;
     }
 }
 

@@ -65,7 +65,7 @@ impl Pauses {
     }
 
     /// The results of independent tasks in their order, with a pause point after each task. `ends` sees them in this order,
-    /// and says whether one is the last that is needed.
+    /// and is true of the last one that is needed.
     pub async fn list<T: Tasks>(&self, tasks: &mut T, ends: impl FnMut(&T::Result) -> bool) -> Vec<T::Result> {
         self.helpers.run(tasks, ends, |always| Point { is_due: always || self.is_time() }).await
     }

@@ -104,7 +104,7 @@ impl Rasteriser {
         height: usize,
     ) {
         let near = self.place(mesh, camera_from_mesh, camera);
-        self.draw::<true>(mesh, camera, near, Window::whole(width, height));
+        self.draw::<true, false>(mesh, camera, near, Window::whole(width, height));
     }
 
     /// Like [`Rasteriser::render`], without the triangle image.
@@ -117,7 +117,7 @@ impl Rasteriser {
         height: usize,
     ) {
         let near = self.place(mesh, camera_from_mesh, camera);
-        self.draw::<false>(mesh, camera, near, Window::whole(width, height));
+        self.draw::<false, false>(mesh, camera, near, Window::whole(width, height));
     }
 
     /// Like [`Rasteriser::render_depth`], for the smallest window of the image that contains `part`, the whole mesh, and one
@@ -132,8 +132,25 @@ impl Rasteriser {
     ) -> Window {
         let near = self.place(mesh, camera_from_mesh, camera);
         let window = self.covered(image).map_or(part, |covered| part.union(covered)).grown(1, image);
-        self.draw::<false>(mesh, camera, near, window);
+        self.draw::<false, false>(mesh, camera, near, window);
         window
+    }
+
+    /// Renders the depths of the nearest and of the farthest surface at each pixel, 0 where there is none, in the window of the
+    /// image that contains the mesh.
+    pub fn render_spans(
+        &mut self,
+        mesh: &Mesh,
+        camera_from_mesh: &Similarity,
+        camera: &Pinhole,
+        image: [usize; 2],
+    ) -> (Window, Vec<[f32; 2]>) {
+        let near = self.place(mesh, camera_from_mesh, camera);
+        let window = self.covered(image).unwrap_or_default();
+        self.draw::<false, true>(mesh, camera, near, window);
+        let farthest = self.depth.clone();
+        self.draw::<false, false>(mesh, camera, near, window);
+        (window, self.depth.iter().zip(farthest).map(|(nearest, farthest)| [*nearest, farthest]).collect())
     }
 
     /// The window that may contain the projected mesh; `None` if it is outside the image.
@@ -189,8 +206,14 @@ impl Rasteriser {
         near
     }
 
-    /// Draws the placed mesh.
-    fn draw<const TRIANGLES: bool>(&mut self, mesh: &Mesh, camera: &Pinhole, near: f64, window: Window) {
+    /// Draws the placed mesh: its nearest surfaces or, if `FARTHEST`, its farthest ones.
+    fn draw<const TRIANGLES: bool, const FARTHEST: bool>(
+        &mut self,
+        mesh: &Mesh,
+        camera: &Pinhole,
+        near: f64,
+        window: Window,
+    ) {
         self.window = window;
         let pixels = window.size[0] * window.size[1];
         self.depth.clear();
@@ -207,14 +230,14 @@ impl Rasteriser {
             let points = corners.map(|v| v.camera);
             if corners.iter().all(|v| v.placement == Placement::Inside) {
                 let plane = || InverseDepth::of(points, &points, camera);
-                self.fill::<TRIANGLES>(id, corners.map(|v| v.fixed), plane);
+                self.fill::<TRIANGLES, FARTHEST>(id, corners.map(|v| v.fixed), plane);
             } else if corners.iter().all(|v| v.placement != Placement::Nowhere) {
                 let (polygon, count) = volume.clip(points);
                 let polygon = &polygon[..count];
                 let plane = || InverseDepth::of(points, polygon, camera);
                 for i in 2..count {
                     let fan = [polygon[0], polygon[i - 1], polygon[i]];
-                    self.fill::<TRIANGLES>(id, fan.map(|p| fixed(project(p, camera))), plane);
+                    self.fill::<TRIANGLES, FARTHEST>(id, fan.map(|p| fixed(project(p, camera))), plane);
                 }
             }
         }
@@ -254,7 +277,12 @@ impl Rasteriser {
     }
 
     /// Fills one triangle on the sub-pixel grid.
-    fn fill<const TRIANGLES: bool>(&mut self, id: u32, corners: [[i32; 2]; 3], plane: impl Fn() -> InverseDepth) {
+    fn fill<const TRIANGLES: bool, const FARTHEST: bool>(
+        &mut self,
+        id: u32,
+        corners: [[i32; 2]; 3],
+        plane: impl Fn() -> InverseDepth,
+    ) {
         let [a, mut b, mut c] = corners.map(|p| p.map(i64::from));
         // Pixels whose centres are inside the bounding box of the triangle.
         let Window { first, size } = self.window;
@@ -296,7 +324,8 @@ impl Rasteriser {
                     let i = start + (u as usize - first[0]);
                     // In this order, NaN (from a plane seen edge-on) becomes the lower bound.
                     let w = (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
-                    if w > self.depth[i] {
+                    let drawn = self.depth[i];
+                    if if FARTHEST { drawn == 0.0 || w < drawn } else { w > drawn } {
                         self.depth[i] = w;
                         if TRIANGLES {
                             self.triangles[i] = id;

@@ -150,7 +150,7 @@ impl TriangleTree {
 
     /// Like [`TriangleTree::nearest`], but faster for a sequence of nearby queries, which share a `hint`.
     pub fn nearest_from(&self, query: Vec3, hint: &mut Hint) -> Option<SurfacePoint> {
-        // What is not a number would be in every box, even in those of children that do not exist.
+        // NaN would be in every box, even in those of children that do not exist.
         if !query.is_finite() {
             return None;
         }

@@ -10,7 +10,7 @@ use super::columns::Columns;
 use super::ground::{AGREE_M, agreed_height};
 use super::rest::levelled;
 
-/// What an object rests on.
+/// The thing on which an object rests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum On {
     /// The ground.
@@ -28,7 +28,7 @@ pub struct Object {
     pub mesh: Mesh,
     /// World from mesh.
     pub world_from_mesh: Similarity,
-    /// What it rests on.
+    /// The thing on which it rests.
     pub on: On,
 }
 

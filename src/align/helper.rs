@@ -21,7 +21,7 @@ pub struct Helper {
     surround: Box<dyn Fn(&mut Search)>,
     /// Those that it has had tasks of.
     searches: Vec<Search>,
-    /// What is to be run.
+    /// The tasks to be run.
     part: Option<Part>,
     tasks: Option<RoundTasks<'static>>,
 }

@@ -2,7 +2,6 @@
 
 pub mod evaluate;
 pub mod helper;
-pub mod method;
 mod outcome;
 pub mod search;
 pub mod warnings;
@@ -18,8 +17,7 @@ use crate::pauses::{Boxed, Pauses, Task, boxed, finished};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::progress::Host;
-use crate::report::{Alignment, AnyAlignment, PaperAlignment};
-use method::Method;
+use crate::report::{Alignment, PaperAlignment};
 pub use outcome::{Setup, align_by};
 use search::{Request, Search};
 
@@ -92,20 +90,4 @@ pub fn align_paper(
 ) -> Result<PaperAlignment> {
     let setup = Setup::of_paper(options)?;
     align_by(observation, mesh, &setup, paper::PLAN, host, |clouds, stages| paper::estimate(clouds, options, stages))
-}
-
-/// Aligns a mesh with an observation by either method.
-///
-/// # Errors
-/// As [`align`].
-pub fn align_by_method(
-    observation: &Observation,
-    mesh: &Mesh,
-    method: &Method,
-    host: &mut dyn Host,
-) -> Result<AnyAlignment> {
-    match method {
-        Method::Precise(options) => align(observation, mesh, options, host).map(Into::into),
-        Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
-    }
 }

@@ -97,7 +97,7 @@ pub(super) fn score(
     metrics::score(observation, mesh, &solution.camera_from_mesh, evidence).map(Some)
 }
 
-/// What the results of all methods have in common.
+/// The common part of the results of all methods.
 pub(super) struct Outcome {
     pub camera_from_mesh: Sim3,
     pub metrics: Option<Metrics>,

@@ -19,10 +19,10 @@ use crate::precise::options::AlignOptions;
 use crate::precise::scoring::conditioning::DROP;
 use crate::precise::scoring::surroundings::Neighbourhood;
 use crate::precise::search::efforts;
+use crate::precise::search::plate::without_invented_plate;
 use crate::precise::search::recipe::{SURE, SearchSettings};
 use crate::precise::search::rounds::Rounds;
-use crate::precise::search::shown::shown;
-use crate::precise::search::start::{self, Findings, Told};
+use crate::precise::search::start::{self, Findings, WarmStart};
 use crate::precise::verdict::color::{Judgment, agreement, judgment};
 use crate::precise::verdict::conclusion;
 use crate::precise::verdict::conclusion::Certainty;
@@ -31,7 +31,7 @@ use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
 
-/// What is asked for: the options, validated, and what follows from them.
+/// The options, validated, and the settings that follow from them.
 pub struct Request {
     options: AlignOptions,
     efforts: Vec<SearchSettings>,
@@ -47,7 +47,7 @@ pub struct Search<'a> {
     pauses: &'a Pauses,
 }
 
-/// What a search has found, by shape.
+/// The result of a search, by shape.
 pub struct Searched {
     /// The poses.
     pub rounds: Rounds,
@@ -81,11 +81,6 @@ impl Request {
     pub fn efforts(&self) -> &[SearchSettings] {
         &self.efforts
     }
-
-    /// With other settings of the searches than those that follow from the options, for ablations.
-    pub fn with_efforts(self, efforts: Vec<SearchSettings>) -> Self {
-        Self { efforts, ..self }
-    }
 }
 
 impl Searched {
@@ -101,10 +96,10 @@ impl Searched {
 }
 
 impl<'a> Search<'a> {
-    /// Begins with a check of the mesh, and with what of it the image shows.
+    /// Begins with a check of the mesh, and with the choice of its form.
     ///
     /// # Errors
-    /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh), and those of [`shown`].
+    /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
     pub async fn begin(
         observation: &'a Observation,
         mesh: &'a PreparedMesh<'a>,
@@ -119,7 +114,10 @@ impl<'a> Search<'a> {
         }
         pauses.here().await;
         let mesh = match request.efforts.first() {
-            Some(first) => shown(observation, mesh, &request.options, first, pauses).await?,
+            Some(first) => {
+                let views = core::iter::once(observation);
+                without_invented_plate(views, mesh, &request.options, first, pauses).await
+            }
             None => mesh,
         };
         Ok(Self { observation, mesh, request, stages, pauses })
@@ -169,7 +167,7 @@ impl<'a> Search<'a> {
             let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
             if is_last || is_sure {
                 let (solution, certainty) = concluded?;
-                let look = start::look(&rounds).filter(|_| !is_last);
+                let look = start::rival_search(&rounds).filter(|_| !is_last);
                 let mut has_rival = false;
                 if let Some(mut look) = look {
                     let share = efforts::share(index + 1, efforts.len() + 1);
@@ -185,14 +183,14 @@ impl<'a> Search<'a> {
         Err(precise::no_candidate())
     }
 
-    /// Searches among the poses that another search of the object has found, with what has become known of its
+    /// Searches among the poses that another search of the object has found, with its
     /// surroundings since.
     ///
     /// # Errors
     /// As [`Search::search`].
-    pub async fn search_among(&mut self, told: Told<'_>) -> Result<Searched> {
-        let given = told.findings;
-        let mut rounds = self.among(told, None)?;
+    pub async fn search_among(&mut self, start: WarmStart<'_>) -> Result<Searched> {
+        let given = start.findings;
+        let mut rounds = self.among(start, None)?;
         self.pauses.here().await;
         start::run(&mut rounds, &efforts::share(0, 1), self.pauses, &mut self.stages).await;
         let mut searched = Searched::new(rounds)?;
@@ -202,22 +200,22 @@ impl<'a> Search<'a> {
         let is_contradicted = searched.confidence() < CONTRADICTION * given.confidence;
         if is_contradicted || leaves_image(given, &searched.rounds) {
             // Tables, undersides and neighbours are as inaccurate as the object: what its image shows, wins.
-            let alone = Told { findings: given, known: Neighbourhood::default() };
+            let alone = WarmStart { findings: given, surroundings: Neighbourhood::default() };
             searched = Searched::new(self.among(alone, Some(&searched.rounds))?)?;
         }
         Ok(searched)
     }
 
     /// The search among given poses, before its first round; `before` is an earlier one of the same object.
-    fn among(&mut self, told: Told<'_>, before: Option<&Rounds>) -> Result<Rounds> {
+    fn among(&mut self, start: WarmStart<'_>, before: Option<&Rounds>) -> Result<Rounds> {
         let Request { options, efforts, .. } = self.request;
-        let settings = efforts.iter().find(|settings| settings.effort == told.findings.effort);
-        let settings = settings.ok_or_else(precise::no_candidate)?.again(told.findings.is_sure());
+        let settings = efforts.iter().find(|settings| settings.effort == start.findings.effort);
+        let settings = settings.ok_or_else(precise::no_candidate)?.again(start.findings.is_sure());
         let clean = before.map(|rounds| rounds.search.observation.clone());
-        start::resume(self.observation, self.mesh, clean, told, options, &settings, &mut self.stages)
+        start::resume(self.observation, self.mesh, clean, start, options, &settings, &mut self.stages)
     }
 
-    /// What the photo says about the poses; `None` without a photo, or without colours of the mesh.
+    /// The verdict of the photo on the poses; `None` without a photo, or without colours of the mesh.
     pub async fn colors(&self, searched: &Searched) -> Option<Judgment> {
         let (photo, colors) = (self.observation.photo()?, self.mesh.colors()?);
         Some(judgment(&searched.rounds, photo, colors, self.pauses).await)

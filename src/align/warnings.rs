@@ -247,7 +247,7 @@ pub fn about_search(converged: bool) -> Option<Warning> {
     })
 }
 
-/// Removes warnings that say why a pose may be wrong from a pose that is probably right.
+/// Removes the warnings of doubt about a pose that is probably right.
 pub fn retain_doubts(warnings: &mut Vec<Warning>, confidence: f64) {
     warnings.retain(|warning| confidence < doubted_below(warning.code));
 }

@@ -32,8 +32,8 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
     let (depth, camera) = view(input)?;
     let (width, height) = (depth.width(), depth.height());
     let mut observation = Observation::new(depth, mask(input, width, height)?, camera)?;
-    if let Some(image) = get(input, "image") {
-        observation = observation.with_photo(photo(&image)?)?;
+    if let Some(photo) = photo(input)? {
+        observation = observation.with_photo(photo)?;
     }
     if let Some(uncertainty) = get(input, "uncertainty") {
         let of = |key| required_number(&uncertainty, "uncertainty", key);
@@ -49,14 +49,8 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
 /// The depth map, the camera and, if there are any, the mask and the photo of an input.
 pub fn frame(input: &JsValue) -> Result<Frame> {
     let (depth, camera) = view(input)?;
-    frame_of(input, depth, camera)
-}
-
-/// The same with a depth map and a camera that are known already.
-pub fn frame_of(input: &JsValue, depth: DepthMap, camera: Pinhole) -> Result<Frame> {
     let mask = get(input, "mask").map(|_| mask(input, depth.width(), depth.height())).transpose()?;
-    let photo = get(input, "image").map(|image| photo(&image)).transpose()?.map(Arc::new);
-    Ok(Frame { depth, camera, mask, photo })
+    Ok(Frame { depth, camera, mask, photo: photo(input)? })
 }
 
 /// The depth map and the camera of an input.
@@ -129,11 +123,13 @@ pub fn raw_frame(input: &JsValue, world_from_camera: Option<Similarity>) -> Resu
     Ok(RawFrame { view, mask, world_from_camera })
 }
 
-/// `{ data, width, height }` with a `Uint8Array` of red, green and blue: other forms are resolved in TypeScript.
-fn photo(image: &JsValue) -> Result<Photo> {
-    let side = |name| size(image, name).map(Option::unwrap_or_default);
-    let colors = to_colors(&get(image, "data").unwrap_or(JsValue::UNDEFINED), "image.data")?;
-    Image::new("image", side("width")?, side("height")?, colors)
+/// The photo of an input, if it has one: `{ data, width, height }` with a `Uint8Array` of red, green and blue. Other forms are
+/// resolved in TypeScript.
+pub fn photo(input: &JsValue) -> Result<Option<Arc<Photo>>> {
+    let Some(image) = get(input, "image") else { return Ok(None) };
+    let side = |name| size(&image, name).map(Option::unwrap_or_default);
+    let colors = to_colors(&get(&image, "data").unwrap_or(JsValue::UNDEFINED), "image.data")?;
+    Image::new("image", side("width")?, side("height")?, colors).map(|photo| Some(Arc::new(photo)))
 }
 
 fn size_of(input: &JsValue) -> Result<(usize, usize)> {

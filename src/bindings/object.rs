@@ -75,7 +75,7 @@ fn is_typed_array(value: &JsValue) -> bool {
     value.is_instance_of::<Float32Array>() || value.is_instance_of::<Float64Array>()
 }
 
-/// Largest array of an argument, bytes: 67 million pixels of f32. What is derived from it, at up to 31 bytes per number, then
+/// Largest array of an argument, bytes: 67 million pixels of f32. Derived data, at up to 31 bytes per number, then
 /// stays below 2 GB, which is what a single allocation can have.
 const MAX_BYTES: f64 = (1 << 28) as f64;
 

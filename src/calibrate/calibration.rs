@@ -43,7 +43,7 @@ impl Calibration {
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct DepthCalibration {
-    /// What the values are.
+    /// The kind of the values.
     #[cfg_attr(
         feature = "types",
         ts(type = "\"metric\" | \"scale-invariant\" | \"affine-invariant\" | \"affine-invariant-disparity\"")

@@ -1,4 +1,4 @@
-//! The estimate of what is unknown of a view: the calibration with which its objects can be explained best.
+//! The estimate of the unknowns of a view: the calibration with which its objects can be explained best.
 //!
 //! A depth map whose shift is wrong is too deep or too flat, and so it is with a focal length that is wrong: the relief of
 //! each object beside its width no longer fits its mesh. Objects are searched with several calibrations, because a
@@ -92,7 +92,7 @@ struct Estimator<'a, 's> {
 #[derive(Clone)]
 struct Sample {
     at: Unknowns,
-    /// What the image says, and with the prior.
+    /// By the image alone, and with the prior.
     score: f64,
     total: f64,
     poses: Vec<Option<Pictured>>,
@@ -106,7 +106,7 @@ pub struct Start {
     pub poses: Vec<Vec<Pictured>>,
 }
 
-/// Estimates what is unknown of a view, without a start from searches with several calibrations.
+/// Estimates the unknowns of a view, without a start from searches with several calibrations.
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no object can be found with any calibration, and those of
@@ -120,7 +120,7 @@ pub async fn estimate(
 ) -> Result<Estimate> {
     let pixels = |s: &Subject<'_>| s.mask.data().iter().filter(|m| **m != 0).count();
     let mut used: Vec<usize> = (0..subjects.len()).collect();
-    // Those first that tell the unit.
+    // Those first that determine the unit.
     used.sort_by_key(|k| subjects.get(*k).map(|s| core::cmp::Reverse((s.has_length, pixels(s)))));
     used.truncate(SUBJECTS);
     let reference = Reference::of(view, used.iter().filter_map(|k| subjects.get(*k)));
@@ -283,7 +283,7 @@ impl Estimator<'_, '_> {
             window.iter().map(|(k, sample)| (f64::from(*k - curve[best].0) * STEP, of(sample))).collect()
         };
         let offset = parabola(&points(|sample| sample.total)).map(|(offset, _)| offset);
-        // At its end, a curve says nothing of a peak.
+        // The end of a curve is no evidence of a peak.
         let is_inside = best > 0 && best + 1 < curve.len();
         let evidence = parabola(&points(|sample| sample.score)).filter(|_| is_inside);
         // A slope that is off by SLOPE moves the peak by SLOPE / 2a.

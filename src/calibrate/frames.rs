@@ -15,7 +15,7 @@ use crate::precise::options::AlignOptions;
 use crate::progress::{Host, Stopwatch};
 use glam::DVec3;
 
-/// A frame as it was given.
+/// A frame of the caller.
 pub struct RawFrame {
     /// Its depth and its camera.
     pub view: RawView,
@@ -26,13 +26,13 @@ pub struct RawFrame {
 }
 
 /// A frame whose unit has not been compared with that of the others.
-struct Own {
+struct FrameEstimate {
     estimate: Estimate,
     pose: Pictured,
 }
 
 /// Calibrates several views of an object. Their units are made one by the size of the object: in metres if that is known, if
-/// the depth is metric, or if the poses of the cameras tell how far apart they are.
+/// the depth is metric, or if the poses of the cameras determine their distances.
 ///
 /// # Errors
 /// As [`calibrate`](super::calibrate), with the argument of the view; [`ErrorCode::InvalidArgument`] for a view without a
@@ -48,18 +48,15 @@ pub async fn calibrate_views(
     mesh.check()?;
     let mut all = Vec::new();
     for (k, frame) in frames.iter().enumerate() {
-        let own = own(frame, mesh, options, None, pauses, &mut stages).await;
-        all.push(own.map_err(|error| {
-            let argument = format!("views[{k}].{}", error.argument);
-            error.about(argument)
-        })?);
+        let own = estimate_frame(frame, mesh, options, None, pauses, &mut stages).await;
+        all.push(own.map_err(|error| error.in_view(k))?);
     }
     share_focal(frames, &mut all);
     let is_metric = frames.iter().all(|frame| frame.view.kind.is_metric());
-    let known = known_length(mesh, options);
+    let known = known_scale(mesh, options);
     let size = if is_metric { None } else { known.or_else(|| size_between(frames, &all)) };
     let first = all.first().map_or(1.0, |own| own.pose.scale());
-    let calibrated = frames.iter().zip(&all).map(|(frame, Own { estimate, pose })| {
+    let calibrated = frames.iter().zip(&all).map(|(frame, FrameEstimate { estimate, pose })| {
         let factor = if is_metric { 1.0 } else { size.unwrap_or(first) / pose.scale() };
         scaled(&frame.view, estimate, factor, is_metric || size.is_some())
     });
@@ -72,7 +69,7 @@ pub struct Sequence {
     last: Option<Last>,
 }
 
-/// What is known after a frame.
+/// The state after a frame.
 #[derive(Debug, Clone)]
 struct Last {
     /// Size of the object in the unit of the results.
@@ -104,9 +101,10 @@ impl Sequence {
         let mut stages = Stopwatch::new(host, super::PLAN);
         let Some(last) = &mut self.last else {
             mesh.check()?;
-            let Own { estimate, pose } = own(frame, mesh, options, None, pauses, &mut stages).await?;
+            let FrameEstimate { estimate, pose } =
+                estimate_frame(frame, mesh, options, None, pauses, &mut stages).await?;
             let is_metric = frame.view.kind.is_metric();
-            let known = known_length(mesh, options).filter(|_| !is_metric);
+            let known = known_scale(mesh, options).filter(|_| !is_metric);
             let factor = known.map_or(1.0, |known| known / pose.scale());
             let is_metric = is_metric || known.is_some();
             let result = scaled(&frame.view, &estimate, factor, is_metric)?;
@@ -126,7 +124,9 @@ impl Sequence {
             let at = super::unknowns::Unknowns { focal: 0.0, ..last.estimate.unknowns };
             let start = Start { at, poses: vec![vec![last.pose]] };
             let next = RawFrame { view: view.clone(), mask: frame.mask.clone(), world_from_camera: None };
-            if let Ok(Own { estimate, pose }) = own(&next, mesh, options, Some(start), pauses, &mut stages).await {
+            if let Ok(FrameEstimate { estimate, pose }) =
+                estimate_frame(&next, mesh, options, Some(start), pauses, &mut stages).await
+            {
                 last.calibration = times(estimate.calibration, size / pose.scale());
                 (last.estimate, last.pose) = (estimate, pose);
             }
@@ -139,14 +139,14 @@ impl Sequence {
 }
 
 /// The estimate of a frame alone, and the pose of the object.
-async fn own(
+async fn estimate_frame(
     frame: &RawFrame,
     mesh: &PreparedMesh<'_>,
     options: &AlignOptions,
     start: Option<Start>,
     pauses: &Pauses,
     stages: &mut Stopwatch<'_>,
-) -> Result<Own> {
+) -> Result<FrameEstimate> {
     let view = &frame.view;
     let Some(mask) = &frame.mask else {
         return Err(Error::new(
@@ -162,17 +162,17 @@ async fn own(
     let subjects: [Subject<'_>; 1] = [subject(&object, view.kind.is_metric())];
     let estimate = estimate(view, &subjects, start, pauses, stages).await?;
     let pose = estimate.poses.first().copied().flatten().ok_or_else(crate::precise::no_candidate)?;
-    Ok(Own { estimate, pose })
+    Ok(FrameEstimate { estimate, pose })
 }
 
 /// Gives views of the same camera, whose focal length is a guess, the mean of their estimates.
-fn share_focal(frames: &[RawFrame], all: &mut [Own]) {
+fn share_focal(frames: &[RawFrame], all: &mut [FrameEstimate]) {
     let Some(RawFrame { view: first, .. }) = frames.first() else { return };
     let is_shared = |view: &RawView| view.camera == first.camera && view.focal == first.focal;
     if first.focal == Focal::Known || !frames.iter().all(|frame| is_shared(&frame.view)) {
         return;
     }
-    let weight = |own: &Own| 1.0 / (own.estimate.focal_deviation * own.estimate.focal_deviation);
+    let weight = |own: &FrameEstimate| 1.0 / (own.estimate.focal_deviation * own.estimate.focal_deviation);
     let weights: f64 = all.iter().map(weight).sum();
     let focal = all.iter().map(|own| weight(own) * own.estimate.unknowns.focal).sum::<f64>() / weights;
     for (own, frame) in all.iter_mut().zip(frames) {
@@ -184,8 +184,8 @@ fn share_focal(frames: &[RawFrame], all: &mut [Own]) {
 /// The size of the object that puts it to one place in the world: in each view i it is at C_i + S·d_i, with the centre C_i of
 /// the camera and the direction d_i of the object per unit of its size. The least squares over all pairs of views. `None`
 /// without camera poses that differ.
-fn size_between(frames: &[RawFrame], all: &[Own]) -> Option<f64> {
-    let lines = frames.iter().zip(all).map(|(frame, Own { pose, .. })| {
+fn size_between(frames: &[RawFrame], all: &[FrameEstimate]) -> Option<f64> {
+    let lines = frames.iter().zip(all).map(|(frame, FrameEstimate { pose, .. })| {
         let pose_of_camera = frame.world_from_camera.as_ref()?;
         let direction = pose.center() / pose.scale();
         let turned = pose_of_camera.rotation * nalgebra::Vector3::from(direction.to_array());
@@ -202,12 +202,6 @@ fn size_between(frames: &[RawFrame], all: &[Own]) -> Option<f64> {
     }
     let size = along / squares;
     (size.is_finite() && size > 0.0).then_some(size)
-}
-
-/// The size that is known of the object, metres.
-fn known_length(mesh: &PreparedMesh<'_>, options: &AlignOptions) -> Option<f64> {
-    let mask = Mask::filled(1, 1, 0);
-    known_scale(&Object { mask: &mask, others: None, mesh, options })
 }
 
 fn times(calibration: Calibration, factor: f64) -> Calibration {

@@ -33,7 +33,7 @@ use crate::progress::{Host, Stage, Stopwatch};
 /// Progress at the start of each stage.
 const PLAN: &[(Stage, f64)] = &[(Stage::Prepare, 0.0), (Stage::Search, 0.0), (Stage::Refine, 0.0)];
 
-/// An object of a view, as it was given.
+/// An object of a view.
 pub struct Object<'a> {
     /// Its pixels.
     pub mask: &'a Mask,
@@ -41,7 +41,7 @@ pub struct Object<'a> {
     pub others: Option<Mask>,
     /// Its mesh.
     pub mesh: &'a PreparedMesh<'a>,
-    /// What is known of it.
+    /// Its options.
     pub options: &'a AlignOptions,
 }
 
@@ -73,7 +73,7 @@ pub async fn calibrate(
     }
     let mut stages = Stopwatch::new(host, PLAN);
     let is_metric = view.kind == DepthKind::Metric;
-    let lengths: Vec<Option<f64>> = objects.iter().map(known_scale).collect();
+    let lengths: Vec<Option<f64>> = objects.iter().map(|object| known_scale(object.mesh, object.options)).collect();
     let is_scaled = !is_metric && lengths.iter().any(Option::is_some);
     if !view.kind.is_affine() && view.focal == Focal::Known && !is_scaled {
         return calibrated(view, Calibration::default(), None, is_metric);
@@ -105,18 +105,17 @@ fn calibrated(
 }
 
 /// The scale that is known of an object, metres per unit of its normalised mesh.
-fn known_scale(object: &Object<'_>) -> Option<f64> {
-    let frame = MeshFrame::of(object.mesh.mesh());
-    let [low, high] = ScalePrior::of(object.options, object.mesh.mesh(), &frame).scale?;
-    (low == high).then_some(low)
+fn known_scale(mesh: &PreparedMesh<'_>, options: &AlignOptions) -> Option<f64> {
+    ScalePrior::of(options, mesh.mesh(), &MeshFrame::of(mesh.mesh())).fixed_scale()
 }
 
 /// An object for the estimate. Lengths in metres are no help while the unit of the depth is unknown.
 fn subject<'a>(object: &Object<'a>, is_metric: bool) -> Subject<'a> {
     let Object { mask, others, mesh, options } = object;
+    let has_length = known_scale(mesh, options).is_some();
     let mut options = (*options).clone();
     if !is_metric {
         (options.scale, options.known_extent_m) = Default::default();
     }
-    Subject { mask, others: others.clone(), mesh, options, has_length: known_scale(object).is_some() }
+    Subject { mask, others: others.clone(), mesh, options, has_length }
 }

@@ -1,6 +1,6 @@
 //! The prior on what is unknown of a view, from what photos show.
 //!
-//! An object that is seen from the front says little of its relief, and noise hides that. The prior keeps such objects from
+//! An object that is seen from the front is little evidence of its relief, and noise hides that. The prior keeps such objects from
 //! being flattened.
 
 use super::raw_view::{Focal, RawView};

@@ -34,7 +34,7 @@ pub struct Subject<'a> {
     pub others: Option<Mask>,
     /// Its mesh.
     pub mesh: &'a PreparedMesh<'a>,
-    /// What is known of it; in depth that is not metric without any length.
+    /// Its options; in depth that is not metric without any length.
     pub options: AlignOptions,
     /// Whether a length of it is known.
     pub has_length: bool,
@@ -50,7 +50,7 @@ pub struct Pictured {
 }
 
 impl Subject<'_> {
-    /// What is wrong with the readings of this object, whatever the calibration.
+    /// The error of the readings of this object, whatever the calibration.
     pub fn unusable(&self, view: &RawView) -> Option<Error> {
         let reading = |d: &f32| if d.is_finite() { d.abs().max(f32::MIN_POSITIVE.sqrt()) } else { 0.0 };
         let (width, height) = (view.values.width(), view.values.height());

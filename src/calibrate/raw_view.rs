@@ -6,7 +6,7 @@ use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::{DepthMap, Image};
 use crate::geometry::pinhole::Pinhole;
 
-/// What is known of a focal length.
+/// The knowledge of a focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Focal {
     /// It is known.
@@ -20,11 +20,11 @@ pub enum Focal {
 pub struct RawView {
     /// The values; those that are not finite are no readings.
     pub values: Image<f32>,
-    /// What they are.
+    /// Their kind.
     pub kind: DepthKind,
     /// The camera, of which only the focal length may be a guess.
     pub camera: Pinhole,
-    /// What is known of that.
+    /// The knowledge of its focal length.
     pub focal: Focal,
 }
 

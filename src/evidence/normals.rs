@@ -30,12 +30,6 @@ impl Neighborhood {
     }
 }
 
-impl From<usize> for Neighborhood {
-    fn from(max_neighbors: usize) -> Self {
-        Self::nearest(max_neighbors)
-    }
-}
-
 /// The orientation of normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Orientation {
@@ -47,26 +41,16 @@ pub enum Orientation {
 
 /// Unit normals of `points` by principal component analysis of their neighbours (Hoppe et al. 1992, §3.2): the
 /// eigenvector of the smallest eigenvalue of the covariance. The zero vector if there are fewer than three
-/// neighbours or all are collinear. `tree` is the search tree over the same points; a number as `neighborhood` means
-/// that many nearest neighbours.
-pub fn estimate_normals(
-    points: &[Vec3],
-    tree: &KdTree,
-    neighborhood: impl Into<Neighborhood>,
-    orientation: Orientation,
-) -> Vec<Vec3> {
-    estimate_some_normals(points, tree, neighborhood, orientation, 1)
-}
-
-/// Like [`estimate_normals`], for about one in `stride` points; the other normals are zero.
+/// neighbours or all are collinear, and for all but about one in `stride` points. `tree` is the search tree over the same
+/// points.
 pub fn estimate_some_normals(
     points: &[Vec3],
     tree: &KdTree,
-    neighborhood: impl Into<Neighborhood>,
+    neighborhood: Neighborhood,
     orientation: Orientation,
     stride: usize,
 ) -> Vec<Vec3> {
-    let mut estimation = Estimation::new(points, tree, neighborhood.into(), orientation);
+    let mut estimation = Estimation::new(points, tree, neighborhood, orientation);
     for (number, group) in (1..).zip(tree.groups()) {
         if number % stride == 0 {
             estimation.add(group);
@@ -75,7 +59,7 @@ pub fn estimate_some_normals(
     estimation.normals
 }
 
-/// [`estimate_normals`] with pauses.
+/// [`estimate_some_normals`] of all points, with pauses.
 pub async fn paused_normals(
     points: &[Vec3],
     tree: &KdTree,

@@ -68,11 +68,6 @@ impl Observation {
         Ok(Self { photo: Some(photo), ..self })
     }
 
-    /// The observation without its photo.
-    pub fn without_photo(self) -> Self {
-        Self { photo: None, ..self }
-    }
-
     /// The observation with the pixels that are known to show other objects. Pixels of its own mask are ignored.
     ///
     /// # Errors

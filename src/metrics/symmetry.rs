@@ -29,13 +29,6 @@ pub enum Symmetry {
 }
 
 impl Symmetry {
-    /// The symmetry for a description in a data set: text starting with `discrete` or `continuous` is
-    /// [`Symmetry::Auto`]; anything else (`none`, `unknown`) is [`Symmetry::None`].
-    pub fn from_description(text: &str) -> Self {
-        let text = text.trim().to_ascii_lowercase();
-        if text.starts_with("discrete") || text.starts_with("continuous") { Self::Auto } else { Self::None }
-    }
-
     /// The group of symmetry rotations.
     ///
     /// # Errors

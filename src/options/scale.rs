@@ -6,7 +6,7 @@ use crate::number::{number, numbers};
 /// The values that a scale option takes, for error messages.
 pub const EXPECTED: &str = "\"free\", a number above 0, or [min, max] with 0 < min ≤ max";
 
-/// What is known of a scale, in target units per source unit.
+/// The knowledge of a scale, in target units per source unit.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum ScaleOption {
     /// Nothing: the scale is estimated.

@@ -2,10 +2,8 @@
 
 use crate::error::{Error, ErrorCode, Result, Text};
 use crate::geometry::similarity::Similarity;
-use crate::metrics::symmetry::Symmetry;
 use crate::number::number;
-use crate::options::scale::ScaleOption;
-use crate::options::{choices, options};
+use crate::options::choices;
 use crate::report::Effort;
 
 /// Relative tolerance of the bounds for an initial scale, because 32-bit floats are rounded.
@@ -78,28 +76,61 @@ choices! {
     }
 }
 
-options! {
+/// Declares options of a call that searches for an object: those of every such call, around those of its struct. `fn` names
+/// a function of the struct.
+macro_rules! search_options {
+    (
+        $(#[doc = $type_doc:literal])*
+        pub struct $type:ident { $($options:tt)* }
+        check $check:path;
+        $(fn $search:ident;)?
+    ) => {
+        $crate::options::options! {
+            $(#[doc = $type_doc])*
+            pub struct $type {
+                /// How much work a search does.
+                quality: $crate::precise::options::Quality = Default::default(), Choice;
+                /// The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`.
+                /// Not together with `knownExtentM`.
+                scale: $crate::options::scale::ScaleOption = Default::default(), Scale;
+                /// The object's known length along `knownExtentAxis`, in metres. It fixes the scale: for a mug that is 9.5 cm
+                /// tall and whose mesh has y up, pass `{ knownExtentM: 0.095, knownExtentAxis: "y" }`.
+                known_extent_m: Option<f64> = None, Positive;
+                /// The side of the mesh's bounding box that `knownExtentM` measures.
+                known_extent_axis: $crate::precise::options::ExtentAxis = Default::default(), Choice;
+                /// The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and
+                /// `uncertainty`. `"auto"` finds it on the surface of the mesh; `[{ axis: [0, 1, 0], fold: 4 }]` declares
+                /// quarter turns about the mesh's y axis, without `fold` any turn about it.
+                symmetry: $crate::metrics::symmetry::Symmetry = $crate::metrics::symmetry::Symmetry::Auto, Symmetry;
+                $($options)*
+                /// Seed of all random draws. The same input and seed give the same bits.
+                seed: u32 = 0, Count(0..=u32::MAX);
+            }
+            check $check;
+        }
+
+        $(impl $type {
+            /// The options of a search in one image.
+            pub fn $search(&self) -> $crate::precise::options::AlignOptions {
+                let Self { quality, scale, known_extent_m, known_extent_axis, ref symmetry, seed, .. } = *self;
+                let symmetry = symmetry.clone();
+                $crate::precise::options::AlignOptions {
+                    quality, scale, known_extent_m, known_extent_axis, symmetry, seed, ..Default::default()
+                }
+            }
+        })?
+    };
+}
+pub(crate) use search_options;
+
+search_options! {
     /// Options of `align` with the default preset, `"precise"`. All have defaults.
     pub struct AlignOptions {
-        /// How much work the search does.
-        quality: Quality = Quality::Auto, Choice;
-        /// The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`.
-        /// Not together with `knownExtentM`.
-        scale: ScaleOption = ScaleOption::Free, Scale;
-        /// The object's known length along `knownExtentAxis`, in metres. It fixes the scale: for a mug that is 9.5 cm tall
-        /// and whose mesh has y up, pass `{ knownExtentM: 0.095, knownExtentAxis: "y" }`.
-        known_extent_m: Option<f64> = None, Positive;
-        /// The side of the mesh's bounding box that `knownExtentM` measures.
-        known_extent_axis: ExtentAxis = ExtentAxis::Longest, Choice;
         /// The up direction in the camera's frame, of any length: `[0, -1, 0]` for a level camera. Together with
         /// `meshUp`, it favours poses in which the object stands upright.
         camera_up: Option<[f64; 3]> = None, Direction;
         /// The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF. It requires `cameraUp`.
         mesh_up: Option<[f64; 3]> = None, Direction;
-        /// The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`.
-        /// `"auto"` finds it on the surface of the mesh; `[{ axis: [0, 1, 0], fold: 4 }]` declares quarter turns about the
-        /// mesh's y axis, without `fold` any turn about it.
-        symmetry: Symmetry = Symmetry::Auto, Symmetry;
         /// A pose to start from, camera from mesh, in metres: for example an annotator's, or a generator's. Its scale has
         /// to be within `scale`. It is one candidate among those of the search; between turns that the image hardly
         /// tells apart, the one near its rotation is favoured.
@@ -114,8 +145,6 @@ options! {
         proportions: Proportions = Proportions::Keep, Choice;
         /// Whether to compute `metrics`. Without them the call takes less time.
         metrics: bool = true, Flag;
-        /// Seed of all random draws. The same input and seed give the same bits.
-        seed: u32 = 0, Count(0..=u32::MAX);
         /// Upper bound on the depth readings used for metrics and initial scale. Above it, an even random subset is drawn.
         max_observed_points: u32 = 20_000, Count(32..=1_000_000);
         /// Number of points sampled on the mesh surface for metrics and initial scale.

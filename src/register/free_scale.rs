@@ -1,6 +1,6 @@
 //! Registration with an unknown scale, for partial scans.
 //!
-//! A small scale makes a source fit anywhere, and the boxes of clouds that overlap in part say little about it. Matches
+//! A small scale makes a source fit anywhere, and the boxes of clouds that overlap in part are little evidence of it. Matches
 //! therefore vote for the scale: at each of a series of scales, poses come from matches that preserve distances, as with
 //! a known scale. Poses of different scales are compared by the area on which both scenes agree, relative to the sizes
 //! of both (see [`PoseScorer::balanced`]).

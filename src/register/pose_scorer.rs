@@ -7,7 +7,7 @@ use crate::register::free_space::FreeSpace;
 
 /// Cost of a point in observed free space of the other cloud, relative to the gain of an average matched point. Streets
 /// and corridors also agree with themselves after a half turn, sometimes better than at the correct pose; free space
-/// tells the two apart.
+/// distinguishes the two.
 const CONTRADICTION: f64 = 4.0;
 
 /// Maximum weight of a point; the mean is 1.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::diagnostics::{Diagnostics, PaperDiagnostics, PreciseDiagnostics};
+use super::diagnostics::{PaperDiagnostics, PreciseDiagnostics};
 use super::pose::{Alternative, Sim3, Stretch, Uncertainty};
 use super::warning::Warning;
 use crate::geometry::similarity::Similarity;
@@ -25,7 +25,7 @@ pub struct Alignment {
     /// Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
     /// are one, unless their colours differ.
     pub alternatives: Vec<Alternative>,
-    /// How well the observation determines each part of the pose; `null` where the search could not tell.
+    /// How well the observation determines each part of the pose; `null` where it is unknown.
     pub uncertainty: Option<Uncertainty>,
     /// The mesh in its true proportions; present where they were asked for, and fitted.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -58,70 +58,6 @@ pub struct PaperAlignment {
     pub warnings: Vec<Warning>,
     /// Everything else: initial scale, counts, timings.
     pub diagnostics: PaperDiagnostics,
-}
-
-/// The result of an alignment by either preset.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum AnyAlignment {
-    /// Of the preset `precise`.
-    Precise(Box<Alignment>),
-    /// Of the preset `paper`.
-    Paper(Box<PaperAlignment>),
-}
-
-impl AnyAlignment {
-    /// The transform.
-    pub fn camera_from_mesh(&self) -> &Sim3 {
-        match self {
-            Self::Precise(found) => &found.camera_from_mesh,
-            Self::Paper(found) => &found.camera_from_mesh,
-        }
-    }
-
-    /// Alternative poses; only `precise` has them.
-    pub fn alternatives(&self) -> &[Alternative] {
-        match self {
-            Self::Precise(found) => &found.alternatives,
-            Self::Paper(_) => &[],
-        }
-    }
-
-    /// The metrics, unless they were not asked for.
-    pub fn metrics(&self) -> Option<Metrics> {
-        match self {
-            Self::Precise(found) => found.metrics,
-            Self::Paper(found) => found.metrics,
-        }
-    }
-
-    /// Its warnings.
-    pub fn warnings(&self) -> &[Warning] {
-        match self {
-            Self::Precise(found) => &found.warnings,
-            Self::Paper(found) => &found.warnings,
-        }
-    }
-
-    /// What all presets report.
-    pub fn diagnostics(&self) -> &Diagnostics {
-        match self {
-            Self::Precise(found) => &found.diagnostics.common,
-            Self::Paper(found) => &found.diagnostics.common,
-        }
-    }
-}
-
-impl From<Alignment> for AnyAlignment {
-    fn from(alignment: Alignment) -> Self {
-        Self::Precise(Box::new(alignment))
-    }
-}
-
-impl From<PaperAlignment> for AnyAlignment {
-    fn from(alignment: PaperAlignment) -> Self {
-        Self::Paper(Box::new(alignment))
-    }
 }
 
 /// The pose that a method found.

@@ -72,7 +72,7 @@ pub struct ScoreTerms {
 }
 
 choices! {
-    /// What the comparison of colours came to.
+    /// The outcome of the comparison of colours.
     pub enum ColorVerdict {
         /// Too little of the mesh is in the mask for a comparison.
         #[default]
@@ -89,12 +89,12 @@ choices! {
     }
 }
 
-/// What the colours of photo and mesh contributed to an alignment.
+/// The part of the colours of photo and mesh in an alignment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct ColorReport {
-    /// What the comparison came to.
+    /// The outcome of the comparison.
     pub verdict: ColorVerdict,
     /// Correlation of the colours of mesh and photo at the resulting pose, without the shading that normals explain,
     /// −1 to 1.
@@ -104,7 +104,7 @@ pub struct ColorReport {
     pub margin: Option<f64>,
 }
 
-/// What all presets report of an alignment besides the pose.
+/// The report of all presets besides the pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -135,7 +135,7 @@ pub struct Diagnostics {
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct PaperDiagnostics {
-    /// What all presets report.
+    /// The report of all presets.
     #[serde(flatten)]
     pub common: Diagnostics,
     /// Sizes of the problem and events during the run.
@@ -147,7 +147,7 @@ pub struct PaperDiagnostics {
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct PreciseDiagnostics {
-    /// What all presets report.
+    /// The report of all presets.
     #[serde(flatten)]
     pub common: Diagnostics,
     /// Sizes of the problem and of the search.

@@ -7,7 +7,7 @@ mod pose;
 mod preset;
 mod warning;
 
-pub use alignment::{Alignment, AnyAlignment, PaperAlignment, Solution};
+pub use alignment::{Alignment, PaperAlignment, Solution};
 pub use diagnostics::{
     ColorReport, ColorVerdict, Counts, Diagnostics, PaperDiagnostics, PreciseDiagnostics, ScoreTerms, SearchCounts,
     is_collapsed,

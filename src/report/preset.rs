@@ -1,4 +1,4 @@
-//! What ran.
+//! The method and the effort of an alignment.
 
 use crate::options::{Choice, choices};
 

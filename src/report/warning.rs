@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Warning {
     /// The kind of warning, stable across releases.
     pub code: WarningCode,
-    /// What was found, and what to do about it.
+    /// The fault and its remedy.
     pub message: String,
 }
 

@@ -8,12 +8,12 @@ use super::plane::Plane;
 use super::support::{Ground, RestsOn};
 use crate::geometry::pinhole::Pinhole;
 
-/// What an object stands on, and whose volume it shares.
+/// The support of an object, and the volume that it shares with others.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Contact {
-    /// What it rests on: `"support"`, the index of another object, `"level"` for a level surface at another height that
+    /// Its support: `"support"`, the index of another object, `"level"` for a level surface at another height that
     /// the depth map shows, such as a shelf or a box without a mesh, or `null` if it touches none of them.
     #[cfg_attr(feature = "types", ts(type = "\"support\" | \"level\" | number | null"))]
     #[serde(serialize_with = "by_name")]
@@ -39,7 +39,7 @@ fn by_name<S: Serializer>(rests_on: &Option<RestsOn>, serializer: S) -> Result<S
 /// Largest gap of an object that touches what is below it: metres, and relative to its size.
 const TOUCHES: [f64; 2] = [0.008, 0.03];
 
-/// The contacts of posed objects. `grounds` are those that their search has used: they tell whether an object touches what
+/// The contacts of posed objects. `grounds` are those that their search has used: they decide whether an object touches what
 /// is below it. Gaps are those to the support itself, or to the top of the object below. With `snap`, what touches
 /// something is put exactly onto it.
 pub fn contacts(

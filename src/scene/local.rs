@@ -8,7 +8,7 @@ use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::order::median;
 use crate::geometry::pinhole::Pinhole;
 
-/// The images that the support is found in, and what is known of it.
+/// The images in which the support is found.
 #[derive(Debug, Clone)]
 pub struct View {
     /// The depth map.
@@ -17,7 +17,7 @@ pub struct View {
     pub camera: Pinhole,
     /// The pixels of all objects, and their rims.
     pub taken: Mask,
-    /// What is known of the support.
+    /// The support, or how to find it.
     pub choice: SupportChoice,
     /// Seed of the draws.
     pub seed: u64,
@@ -26,7 +26,7 @@ pub struct View {
 /// Distance of the lowest point from the plane that halves the credit of standing on it: metres, and relative to the
 /// size.
 const TOUCH: [f64; 2] = [0.01, 0.06];
-/// Readings around an object that tell how far the plane is bent there, the width of their band relative to the box of
+/// Readings around an object that determine how far the plane is bent there, the width of their band relative to the box of
 /// the object, and the largest bend, metres and metres per metre of depth.
 const LOCAL_READINGS: usize = 150;
 const LOCAL_BAND: f64 = 0.35;

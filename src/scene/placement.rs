@@ -1,4 +1,4 @@
-//! Placements: what the alignment of an object tells about it to the rest of the scene.
+//! Placements: the results of the alignment of an object that the rest of the scene needs.
 
 use std::rc::Rc;
 
@@ -22,10 +22,10 @@ use crate::precise::search::rounds::Rounds;
 use crate::precise::search::start::Findings;
 use crate::report::Alignment;
 
-/// What the alignment of an object tells.
+/// The results of the alignment of an object.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Placement {
-    /// What its search has found.
+    /// The poses that its search has found.
     pub findings: Findings,
     /// The matrix of the pose, see [`Sim3`](crate::report::Sim3).
     pub camera_from_mesh: [f64; 16],
@@ -85,7 +85,7 @@ impl Body {
 }
 
 impl Placement {
-    /// What a search has found; `None` if it has found nothing.
+    /// The placement that follows from a search; `None` if it has found no pose.
     pub fn new(searched: &Searched, observation: &Observation) -> Option<Self> {
         let Rounds { found, search, .. } = &searched.rounds;
         let pose = found.first()?.pose;

@@ -1,4 +1,4 @@
-//! The plan of a scene: rounds in which every object is aligned by itself, and what each round tells the next.
+//! The plan of a scene: rounds in which every object is aligned by itself, and the results of a round for the next.
 
 use core::ops::ControlFlow;
 use std::rc::Rc;
@@ -13,22 +13,22 @@ use super::support::{Ground, Support, find_support};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::pinhole::Pinhole;
 use crate::precise::scoring::surroundings::{Floor, Neighbourhood};
-use crate::precise::search::start::Told;
+use crate::precise::search::start::WarmStart;
 
 /// Confidence from which on an object takes space.
 const SOLID: f64 = 0.5;
 
-/// What is known before a round. Its objects can be aligned in any order, side by side, and in other threads: none needs
+/// The knowledge before a round. Its objects can be aligned in any order, side by side, and in other threads: none needs
 /// more than the plan and its own input.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Plan {
     /// `None` before the first round: each object is aligned alone.
-    known: Option<Known>,
+    state: Option<SceneState>,
 }
 
-/// What the objects have told.
+/// The placements of the objects, and their support.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-struct Known {
+struct SceneState {
     camera: Pinhole,
     placements: Vec<Option<Placement>>,
     support: Option<Plane>,
@@ -37,12 +37,12 @@ struct Known {
     grounds: Vec<Option<Ground>>,
 }
 
-/// The poses of the objects of a scene, and what they stand on.
+/// The poses of the objects of a scene, and their support.
 #[derive(Debug, Serialize)]
 pub struct Arrangement {
     /// Each object; `None` for one that could not be aligned.
     pub objects: Vec<Option<Arranged>>,
-    /// What they stand on.
+    /// Their support.
     pub support: Option<Support>,
 }
 
@@ -53,24 +53,27 @@ pub struct Arranged {
     pub translation: [f64; 3],
     /// The matrix of its pose.
     pub matrix: [f64; 16],
-    /// What the object rests on.
+    /// Its contact.
     pub contact: Contact,
 }
 
 impl Plan {
-    /// What an object is told in this round: what it has found itself, and what surrounds it. `None` if it is aligned alone.
+    /// The start of an object in this round: its own findings and its surroundings. `None` if it is aligned alone.
     ///
     /// # Errors
     /// [`missing`] for an object that could not be aligned.
-    pub fn told(&self, object: usize) -> Result<Option<Told<'_>>> {
-        let Some(Known { placements, grounds, .. }) = &self.known else { return Ok(None) };
+    pub fn warm_start(&self, object: usize) -> Result<Option<WarmStart<'_>>> {
+        let Some(SceneState { placements, grounds, .. }) = &self.state else { return Ok(None) };
         let own = placements.get(object).and_then(Option::as_ref).ok_or_else(missing)?;
         let ground = grounds.get(object).copied().flatten();
         let floor = |Ground { plane, gap_m, .. }| Floor { normal: plane.normal, offset_m: plane.d, gap_m };
         let others = placements.iter().enumerate().filter(|(k, _)| *k != object).filter_map(|(_, p)| p.as_ref());
         // A body that is probably elsewhere takes no space.
         let layers = others.filter(|p| p.findings.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
-        Ok(Some(Told { findings: &own.findings, known: Neighbourhood { ground: ground.map(floor), layers } }))
+        Ok(Some(WarmStart {
+            findings: &own.findings,
+            surroundings: Neighbourhood { ground: ground.map(floor), layers },
+        }))
     }
 
     /// Another round or the end, from the placements of a round, one per object: `None` for an object that could not be
@@ -84,12 +87,12 @@ impl Plan {
         snap: bool,
         view: impl FnOnce() -> Result<View>,
     ) -> Result<ControlFlow<Arrangement, Self>> {
-        let Some(Known { camera, support, confidence, grounds, .. }) = &self.known else {
+        let Some(SceneState { camera, support, confidence, grounds, .. }) = &self.state else {
             let view = view()?;
             let (found, grounds) = find_support(&view, &placements);
             let (support, confidence) = found.map(|found| (found.plane, found.confidence)).unzip();
-            let known = Known { camera: view.camera, placements, support, confidence, grounds };
-            return Ok(ControlFlow::Continue(Self { known: Some(known) }));
+            let state = SceneState { camera: view.camera, placements, support, confidence, grounds };
+            return Ok(ControlFlow::Continue(Self { state: Some(state) }));
         };
         let split = |placement: Option<Placement>| placement.map(|p| (p.camera_from_mesh, p.body)).unzip();
         let (poses, bodies): (Vec<_>, Vec<_>) = placements.into_iter().map(split).unzip();

@@ -14,7 +14,7 @@ pub struct Plane {
     pub d: f64,
 }
 
-/// What is known of the support.
+/// The support, or how to find it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum SupportChoice {
     /// It is found in the depth map.

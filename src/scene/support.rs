@@ -22,7 +22,7 @@ pub struct Support {
     pub confidence: f64,
 }
 
-/// What an object rests on.
+/// The thing on which an object rests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RestsOn {
     /// The support.
@@ -33,14 +33,14 @@ pub enum RestsOn {
     Object(usize),
 }
 
-/// What an object may stand on.
+/// A plane on which an object may stand.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ground {
     /// The plane near the object: depth maps are bent.
     pub plane: Plane,
     /// The gap that halves the credit of the contact, metres.
     pub gap_m: f64,
-    /// What it belongs to.
+    /// The thing to which it belongs.
     pub on: RestsOn,
 }
 
@@ -56,7 +56,7 @@ const MAX_OFFSET_M: f64 = 0.012;
 const OFFSET_STEP_M: f64 = 0.000_25;
 /// Offset that costs one unit; and the error of an object's lowest point: metres, and relative to its size.
 const OFFSET: [f64; 3] = [0.005, 0.0015, 0.008];
-/// Distance from the plane up to which an object may tell of the offset, metres, and the weight of one that is certainly
+/// Distance from the plane up to which an object is evidence of the offset, metres, and the weight of one that is certainly
 /// misplaced.
 const FARTHEST_M: f64 = 0.03;
 const UNSURE: f64 = 0.3;
@@ -126,7 +126,7 @@ fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> 
         let (plane, p) = plane.as_ref().zip(p.as_ref())?;
         let gap = p.body.extent(plane)[0];
         let noise = OFFSET[1] + OFFSET[2] * p.body.diameter();
-        // A half turn that shape does not tell makes a pose uncertain, but not its height.
+        // A half turn that shape does not exclude makes a pose uncertain, but not its height.
         (gap.abs() < FARTHEST_M).then_some((gap, noise, UNSURE + (1.0 - UNSURE) * p.findings.confidence))
     };
     let gaps: Vec<(f64, f64, f64)> = planes.iter().zip(placements).filter_map(gap).collect();

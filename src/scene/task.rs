@@ -20,7 +20,7 @@ use crate::pauses::{Boxed, Pauses, boxed, finished};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::surroundings::Surroundings;
-use crate::precise::search::start::Told;
+use crate::precise::search::start::WarmStart;
 use crate::progress::Host;
 use crate::report::{Alignment, Sim3};
 
@@ -34,9 +34,9 @@ pub struct Scene<'m> {
     pub relief_deviation: f64,
     /// The objects.
     pub objects: Vec<SceneObject<'m>>,
-    /// Masks of what else is known to stand there, without a mesh.
+    /// Masks of objects without a mesh.
     pub occluders: Vec<Mask>,
-    /// What they stand on.
+    /// Their support.
     pub support: SupportChoice,
     /// Whether objects are put exactly onto what they touch.
     pub snap: bool,
@@ -48,7 +48,7 @@ pub struct SceneObject<'m> {
     pub mask: Mask,
     /// Its mesh.
     pub mesh: PreparedMesh<'m>,
-    /// What is known of it.
+    /// Its options.
     pub options: AlignOptions,
 }
 
@@ -57,7 +57,7 @@ pub struct SceneObject<'m> {
 pub struct PlacedObject {
     /// The alignment.
     pub alignment: Alignment,
-    /// What it rests on.
+    /// Its contact.
     pub contact: Contact,
 }
 
@@ -66,7 +66,7 @@ pub struct PlacedObject {
 pub struct SceneAlignment {
     /// Each object, or why it could not be aligned.
     pub objects: Vec<Result<PlacedObject>>,
-    /// What they stand on.
+    /// Their support.
     pub support: Option<Support>,
 }
 
@@ -90,7 +90,7 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
             let mut place = || {
                 aligned[k].clone()?;
                 let observation = observation_of(depth, camera, &masks, k)?.with_relief_deviation(*relief_deviation);
-                finished(place(&observation, mesh, options.clone(), plan.told(k)?, host, &Pauses::none()))
+                finished(place(&observation, mesh, options.clone(), plan.warm_start(k)?, host, &Pauses::none()))
             };
             let (placement, alignment) = place().map_or_else(|error| (None, Err(error)), |(p, a)| (Some(p), Ok(a)));
             aligned[k] = alignment;
@@ -129,8 +129,7 @@ fn observation_of(depth: &DepthMap, camera: &Pinhole, masks: &[&Mask], object: u
     observation.with_others(Image::new("mask", depth.width(), depth.height(), pixels)?)
 }
 
-/// Aligns an object alone or with what it is told. Returns what the others need to know of it and, once it has been told
-/// something, its alignment.
+/// Aligns an object alone or from a warm start. Returns its placement for the others and, from a warm start, its alignment.
 ///
 /// # Errors
 /// As [`align`](crate::align::align).
@@ -138,7 +137,7 @@ pub fn place<'a>(
     observation: &'a Observation,
     mesh: &'a PreparedMesh<'_>,
     options: AlignOptions,
-    told: Option<Told<'a>>,
+    start: Option<WarmStart<'a>>,
     host: &'a mut dyn Host,
     pauses: &'a Pauses,
 ) -> Boxed<'a, Result<(Placement, Option<Alignment>)>> {
@@ -146,7 +145,7 @@ pub fn place<'a>(
         let request = Request::new(options)?;
         let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
         let mesh = search.mesh();
-        let Some(told) = told else {
+        let Some(start) = start else {
             let mut searched = search.search().await?;
             let colors = search.colors(&searched).await;
             // Of the poses that shape leaves, that first which the photo chooses.
@@ -156,8 +155,8 @@ pub fn place<'a>(
             return Ok((Placement::new(&searched, observation).ok_or_else(missing)?, None));
         };
         let clouds = search.clouds().await?;
-        let normal = told.known.ground.map(|floor| floor.normal);
-        let searched = search.search_among(told).await?;
+        let normal = start.surroundings.ground.map(|floor| floor.normal);
+        let searched = search.search_among(start).await?;
         let placement = Placement::new(&searched, observation).ok_or_else(missing)?;
         let colors = search.colors(&searched).await;
         let alignment = search.finish(clouds, searched, colors.as_ref())?;
@@ -174,9 +173,9 @@ pub fn helper(
     observation: Observation,
     mesh: Rc<PreparedMesh<'static>>,
     options: AlignOptions,
-    told: Option<Told<'_>>,
+    start: Option<WarmStart<'_>>,
 ) -> Result<Helper> {
-    let known = told.map(|told| told.known).unwrap_or_default();
+    let known = start.map(|start| start.surroundings).unwrap_or_default();
     Ok(Helper::new(vec![Some(observation)], mesh, Request::new(options)?, move |search| {
         search.surround(Surroundings::new(known.clone(), &search.mesh, &search.observation));
     }))

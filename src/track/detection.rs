@@ -12,7 +12,7 @@ use glam::DQuat;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
-use crate::pauses::{Pauses, finished};
+use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
@@ -25,15 +25,15 @@ use crate::precise::verdict::color::{Judgment, judgment};
 use crate::precise::verdict::confidence::sureness;
 use crate::progress::{Host, Stopwatch};
 
-/// What a search knows beforehand.
-pub struct Known {
+/// The prior of a search.
+pub struct DetectionPrior {
     /// The prior on scale and orientation.
     pub prior: Prior,
     /// The logarithm of the scale, if it is known, and the rotation in which the object was seen last.
     pub before: Option<(Option<f64>, DQuat)>,
 }
 
-/// How far what was found stands out from the other poses that a search over all rotations has found.
+/// The lead of a pose over the others of a search over all rotations.
 #[derive(Debug, Clone, Copy)]
 pub struct Lead {
     /// The difference between the scores of the pose and of the best other one.
@@ -58,49 +58,58 @@ impl Detection {
     ///
     /// # Errors
     /// As [`start::begin`].
-    pub fn search(
-        observation: &Observation,
-        mesh: &PreparedMesh<'_>,
-        options: &AlignOptions,
-        known: &Known,
-        host: &mut dyn Host,
-    ) -> Result<Self> {
-        let mut rounds: Option<Rounds> = None;
-        let mut certainty = 0.0;
-        for settings in efforts::of(options) {
-            if certainty >= SURE || (known.before.is_some() && rounds.is_some()) {
-                break;
+    pub fn search<'a>(
+        observation: &'a Observation,
+        mesh: &'a PreparedMesh<'_>,
+        options: &'a AlignOptions,
+        known: &'a DetectionPrior,
+        host: &'a mut dyn Host,
+        pauses: &'a Pauses,
+    ) -> Boxed<'a, Result<Self>> {
+        boxed(async move {
+            let mut rounds: Option<Rounds> = None;
+            let mut certainty = 0.0;
+            for settings in efforts::of(options) {
+                if certainty >= SURE || (known.before.is_some() && rounds.is_some()) {
+                    break;
+                }
+                let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
+                let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
+                let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
+                let mut next = start::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
+                if let Some(log_scale) = log_scale {
+                    next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
+                }
+                pauses.here().await;
+                start::run(&mut next, &(0.2..0.85), pauses, stages).await;
+                let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+                let (conditioning, _) = next.search.conditioning(&best.pose);
+                let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
+                certainty = sureness(best, lead, conditioning.as_ref());
+                rounds = Some(next);
             }
-            let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
-            let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
-            let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
-            let mut next = start::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
-            if let Some(log_scale) = log_scale {
-                next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
-            }
-            finished(start::run(&mut next, &(0.2..0.85), &Pauses::none(), stages));
-            let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-            let (conditioning, _) = next.search.conditioning(&best.pose);
-            let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
-            certainty = sureness(best, lead, conditioning.as_ref());
-            rounds = Some(next);
-        }
-        let rounds = rounds.ok_or_else(no_candidate)?;
-        let judgment = by_color(&rounds, observation, mesh);
-        let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
-        let turn_certainty = judgment.map_or(1.0, |judgment| judgment.certainty);
-        Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, turn_certainty } })
+            let rounds = rounds.ok_or_else(no_candidate)?;
+            let judgment = by_color(&rounds, observation, mesh, pauses).await;
+            let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
+            let turn_certainty = judgment.map_or(1.0, |judgment| judgment.certainty);
+            Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, turn_certainty } })
+        })
     }
 }
 
-/// What colour says about the poses that a search has found; `None` without colours.
-fn by_color(rounds: &Rounds, observation: &Observation, mesh: &PreparedMesh<'_>) -> Option<Judgment> {
+/// The verdict of colour on the poses of a search; `None` without colours.
+async fn by_color(
+    rounds: &Rounds,
+    observation: &Observation,
+    mesh: &PreparedMesh<'_>,
+    pauses: &Pauses,
+) -> Option<Judgment> {
     let (photo, colors) = (observation.photo()?, mesh.colors()?);
-    Some(finished(judgment(rounds, photo, colors, &Pauses::none())))
+    Some(judgment(rounds, photo, colors, pauses).await)
 }
 
 /// The pose that counts, and its lead over the others.
-fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &Known) -> Result<(Found, f64)> {
+fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) -> Result<(Found, f64)> {
     let first = *rounds.found.first().ok_or_else(no_candidate)?;
     let mut chosen = judgment.and_then(|judgment| judgment.chosen).unwrap_or(first);
     let is_colored = judgment.is_some_and(|judgment| judgment.is_used && !judgment.rivals.is_empty());

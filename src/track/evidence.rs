@@ -7,7 +7,7 @@ use crate::evidence::frame::Frame;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::PhotoRegion;
 use crate::geometry::image::{Mask, bounds_of};
-use crate::metrics::symmetry::Symmetry;
+use crate::precise::drawing::equivalence::Equivalence;
 use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::{CropPose, MeshFrame};
 use crate::precise::observation::clean::CleanObservation;
@@ -23,6 +23,25 @@ const MARGIN_PX: f64 = 8.0;
 /// cells.
 const MAX_BOX_PX: f64 = 16_000.0;
 
+/// The mesh of a tracked object, prepared for the searches in its frames.
+pub struct TrackedMesh {
+    /// The mesh.
+    pub pyramid: Rc<MeshPyramid>,
+    /// Grids and weights.
+    pub settings: SearchSettings,
+    /// Which of its poses are equivalent.
+    pub equivalence: Rc<Equivalence>,
+}
+
+impl TrackedMesh {
+    /// A search in an image.
+    pub fn search(&self, observation: Rc<CleanObservation>) -> Search {
+        let mut search = Search::new(observation, Rc::clone(&self.pyramid), self.settings);
+        search.equivalence = Rc::clone(&self.equivalence);
+        search
+    }
+}
+
 /// The evidence around an object in a frame.
 pub struct Evidence {
     /// The search.
@@ -32,9 +51,9 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// The same evidence for another look at it.
+    /// The same evidence for another search.
     pub fn shared(&self) -> Self {
-        Self { search: self.search.look(), region: self.region }
+        Self { search: self.search.for_rivals(), region: self.region }
     }
 
     /// The photo of the frame on the fine grid, if there is one.
@@ -48,11 +67,11 @@ impl Evidence {
 ///
 /// # Errors
 /// As [`Observation::new`].
-pub fn of_mask(frame: &Frame, mesh: &Rc<MeshPyramid>, settings: &SearchSettings) -> Result<Option<Evidence>> {
+pub fn of_mask(frame: &Frame, mesh: &TrackedMesh) -> Result<Option<Evidence>> {
     let Some(mask) = frame.mask.as_ref().filter(|mask| is_set(mask)) else { return Ok(None) };
     let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0).map(|[low, high]| [low as f64, high as f64]);
     let Some(window) = Window::around(frame, bounds) else { return Ok(None) };
-    evidence(window.frame, window.region, mesh, settings)
+    evidence(window.frame, window.region, mesh)
 }
 
 /// Whether a mask has a pixel that is set.
@@ -65,12 +84,7 @@ pub fn is_set(mask: &Mask) -> bool {
 ///
 /// # Errors
 /// As [`Observation::new`].
-pub fn of_pose(
-    frame: &Frame,
-    pose: &CropPose,
-    mesh: &Rc<MeshPyramid>,
-    settings: &SearchSettings,
-) -> Result<Option<Evidence>> {
+pub fn of_pose(frame: &Frame, pose: &CropPose, mesh: &TrackedMesh) -> Result<Option<Evidence>> {
     let (scale, center) = pose.scale_translation();
     let camera = frame.camera;
     // The sphere around the mesh, whose diameter is the diagonal of its box: the scale.
@@ -79,21 +93,14 @@ pub fn of_pose(
     let half = [camera.fx * radius, camera.fy * radius];
     let bounds = [0, 1].map(|axis| [at[axis] - half[axis], at[axis] + half[axis]]);
     let Some(window) = Window::around(frame, bounds) else { return Ok(None) };
-    let masked = with_predicted_mask(window.frame, &mesh.fine, &pose.similarity(&MeshFrame::NORMALIZED));
-    evidence(masked, window.region, mesh, settings)
+    let masked = with_predicted_mask(window.frame, &mesh.pyramid.fine, &pose.similarity(&MeshFrame::NORMALIZED));
+    evidence(masked, window.region, mesh)
 }
 
-fn evidence(
-    window: Frame,
-    region: PhotoRegion,
-    mesh: &Rc<MeshPyramid>,
-    settings: &SearchSettings,
-) -> Result<Option<Evidence>> {
+fn evidence(window: Frame, region: PhotoRegion, mesh: &TrackedMesh) -> Result<Option<Evidence>> {
     let Some(mask) = window.mask else { return Ok(None) };
     let observation = Observation::new(window.depth, mask, window.camera)?;
-    let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
-    search.equivalence = mesh.equivalence(&Symmetry::Auto)?;
-    Ok(Some(Evidence { search, region }))
+    Ok(Some(Evidence { search: mesh.search(Rc::new(CleanObservation::new(&observation))), region }))
 }
 
 /// A part of a frame, and where it lies in the photo.

@@ -1,17 +1,19 @@
-//! The poses of all frames of a video, and what a correction of one of them changes.
+//! The poses of the newest frames of a video, and the changes by a correction of one of them.
+
+use std::collections::VecDeque;
 
 use super::report::CorrectedFrame;
 use crate::precise::drawing::pose::MeshFrame;
 use crate::views::world_pose::WorldPose;
 
-/// Maximum number of frames that a correction carries back.
-const MOST: usize = 100_000;
+/// Number of frames that can be corrected, the newest ones: almost an hour at 30 frames per second.
+pub const MOST: usize = 100_000;
 
-/// The poses of all frames, in stretches of frames: a new one begins where the object was found anew.
+/// The poses of the newest frames, in stretches of frames: a new one begins where the object was found anew.
 #[derive(Debug, Clone, Default)]
 pub struct History {
     /// The poses, each with the number of its stretch.
-    poses: Vec<(WorldPose, usize)>,
+    poses: VecDeque<(WorldPose, usize)>,
     stretch: usize,
     /// Number of frames so far.
     frames: usize,
@@ -23,40 +25,37 @@ impl History {
         self.frames
     }
 
-    /// Number of frames whose poses are known.
-    pub fn known(&self) -> usize {
-        self.poses.len()
-    }
-
     /// Adds the pose of the next frame. `is_anew`: the object was found without the frame before.
     pub fn add(&mut self, pose: WorldPose, is_anew: bool) {
         self.stretch += usize::from(is_anew);
         self.frames += 1;
-        if self.poses.len() < MOST {
-            self.poses.push((pose, self.stretch));
+        if self.poses.len() == MOST {
+            self.poses.pop_front();
         }
+        self.poses.push_back((pose, self.stretch));
     }
 
-    /// The last pose that is known.
+    /// The pose of the last frame.
     pub fn last(&self) -> Option<WorldPose> {
-        self.poses.last().map(|(pose, _)| *pose)
+        self.poses.back().map(|(pose, _)| *pose)
     }
 
-    /// Sets the pose of a frame, and moves all frames of its stretch with it: in the frame of the mesh, so that what was
-    /// tracked of its motion stays. Returns the frames that change, and whether the present stretch does; `None` for a
-    /// frame that is not known.
+    /// Sets the pose of a frame, and moves all frames of its stretch with it: in the frame of the mesh, so that the tracked
+    /// motion stays. Returns the frames that change, and whether the present stretch does; `None` for a frame that has not
+    /// been added, or that is not among the newest.
     pub fn correct(
         &mut self,
         index: usize,
         fixed: WorldPose,
         frame: &MeshFrame,
     ) -> Option<(Vec<CorrectedFrame>, bool)> {
-        let &(wrong, stretch) = self.poses.get(index)?;
+        let oldest = self.frames - self.poses.len();
+        let &(wrong, stretch) = self.poses.get(index.checked_sub(oldest)?)?;
         let turn = (wrong.rotation.conjugate() * fixed.rotation).normalize();
         let shift = wrong.rotation.conjugate() * (fixed.center - wrong.center);
         let stretch_ratio = fixed.log_scale - wrong.log_scale;
         let mut changed = Vec::new();
-        for (k, (pose, _)) in self.poses.iter_mut().enumerate().filter(|(_, (_, of))| *of == stretch) {
+        for (k, (pose, _)) in (oldest..).zip(&mut self.poses).filter(|(_, (_, of))| *of == stretch) {
             *pose = if k == index {
                 fixed
             } else {

@@ -7,7 +7,7 @@ use crate::options::choices;
 use crate::report::{ScoreTerms, Sim3};
 
 choices! {
-    /// What a tracker knows of a frame.
+    /// The state of a tracker after a frame.
     pub enum TrackState {
         /// The object was followed, or found again.
         #[default]
@@ -29,7 +29,7 @@ pub struct TrackedFrame {
     pub camera_from_mesh: Sim3,
     /// The number of the frame: 0 for the first.
     pub frame: usize,
-    /// What the tracker knows of it.
+    /// The state of the tracker.
     pub state: TrackState,
     /// Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost.
     pub confidence: f64,

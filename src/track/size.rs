@@ -20,7 +20,7 @@ pub struct Size {
 }
 
 impl Size {
-    /// A size of which nothing is known, or the given one, as the logarithm of the scale.
+    /// An unknown size, or a fixed one, as the logarithm of the scale.
     pub fn new(known: Option<f64>) -> Self {
         Self { frames: Vec::new(), known, settled: None }
     }

@@ -7,13 +7,13 @@ use crate::precise::search::start;
 use core::borrow::Borrow;
 use glam::DQuat;
 
-use super::detection::{Detection, Known, Lead};
-use super::evidence::{Evidence, is_set};
-use super::history::History;
+use super::detection::{Detection, DetectionPrior, Lead};
+use super::evidence::{Evidence, TrackedMesh, is_set};
+use super::history::{History, MOST};
+use super::local_search::{FramePose, agreement};
 use super::motion::{MAX_TURN, Motion};
 use super::options::TrackOptions;
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
-use super::sight::{Seen, Sight, agreement};
 use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
@@ -22,13 +22,13 @@ use crate::evidence::photo::PhotoRegion;
 use crate::evidence::sample::Sampling;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
-use crate::metrics::{self, symmetry::Symmetry};
+use crate::metrics;
 use crate::number::number;
 use crate::options::Options;
+use crate::pauses::{Boxed, Pauses, boxed, finished};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::drawing::render::Canvas;
-use crate::precise::options::AlignOptions;
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::{NOISE, Score};
@@ -57,12 +57,12 @@ const BETTER: f32 = 1.1;
 /// Weight of a frame in the usual fit.
 const NEW: f32 = 0.1;
 /// Share of the silhouette that must be seen in a frame without a mask, for it to be certain, and not to be lost.
-const SEEN: [f32; 2] = [0.35, 0.12];
+const VISIBLE: [f32; 2] = [0.35, 0.12];
 /// Share of the object that a frame must show for it to be searched for over all rotations, and for its rotation to count
 /// as known.
 const ENOUGH: f32 = 0.5;
 /// The same for a rotation that differs from the last certain one by more than an object turns unseen.
-const MOST: f32 = 0.8;
+const MOST_SHOWN: f32 = 0.8;
 /// Standard deviation of the size of a correction, relative.
 const CORRECTION_SD: f64 = 0.005;
 
@@ -70,7 +70,7 @@ const CORRECTION_SD: f64 = 0.005;
 pub struct Tracker<M> {
     mesh: M,
     options: TrackOptions,
-    sight: Sight,
+    tracked: TrackedMesh,
     prior: Prior,
     size: Size,
     /// The pose of the last frame, in its camera.
@@ -97,14 +97,13 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         prepared.check()?;
         let settings = SearchSettings { lock_scale: true, ..SearchSettings::from(Effort::Fast) };
         let pyramid = prepared.pyramid(&settings.grids).ok_or_else(no_candidate)?;
-        // The object turns after the first frame.
-        let detection = AlignOptions { initial: None, ..options.of_detection() };
+        let detection = options.of_detection();
         let prior = Prior::of(&detection, prepared.mesh(), &pyramid.frame);
-        let known = prior.scale.filter(|[min, max]| min == max).map(|[scale, _]| libm::log(scale));
+        let known = prior.fixed_scale().map(libm::log);
         Ok(Self {
             mesh,
             options,
-            sight: Sight { mesh: pyramid, settings },
+            tracked: TrackedMesh { equivalence: pyramid.equivalence(&detection.symmetry)?, pyramid, settings },
             prior,
             size: Size::new(known),
             last: None,
@@ -129,38 +128,55 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     /// the object is not found in the first frame, and those of [`Observation::new`] there; those of
     /// [`Frame::check`] in all frames. The tracker remains usable.
     pub fn next(&mut self, frame: &Frame, host: &mut dyn Host) -> Result<TrackedFrame> {
-        frame.check()?;
-        let seen = match self.last {
-            Some(last) => self.follow(frame, last, host),
-            None => Some(self.first(frame, host)?),
-        };
-        self.conclude(frame, seen)
+        finished(self.next_in_steps(frame, host, &Pauses::none()))
+    }
+
+    /// [`Tracker::next`] in steps. A frame that is given up before its end does not count.
+    ///
+    /// # Errors
+    /// As [`Tracker::next`].
+    pub fn next_in_steps<'a>(
+        &'a mut self,
+        frame: &'a Frame,
+        host: &'a mut dyn Host,
+        pauses: &'a Pauses,
+    ) -> Boxed<'a, Result<TrackedFrame>>
+    where
+        M: 'a,
+        'm: 'a,
+    {
+        boxed(async move {
+            frame.check()?;
+            let seen = match self.last {
+                Some(last) => self.follow(frame, last, host, pauses).await,
+                None => Some(self.first(frame, host, pauses).await?),
+            };
+            self.conclude(frame, seen)
+        })
     }
 
     /// Sets the pose of a frame, by default of the last one, and carries it on to all frames of the same stretch: forwards
     /// to the next frames, and backwards with the motion that was tracked. Returns the frames whose poses change.
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidArgument`] for a frame that has not been tracked, [`ErrorCode::InvalidTransform`] for a pose
-    /// behind the camera.
+    /// [`ErrorCode::InvalidArgument`] for a frame that has not been tracked, or before the newest 100 000,
+    /// [`ErrorCode::InvalidTransform`] for a pose behind the camera.
     pub fn correct(&mut self, pose: &Similarity, frame: Option<usize>) -> Result<Vec<CorrectedFrame>> {
-        let count = self.history.known();
-        let index = frame.unwrap_or(count.wrapping_sub(1));
+        let frames = self.history.frames();
         let unknown = || {
             Error::new(
                 ErrorCode::InvalidArgument,
                 "frame",
-                format!("frame {} of {count}", number(index as f64)),
-                "the number of a frame that was tracked",
+                frame.map_or("no frame".into(), |frame| format!("frame {} of {frames}", number(frame as f64))),
+                format!("the number of a frame that was tracked, one of the last {}", number(MOST as f64)),
                 "Call next() with the frame first.",
             )
         };
-        if index >= count {
-            return Err(unknown());
-        }
-        let fixed = start::seen_from(pose, &self.sight.mesh.frame, (ErrorCode::InvalidTransform, "pose"))?;
+        let index = frame.or(frames.checked_sub(1)).ok_or_else(unknown)?;
+        let fixed = start::seen_from(pose, &self.tracked.pyramid.frame, (ErrorCode::InvalidTransform, "pose"))?;
         let fixed = PlacedCamera::AT_ORIGIN.place(&fixed);
-        let (changed, is_present) = self.history.correct(index, fixed, &self.sight.mesh.frame).ok_or_else(unknown)?;
+        let (changed, is_present) =
+            self.history.correct(index, fixed, &self.tracked.pyramid.frame).ok_or_else(unknown)?;
         if is_present {
             self.last = self.history.last();
             self.state = TrackState::Tracking;
@@ -174,12 +190,12 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// The pose in the first frame.
-    fn first(&self, frame: &Frame, host: &mut dyn Host) -> Result<Seen> {
+    async fn first(&self, frame: &Frame, host: &mut dyn Host, pauses: &Pauses) -> Result<FramePose> {
         let has_mask = frame.mask.as_ref().is_some_and(is_set);
         if let (Some(initial), false) = (&self.options.initial, has_mask) {
-            let pose = CropPose::of_similarity(initial, &self.sight.mesh.frame).ok_or_else(no_candidate)?;
-            let evidence = self.sight.evidence(frame, &pose).ok_or_else(no_candidate)?;
-            return self.sight.around(frame, &evidence, &[pose], false).ok_or_else(no_candidate);
+            let pose = CropPose::of_similarity(initial, &self.tracked.pyramid.frame).ok_or_else(no_candidate)?;
+            let evidence = self.tracked.evidence(frame, &pose).ok_or_else(no_candidate)?;
+            return self.tracked.around(frame, &evidence, &[pose], false).ok_or_else(no_candidate);
         }
         let observation = frame.observation()?.ok_or_else(|| {
             Error::new(
@@ -190,22 +206,23 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
                 "Pass the mask, or the pose in the first frame as options.initial.",
             )
         })?;
-        self.detect(&observation, None, host)
+        self.detect(&observation, None, host, pauses).await
     }
 
     /// The pose in a frame after the first; `None` if the object is lost.
-    fn follow(&self, frame: &Frame, last: WorldPose, host: &mut dyn Host) -> Option<Seen> {
+    async fn follow(&self, frame: &Frame, last: WorldPose, host: &mut dyn Host, pauses: &Pauses) -> Option<FramePose> {
         let size = self.size.value();
         let sized = |pose: WorldPose| size.map_or(pose, |(log_scale, _)| WorldPose { log_scale, ..pose });
         let expected = [self.motion.carried(&last), last].map(sized);
         let seen: Vec<CropPose> = expected.iter().filter_map(|pose| PlacedCamera::AT_ORIGIN.see(pose)).collect();
-        let evidence = seen.first().and_then(|first| self.sight.evidence(frame, first));
-        let look = |wide| self.sight.around(frame, evidence.as_ref()?, &seen, wide);
+        let evidence = seen.first().and_then(|first| self.tracked.evidence(frame, first));
+        let look = |wide| self.tracked.around(frame, evidence.as_ref()?, &seen, wide);
         let near = look(false);
-        let fit = |seen: &Option<Seen>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
+        let fit = |seen: &Option<FramePose>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
         if fit(&near, self) >= FITS && self.state != TrackState::Lost {
             return near;
         }
+        pauses.here().await;
         let wide = look(true);
         let near = if fit(&wide, self) > fit(&near, self) { wide } else { near };
         if fit(&near, self) >= UNCERTAIN && self.state != TrackState::Lost {
@@ -213,67 +230,74 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         }
         // An object that leaves the image, or passes behind another, is not where all rotations should be searched: little
         // of it may look like anything.
-        let is_leaving = |seen: &Seen| seen.shown(frame) < ENOUGH;
+        let is_leaving = |seen: &FramePose| seen.shown_share(frame) < ENOUGH;
         if self.state != TrackState::Lost && near.as_ref().is_some_and(is_leaving) {
-            return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= SEEN[1]);
+            return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= VISIBLE[1]);
         }
-        // Found anew, where a mask says that there is something to find.
+        // Found anew, where a mask shows the object.
         let before = self.certain.unwrap_or(last.rotation);
-        let observation = frame.observation().ok().flatten();
-        let anew = observation.and_then(|observation| self.detect(&observation, Some(before), host).ok());
-        let is_told = |seen: &Seen| {
-            let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
-            seen.shown(frame) >= if has_turned { MOST } else { ENOUGH }
+        let anew = match frame.observation().ok().flatten() {
+            Some(observation) => self.detect(&observation, Some(before), host, pauses).await.ok(),
+            None => None,
         };
-        let anew = anew.filter(is_told).map(|seen| self.unturned(frame, seen, before));
+        let shows_enough_anew = |seen: &FramePose| {
+            let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
+            seen.shown_share(frame) >= if has_turned { MOST_SHOWN } else { ENOUGH }
+        };
+        let anew = anew.filter(shows_enough_anew).map(|seen| self.unturned(frame, seen, before));
         let best = if fit(&anew, self) > BETTER * fit(&near, self) { anew } else { near };
         let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
-        best.filter(|seen| self.fit(seen) >= least && seen.visible >= SEEN[1])
+        best.filter(|seen| self.fit(seen) >= least && seen.visible >= VISIBLE[1])
     }
 
-    /// What was found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
+    /// The pose found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
     /// part of it that comes out behind another may look like its other end.
-    fn unturned(&self, frame: &Frame, seen: Seen, before: DQuat) -> Seen {
+    fn unturned(&self, frame: &Frame, seen: FramePose, before: DQuat) -> FramePose {
         if angle_between(seen.found.pose.rotation, before) <= MAX_TURN {
             return seen;
         }
         let expected = CropPose { rotation: before, ..seen.found.pose };
-        // The more of it is hidden, the less its fit says.
-        let is_near = |other: &Seen| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
-        let near = self.sight.evidence(frame, &expected);
-        match near.and_then(|near| self.sight.around(frame, &near, &[expected], true)) {
-            Some(other) if is_near(&other) => Seen { lead: seen.lead, ..other },
+        // The more of it is hidden, the less its fit counts.
+        let is_near = |other: &FramePose| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
+        let near = self.tracked.evidence(frame, &expected);
+        match near.and_then(|near| self.tracked.around(frame, &near, &[expected], true)) {
+            Some(other) if is_near(&other) => FramePose { lead: seen.lead, ..other },
             _ => seen,
         }
     }
 
-    /// Searches all rotations, with what is known if the object was seen before in this rotation.
-    fn detect(&self, observation: &Observation, before: Option<DQuat>, host: &mut dyn Host) -> Result<Seen> {
+    /// Searches all rotations, with the prior of a track if the object was seen before in this rotation.
+    async fn detect(
+        &self,
+        observation: &Observation,
+        before: Option<DQuat>,
+        host: &mut dyn Host,
+        pauses: &Pauses,
+    ) -> Result<FramePose> {
         let log_scale = self.size.value().map(|(log_scale, _)| log_scale);
-        let known = Known { prior: self.prior, before: before.map(|before| (log_scale, before)) };
-        let initial = self.options.initial.filter(|_| before.is_none());
-        let options = AlignOptions { initial, ..self.options.of_detection() };
-        let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host)?;
+        let known = DetectionPrior { prior: self.prior, before: before.map(|before| (log_scale, before)) };
+        // The object turns after the first frame.
+        let options = if before.is_some() { self.options.of_detection() } else { self.options.of_first_frame() };
+        let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host, pauses).await?;
         // With the settings of the frames after it, so that scores compare.
-        let mut search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);
-        search.equivalence = self.sight.mesh.equivalence(&Symmetry::Auto)?;
+        let search = self.tracked.search(detection.observation);
         let found = Found { score: search.score(&detection.found.pose), ..detection.found };
         let evidence = Evidence { search, region: PhotoRegion::WHOLE };
-        Ok(Seen { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
+        Ok(FramePose { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
 
     /// The agreement of a pose relative to that of earlier frames, about 1 for one as good.
-    fn fit(&self, seen: &Seen) -> f32 {
+    fn fit(&self, seen: &FramePose) -> f32 {
         let fit = agreement(&seen.found.score);
         self.usual.map_or(1.0, |usual| fit / usual.max(1e-3))
     }
 
     /// Updates size, motion and state, and reports.
-    fn conclude(&mut self, frame: &Frame, seen: Option<Seen>) -> Result<TrackedFrame> {
+    fn conclude(&mut self, frame: &Frame, seen: Option<FramePose>) -> Result<TrackedFrame> {
         let Some(seen) = seen else { return Ok(self.lost()) };
-        let is_certain = self.fit(&seen) >= UNCERTAIN && seen.visible >= SEEN[0];
-        let shows_enough = is_certain && seen.shown(frame) >= ENOUGH;
-        let Seen { mut found, evidence, lead, is_predicted, .. } = seen;
+        let is_certain = self.fit(&seen) >= UNCERTAIN && seen.visible >= VISIBLE[0];
+        let shows_enough = is_certain && seen.shown_share(frame) >= ENOUGH;
+        let FramePose { mut found, evidence, lead, is_predicted, .. } = seen;
         let is_detected = lead.is_some();
         let search = &evidence.search;
         self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };
@@ -295,7 +319,6 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if let (Some(before), false) = (before, is_detected) {
             self.motion = Motion::between(&before, &pose);
         }
-        self.remember(pose, is_detected);
         let confidence = {
             let (conditioning, _) = search.conditioning(&found.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
@@ -303,7 +326,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
             sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
-        let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
+        let camera_from_mesh = pose.similarity(&self.tracked.pyramid.frame);
         let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };
         let measured = match observed {
             Some(observation) => {
@@ -312,6 +335,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             }
             None => None,
         };
+        self.remember(pose, is_detected);
         Ok(TrackedFrame {
             camera_from_mesh: (&camera_from_mesh).into(),
             frame: self.history.frames() - 1,
@@ -363,7 +387,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let pose = expected.unwrap_or(WorldPose { rotation: DQuat::IDENTITY, log_scale: 0.0, center: glam::DVec3::Z });
         self.remember(pose, false);
         TrackedFrame {
-            camera_from_mesh: (&pose.similarity(&self.sight.mesh.frame)).into(),
+            camera_from_mesh: (&pose.similarity(&self.tracked.pyramid.frame)).into(),
             frame: self.history.frames() - 1,
             state: self.state,
             confidence: 0.0,

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::joint::Joint;
-use super::known::{Ranked, Views};
+use super::view_set::{Ranked, ViewSet};
 use super::world_pose::WorldPose;
 use crate::geometry::rotations::exp;
 use crate::geometry::surface_colors::SurfaceColors;
@@ -13,7 +13,7 @@ use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::score::NOISE;
 use crate::precise::search::ranking::Found;
 use crate::precise::search::recipe::{COARSE, COLORED, FINE};
-use crate::precise::verdict::choice::{Choice, Look, best_roll};
+use crate::precise::verdict::choice::{Choice, ColorScore, best_roll};
 use crate::precise::verdict::color::{DIFFERENT, Judgment, LOOSE, are_rivals};
 use crate::precise::verdict::lookalikes::{Likeness, Lookalike, ROLLS, among};
 
@@ -23,7 +23,7 @@ const SURE_AGREEMENT: f64 = 0.99;
 /// The views and their photos.
 pub struct Photos<'a> {
     /// The views that are used.
-    pub views: Views<'a>,
+    pub views: ViewSet<'a>,
     /// The photo of each, on the fine grid of its search.
     pub photos: &'a [Option<PhotoCells>],
     /// The colours of the mesh.
@@ -36,7 +36,7 @@ struct Compared {
     /// The mean score of its shape.
     shape: f32,
     appearances: Vec<Option<Appearance>>,
-    look: Look,
+    look: ColorScore,
 }
 
 impl Photos<'_> {
@@ -54,7 +54,7 @@ impl Photos<'_> {
         let mut rough_joint = self.views.level(rough.grid);
         let first = self.compare(&mut joint, best, None)?;
         let shape = first.shape;
-        let look = Look::new(first.look.agreement, 0.0);
+        let look = ColorScore::new(first.look.agreement, 0.0);
         let mut compared = vec![Compared { look, ..first }];
         for Lookalike { mut pose, likeness } in alike {
             if likeness == Likeness::Rough {
@@ -122,7 +122,7 @@ impl Photos<'_> {
                 photo.as_ref()?.compare(joint.canvas(k), self.colors, &part.search.mesh.frame, part.search.grid(FINE))
             })
             .collect();
-        let look = Look::new(joint_agreement(&appearances)?, own - shape.unwrap_or(0.0));
+        let look = ColorScore::new(joint_agreement(&appearances)?, own - shape.unwrap_or(0.0));
         Some(Compared { ranked: Ranked { score, ..ranked.clone() }, shape: own, appearances, look })
     }
 

@@ -22,7 +22,7 @@ const DEPTH_ERROR_ALONE: f64 = 0.01;
 const DEPTH_SD: f64 = 0.5;
 /// Difference of the sizes beyond which the depths are not trusted alone, relative.
 const MAX_BIAS: f64 = 0.05;
-/// Standard deviation of the size from which a view says nothing, relative: its mean could be any number.
+/// Standard deviation of the size from which a view is no evidence, relative: its mean could be any number.
 const NOTHING: f64 = 1.0;
 /// Steps of the refinement on depths alone.
 const STEPS: usize = 10;
@@ -32,7 +32,7 @@ const CONTRADICTION: f64 = 0.3;
 const STEP: f64 = 0.0025;
 const MAX_STEPS: usize = 2000;
 
-/// What one pose in one view says about the size.
+/// The evidence of one pose in one view about the size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SizeEvidence {
     /// Logarithm of the most likely scale.
@@ -44,8 +44,8 @@ pub struct SizeEvidence {
 }
 
 impl SizeEvidence {
-    /// What one view, whose silhouette has this error, says near a pose, all other parameters free; `None` if it says
-    /// nothing.
+    /// The evidence of one view, whose silhouette has this error, near a pose, all other parameters free; `None` if there is
+    /// none.
     pub fn at(objective: Objective<'_>, pose: &CropPose, silhouette_error: f64) -> Option<Self> {
         let camera = PlacedCamera::AT_ORIGIN;
         let mut joint = Joint::new(vec![JointView { objective, camera, floor: 0.0 }], false);
@@ -53,7 +53,7 @@ impl SizeEvidence {
         Some(fused)
     }
 
-    /// What silhouettes and depths say together near a pose, each with the error that all of them have in common, and the
+    /// The evidence of silhouettes and depths together near a pose, each with the error that all of them have in common, and the
     /// pose on which the depths agree best alone.
     ///
     /// The size in the silhouettes is biased if the masks are too large or too small everywhere; the depths do not depend on
@@ -78,7 +78,7 @@ impl SizeEvidence {
         Some((Self { log_scale, sd, score: silhouettes.score }, moved))
     }
 
-    /// What the quadratic at a pose says, all other parameters free.
+    /// The evidence of the quadratic at a pose, all other parameters free.
     pub fn of(joint: &mut Joint<'_>, pose: &WorldPose) -> Option<Self> {
         let score = joint.score(pose);
         let equations = joint.equations(pose, &score);
@@ -113,9 +113,18 @@ pub fn mean(evidence: impl Iterator<Item = SizeEvidence> + Clone) -> Option<(f64
 }
 
 /// The common size of views with alternative poses: the one at which the sum of the best scores is largest, where a view
-/// that fits no common size adds a constant. Returns the logarithm of the scale, its standard deviation, and for each view
-/// the index of its pose, `None` if it contradicts.
-pub fn common_size(views: &[Vec<SizeEvidence>]) -> Option<(f64, f64, Vec<Option<usize>>)> {
+/// that fits no common size adds a constant. A `fixed` size needs no evidence. Returns the logarithm of the scale, its standard
+/// deviation, and for each view the index of its pose, `None` if it contradicts.
+pub fn common_size(views: &[Vec<SizeEvidence>], fixed: Option<f64>) -> Option<(f64, f64, Vec<Option<usize>>)> {
+    let size = fixed.or_else(|| most_likely(views))?;
+    let chosen: Vec<Option<usize>> = views.iter().map(|view| value(view, size).1).collect();
+    let agreeing = views.iter().zip(&chosen).filter_map(|(view, chosen)| chosen.map(|i| view[i]));
+    let (size, sd) = fixed.map(|size| (size, 0.0)).or_else(|| mean(agreeing))?;
+    Some((size, sd, chosen))
+}
+
+/// The size at which the sum of the best scores is largest.
+fn most_likely(views: &[Vec<SizeEvidence>]) -> Option<f64> {
     let sizes = || views.iter().flatten().map(|e| e.log_scale);
     let (low, high) = (sizes().reduce(f64::min)?, sizes().reduce(f64::max)?);
     let steps = (((high - low) / STEP) as usize).min(MAX_STEPS);
@@ -127,11 +136,7 @@ pub fn common_size(views: &[Vec<SizeEvidence>]) -> Option<(f64, f64, Vec<Option<
             best = Some((size, total));
         }
     }
-    let (size, _) = best?;
-    let chosen: Vec<Option<usize>> = views.iter().map(|view| value(view, size).1).collect();
-    let agreeing = views.iter().zip(&chosen).filter_map(|(view, chosen)| chosen.map(|i| view[i]));
-    let (size, sd) = mean(agreeing)?;
-    Some((size, sd, chosen))
+    best.map(|(size, _)| size)
 }
 
 /// The score of a view at a size, and the index of its best pose there unless the view contradicts it.

@@ -5,15 +5,14 @@ use std::rc::Rc;
 use super::View;
 use super::by_color::Photos;
 use super::joint::JointScore;
-use super::known::{Part, Ranked, Views};
 use super::predicted_mask::with_predicted_mask;
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
 use super::searched_view::SearchedView;
 use super::stretch::stretch;
 use super::summary::{Summary, SummaryView};
-use super::world_pose::{PlacedCamera, WorldPose};
+use super::view_set::{Part, Ranked, ViewSet};
+use super::world_pose::{OF_SCALE, PlacedCamera, WorldPose};
 use crate::error::Result;
-use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::similarity::Similarity;
 use crate::precise::drawing::pose::MeshFrame;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
@@ -21,7 +20,9 @@ use crate::precise::no_candidate;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::Proportions;
 use crate::precise::scoring::appearance::PhotoCells;
-use crate::precise::scoring::conditioning::{Conditioning, covariance, deviation, fix_roll, widest};
+use crate::precise::scoring::conditioning::{
+    Conditioning, Covariance, at_known, covariance, deviation, fix_roll, widest,
+};
 use crate::precise::scoring::score::Score;
 use crate::precise::search::problem::Search;
 use crate::precise::search::ranking::Found;
@@ -43,9 +44,9 @@ pub fn in_world(
     mesh: &PreparedMesh<'_>,
     freedom: Proportions,
 ) -> Result<Summary> {
-    let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
+    let cameras: Vec<PlacedCamera> = views.iter().map(View::camera).collect();
     let parts: Vec<Part<'_>> = searched.iter().map(SearchedView::part).collect();
-    let mut used = Views {
+    let mut used = ViewSet {
         lock_scale: parts.first().is_some_and(|part| part.search.settings.lock_scale),
         renders: parts.iter().map(|part| part.search.renders).sum(),
         parts: parts.clone(),
@@ -103,6 +104,7 @@ pub fn in_world(
 /// The best pose, and how far it can be trusted.
 struct Verdict {
     best: Ranked,
+    /// At its size, if that is fixed.
     conditioning: Option<Conditioning>,
     color: Option<Judgment>,
     /// In the camera of the first view.
@@ -111,7 +113,7 @@ struct Verdict {
 
 /// The verdict on the `ranked` poses. `size_sd` is the standard deviation of the size, where it does not follow from the score.
 fn verdict(
-    used: &mut Views<'_>,
+    used: &mut ViewSet<'_>,
     mut ranked: Vec<Ranked>,
     size_sd: Option<f64>,
     views: &[View],
@@ -119,19 +121,26 @@ fn verdict(
 ) -> Result<Verdict> {
     let first = *used.parts.first().ok_or_else(no_candidate)?;
     let mut joint = used.on_fine_grids();
+    let is_fixed = used.lock_scale;
     let mut conditioned = |best: &Ranked| {
         let score = joint.score(&best.pose);
         let mut equations = joint.equations(&best.pose, &score);
         let free_axis = first.search.equivalence.free_axis(best.pose.rotation);
         free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
-        let own = conditioning(&equations, &best.pose);
-        (score, own.map(|own| Conditioning { scale: size_sd.unwrap_or(own.scale), ..own }))
+        let covariance = covariance(&equations);
+        let free = covariance.map(|covariance| conditioning(&covariance, &best.pose));
+        let free = free.map(|own| Conditioning { scale: size_sd.unwrap_or(own.scale), ..own });
+        let fixed = covariance.filter(|_| is_fixed).map(|covariance| Conditioning {
+            scale: 0.0,
+            ..conditioning(&at_known(&covariance, &OF_SCALE), &best.pose)
+        });
+        (score, free, fixed.or(free))
     };
-    let (mut score, mut conditioning) = conditioned(ranked.first().ok_or_else(no_candidate)?);
-    let is_size_known = used.lock_scale || size_sd.is_some();
-    let judged = by_color(used, views, mesh, (&ranked, conditioning.as_ref()), is_size_known);
+    let (mut score, mut free, mut conditioning) = conditioned(ranked.first().ok_or_else(no_candidate)?);
+    let is_size_known = is_fixed || size_sd.is_some();
+    let judged = by_color(used, views, mesh, (&ranked, free.as_ref()), is_size_known);
     if let Some((_, Some(chosen))) = &judged {
-        (score, conditioning) = conditioned(chosen);
+        (score, free, conditioning) = conditioned(chosen);
         ranked.insert(0, chosen.clone());
     }
     let color = judged.map(|(judgment, _)| judgment);
@@ -140,14 +149,14 @@ fn verdict(
     if let Some(first) = found.first_mut() {
         first.score = mean_score(&score, best.score.total);
     }
-    let reliability = reliability(&found, color.as_ref(), conditioning.as_ref(), first.search)?;
+    let reliability = reliability(&found, color.as_ref(), free.as_ref(), first.search)?;
     Ok(Verdict { best: best.clone(), conditioning, color, reliability })
 }
 
 /// The result, with the role of each view and its score.
 fn summary(
     verdict: Verdict,
-    used: &Views<'_>,
+    used: &ViewSet<'_>,
     views: &[View],
     cameras: &[PlacedCamera],
     roles: Vec<ViewRole>,
@@ -182,7 +191,7 @@ fn summary(
             rotation_deg: own.rotation.0.to_degrees(),
             rotation_axis: own.rotation.1.to_array(),
             free_axis: first.search.equivalence.free_axis(best.pose.rotation).map(|axis| axis.to_array()),
-            position_m: own.lateral_m,
+            position_m: own.position_m,
         }),
         views: roles.into_iter().zip(shown).enumerate().map(of_view).collect(),
         score: f64::from(best.score.total),
@@ -192,9 +201,9 @@ fn summary(
     })
 }
 
-/// What colour says of the best pose; `None` without colours.
+/// The verdict of colour on the best pose; `None` without colours.
 fn by_color(
-    used: &mut Views<'_>,
+    used: &mut ViewSet<'_>,
     views: &[View],
     mesh: &PreparedMesh<'_>,
     (ranked, conditioning): (&[Ranked], Option<&Conditioning>),
@@ -204,14 +213,10 @@ fn by_color(
     let photo = |part: &Part<'_>| views[part.index].frame.photo.as_ref().map(|photo| cells(photo, part.search));
     let photos: Vec<Option<PhotoCells>> = used.parts.iter().map(photo).collect();
     photos.iter().flatten().next()?;
-    let mut photos = Photos { views: Views { lock_scale, ..used.clone() }, photos: &photos, colors };
+    let mut photos = Photos { views: ViewSet { lock_scale, ..used.clone() }, photos: &photos, colors };
     let judged = photos.judge(ranked, conditioning);
     used.renders = photos.views.renders;
     judged
-}
-
-fn camera(view: &View) -> PlacedCamera {
-    view.world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
 }
 
 /// The evidence of the views without a mask, where the pose predicts one with enough readings.
@@ -241,11 +246,15 @@ fn unmasked_part<'a>(index: usize, search: &'a Search, cameras: &[PlacedCamera])
 }
 
 /// The conditioning of a world pose; its positions are those of the centre of the mesh along the least determined axis.
-fn conditioning(equations: &NormalEquations, pose: &WorldPose) -> Option<Conditioning> {
-    let covariance = covariance(equations)?;
-    let rotation = widest(&covariance, 0);
-    let position_m = libm::exp(pose.log_scale) * widest(&covariance, 4).0;
-    Some(Conditioning { scale: deviation(covariance[3][3]), rotation, lateral_m: position_m, distance_m: position_m })
+fn conditioning(covariance: &Covariance, pose: &WorldPose) -> Conditioning {
+    let position_m = libm::exp(pose.log_scale) * widest(covariance, 4).0;
+    Conditioning {
+        scale: deviation(covariance[3][3]),
+        rotation: widest(covariance, 0),
+        lateral_m: position_m,
+        distance_m: position_m,
+        position_m,
+    }
 }
 
 /// The means of the terms over all views, and the total of all.

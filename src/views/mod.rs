@@ -5,7 +5,6 @@ pub mod by_color;
 pub mod common_size;
 mod in_world;
 pub mod joint;
-pub mod known;
 pub mod options;
 pub mod predicted_mask;
 pub mod report;
@@ -14,6 +13,7 @@ pub mod searched_view;
 mod stretch;
 mod summary;
 mod unrelated;
+pub mod view_set;
 pub mod world_pose;
 
 use core::borrow::Borrow;
@@ -29,6 +29,7 @@ use crate::progress::Host;
 use options::ViewsOptions;
 use report::ViewsAlignment;
 use request::Request;
+use world_pose::PlacedCamera;
 
 /// Maximum number of views.
 pub const MAX_VIEWS: usize = 64;
@@ -40,6 +41,13 @@ pub struct View {
     pub frame: Frame,
     /// World from camera, of scale 1.
     pub world_from_camera: Option<Similarity>,
+}
+
+impl View {
+    /// The camera in the world; without a pose, that of the world itself.
+    fn camera(&self) -> PlacedCamera {
+        self.world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
+    }
 }
 
 /// Aligns a mesh with several views of the object.

@@ -8,7 +8,7 @@ use crate::progress::Timings;
 use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Sim3, Stretch, Warning};
 
 choices! {
-    /// What the world of a result is.
+    /// The world of a result.
     pub enum WorldFrame {
         /// That of the given camera poses.
         #[default]
@@ -19,14 +19,15 @@ choices! {
 }
 
 choices! {
-    /// What a view contributed to the result.
+    /// The part of a view in the result.
     pub enum ViewRole {
         /// Its evidence counts.
         #[default]
         Used = "used",
         /// Its evidence contradicts that of the others, and does not count.
         Contradicting = "contradicting",
-        /// It shows nothing of the object: too few readings where the object should be.
+        /// It shows nothing of the object: its mask cannot be used, or has too few readings, or there are too few where the
+        /// object should be. Without given camera poses, the pose in it is unknown: it has a confidence of 0.
         Blind = "blind",
     }
 }
@@ -74,7 +75,7 @@ pub struct ViewPose {
     pub camera_from_mesh: Sim3,
     /// Probability that this pose is right; see `Alignment.confidence`.
     pub confidence: f64,
-    /// What the view contributed.
+    /// The part of the view in the result.
     pub role: ViewRole,
     /// The pose of its camera.
     pub camera: CameraPose,
@@ -123,7 +124,7 @@ pub struct ViewsAlignment {
     /// The transform.
     #[serde(flatten)]
     pub world_from_mesh: Sim3,
-    /// What the world is.
+    /// The world.
     pub world: WorldFrame,
     /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
     /// of the diameter). Without given camera poses, that of the least certain view.

@@ -6,7 +6,6 @@ use super::report::ViewsAlignment;
 use super::searched_view::SearchedView;
 use super::summary::Summary;
 use super::unrelated::unrelated;
-use super::world_pose::PlacedCamera;
 use super::{MAX_VIEWS, View, no_mask};
 use crate::align::search;
 use crate::error::{Error, ErrorCode, Result};
@@ -15,19 +14,22 @@ use crate::options::Options;
 use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::search::efforts;
-use crate::precise::search::shown::shown;
+use crate::precise::search::plate::without_invented_plate;
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Progress at the start of each stage, 0 to 1.
 const PLAN: &[(Stage, f64)] =
     &[(Stage::Prepare, 0.0), (Stage::Search, 0.05), (Stage::Refine, 0.7), (Stage::Metrics, 0.9)];
 
-/// Views of an object, checked, and what is asked for.
+/// Views of an object, checked, and the options.
 pub struct Request {
     views: Vec<View>,
+    /// `None` for a view without a mask, or with an unusable one.
     observations: Vec<Option<Observation>>,
+    /// The errors of unusable masks.
+    unusable: Vec<Error>,
     options: ViewsOptions,
-    is_known: bool,
+    has_cameras: bool,
 }
 
 impl Request {
@@ -35,8 +37,8 @@ impl Request {
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`]; [`ErrorCode::InvalidArgument`] for no view or too many, for camera poses of some views
-    /// only, and where masks are missing; and those of [`Frame::check`](crate::evidence::frame::Frame::check) and
-    /// [`Observation::new`], whose argument names the view.
+    /// only, and where masks are missing; and, with the view in their argument, those of
+    /// [`Frame::check`](crate::evidence::frame::Frame::check), and of [`Observation::new`] if no view is usable.
     pub fn new(views: Vec<View>, options: ViewsOptions) -> Result<Self> {
         options.validate()?;
         if views.is_empty() || views.len() > MAX_VIEWS {
@@ -51,31 +53,31 @@ impl Request {
                 "Leave out the views whose camera pose is unknown, or all camera poses.",
             ));
         }
-        let is_known = known > 0;
+        let has_cameras = known > 0;
         let masked = views.iter().filter(|view| view.frame.mask.is_some()).count();
-        if masked == 0 || (!is_known && masked != views.len()) {
+        if masked == 0 || (!has_cameras && masked != views.len()) {
             return Err(no_mask());
         }
-        let observe = |(k, view): (usize, &View)| {
-            view.frame.check().and_then(|()| view.frame.observation()).map_err(|error| {
-                let argument = format!("views[{k}].{}", error.argument);
-                error.about(argument)
-            })
-        };
-        let observations = views.iter().enumerate().map(observe).collect::<Result<Vec<_>>>()?;
-        Ok(Self { views, observations, options, is_known })
+        let (mut observations, mut unusable) = (Vec::new(), Vec::new());
+        for (index, view) in views.iter().enumerate() {
+            view.frame.check().map_err(|error| error.in_view(index))?;
+            observations.push(view.frame.observation().unwrap_or_else(|error| {
+                unusable.push(error.in_view(index));
+                None
+            }));
+        }
+        if observations.iter().all(Option::is_none) {
+            return Err(unusable.into_iter().next().unwrap_or_else(no_mask));
+        }
+        Ok(Self { views, observations, unusable, options, has_cameras })
     }
 
-    /// What the search in each view is asked for, and its observation.
+    /// The options of the search in each view, and the observations.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`].
     pub fn of_each_view(self) -> Result<(search::Request, Vec<Option<Observation>>)> {
         Ok((search::Request::new(self.options.of_one_view())?, self.observations))
-    }
-
-    fn camera(&self, index: usize) -> PlacedCamera {
-        self.views[index].world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
     }
 
     /// Searches in every view with a mask, and combines what they have found, with increasing effort until that is sure.
@@ -93,28 +95,42 @@ impl Request {
             mesh.check()?;
             let options = self.options.of_one_view();
             let efforts = efforts::of(&options);
-            let mesh = match self.observations.iter().flatten().next().zip(efforts.first()) {
-                Some((view, settings)) => shown(view, mesh, &options, settings, pauses).await?,
+            let observed = self.observations.iter().flatten();
+            let mesh = match efforts.first() {
+                Some(first) => without_invented_plate(observed.clone(), mesh, &options, first, pauses).await,
                 None => mesh,
             };
             let mut searched: Vec<SearchedView> = Vec::new();
+            let mut unusable = Vec::new();
             let mut summary = Err(no_mask());
             for (effort, settings) in efforts.iter().enumerate() {
                 let share = efforts::share(effort, efforts.len());
                 let before = core::mem::take(&mut searched);
-                if settings.is_long(self.observations.iter().flatten().count()) && mesh.has_one_form() {
+                unusable.clone_from(&self.unusable);
+                if settings.is_long(observed.clone().count()) && mesh.has_one_form() {
                     pauses.ask_for_help().await;
                 }
                 for (index, observation) in self.observations.iter().enumerate() {
                     let Some(observation) = observation else { continue };
-                    let (place, previous) = ((index, self.camera(index)), before.get(searched.len()));
-                    let mut view =
-                        SearchedView::begin(place, observation, mesh, (&options, settings), previous, &mut stages)?;
+                    let (place, previous) =
+                        ((index, self.views[index].camera()), before.iter().find(|v| v.index == index));
+                    let begun =
+                        SearchedView::begin(place, observation, mesh, (&options, settings), previous, &mut stages);
+                    let mut view = match begun {
+                        Err(error) if error.code == ErrorCode::DegenerateMask => {
+                            unusable.push(error.in_view(index));
+                            continue;
+                        }
+                        begun => begun?,
+                    };
                     pauses.here().await;
                     view.run(pauses).await;
                     searched.push(view);
                     let done = searched.len() as f64 / self.views.len() as f64;
                     stages.reach(share.start + (share.end - share.start) * 0.8 * done, None);
+                }
+                if searched.is_empty() {
+                    return Err(unusable.into_iter().next().unwrap_or_else(no_mask));
                 }
                 stages.enter(Stage::Refine);
                 summary = self.combined(&mut searched, mesh, pauses).await;
@@ -124,7 +140,7 @@ impl Request {
                 }
             }
             stages.enter(Stage::Metrics);
-            summary?.report(mesh, &self.observations, &self.options, stages)
+            summary?.report(mesh, &self.observations, &unusable, &self.options, stages)
         })
     }
 
@@ -135,14 +151,14 @@ impl Request {
         mesh: &PreparedMesh<'_>,
         pauses: &Pauses,
     ) -> Result<Summary> {
-        if self.is_known {
+        if self.has_cameras {
             return in_world(searched, &self.views, mesh, self.options.proportions);
         }
         for view in searched.iter_mut() {
             let photo = self.views[view.index].frame.photo.as_deref();
             view.judge_colors(photo, mesh.colors(), pauses).await;
         }
-        unrelated(searched)
+        unrelated(searched, self.views.len())
     }
 }
 

@@ -1,6 +1,6 @@
 //! The search in one view, whose poses are hypotheses for all.
 
-use super::known::Part;
+use super::view_set::Part;
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
@@ -10,8 +10,6 @@ use crate::pauses::Pauses;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
 use crate::precise::search::recipe::{SearchSettings, Task};
 use crate::precise::search::rounds::Rounds;
 use crate::precise::search::start;
@@ -28,7 +26,7 @@ pub struct SearchedView {
     pub rounds: Rounds,
     /// Distinct poses after the first refinement: more than the ranking keeps.
     pub candidates: Vec<CropPose>,
-    /// What colour says about its poses, once it has been asked.
+    /// The verdict of colour on its poses, after [`Self::judge_colors`].
     pub color: Option<Judgment>,
 }
 
@@ -73,28 +71,13 @@ impl SearchedView {
 
     /// The view as one of several.
     pub fn part(&self) -> Part<'_> {
-        let own = self.found().first().map(|found| found.pose);
-        Part { index: self.index, search: self.search(), camera: self.camera, own }
+        let own = self.rounds.found.first().map(|found| found.pose);
+        Part { index: self.index, search: &self.rounds.search, camera: self.camera, own }
     }
 
     /// The poses in the world that the search has found or refined once.
     pub fn hypotheses(&self) -> impl Iterator<Item = WorldPose> {
-        let poses = self.found().iter().map(|found| found.pose).chain(self.candidates.iter().copied());
+        let poses = self.rounds.found.iter().map(|found| found.pose).chain(self.candidates.iter().copied());
         poses.map(|pose| self.camera.place(&pose))
-    }
-
-    /// The poses that the search has found, best first.
-    pub fn found(&self) -> &[Found] {
-        &self.rounds.found
-    }
-
-    /// The view's own best score.
-    pub fn best(&self) -> f32 {
-        self.found().first().map_or(0.0, |best| best.score.total)
-    }
-
-    /// The search.
-    pub fn search(&self) -> &Search {
-        &self.rounds.search
     }
 }

@@ -1,8 +1,8 @@
 //! The proportions of a mesh that several views show together: one stretch for all of them, where their cameras are known.
 
 use super::joint::{Joint, JointScore};
-use super::known::Views;
-use super::world_pose::WorldPose;
+use super::view_set::ViewSet;
+use super::world_pose::{OF_SCALE, WorldPose};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::precise::drawing::pose::Step;
@@ -19,9 +19,9 @@ use crate::precise::verdict::stretch::{
 use crate::report::Stretch;
 
 /// The best proportions near a pose in the world; `None` if they are not asked for, or the size of the mesh is given.
-pub fn stretch(views: &Views<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedom) -> Option<Stretch> {
+pub fn stretch(views: &ViewSet<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedom) -> Option<Stretch> {
     let search = views.parts.first()?.search;
-    if freedom == Freedom::Keep || views.lock_scale || search.prior.scale.is_some_and(|[a, b]| a == b) {
+    if freedom == Freedom::Keep || views.lock_scale {
         return None;
     }
     let shapes = shapes(&search.equivalence, freedom);
@@ -34,12 +34,10 @@ pub fn stretch(views: &Views<'_>, mesh: &Mesh, pose: &WorldPose, freedom: Freedo
         let score = problem.score(&at);
         let mut equations = problem.equations(&at, &score);
         search.equivalence.free_axis(at.pose.rotation).into_iter().for_each(|axis| fix_roll(&mut equations, axis));
-        let mut of_scale = [0.0; PARAMETERS];
-        of_scale[3] = 1.0;
-        uncertainty = deviations_of_lengths(&equations, &of_scale, &shapes)?;
+        uncertainty = deviations_of_lengths(&equations, &OF_SCALE, &shapes)?;
         if grid == FINEST {
             let growth = at.pose.log_scale - pose.log_scale;
-            let (kept, proportions) = significant(&equations, &of_scale, &shapes, (growth, &at.proportions))?;
+            let (kept, proportions) = significant(&equations, &OF_SCALE, &shapes, (growth, &at.proportions))?;
             let log_scale = at.pose.log_scale + kept - growth;
             let start = StretchedInWorld { pose: WorldPose { log_scale, ..at.pose }, proportions };
             problem.joint.lock_scale = true;

@@ -1,9 +1,9 @@
-//! What an alignment of several views has found, before its metrics.
+//! The result of an alignment of several views, before its metrics.
 
 use super::options::ViewsOptions;
 use super::report::{CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty};
 use crate::align::warnings;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::evidence::observation::Observation;
 use crate::evidence::sample::Sampling;
 use crate::geometry::similarity::Similarity;
@@ -18,11 +18,11 @@ use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Stretch, Warni
 pub struct Summary {
     /// The pose in the world.
     pub world_from_mesh: Similarity,
-    /// What the world is.
+    /// The world.
     pub world: WorldFrame,
     /// See [`ViewsAlignment`].
     pub confidence: f64,
-    /// Whether more effort would not change what shape says.
+    /// Whether more effort would not change the verdict of shape.
     pub is_sure: bool,
     /// See [`ViewsAlignment`].
     pub alternatives: Vec<Alternative>,
@@ -48,7 +48,7 @@ pub struct SummaryView {
     pub camera_from_mesh: Similarity,
     /// See [`ViewPose`].
     pub confidence: f64,
-    /// What the view contributed.
+    /// The part of the view in the result.
     pub role: ViewRole,
     /// The camera.
     pub world_from_camera: Similarity,
@@ -63,7 +63,8 @@ pub struct SummaryView {
 }
 
 impl Summary {
-    /// The result, with the metrics of each view that has a mask, if they are wanted.
+    /// The result, with the metrics of each view that has a mask, if they are wanted. `unusable` are the errors of the views whose
+    /// masks cannot be used.
     ///
     /// # Errors
     /// As [`metrics::evaluate`].
@@ -71,6 +72,7 @@ impl Summary {
         &self,
         mesh: &PreparedMesh<'_>,
         observations: &[Option<Observation>],
+        unusable: &[Error],
         options: &ViewsOptions,
         stages: Stopwatch<'_>,
     ) -> Result<ViewsAlignment> {
@@ -119,7 +121,7 @@ impl Summary {
             uncertainty: self.uncertainty,
             proportions: self.proportions.clone(),
             views,
-            warnings: self.warnings(mesh),
+            warnings: self.warnings(mesh, unusable),
             diagnostics: ViewsDiagnostics {
                 seed: options.seed,
                 effort: self.effort,
@@ -132,7 +134,7 @@ impl Summary {
     }
 
     /// Warnings about the views as a whole.
-    fn warnings(&self, mesh: &PreparedMesh<'_>) -> Vec<Warning> {
+    fn warnings(&self, mesh: &PreparedMesh<'_>, unusable: &[Error]) -> Vec<Warning> {
         let of = |role| {
             let views = self.views.iter().enumerate().filter(move |(_, view)| view.role == role);
             let names: Vec<String> = views.map(|(k, _)| k.to_string()).collect();
@@ -150,13 +152,12 @@ impl Summary {
             });
         }
         if !blind.is_empty() {
-            warnings.push(Warning {
-                code: WarningCode::ViewShowsNothing,
-                message: format!(
-                    "Views {} have too few readings where the object should be, and do not count.",
-                    blind.join(", ")
-                ),
-            });
+            let mut message = format!(
+                "Views {} have too few readings where the object should be, and do not count.",
+                blind.join(", ")
+            );
+            unusable.iter().for_each(|error| message += &format!(" {error}"));
+            warnings.push(Warning { code: WarningCode::ViewShowsNothing, message });
         }
         warnings
     }

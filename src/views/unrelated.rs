@@ -9,6 +9,7 @@ use crate::geometry::similarity::Similarity;
 use crate::precise::no_candidate;
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::objective::Objective;
+use crate::precise::scoring::score::Score;
 use crate::precise::search::problem::Search;
 use crate::precise::search::ranking::Found;
 use crate::precise::search::recipe::{COMMON_SIZE, FINE, SURE};
@@ -44,12 +45,13 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
         .iter()
         .zip(&likely)
         .map(|(view, found)| {
-            let objective = fine(view.search());
+            let objective = fine(&view.rounds.search);
             renders += found.len();
             found.iter().filter_map(|found| SizeEvidence::at(objective, &found.pose, SILHOUETTE_ERROR)).collect()
         })
         .collect();
-    let (mut size, mut sd, chosen) = common_size(&evidence)?;
+    let fixed = searched.first()?.rounds.search.prior.fixed_scale().map(libm::log);
+    let (mut size, mut sd, chosen) = common_size(&evidence, fixed)?;
     let agrees: Vec<bool> = chosen.iter().map(Option::is_some).collect();
     let mut poses: Vec<Found> = Vec::new();
     for round in 0..ROUNDS {
@@ -62,7 +64,7 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
                 let refined = tried.into_iter().map(|found| {
                     let own = found.pose.size + found.pose.distance;
                     let at = if agrees[k] { size } else { own };
-                    let refined = refine_at(view.search().objective(rank.grid), found.pose, at, rank.steps);
+                    let refined = refine_at(view.rounds.search.objective(rank.grid), found.pose, at, rank.steps);
                     renders += refined.renders;
                     refined
                 });
@@ -71,13 +73,15 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
             .collect::<Option<Vec<_>>>()?;
         let evidence = searched.iter().zip(&poses).zip(&agrees).filter(|(_, agrees)| **agrees);
         let evidence: Vec<SizeEvidence> = evidence
-            .filter_map(|((view, found), _)| SizeEvidence::at(fine(view.search()), &found.pose, SILHOUETTE_ERROR))
+            .filter_map(|((view, found), _)| SizeEvidence::at(fine(&view.rounds.search), &found.pose, SILHOUETTE_ERROR))
             .collect();
-        (size, sd) = mean(evidence.iter().copied()).unwrap_or((size, sd));
+        if fixed.is_none() {
+            (size, sd) = mean(evidence.iter().copied()).unwrap_or((size, sd));
+        }
     }
     let views = searched.iter().zip(poses).zip(agrees).map(|((view, found), agrees)| {
         let own = found.pose.size + found.pose.distance;
-        let search = view.search();
+        let search = &view.rounds.search;
         let refined =
             refine_at(search.objective(polish.grid), found.pose, if agrees { size } else { own }, polish.steps);
         renders += refined.renders;
@@ -88,26 +92,27 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     Some(CommonSize { sd, views, renders })
 }
 
-/// The result of views without camera poses. Its world is the camera of the first view that agrees with the size.
+/// The result of `count` views without camera poses. Its world is the camera of the first view that agrees with the size. A view
+/// that was not searched has the pose of that view, without confidence.
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no view has a pose.
-pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
+pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
     let common = with_common_size(searched).ok_or_else(no_candidate)?;
-    let effort = searched.first().map_or_else(Default::default, |view| view.search().settings.effort);
+    let effort = searched.first().map_or_else(Default::default, |view| view.rounds.search.settings.effort);
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
     let mut views: Vec<SummaryView> = Vec::new();
     let mut conditioned: Vec<Option<Conditioning>> = Vec::new();
     let mut least: f64 = 1.0;
     for (view, (found, agrees)) in searched.iter().zip(&common.views) {
-        let search = view.search();
+        let search = &view.rounds.search;
+        let is_fixed = search.settings.lock_scale;
         // The size is as certain as all views together make it.
-        let conditioning = search
-            .conditioning(&found.pose)
-            .0
-            .map(|own| Conditioning { scale: if *agrees { common.sd } else { own.scale }, ..own });
+        let of_all = |own: Conditioning| Conditioning { scale: common.sd, ..own };
+        let own = search.conditioning(&found.pose).0;
+        let conditioning = if *agrees && !is_fixed { own.map(of_all) } else { own };
         // All are scored with the mesh as it is, at the common size or their own.
-        let others = view.found().get(1..).unwrap_or_default();
+        let others = view.rounds.found.get(1..).unwrap_or_default();
         let likely = others.get(..RIVALS).unwrap_or(others);
         let lead = lead(&search.equivalence, found, likely, |other| search.score(&other.pose).total);
         let color = view.color.as_ref();
@@ -127,7 +132,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             score: found.score,
             color: color.map(|color| color.report),
         });
-        conditioned.push(conditioning);
+        conditioned.push(if is_fixed { search.conditioning_as_fixed(&found.pose) } else { conditioning });
     }
     let world_from_mesh = views[first].camera_from_mesh;
     for (k, view) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
@@ -138,7 +143,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             Some((a * a + b * b).sqrt())
         };
         let turn = sd(|own| own.rotation.0);
-        let moved = sd(|own| own.lateral_m.max(own.distance_m));
+        let moved = sd(|own| own.position_m);
         view.rotation_sd_deg = turn.map(f64::to_degrees);
         view.position_sd_m = turn.zip(moved).map(|(turn, moved)| {
             // The camera swings about the object as far as the rotation of the object is uncertain.
@@ -148,14 +153,28 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     }
     let used = || views.iter().filter(|view| view.role == ViewRole::Used);
     let confidence = used().map(|view| view.confidence).fold(1.0, f64::min);
-    let free_axis = searched[first].search().equivalence.free_axis(common.views[first].0.pose.rotation);
+    let score = used().map(|view| f64::from(view.score.total)).sum();
+    let mut all: Vec<SummaryView> = (0..count)
+        .map(|_| SummaryView {
+            camera_from_mesh: world_from_mesh,
+            confidence: 0.0,
+            role: ViewRole::Blind,
+            world_from_camera: Similarity::identity(),
+            rotation_sd_deg: None,
+            position_sd_m: None,
+            score: Score::default(),
+            color: None,
+        })
+        .collect();
+    let free_axis = searched[first].rounds.search.equivalence.free_axis(common.views[first].0.pose.rotation);
     let uncertainty = conditioned[first].map(|own| WorldUncertainty {
         scale: common.sd,
         rotation_deg: own.rotation.0.to_degrees(),
         rotation_axis: own.rotation.1.to_array(),
         free_axis: free_axis.map(|axis| axis.to_array()),
-        position_m: own.lateral_m.max(own.distance_m),
+        position_m: own.position_m,
     });
+    searched.iter().zip(views).for_each(|(view, found)| all[view.index] = found);
     Ok(Summary {
         world_from_mesh,
         world: WorldFrame::Camera,
@@ -164,18 +183,18 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
         alternatives: Vec::new(),
         proportions: None,
         uncertainty,
-        score: used().map(|view| f64::from(view.score.total)).sum(),
+        score,
         converged: common.views.iter().all(|(found, _)| found.converged),
-        renders: common.renders + searched.iter().map(|view| view.search().renders).sum::<usize>(),
+        renders: common.renders + searched.iter().map(|view| view.rounds.search.renders).sum::<usize>(),
         effort,
-        views,
+        views: all,
     })
 }
 
-/// The poses of a view that may be right: the one that colour says is, or all that shape allows.
+/// The poses of a view that may be right: the one that colour chooses, or all that shape allows.
 fn likely(view: &SearchedView) -> Vec<Found> {
-    let found = view.found();
-    let best = view.best();
+    let found = &view.rounds.found;
+    let best = found.first().map_or(0.0, |best| best.score.total);
     let tried = if view.color.as_ref().is_some_and(|color| color.is_used) { 1 } else { TRIED };
     found.iter().filter(|f| f.score.total > best - NEAR).take(tried).copied().collect()
 }

@@ -20,6 +20,9 @@ pub struct WorldPose {
     pub center: DVec3,
 }
 
+/// The change of the logarithm of the scale with each component of a step.
+pub const OF_SCALE: Step = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0];
+
 impl WorldPose {
     /// The pose after a step: a rotation vector (world frame, radians), a change of the logarithm of the scale, and a
     /// translation of the centre in units of the scale.

@@ -1,8 +1,7 @@
 //! Calls with drawn inputs, and what their answers have to fulfil.
 
-use sim3align::align::align_by_method;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate as evaluate_pose};
-use sim3align::align::method::Method;
+use sim3align::align::{align as align_one, align_paper};
 use sim3align::error::{Error, ErrorCode};
 use sim3align::geometry::depth_kind::DepthKind;
 use sim3align::geometry::similarity::Similarity;
@@ -13,7 +12,7 @@ use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::progress::Silent;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::report::Registration;
-use sim3align::report::{AnyAlignment, Sim3};
+use sim3align::report::Sim3;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::tracker::Tracker;
 use sim3align::views::options::ViewsOptions;
@@ -110,21 +109,21 @@ pub fn align_large(e: &mut Entropy<'_>) -> Checked {
 }
 
 fn aligned(e: &mut Entropy<'_>, is_large: bool, most: usize) -> Checked {
-    let method: Method = if e.once_in(8) {
-        options::<PaperOptions>(e, 5_000).into()
-    } else {
-        let mut chosen: AlignOptions = options(e, 20_000);
-        if !e.once_in(8) {
-            chosen.quality.set("fast");
-            chosen.work_budget = Some(2.0 * e.size(1, 16) as f64);
-        }
-        chosen.into()
-    };
+    if e.once_in(8) {
+        let chosen: PaperOptions = options(e, 5_000);
+        let (observation, mesh) = (observation(e, is_large), mesh(e, most));
+        let answer = observation.and_then(|seen| align_paper(&seen, &mesh?, &chosen, &mut Silent));
+        return check(answer, |found| pose(&found.camera_from_mesh));
+    }
+    let mut chosen: AlignOptions = options(e, 20_000);
+    if !e.once_in(8) {
+        chosen.quality.set("fast");
+        chosen.work_budget = Some(2.0 * e.size(1, 16) as f64);
+    }
     let (observation, mesh) = (observation(e, is_large), mesh(e, most));
-    let answer = observation.and_then(|seen| align_by_method(&seen, &mesh?, &method, &mut Silent));
-    check(answer, |found| {
-        pose(found.camera_from_mesh())?;
-        let AnyAlignment::Precise(alignment) = found else { return Ok(()) };
+    let answer = observation.and_then(|seen| align_one(&seen, &mesh?, &chosen, &mut Silent));
+    check(answer, |alignment| {
+        pose(&alignment.camera_from_mesh)?;
         share("confidence", alignment.confidence)?;
         finite("score", &[alignment.diagnostics.score])?;
         alignment.alternatives.iter().try_for_each(|other| pose(&other.camera_from_mesh))?;

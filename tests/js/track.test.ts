@@ -103,6 +103,18 @@ for (const [i, aligner] of aligners.entries()) {
   });
 }
 
+test("a frame leaves the thread to others, and ends when its tracker is closed", async () => {
+  const tracker = await here.track(mesh, { quality: "best" });
+  let isOver = false;
+  const first = tracker.next(frames[0]).finally(() => {
+    isOver = true;
+  });
+  await new Promise((resolve) => setTimeout(resolve));
+  assert.ok(!isOver, "a timer is called before the frame has ended");
+  tracker.close();
+  await rejectsWith(() => first, "DISPOSED aligner");
+});
+
 test("an aligner closes its trackers, and a wrong signal starts no worker", async () => {
   const other = await createAligner();
   const open = await other.track(mesh);

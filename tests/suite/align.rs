@@ -39,7 +39,11 @@ fn finds_the_pose_and_the_size() {
     let (residual, terms) = (result.diagnostics.common.residual_m, result.diagnostics.terms);
     assert!(residual > 0.0 && residual < 2e-3, "{residual}");
     assert!(terms.overlap > 0.95 && terms.depth > 0.8 && terms.outline > 0.9, "{terms:?}");
-    assert!(result.uncertainty.unwrap().scale > 0.0 && result.uncertainty.unwrap().scale < 0.05);
+    let free = result.uncertainty.unwrap();
+    assert!(free.scale > 0.0 && free.scale < 0.05);
+    let fixed = AlignOptions { scale: ScaleOption::Fixed(truth().scale), ..quick() };
+    let fixed = solve(&fixed).uncertainty.unwrap();
+    assert!(fixed.scale == 0.0 && fixed.distance_m < free.distance_m, "{fixed:?}, free {free:?}");
     // A mesh that does not fit.
     let other = align(&observe(&body(), &truth()), &cuboid(Vec3::new(0.2, 0.3, 1.4)), &quick(), &mut Silent).unwrap();
     assert!(result.confidence > 0.8 && other.confidence < 0.5, "{}, {}", result.confidence, other.confidence);

@@ -206,7 +206,11 @@ fn views_and_calibrations_that_can_not_be_are_refused() {
         (|views| views[1].world_from_camera = None, InvalidArgument, "views"),
         (|views| views.iter_mut().for_each(|view| view.frame.mask = None), InvalidArgument, "views"),
         (|views| views[1].frame.camera.fx = 1e-3, InvalidCamera, "views[1].camera"),
-        (|views| views[1].frame.mask.iter_mut().for_each(|mask| mask.data_mut().fill(0)), EmptyMask, "views[1].mask"),
+        (
+            |views| views.iter_mut().for_each(|view| view.frame.depth.data_mut().fill(0.0)),
+            NoDepthInMask,
+            "views[0].depth",
+        ),
         (|views| views[1].frame.photo = Some(Arc::new(Photo::filled(30, 90, [9; 3]))), SizeMismatch, "views[1].image"),
         (
             |views| {

@@ -7,9 +7,11 @@ use sim3align::precise::drawing::surplus::Trimmed;
 use sim3align::precise::options::Proportions as Freedom;
 use sim3align::precise::search::proportions::Proportions;
 use sim3align::report::Stretch;
+use sim3align::views::align_views;
 
-use crate::observations::{body, observe, quick, truth};
+use crate::observations::{body, observe, quick, truth, views};
 use crate::prelude::*;
+use crate::views::options;
 
 fn proportions(draw: &mut Draw, most: f64) -> Proportions {
     Proportions::new(core::array::from_fn(|_| draw.between(-most, most)))
@@ -118,4 +120,16 @@ fn the_alignment_is_that_of_the_object_and_the_warning_says_what_is_left_out() {
     let of = |mesh: &Mesh| evaluate(&observation, mesh, &truth(), &EvaluateOptions::default()).unwrap();
     assert_eq!(of(&floating).metrics, of(&object).metrics);
     assert_eq!(of(&floating).warnings[0].code, WarningCode::MeshPartsLeftOut);
+}
+
+#[wasm_bindgen_test]
+fn all_views_decide_on_a_plate() {
+    let object = body();
+    let low = Bounds::of(object.positions()).unwrap().min.z;
+    let whole = joined(&object, &plate([1.6, 1.5, 0.02], low + 0.005));
+    // The mask of the first view contains a mat; the others do not.
+    let mut seen = views(&object, &[0.0, 1.3, 4.0]);
+    seen[0].frame = views(&whole, &[0.0]).remove(0).frame;
+    let found = align_views(seen, &PreparedMesh::borrowed(&whole), &options(), &mut Silent).unwrap();
+    assert!(codes(&found.warnings).contains(&WarningCode::MeshPartsLeftOut), "{:?}", found.warnings);
 }

@@ -99,6 +99,7 @@ fn equals_ray_casting() {
             translation: Vector3::new(number(-0.5, 0.5), number(-0.5, 0.5), number(-1.0, 4.0)),
         };
         rasteriser.render(&mesh, &pose, &camera, WIDTH, HEIGHT);
+        let (window, spans) = Rasteriser::new().render_spans(&mesh, &pose, &camera, [WIDTH, HEIGHT]);
 
         let posed = |p: &Vec3| {
             let p = pose.apply(Vector3::new(p.x.into(), p.y.into(), p.z.into()));
@@ -117,10 +118,14 @@ fn equals_ray_casting() {
             }
             compared += 1;
             let context = format!("seed {seed}, pixel ({u}, {v}): depth {z}, triangle {id}, hits {:?}", ray.hits);
-            let Some(&(expected, first)) = ray.hits.first() else {
-                assert_eq!(id, NO_TRIANGLE, "{context}");
+            let [column, row] = [u.wrapping_sub(window.first[0]), v.wrapping_sub(window.first[1])];
+            let is_inside = column < window.size[0] && row < window.size[1];
+            let span = if is_inside { spans[row * window.size[0] + column].map(f64::from) } else { [0.0; 2] };
+            let (Some(&(expected, first)), Some((farthest, _))) = (ray.hits.first(), ray.hits.last()) else {
+                assert!(id == NO_TRIANGLE && span == [0.0; 2], "{context}, span {span:?}");
                 continue;
             };
+            assert!(span[0] == z && (span[1] / farthest - 1.0).abs() < 1e-5, "{context}, span {span:?}");
             covered += 1;
             assert!((z / expected - 1.0).abs() < 1e-5, "{context}");
             let as_near = ray.hits.iter().take_while(|(z, _)| *z < expected * (1.0 + 1e-6));

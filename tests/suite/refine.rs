@@ -3,6 +3,7 @@
 use nalgebra::{SMatrix, SVector};
 use sim3align::geometry::normal_equations::NormalEquations;
 use sim3align::precise::drawing::equivalence::Equivalence;
+use sim3align::precise::scoring::conditioning::{Conditioning, at_known, gradient_of_scale};
 use sim3align::precise::scoring::objective::Objective;
 use sim3align::precise::scoring::prior::Prior;
 use sim3align::precise::search::refine::Refiner;
@@ -200,4 +201,21 @@ fn the_quadratic_is_that_of_finite_differences() {
             }
         }
     }
+}
+
+#[wasm_bindgen_test]
+fn deviations_are_those_of_the_widest_direction_and_of_a_known_scale() {
+    let draw = &mut Draw::new(5);
+    let pose = pose(draw, 2.0);
+    let (scale, _) = pose.scale_translation();
+    // Round but for a diagonal of the image, and for a size that is bound to the distance.
+    let mut covariance = [[0.0; 7]; 7];
+    (0..7).for_each(|k| covariance[k][k] = 1e-4);
+    (covariance[4][5], covariance[5][4]) = (9e-5, 9e-5);
+    (covariance[3][6], covariance[6][3]) = (5e-5, 5e-5);
+    let free = Conditioning::new(&covariance, &pose);
+    assert!((free.lateral_m / scale - libm::sqrt(1.9e-4)).abs() < 1e-12, "{free:?}");
+    let fixed = Conditioning::new(&at_known(&covariance, &gradient_of_scale(&pose)), &pose);
+    assert!(fixed.scale < 1e-9 && free.scale > 1e-3, "{fixed:?}, free {free:?}");
+    assert!(fixed.distance_m < free.distance_m && fixed.lateral_m == free.lateral_m, "{fixed:?}, free {free:?}");
 }

@@ -1,9 +1,12 @@
 //! Tracking: videos of a turning object, corrections, losses, and the size that frames share.
 
 use sim3align::evidence::frame::Frame;
+use sim3align::pauses::{Pauses, Task};
+use sim3align::track::history::{History, MOST};
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::{TrackState, TrackedFrame};
 use sim3align::track::tracker::Tracker;
+use sim3align::views::world_pose::WorldPose;
 
 use crate::observations::{assert_right, body, frame_of, observe, orbit, truth};
 use crate::prelude::*;
@@ -97,6 +100,63 @@ fn a_correction_moves_all_frames_of_its_stretch() {
     assert_eq!(tracker.correct(&fixed, Some(9)).unwrap_err().code, ErrorCode::InvalidArgument);
     let behind = Similarity { translation: Vector3::new(0.0, 0.0, -9.0), ..fixed };
     assert_eq!(tracker.correct(&behind, None).unwrap_err().code, ErrorCode::InvalidTransform);
+}
+
+#[wasm_bindgen_test]
+fn the_newest_frames_are_remembered() {
+    let (mut history, mesh) = (History::default(), MeshFrame::NORMALIZED);
+    let place = |k: usize| WorldPose {
+        rotation: DQuat::IDENTITY,
+        log_scale: 0.0,
+        center: DVec3::new(0.0, 0.0, 1.0 + k as f64),
+    };
+    let count = MOST + 3;
+    (0..count).for_each(|k| history.add(place(k), k == count - 2));
+    assert_eq!((history.frames(), history.last()), (count, Some(place(count - 1))));
+    for forgotten in [0, 2, count] {
+        assert!(history.correct(forgotten, place(0), &mesh).is_none(), "frame {forgotten}");
+    }
+    let (changed, is_present) = history.correct(count - 1, place(7), &mesh).unwrap();
+    assert_eq!(changed.iter().map(|frame| frame.frame).collect::<Vec<_>>(), [count - 2, count - 1]);
+    assert!(is_present && history.last() == Some(place(7)));
+    assert_eq!(history.correct(3, place(8), &mesh).unwrap().0.len(), MOST - 2);
+}
+
+#[wasm_bindgen_test]
+fn equivalent_turns_are_no_doubt_with_the_symmetry_of_the_object() {
+    let mesh = || cuboid(Vec3::new(0.9, 0.6, 0.4));
+    let seen = frame_of(&observe(&mesh(), &place(0)));
+    let [with, without] = [Symmetry::Auto, Symmetry::None].map(|symmetry| {
+        let options = TrackOptions { symmetry, ..TrackOptions::default() };
+        Tracker::new(PreparedMesh::new(mesh()), options).unwrap().next(&seen, &mut Silent).unwrap().confidence
+    });
+    assert!(1.0 - with < 0.3 * (1.0 - without), "{with} with its symmetry, {without} without");
+}
+
+/// A frame in as many steps as there are pauses; given up after `most` of them.
+fn in_steps(tracker: &mut Tracker<PreparedMesh<'static>>, frame: &Frame, most: usize) -> (usize, Option<TrackedFrame>) {
+    let mut task = Task::new(Pauses::new(|| 1.0, None), |pauses| async move {
+        let mut host = Silent;
+        tracker.next_in_steps(frame, &mut host, &pauses).await
+    });
+    let mut steps = 0;
+    while steps < most {
+        steps += 1;
+        if let Some(found) = task.step(0.0).unwrap() {
+            return (steps, Some(found));
+        }
+    }
+    (steps, None)
+}
+
+#[wasm_bindgen_test]
+fn a_search_pauses_and_a_frame_that_is_given_up_does_not_count() {
+    let whole = tracker(TrackOptions::default()).next(&frame(0), &mut Silent).unwrap();
+    let mut tracker = tracker(TrackOptions::default());
+    assert_eq!(in_steps(&mut tracker, &frame(0), 40), (40, None));
+    let (steps, found) = in_steps(&mut tracker, &frame(0), usize::MAX);
+    assert!(steps > 100, "{steps}");
+    assert_eq!(found.unwrap(), whole);
 }
 
 #[wasm_bindgen_test]

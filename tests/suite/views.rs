@@ -50,11 +50,20 @@ fn views_with_known_cameras_have_one_pose() {
 #[wasm_bindgen_test]
 fn views_without_a_mask_blind_ones_and_wrong_ones_have_their_roles() {
     type Case = (ViewRole, Option<WarningCode>, fn(&mut View));
-    let cases: [Case; 3] = [
+    let cases: [Case; 5] = [
         (ViewRole::Used, None, |view| view.frame.mask = None),
         (ViewRole::Blind, Some(WarningCode::ViewShowsNothing), |view| {
             view.frame.mask = None;
             view.frame.depth.data_mut().fill(0.0);
+        }),
+        (ViewRole::Blind, Some(WarningCode::ViewShowsNothing), |view| {
+            view.frame.mask.iter_mut().for_each(|mask| mask.data_mut().fill(0));
+        }),
+        // Lines that are thinner than the cells of a search.
+        (ViewRole::Blind, Some(WarningCode::ViewShowsNothing), |view| {
+            let mask = view.frame.mask.as_mut().unwrap();
+            let width = mask.width();
+            mask.data_mut().iter_mut().enumerate().for_each(|(i, m)| *m = u8::from(i % width % 8 == i / width % 8));
         }),
         (ViewRole::Contradicting, Some(WarningCode::ViewContradicts), |view| {
             let wrong = Similarity { rotation: Rotation3::new(Vector3::new(0.4, 1.0, 0.2)), ..Similarity::identity() };
@@ -87,6 +96,38 @@ fn unknown_cameras_share_one_size_and_follow_from_the_object() {
     }
     assert_eq!(found.views[0].camera.rotation_sd_deg, Some(0.0));
     assert!(found.views[1].camera.rotation_sd_deg > Some(0.0) && found.views[1].camera.position_sd_m > Some(0.0));
+}
+
+#[wasm_bindgen_test]
+fn a_fixed_size_is_kept_and_leaves_no_doubt_of_it() {
+    for are_known in [true, false] {
+        let mut seen = views(&body(), &ANGLES);
+        seen.iter_mut().filter(|_| !are_known).for_each(|view| view.world_from_camera = None);
+        let options = ViewsOptions { scale: ScaleOption::Fixed(1.01 * truth().scale), ..options() };
+        let fixed = align_views(seen, &PreparedMesh::borrowed(&body()), &options, &mut Silent).unwrap();
+        for view in &fixed.views {
+            let scale = view.camera_from_mesh.scale / truth().scale;
+            assert!((scale - 1.01).abs() < 1e-9, "cameras known: {are_known}, scale {scale}");
+        }
+        let sd = fixed.uncertainty.unwrap();
+        assert!(sd.scale == 0.0 && sd.position_m < 1e-3, "cameras known: {are_known}: {sd:?}");
+        assert!(fixed.confidence > 0.9, "cameras known: {are_known}: {}", fixed.confidence);
+    }
+}
+
+#[wasm_bindgen_test]
+fn a_view_with_an_unusable_mask_is_left_out_of_unknown_cameras() {
+    let mut seen = views(&body(), &ANGLES);
+    seen.iter_mut().for_each(|view| view.world_from_camera = None);
+    seen[0].frame.mask.iter_mut().for_each(|mask| mask.data_mut().fill(0));
+    let found = align(seen);
+    for k in [1, 2] {
+        assert_right(&body(), &pose_of(&found.views[k].camera_from_mesh), &orbit(ANGLES[k]), &format!("view {k}"));
+    }
+    let blind = &found.views[0];
+    assert_eq!((blind.role, blind.confidence, blind.camera.position_sd_m), (ViewRole::Blind, 0.0, None));
+    assert!(found.warnings.iter().any(|warning| warning.message.contains("views[0].mask")), "{:?}", found.warnings);
+    assert!(found.confidence > 0.5, "{}", found.confidence);
 }
 
 /// Views of a printed carton, turned over by half a turn.

@@ -8,14 +8,13 @@ use crate::cpu_time::CpuTimer;
 use crate::effects::monocular::DepthModel;
 use crate::prelude::*;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
-use sim3align::align::method::Method;
 use sim3align::align::search::Request;
 use sim3align::align::{align_paper, align_prepared};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
 use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::pose_error::pose_errors;
 use sim3align::pauses::{Pauses, finished};
-use sim3align::report::{AnyAlignment, Sim3};
+use sim3align::report::{Preset, Sim3};
 use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
 use sim3align::track::options::TrackOptions;
@@ -111,23 +110,22 @@ fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
         });
     }
     let timer = CpuTimer::start();
-    let outcome: Result<AnyAlignment> = match row.method() {
-        Method::Precise(_) => {
+    let outcome = match row.preset {
+        Preset::Precise => {
             let request = Request::new(options_of(case, k, row))?;
-            align_prepared(&observation, &object.prepared(row.color), request, &mut Silent).map(Into::into)
+            align_prepared(&observation, &object.prepared(row.color), request, &mut Silent)
+                .map(|found| (result.clone().with_alignment(&found), found.camera_from_mesh))
         }
-        Method::Paper(options) => {
+        Preset::Paper => {
             let mesh = object.surplus.as_ref().unwrap_or(&object.mesh);
-            align_paper(&observation, mesh, &options, &mut Silent).map(Into::into)
+            align_paper(&observation, mesh, &row.paper, &mut Silent)
+                .map(|found| (result.clone().with_paper_alignment(&found), found.camera_from_mesh))
         }
     };
-    let result = ResultRow { ms: Some(timer.milliseconds()), ..result };
+    let ms = Some(timer.milliseconds());
     Ok(match outcome {
-        Ok(alignment) => {
-            let pose = similarity(alignment.camera_from_mesh())?;
-            judged(result.with_alignment(&alignment), object, frame, k, &pose)
-        }
-        Err(error) => result.with_error(&error),
+        Ok((result, pose)) => judged(ResultRow { ms, ..result }, object, frame, k, &similarity(&pose)?),
+        Err(error) => ResultRow { ms, ..result }.with_error(&error),
     })
 }
 
@@ -149,7 +147,7 @@ fn modelled(case: &Case, k: usize, row: &Row, model: &DepthModel) -> Result<Resu
     let alignment = align_prepared(&observation, &mesh, Request::new(options.clone())?, &mut Silent)?;
     let result = ResultRow { ms: Some(timer.milliseconds()), ..result };
     let pose = similarity(&alignment.camera_from_mesh)?;
-    let result = result.with_alignment(&alignment.into());
+    let result = result.with_alignment(&alignment);
     let Some(truth) = &frame.truths[k] else { return Ok(result) };
     let errors = apparent_errors(object, (truth, &frame.camera), (&pose, &calibration.camera))?;
     Ok(result.with_errors(Some(errors)))
@@ -208,7 +206,7 @@ fn scene(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
             Err(error) => return Ok(result.with_error(&error)),
         };
         let pose = similarity(&placed.alignment.camera_from_mesh)?;
-        Ok(judged(result.with_alignment(&placed.alignment.into()), &case.objects[k], frame, k, &pose))
+        Ok(judged(result.with_alignment(&placed.alignment), &case.objects[k], frame, k, &pose))
     };
     aligned.objects.into_iter().enumerate().map(result).collect()
 }

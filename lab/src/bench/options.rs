@@ -3,7 +3,6 @@
 use super::option_text;
 use crate::effects::monocular::DepthModel;
 use crate::prelude::*;
-use sim3align::align::method::Method;
 use sim3align::options::{Choice, Options};
 use sim3align::report::Preset;
 
@@ -63,14 +62,6 @@ impl Row {
     /// A row whose poses are another program's.
     pub fn imported(name: &str, folder: &Path) -> Result<Self, String> {
         Ok(Self { import: Some(folder.to_owned()), ..Self::parse(&format!("{name}:"))? })
-    }
-
-    /// The preset with its options.
-    pub fn method(&self) -> Method {
-        match self.preset {
-            Preset::Precise => self.precise.clone().into(),
-            Preset::Paper => self.paper.clone().into(),
-        }
     }
 
     /// Reads a row.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::prelude::*;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
-use sim3align::report::{Alignment, AnyAlignment, Warning};
+use sim3align::report::{Alignment, Diagnostics, PaperAlignment, Warning};
 
 /// Maximum errors of a right pose: scale within 5 %, rotation within 10°, place within 5 % of the diameter.
 const STRICT: Errors = [0.05, 10.0, 0.05];
@@ -88,24 +88,19 @@ impl ResultRow {
         self
     }
 
-    /// The row with the report of a call.
-    pub fn with_alignment(self, alignment: &AnyAlignment) -> Self {
-        let common = alignment.diagnostics();
-        let row = Self {
-            metrics: alignment.metrics().map(|metrics| by_name(&metrics)),
-            warnings: codes(alignment.warnings()),
-            collapsed: common.collapsed,
-            clamped: common.clamped,
-            ..self
-        };
-        match alignment {
-            AnyAlignment::Precise(precise) => row.with_confidence(precise),
-            AnyAlignment::Paper(_) => row,
-        }
+    fn with_report(self, metrics: Option<&Metrics>, warnings: &[Warning], common: &Diagnostics) -> Self {
+        let Diagnostics { collapsed, clamped, .. } = *common;
+        Self { metrics: metrics.map(by_name), warnings: codes(warnings), collapsed, clamped, ..self }
     }
 
-    fn with_confidence(self, alignment: &Alignment) -> Self {
-        let Alignment { confidence, turn_confidence, alternatives, uncertainty, diagnostics, .. } = alignment;
+    /// The row with the report of `align` with the preset of the paper.
+    pub fn with_paper_alignment(self, found: &PaperAlignment) -> Self {
+        self.with_report(found.metrics.as_ref(), &found.warnings, &found.diagnostics.common)
+    }
+
+    /// The row with the report of `align`.
+    pub fn with_alignment(self, found: &Alignment) -> Self {
+        let Alignment { confidence, turn_confidence, alternatives, uncertainty, diagnostics, .. } = found;
         let terms = &diagnostics.terms;
         Self {
             confidence: Some(*confidence),
@@ -117,7 +112,7 @@ impl ResultRow {
                 alternatives: alternatives.iter().map(|other| other.score).collect(),
                 uncertainty: uncertainty.as_ref().map(|found| [found.scale, found.rotation_deg]),
             }),
-            ..self
+            ..self.with_report(found.metrics.as_ref(), &found.warnings, &diagnostics.common)
         }
     }
 

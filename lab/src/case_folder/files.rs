@@ -156,8 +156,10 @@ impl TruthFile {
 
     /// The symmetry.
     pub fn symmetry(&self) -> Symmetry {
+        let words = self.symmetry.as_deref().unwrap_or_default().trim().to_ascii_lowercase();
         match &self.symmetry_axes {
-            None => Symmetry::from_description(self.symmetry.as_deref().unwrap_or("unknown")),
+            None if ["discrete", "continuous"].iter().any(|kind| words.starts_with(kind)) => Symmetry::Auto,
+            None => Symmetry::None,
             Some(axes) if axes.is_empty() => Symmetry::None,
             Some(axes) => {
                 let axis = |file: &AxisFile| SymmetryAxis { axis: Vector3::from(file.axis), fold: file.fold };

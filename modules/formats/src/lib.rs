@@ -158,8 +158,8 @@ pub fn external_resources(
     Ok(object(&[("shape", names(&found.shape)), ("colors", names(&found.colors))]))
 }
 
-/// Reads a PNG or a JPEG as a photo: sRGB colours, turned as the EXIF data say, unless it is wanted as stored; large
-/// ones are reduced.
+/// Reads a PNG or a JPEG as a photo: sRGB colours, turned by the orientation of its EXIF data unless it is wanted as stored;
+/// large ones are reduced.
 #[wasm_bindgen(js_name = readImage, unchecked_return_type = "PhotoImage")]
 pub fn read_image(
     #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,

@@ -22,14 +22,14 @@ use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
 use sim3align::views::options::ViewsOptions;
 
-use super::views::{in_view, world_from_camera};
+use super::views::world_from_camera;
 
 /// A running calibration.
 #[wasm_bindgen(skip_typescript)]
 pub struct CalibrateTask(RefCell<Task<'static, Calibrated>>);
 
 /// An object that owns its parts.
-struct Owned {
+struct OwnedObject {
     mask: Mask,
     others: Option<Mask>,
     mesh: Rc<PreparedMesh<'static>>,
@@ -51,7 +51,7 @@ pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::
         Ok(Task::new(Pauses::new(now_ms, None), move |pauses| async move {
             let borrowed: Vec<CalibratedObject<'_>> = objects
                 .iter()
-                .map(|Owned { mask, others, mesh, options }| CalibratedObject {
+                .map(|OwnedObject { mask, others, mesh, options }| CalibratedObject {
                     mask,
                     others: others.clone(),
                     mesh,
@@ -64,8 +64,8 @@ pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::
     begin().map(|task| CalibrateTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
 }
 
-/// The objects that can be used: what is wrong with one is told where it is aligned, unless all will fail.
-fn usable(objects: impl Iterator<Item = Result<Owned>>) -> Result<Vec<Owned>> {
+/// The objects that can be used: the error of one is reported where it is aligned, unless all fail.
+fn usable(objects: impl Iterator<Item = Result<OwnedObject>>) -> Result<Vec<OwnedObject>> {
     let mut usable = Vec::new();
     let mut first = None;
     for object in objects {
@@ -81,7 +81,7 @@ fn usable(objects: impl Iterator<Item = Result<Owned>>) -> Result<Vec<Owned>> {
     }
 }
 
-fn owned(object: &JsValue, [width, height]: [usize; 2]) -> Result<Owned> {
+fn owned(object: &JsValue, [width, height]: [usize; 2]) -> Result<OwnedObject> {
     let mask = input::mask(object, width, height)?;
     check_mask_size([width, height], &mask)?;
     let others =
@@ -89,7 +89,7 @@ fn owned(object: &JsValue, [width, height]: [usize; 2]) -> Result<Owned> {
     let options = options::precise(&get(object, "options").unwrap_or(JsValue::UNDEFINED))?;
     let mesh = mesh::mesh_of(object)?;
     mesh.check()?;
-    Ok(Owned { mask, others: others.transpose()?, mesh, options })
+    Ok(OwnedObject { mask, others: others.transpose()?, mesh, options })
 }
 
 #[wasm_bindgen]
@@ -120,7 +120,7 @@ pub fn begin_calibrate_views(
         let views = views.ok_or_else(|| wrong_type("views", &JsValue::UNDEFINED, "an array", "Pass the views."))?;
         let frame = |(k, value): (usize, JsValue)| {
             let read = || input::raw_frame(&value, world_from_camera(&value)?);
-            read().map_err(in_view(k))
+            read().map_err(|error| error.in_view(k))
         };
         let frames = Array::from(&views).iter().enumerate().map(frame).collect::<Result<Vec<_>>>()?;
         let mesh = mesh::mesh_of(input)?;

@@ -50,7 +50,7 @@ pub fn begin_place(
         let (plan, index) = planned(input)?;
         let mut host = JsHost::new(on_progress);
         Ok(Task::new(pauses(helpers), move |pauses| async move {
-            place(&observation, &mesh, options, plan.told(index)?, &mut host, &pauses).await
+            place(&observation, &mesh, options, plan.warm_start(index)?, &mut host, &pauses).await
         }))
     };
     begin().map(|task| PlaceTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
@@ -75,7 +75,7 @@ pub fn begin_help(input: &JsValue, options: &JsValue) -> core::result::Result<Jo
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
         let (plan, index) = planned(input)?;
-        helper(observation, mesh, options, plan.told(index)?)
+        helper(observation, mesh, options, plan.warm_start(index)?)
     };
     begin().map(JointHelper::from).map_err(|error: Error| to_js(&error))
 }

@@ -1,6 +1,6 @@
 //! Trackers, by the id of the caller.
 
-use core::cell::RefCell;
+use core::cell::{RefCell, RefMut};
 use std::rc::Rc;
 
 use js_sys::{Function, Reflect};
@@ -9,16 +9,19 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
 use sim3align::bindings::error::to_js;
-use sim3align::bindings::host::JsHost;
+use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::wrong_type;
 use sim3align::bindings::transform::similarity;
 use sim3align::bindings::{input, mesh, options};
 use sim3align::calibrate::Calibrated;
+use sim3align::calibrate::calibration::DepthCalibration;
 use sim3align::calibrate::frames::Sequence;
 use sim3align::error::{Error, ErrorCode, Result};
-use sim3align::pauses::{Pauses, finished};
+use sim3align::evidence::frame::Frame;
+use sim3align::pauses::{Pauses, Task};
 use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
+use sim3align::track::report::TrackedFrame;
 use sim3align::track::tracker::Tracker;
 
 /// A tracker, and the calibrations of its frames.
@@ -28,10 +31,10 @@ struct Tracked {
     sequence: Sequence,
 }
 
-type Kept = Rc<RefCell<Tracked>>;
+type SharedTracker = Rc<RefCell<Tracked>>;
 
 thread_local! {
-    static TRACKERS: RefCell<Vec<(u32, Kept)>> = const { RefCell::new(Vec::new()) };
+    static TRACKERS: RefCell<Vec<(u32, SharedTracker)>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Creates a tracker under this id; see `Aligner.track` in the TypeScript package.
@@ -48,30 +51,56 @@ pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> core::result
     answer(open())
 }
 
-/// Tracks the next frame; see `Tracker.next` in the TypeScript package.
-#[wasm_bindgen(js_name = trackFrame, skip_typescript)]
-pub fn track_frame(id: u32, frame: &JsValue, on_progress: Option<Function>) -> core::result::Result<JsValue, JsValue> {
-    let track = || {
-        let tracked = tracker(id)?;
-        let Tracked { mesh, tracker, sequence } = &mut *tracked.borrow_mut();
-        let mut host = JsHost::new(on_progress);
+/// A frame that is being tracked.
+#[wasm_bindgen(skip_typescript)]
+pub struct FrameTask(RefCell<Task<'static, (TrackedFrame, Option<DepthCalibration>)>>);
+
+/// Begins to track the next frame; see `Tracker.next` in the TypeScript package. A task that is dropped before its end leaves the
+/// tracker as it was.
+#[wasm_bindgen(js_name = beginTrackFrame, skip_typescript)]
+pub fn begin_track_frame(
+    id: u32,
+    frame: &JsValue,
+    on_progress: Option<Function>,
+) -> core::result::Result<FrameTask, JsValue> {
+    let begin = || {
+        let (tracked, mut host, pauses) = (tracker(id)?, JsHost::new(on_progress), Pauses::new(now_ms, None));
         if !input::is_raw(frame) {
-            return Ok((tracker.next(&input::frame(frame)?, &mut host)?, None));
+            let frame = input::frame(frame)?;
+            return Ok(Task::new(pauses, move |pauses| async move {
+                let Tracked { tracker, .. } = &mut *borrowed(&tracked)?;
+                Ok((tracker.next_in_steps(&frame, &mut host, &pauses).await?, None))
+            }));
         }
-        let raw = input::raw_frame(frame, None)?;
-        let options = tracker.options().of_detection();
-        let Calibrated { depth, camera, calibration } =
-            finished(sequence.next(&raw, mesh, &options, &mut Silent, &Pauses::none()))?;
-        let found = tracker.next(&input::frame_of(frame, depth, camera)?, &mut host)?;
-        Ok((found, Some(calibration)))
+        let (raw, photo) = (input::raw_frame(frame, None)?, input::photo(frame)?);
+        Ok(Task::new(pauses, move |pauses| async move {
+            let Tracked { mesh, tracker, sequence } = &mut *borrowed(&tracked)?;
+            let (mut next, options) = (sequence.clone(), tracker.options().of_first_frame());
+            let Calibrated { depth, camera, calibration } =
+                next.next(&raw, mesh, &options, &mut Silent, &pauses).await?;
+            let frame = Frame { depth, camera, mask: raw.mask, photo };
+            let found = tracker.next_in_steps(&frame, &mut host, &pauses).await?;
+            *sequence = next;
+            Ok((found, Some(calibration)))
+        }))
     };
-    let (found, calibration) = track().map_err(|error: Error| to_js(&error))?;
-    let result = answer(Ok(found))?;
-    if let Some(calibration) = calibration {
-        // Setting a property of a new object cannot fail.
-        let _ = Reflect::set(&result, &"depthCalibration".into(), &answer(Ok(calibration))?);
+    begin().map(|task| FrameTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
+}
+
+#[wasm_bindgen]
+impl FrameTask {
+    /// Runs for about `slice_ms` milliseconds. Returns the pose when finished, otherwise `undefined`.
+    #[wasm_bindgen(skip_typescript)]
+    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
+        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
+        let Some((found, calibration)) = done else { return Ok(JsValue::UNDEFINED) };
+        let result = answer(Ok(found))?;
+        if let Some(calibration) = calibration {
+            // Setting a property of a new object cannot fail.
+            let _ = Reflect::set(&result, &"depthCalibration".into(), &answer(Ok(calibration))?);
+        }
+        Ok(result)
     }
-    Ok(result)
 }
 
 /// Corrects the pose of a frame; see `Tracker.correct` in the TypeScript package.
@@ -84,7 +113,7 @@ pub fn correct_track(id: u32, pose: &JsValue, frame: &JsValue) -> core::result::
         if index.is_none() && !frame.is_undefined() && !frame.is_null() {
             return Err(wrong_type("frame", frame, "the number of a frame", "Pass `frame` of its result."));
         }
-        tracker.borrow_mut().tracker.correct(&pose, index)
+        borrowed(&tracker)?.tracker.correct(&pose, index)
     };
     answer(correct())
 }
@@ -96,7 +125,7 @@ pub fn close_tracker(id: u32) {
 }
 
 /// The tracker with this id. It is lost if the module trapped since.
-fn tracker(id: u32) -> Result<Kept> {
+fn tracker(id: u32) -> Result<SharedTracker> {
     let kept =
         TRACKERS.with_borrow(|trackers| trackers.iter().find(|(known, _)| *known == id).map(|(_, kept)| kept.clone()));
     kept.ok_or_else(|| {
@@ -106,6 +135,19 @@ fn tracker(id: u32) -> Result<Kept> {
             "a tracker whose worker, or whose memory, is gone",
             "a tracker that lives as long as its frames come",
             "Open another one with track(), and pass the last pose as options.initial.",
+        )
+    })
+}
+
+/// The tracker, for one call at a time.
+fn borrowed(kept: &SharedTracker) -> Result<RefMut<'_, Tracked>> {
+    kept.try_borrow_mut().map_err(|_| {
+        Error::new(
+            ErrorCode::Internal,
+            "tracker",
+            "a call before the last one has ended",
+            "one call after the other",
+            "Please report this.",
         )
     })
 }

@@ -64,15 +64,7 @@ fn views_of(input: &JsValue) -> Result<Vec<View>> {
 /// A view, whose errors name it.
 fn view(value: &JsValue, index: usize) -> Result<View> {
     let read = || Ok(View { frame: input::frame(value)?, world_from_camera: world_from_camera(value)? });
-    read().map_err(in_view(index))
-}
-
-/// Names the view of an error.
-pub fn in_view(index: usize) -> impl Fn(Error) -> Error {
-    move |error| {
-        let argument = format!("views[{index}].{}", error.argument);
-        error.about(argument)
-    }
+    read().map_err(|error: Error| error.in_view(index))
 }
 
 /// The pose of the camera of a view, if it is known.

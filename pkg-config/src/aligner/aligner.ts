@@ -196,8 +196,8 @@ export class Aligner {
    * Aligns a mesh with several views of the same object.
    *
    * With the poses of all cameras (`cameraToWorld`), there is one search over the evidence of all views: the result is the
-   * pose in the world, and in each camera. A view may lack a mask, and one that contradicts the others is found and left
-   * out (`role`). Without camera poses, the views have one size in common and a pose each; the world is then the camera of
+   * pose in the world, and in each camera. A view may lack a mask, and one that contradicts the others, or whose mask cannot
+   * be used, is left out (`role`). Without camera poses, the views have one size in common and a pose each; the world is then the camera of
    * the first view that agrees with that size, and `views[i].camera` the pose of each camera that follows from it.
    * @throws {@link Sim3AlignError} for invalid input, whose argument names the view (`views[1].depth`), and
    * `NO_CONSENSUS` if no pose is supported by the data

@@ -2,7 +2,7 @@
 /** Trackers: one object through a video. */
 
 import type { Job, Method } from "../calls/calls.js";
-import type { Engine, MainThreadEngine } from "../calls/engine.js";
+import { type Engine, type MainThreadEngine, signalsOf } from "../calls/engine.js";
 import { ProgressListener } from "../calls/progress.js";
 import { checkSignals, onAbort } from "../concurrency/on-abort.js";
 import type { CorrectedFrame } from "../generated/types.js";
@@ -50,7 +50,8 @@ export class Tracker {
   readonly #own: OwnEngine;
   readonly #closed: (tracker: Tracker) => void;
   #last: Promise<unknown> = Promise.resolve();
-  #isClosed = false;
+  /** Ends the call that runs, between two of its steps, when the tracker is closed. */
+  readonly #progress = new ProgressListener(undefined);
   /** Ends the connection to the signal. */
   #unfollow = () => {};
 
@@ -116,8 +117,8 @@ export class Tracker {
    * @param pose camera from mesh, metres
    * @param frame the number of the frame (`frame` of its result); by default the last one
    * @returns the new poses of all frames that change
-   * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, `INVALID_ARGUMENT` for a frame that was not tracked, and
-   * `TRACKER_LOST` if the worker of the tracker has ended
+   * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, `INVALID_ARGUMENT` for a frame that was not tracked, or that
+   * is not among the last 100 000, and `TRACKER_LOST` if the worker of the tracker has ended
    */
   async correct(pose: Sim3Like, frame?: number): Promise<CorrectedFrame[]> {
     // Any other value could not be sent to the worker in which the tracker lives.
@@ -130,12 +131,12 @@ export class Tracker {
 
   /** Ends the tracker, and frees its worker. Running and later calls reject with `DISPOSED`. */
   close(): void {
-    if (this.#isClosed) return;
-    this.#isClosed = true;
+    if (this.#progress.failed.aborted) return;
+    this.#progress.end(disposed());
     this.#unfollow();
     this.#closed(this);
     const own = this.#own;
-    // What runs, which may be the opening, ends first.
+    // The call that runs, which may be the opening, ends first.
     if (own.isShared) this.#last.then(() => own.engine.closeTracker(this.#id)).catch(() => {});
     else own.engine.dispose();
   }
@@ -154,11 +155,11 @@ export class Tracker {
 
   async #run<M extends Method>(job: Job<M>, transfer: boolean, signal: SignalLike | undefined) {
     if (signal !== undefined) checkSignals([signal]);
-    if (this.#isClosed) throw disposed();
+    const call = { signal: undefined, progress: this.#progress, transfer };
+    checkSignals(signalsOf(call));
     try {
-      const call = { signal: undefined, progress: new ProgressListener(undefined), transfer };
       const outcome = await this.#own.engine.run(job, call);
-      if (this.#isClosed) throw disposed();
+      checkSignals(signalsOf(call));
       return outcome;
     } catch (error) {
       throw error instanceof Sim3AlignError ? error : internalError(error);

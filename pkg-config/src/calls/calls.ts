@@ -177,7 +177,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     module: "joint",
     async run({ data, options: { tracker } }, context) {
       const { core: frame, notes } = await resolveFrame(data, context.modules);
-      const pose = await context.call("joint", frame, (j) => j.trackFrame(tracker, frame, context.listener));
+      const pose = await context.task("joint", frame, (j) => j.beginTrackFrame(tracker, frame, context.listener));
       return { ...pose, ...sourcesOf(notes) };
     },
   },

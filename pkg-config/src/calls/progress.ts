@@ -24,9 +24,14 @@ export class ProgressListener {
     return this.#onProgress !== undefined;
   }
 
-  /** Aborts when the caller's function throws, or when a promise that it returned rejects. */
+  /** Aborts when the caller's function throws, when a promise that it returned rejects, and at {@link end}. */
   get failed(): SignalLike {
     return this.#failed.signal;
+  }
+
+  /** Ends the calls that it listens to. */
+  end(reason: unknown): void {
+    this.#failed.abort(reason);
   }
 
   /**
@@ -44,7 +49,7 @@ export class ProgressListener {
     const limit = this.#fraction < 1 ? MAX_PER_SECOND - 1 : MAX_PER_SECOND;
     if (this.#times.length >= limit) return;
     this.#times.push(now);
-    const fail = (error: unknown) => this.#failed.abort(error);
+    const fail = (error: unknown) => this.end(error);
     try {
       const returned = this.#onProgress({ stage, fraction: this.#fraction, best: this.#best, ...more });
       // Otherwise, the rejection of an async function would be unhandled, which ends a Node process.

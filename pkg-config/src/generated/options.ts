@@ -18,17 +18,17 @@ export const ALIGN_DEFAULTS = {
   scale: "free",
   knownExtentM: null,
   knownExtentAxis: "longest",
+  symmetry: "auto",
   cameraUp: null,
   meshUp: null,
-  symmetry: "auto",
   initial: null,
   search: "global",
   workBudget: null,
   proportions: "keep",
   metrics: true,
-  seed: 0,
   maxObservedPoints: 20000,
   surfaceSamples: 10000,
+  seed: 0,
 } as const satisfies AlignOptions;
 
 /** Defaults of `align` with `preset: "paper"`. */
@@ -63,9 +63,9 @@ export const VIEWS_DEFAULTS = {
   symmetry: "auto",
   proportions: "keep",
   metrics: true,
-  seed: 0,
   maxObservedPoints: 20000,
   surfaceSamples: 10000,
+  seed: 0,
 } as const satisfies ViewsOptions;
 
 /** Defaults of `track`. */
@@ -74,6 +74,7 @@ export const TRACK_DEFAULTS = {
   scale: "free",
   knownExtentM: null,
   knownExtentAxis: "longest",
+  symmetry: "auto",
   initial: null,
   metrics: false,
   seed: 0,
@@ -225,7 +226,7 @@ const quality = {
   choices: ["auto", "fast", "balanced", "best"],
   isNullable: false,
   default: "auto",
-  summary: "How much work the search does",
+  summary: "How much work a search does",
 } as const;
 
 const ransacConfidence = {
@@ -310,6 +311,7 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track"
     scale,
     knownExtentM,
     knownExtentAxis,
+    symmetry,
     {
       name: "cameraUp",
       kind: "direction",
@@ -324,7 +326,6 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track"
       default: null,
       summary: "The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF",
     },
-    symmetry,
     initial,
     {
       name: "search",
@@ -337,9 +338,9 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track"
     workBudget,
     proportions,
     metrics,
-    seed,
     maxObservedPoints,
     surfaceSamples,
+    seed,
   ],
   paper: [
     seed,
@@ -403,28 +404,23 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track"
     icpIterations,
   ],
   alignViews: [
-    { ...quality, summary: "How much work the searches do" },
+    quality,
     scale,
     knownExtentM,
     knownExtentAxis,
-    {
-      ...symmetry,
-      summary: "The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`",
-    },
+    symmetry,
     { ...proportions, summary: "Whether to fit the proportions of the mesh to all views together, as in `align`" },
     { ...metrics, summary: "Whether to compute the `metrics` of each view" },
-    seed,
     { ...maxObservedPoints, summary: "Upper bound on the depth readings of each view that are used for metrics" },
     { ...surfaceSamples, summary: "Number of points sampled on the mesh surface for metrics" },
+    seed,
   ],
   track: [
-    {
-      ...quality,
-      summary: "How much work the search in the first frame does, and the one that finds a lost object again",
-    },
+    quality,
     scale,
     knownExtentM,
     knownExtentAxis,
+    symmetry,
     { ...initial, summary: "The pose in the first frame, camera from mesh, in metres, if it is known" },
     {
       ...metrics,

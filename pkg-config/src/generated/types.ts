@@ -5,7 +5,7 @@ import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from "../types/
 /** The method of an alignment. */
 export type Preset = "precise" | "paper";
 
-/** What the comparison of colours came to. */
+/** The outcome of the comparison of colours. */
 export type ColorVerdict = "hidden" | "uniform" | "unmatched" | "agreed" | "decided";
 
 /** How much work the search does. */
@@ -33,7 +33,7 @@ export type Icp = "point-to-plane" | "point-to-point" | "none";
 export interface AlignOptions {
   /** The default method: search by rendering. */
   preset?: "precise" | undefined;
-  /** How much work the search does. Default `"auto"`. */
+  /** How much work a search does. Default `"auto"`. */
   quality?: Quality | undefined;
   /**
    * The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`. Not
@@ -49,6 +49,12 @@ export interface AlignOptions {
   /** The side of the mesh's bounding box that `knownExtentM` measures. Default `"longest"`. */
   knownExtentAxis?: ExtentAxis | undefined;
   /**
+   * The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`.
+   * `"auto"` finds it on the surface of the mesh; `[{ axis: [0, 1, 0], fold: 4 }]` declares quarter turns about the
+   * mesh's y axis, without `fold` any turn about it. Default `"auto"`.
+   */
+  symmetry?: SymmetryOption | undefined;
+  /**
    * The up direction in the camera's frame, of any length: `[0, -1, 0]` for a level camera. Together with `meshUp`,
    * it favours poses in which the object stands upright. Default `null`.
    */
@@ -58,12 +64,6 @@ export interface AlignOptions {
    * `null`.
    */
   meshUp?: Direction | null | undefined;
-  /**
-   * The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`.
-   * `"auto"` finds it on the surface of the mesh; `[{ axis: [0, 1, 0], fold: 4 }]` declares quarter turns about the
-   * mesh's y axis, without `fold` any turn about it. Default `"auto"`.
-   */
-  symmetry?: SymmetryOption | undefined;
   /**
    * A pose to start from, camera from mesh, in metres: for example an annotator's, or a generator's. Its scale has to
    * be within `scale`. It is one candidate among those of the search; between turns that the image hardly tells
@@ -87,11 +87,6 @@ export interface AlignOptions {
   /** Whether to compute `metrics`. Without them the call takes less time. Default `true`. */
   metrics?: boolean | undefined;
   /**
-   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
-   * Default `0`.
-   */
-  seed?: number | undefined;
-  /**
    * Upper bound on the depth readings used for metrics and initial scale. Above it, an even random subset is drawn.
    * Takes a whole number from 32 to 1000000. Default `20000`.
    */
@@ -101,6 +96,11 @@ export interface AlignOptions {
    * 1000000. Default `10000`.
    */
   surfaceSamples?: number | undefined;
+  /**
+   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
 }
 
 /** Options of `align` with `preset: "paper"`: the method of the paper, for comparison. All others have defaults. */
@@ -166,16 +166,8 @@ export interface PaperOptions extends Pick<AlignOptions, "seed" | "metrics"> {
 }
 
 /** Options of `alignViews`. All have defaults. */
-export interface ViewsOptions extends Pick<AlignOptions, "scale" | "knownExtentAxis" | "seed"> {
-  /** How much work the searches do. Default `"auto"`. */
-  quality?: Quality | undefined;
-  /**
-   * The object's known length along `knownExtentAxis`, in metres. It fixes the scale. Takes a finite number above 0,
-   * or null. Default `null`.
-   */
-  knownExtentM?: number | null | undefined;
-  /** The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`. Default `"auto"`. */
-  symmetry?: SymmetryOption | undefined;
+export interface ViewsOptions
+  extends Pick<AlignOptions, "quality" | "scale" | "knownExtentM" | "knownExtentAxis" | "symmetry" | "seed"> {
   /**
    * Whether to fit the proportions of the mesh to all views together, as in `align`. Only with given camera poses.
    * Default `"keep"`.
@@ -197,12 +189,7 @@ export interface ViewsOptions extends Pick<AlignOptions, "scale" | "knownExtentA
 
 /** Options of `track`. All have defaults. */
 export interface TrackOptions
-  extends Pick<AlignOptions, "scale" | "knownExtentAxis">,
-    Pick<ViewsOptions, "knownExtentM"> {
-  /**
-   * How much work the search in the first frame does, and the one that finds a lost object again. Default `"auto"`.
-   */
-  quality?: Quality | undefined;
+  extends Pick<AlignOptions, "quality" | "scale" | "knownExtentM" | "knownExtentAxis" | "symmetry" | "seed"> {
   /**
    * The pose in the first frame, camera from mesh, in metres, if it is known. That frame then needs no mask. Default
    * `null`.
@@ -213,11 +200,6 @@ export interface TrackOptions
    * Default `false`.
    */
   metrics?: boolean | undefined;
-  /**
-   * Seed of all random draws. The same frames and seed give the same bits. Takes a whole number from 0 to 4294967295.
-   * Default `0`.
-   */
-  seed?: number | undefined;
 }
 
 /** Options of `evaluate`. All have defaults. */
@@ -326,7 +308,7 @@ export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMAL
 export type Warning = {
   /** The kind of warning, stable across releases. */
   code: WarningCode;
-  /** What was found, and what to do about it. */
+  /** The fault and its remedy. */
   message: string;
 };
 
@@ -513,9 +495,9 @@ export type ScoreTerms = {
   hidden: number;
 };
 
-/** What the colours of photo and mesh contributed to an alignment. */
+/** The part of the colours of photo and mesh in an alignment. */
 export type ColorReport = {
-  /** What the comparison came to. */
+  /** The outcome of the comparison. */
   verdict: ColorVerdict;
   /**
    * Correlation of the colours of mesh and photo at the resulting pose, without the shading that normals explain, −1
@@ -587,7 +569,7 @@ export type EvaluationDiagnostics = {
   collapsed: boolean;
 };
 
-/** What all presets report of an alignment besides the pose. */
+/** The report of all presets besides the pose. */
 export type Diagnostics = EvaluationDiagnostics & {
   /** The method that ran. */
   preset: Preset;
@@ -659,7 +641,7 @@ export type Alignment = Sim3 & {
    * equal are one, unless their colours differ.
    */
   alternatives: Array<Alternative>;
-  /** How well the observation determines each part of the pose; `null` where the search could not tell. */
+  /** How well the observation determines each part of the pose; `null` where it is unknown. */
   uncertainty: Uncertainty | null;
   /** The mesh in its true proportions; present where they were asked for, and fitted. */
   proportions?: Stretch;
@@ -671,10 +653,10 @@ export type Alignment = Sim3 & {
   diagnostics: PreciseDiagnostics;
 };
 
-/** What the world of a result is. */
+/** The world of a result. */
 export type WorldFrame = "given" | "camera";
 
-/** What a view contributed to the result. */
+/** The part of a view in the result. */
 export type ViewRole = "used" | "contradicting" | "blind";
 
 /** Standard deviations of the pose in the world, as all views together determine them. */
@@ -709,7 +691,7 @@ export type CameraPose = Sim3 & {
 export type ViewPose = Sim3 & {
   /** Probability that this pose is right; see `Alignment.confidence`. */
   confidence: number;
-  /** What the view contributed. */
+  /** The part of the view in the result. */
   role: ViewRole;
   /** The pose of its camera. */
   camera: CameraPose;
@@ -746,7 +728,7 @@ export type ViewsDiagnostics = {
 
 /** The result of `alignViews`: world from mesh, x_world = s·R·p_mesh + t, in metres. */
 export type ViewsAlignment = Sim3 & {
-  /** What the world is. */
+  /** The world. */
   world: WorldFrame;
   /**
    * Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
@@ -769,7 +751,7 @@ export type ViewsAlignment = Sim3 & {
   diagnostics: ViewsDiagnostics;
 };
 
-/** What a tracker knows of a frame. */
+/** The state of a tracker after a frame. */
 export type TrackState = "tracking" | "uncertain" | "lost";
 
 /** The pose of a frame after a correction of another one. */
@@ -784,7 +766,7 @@ export type CorrectedFrame = Sim3 & {
 export type TrackedFrame = Sim3 & {
   /** The number of the frame: 0 for the first. */
   frame: number;
-  /** What the tracker knows of it. */
+  /** The state of the tracker. */
   state: TrackState;
   /** Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost. */
   confidence: number;
@@ -816,11 +798,11 @@ export type Evaluation = {
   diagnostics: EvaluationDiagnostics;
 };
 
-/** What an object stands on, and whose volume it shares. */
+/** The support of an object, and the volume that it shares with others. */
 export type Contact = {
   /**
-   * What it rests on: `"support"`, the index of another object, `"level"` for a level surface at another height that
-   * the depth map shows, such as a shelf or a box without a mesh, or `null` if it touches none of them.
+   * Its support: `"support"`, the index of another object, `"level"` for a level surface at another height that the
+   * depth map shows, such as a shelf or a box without a mesh, or `null` if it touches none of them.
    */
   restsOn: "support" | "level" | number | null;
   /**
@@ -880,7 +862,7 @@ export type CalibrationUncertainty = {
  * and scale-invariant depth, s·(d + t) for affine-invariant depth, s / (d + t) for affine-invariant disparity.
  */
 export type DepthCalibration = {
-  /** What the values are. */
+  /** The kind of the values. */
   depthKind: "metric" | "scale-invariant" | "affine-invariant" | "affine-invariant-disparity";
   /**
    * Whether z is in metres: the depth is, or a known length of an object has made it so. Otherwise, all lengths of

@@ -146,11 +146,11 @@ export interface Joint extends MeshCache {
   beginAlignViews: BeginSearch<CoreViews, ViewsAlignment>;
   beginHelpViews: BeginHelp<CoreViews>;
   openTracker(id: number, input: { mesh: CoreMesh }, options: object): void;
-  trackFrame(
+  beginTrackFrame(
     id: number,
     frame: CoreFrame,
     onProgress: CoreListener | undefined,
-  ): TrackedFrame & { depthCalibration?: DepthCalibration };
+  ): Task<TrackedFrame & { depthCalibration?: DepthCalibration }>;
   correctTrack(id: number, pose: unknown, frame: unknown): CorrectedFrame[];
   closeTracker(id: number): void;
 }

@@ -1,4 +1,4 @@
-//! What renders cost, counted where the feature `counts` asks for it: in the lab, never in a module.
+//! The cost of renders, counted with the feature `counts`: in the lab, never in a module.
 
 /// Counts of renders.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -153,7 +153,7 @@ fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) ->
     })
 }
 
-/// The interval along a direction of the triangles of which `of` says `side`.
+/// The interval along a direction of the triangles for which `of` is `side`.
 #[inline(never)]
 fn interval(faces: &[Face], of: &[bool], side: bool, direction: DVec3) -> [f64; 2] {
     let mut all = NOWHERE;

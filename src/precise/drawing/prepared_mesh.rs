@@ -44,11 +44,6 @@ impl<'a> PreparedMesh<'a> {
         Self::of(Cow::Borrowed(mesh))
     }
 
-    /// Borrows a mesh, and takes all of it for the object.
-    pub fn as_given(mesh: &'a Mesh) -> Self {
-        Self::with(Cow::Borrowed(mesh), OnceCell::from(None), OnceCell::from(None))
-    }
-
     fn of(mesh: Cow<'a, Mesh>) -> Self {
         let whole = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
         Self::with(whole, OnceCell::new(), OnceCell::new())
@@ -91,7 +86,7 @@ impl<'a> PreparedMesh<'a> {
         &self.whole
     }
 
-    /// What is left out of it.
+    /// The parts left out of it.
     pub fn left_out(&self) -> LeftOut {
         self.trimmed().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
     }

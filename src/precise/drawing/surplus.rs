@@ -36,7 +36,7 @@ const DISTANCE: f64 = 8.0;
 /// Number of triangles above which no inner shells are looked for, which would take seconds.
 const MAX_TRIANGLES: usize = 500_000;
 
-/// What was left out of a mesh: number of parts, and their share of its surface.
+/// The parts left out of a mesh: their number, and their share of its surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeftOut {
     /// Parts far from all others.
@@ -50,11 +50,11 @@ pub struct LeftOut {
 /// A mesh without its surplus.
 #[derive(Debug, Clone)]
 pub struct Trimmed {
-    /// What is left.
+    /// The rest.
     pub mesh: Mesh,
     /// The triangles that were left out.
     pub surplus: Mesh,
-    /// What they are.
+    /// The parts left out.
     pub left_out: LeftOut,
 }
 

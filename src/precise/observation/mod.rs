@@ -2,7 +2,7 @@
 //!
 //! In: an [`Observation`](crate::evidence::observation::Observation). Out: the [`CleanObservation`](clean::CleanObservation),
 //! which holds the pixels and depths that reliably belong to the object, its grids of cells at any resolution, and where
-//! the mask is cut. Nothing here knows the mesh: the evidence must not depend on the hypothesis that it judges.
+//! the mask is cut. Nothing here depends on the mesh: the evidence must not depend on the hypothesis that it judges.
 
 pub mod anchors;
 pub mod clean;

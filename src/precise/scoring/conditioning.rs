@@ -11,7 +11,7 @@ use crate::precise::drawing::pose::CropPose;
 pub const DROP: f64 = 0.01;
 /// Regularisation, so that unconstrained directions remain finite.
 pub const DAMPING: f64 = 1e-9;
-/// Standard deviation of a roll that a symmetry makes meaningless, radians: it is what it is.
+/// Standard deviation of a roll that a symmetry makes meaningless, radians.
 const FIXED: f64 = 1e-3;
 
 /// The covariance of the parameters of a pose.
@@ -28,22 +28,43 @@ pub struct Conditioning {
     pub lateral_m: f64,
     /// Of the distance, metres.
     pub distance_m: f64,
+    /// Of the position in the least constrained direction, metres.
+    pub position_m: f64,
 }
 
 impl Conditioning {
     /// From the covariance at a refined pose.
     pub fn new(covariance: &Covariance, pose: &CropPose) -> Self {
-        let (scale, translation) = pose.scale_translation();
+        let (scale, _) = pose.scale_translation();
         let size = libm::exp(pose.size);
-        // log s = size + distance; distance is in units of the size.
         let log_scale = covariance[3][3] + 2.0 * size * covariance[3][6] + size * size * covariance[6][6];
+        let [across, down] = [covariance[4][4], covariance[5][5]];
+        let lateral = 0.5 * (across + down) + libm::hypot(0.5 * (across - down), covariance[4][5]);
         Self {
             scale: deviation(log_scale),
             rotation: widest(covariance, 0),
-            lateral_m: scale * deviation(covariance[4][4].max(covariance[5][5])),
-            distance_m: translation.z * size * deviation(covariance[6][6]),
+            lateral_m: scale * deviation(lateral),
+            distance_m: scale * deviation(covariance[6][6]),
+            position_m: scale * widest(covariance, 4).0,
         }
     }
+}
+
+/// The change of log s with each parameter of a pose: log s = size + distance, and distance is in units of the size.
+pub fn gradient_of_scale(pose: &CropPose) -> [f64; PARAMETERS] {
+    [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, libm::exp(pose.size)]
+}
+
+/// The covariance where the number that changes by `gradient` with the parameters is known.
+pub fn at_known(covariance: &Covariance, gradient: &[f64; PARAMETERS]) -> Covariance {
+    let dot = |row: &[f64; PARAMETERS]| row.iter().zip(gradient).map(|(a, b)| a * b).sum::<f64>();
+    let along = covariance.each_ref().map(dot);
+    let variance = dot(&along).max(f64::MIN_POSITIVE);
+    let mut left = *covariance;
+    for (row, x) in left.iter_mut().zip(along) {
+        row.iter_mut().zip(along).for_each(|(entry, y)| *entry -= x * y / variance);
+    }
+    left
 }
 
 /// The covariance of the parameters; `None` if the quadratic constrains nothing.

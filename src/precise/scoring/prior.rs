@@ -52,6 +52,11 @@ impl Prior {
         }
     }
 
+    /// The scale, if the options fix it.
+    pub fn fixed_scale(&self) -> Option<f64> {
+        self.scale.filter(|[low, high]| low == high).map(|[scale, _]| scale)
+    }
+
     /// The pose with its scale within the bounds, at the same distance.
     pub fn bounded(&self, pose: CropPose) -> CropPose {
         let Some(bounds) = self.scale else { return pose };

@@ -73,7 +73,7 @@ pub struct Scoring {
     pub outline_cells: f32,
 }
 
-/// What the depth map shows outside the mask, where the mesh is rendered.
+/// The depth map outside the mask, where the mesh is rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Background {
     /// The camera sees through the mesh: evidence against the pose.

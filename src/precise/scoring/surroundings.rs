@@ -57,17 +57,17 @@ pub struct Floor {
     pub gap_m: f64,
 }
 
-/// What is known of the surroundings of an object, before its search.
+/// The surroundings of an object, as known before its search.
 #[derive(Debug, Clone, Default)]
 pub struct Neighbourhood {
-    /// What it may stand on.
+    /// The plane on which it may stand.
     pub ground: Option<Floor>,
     /// The other objects, at the size of the whole image.
     pub layers: Vec<Rc<Layer>>,
 }
 
 impl Neighbourhood {
-    /// Whether it tells nothing.
+    /// Whether it is empty.
     pub fn is_empty(&self) -> bool {
         self.ground.is_none() && self.layers.is_empty()
     }
@@ -76,7 +76,7 @@ impl Neighbourhood {
 /// What surrounds an object.
 #[derive(Debug, Clone, Default)]
 pub struct Surroundings {
-    /// What it may stand on.
+    /// The plane on which it may stand.
     pub ground: Option<Ground>,
     /// The other objects.
     pub layers: Vec<Rc<Layer>>,
@@ -271,7 +271,7 @@ impl Surroundings {
         self.ground.as_ref().map_or(0.0, |ground| ground.score(pose))
     }
 
-    /// What the surroundings add to the score of the last render.
+    /// The part of the surroundings in the score of the last render.
     pub fn score(&self, canvas: &Canvas, grid: &CropGrid, pose: &CropPose) -> f32 {
         self.contact(pose) as f32 - SHARED_VOLUME * self.shared(canvas, grid)
     }

@@ -22,7 +22,7 @@ impl Stage {
     }
 }
 
-/// What a cascade refines: poses of an object, on the evidence of one view or of several.
+/// The subject of a cascade: poses of an object, on the evidence of one view or of several.
 pub trait Subject {
     /// A pose.
     type Pose: Posed;

@@ -15,7 +15,7 @@ use crate::precise::drawing::render::Canvas;
 use crate::precise::observation::anchors::{Anchor, anchors};
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::observation::grid::CropGrid;
-use crate::precise::scoring::conditioning::Conditioning;
+use crate::precise::scoring::conditioning::{Conditioning, at_known, gradient_of_scale};
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::Score;
@@ -66,14 +66,14 @@ impl Search {
         }
     }
 
-    /// A look for rivals of a pose, without the surroundings of the object: a search on the same grids.
-    pub(crate) fn look(&self) -> Self {
+    /// A search for rivals of a pose on the same grids, without the surroundings of the object.
+    pub(crate) fn for_rivals(&self) -> Self {
         Self {
             mesh: Rc::clone(&self.mesh),
             observation: Rc::clone(&self.observation),
             view: self.view,
             renders: 0,
-            settings: self.settings.look(),
+            settings: self.settings.of_rival_search(),
             prior: self.prior,
             surroundings: None,
             equivalence: Rc::clone(&self.equivalence),
@@ -186,7 +186,7 @@ impl Search {
     /// The conditioning of a pose by the image alone.
     pub fn conditioning_by_image(&self, pose: &CropPose) -> Option<Conditioning> {
         let objective = Objective { surroundings: None, ..self.objective(FINE) };
-        self.conditioning_by(objective, pose).0
+        self.conditioning_by(objective, pose, false).0
     }
 
     /// Whether the surroundings are known.
@@ -194,12 +194,23 @@ impl Search {
         self.surroundings.is_some()
     }
 
-    /// The conditioning of a pose, up to the symmetry of the mesh, and the root mean square of its depth residuals, metres.
+    /// The conditioning of a pose whose size is free, up to the symmetry of the mesh, and the root mean square of its depth
+    /// residuals, metres.
     pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
-        self.conditioning_by(self.objective(FINE), pose)
+        self.conditioning_by(self.objective(FINE), pose, false)
     }
 
-    fn conditioning_by(&self, objective: Objective<'_>, pose: &CropPose) -> (Option<Conditioning>, f64) {
+    /// The conditioning of a pose, at its size if that is fixed.
+    pub fn conditioning_as_fixed(&self, pose: &CropPose) -> Option<Conditioning> {
+        self.conditioning_by(self.objective(FINE), pose, self.settings.lock_scale).0
+    }
+
+    fn conditioning_by(
+        &self,
+        objective: Objective<'_>,
+        pose: &CropPose,
+        is_fixed: bool,
+    ) -> (Option<Conditioning>, f64) {
         let refiner = Refiner { objective, lock_scale: false };
         let mut canvas = Canvas::default();
         let score = refiner.objective.score(&mut canvas, pose);
@@ -207,7 +218,12 @@ impl Search {
         let proportions = (&self.mesh.surface, self.settings.lock_scale);
         let free_axis = self.equivalence.free_axis(pose.rotation);
         let covariance = refiner.covariance(&mut canvas, &score, pose, proportions, free_axis);
-        let conditioning = covariance.map(|covariance| Conditioning::new(&covariance, pose));
+        let conditioning = covariance.map(|covariance| match is_fixed {
+            true => {
+                Conditioning { scale: 0.0, ..Conditioning::new(&at_known(&covariance, &gradient_of_scale(pose)), pose) }
+            }
+            false => Conditioning::new(&covariance, pose),
+        });
         // A sphere has no rotation that could be wrong.
         let upright = |own: Conditioning| match self.equivalence.is_sphere() {
             true => Conditioning { rotation: (0.0, own.rotation.1), ..own },

@@ -71,7 +71,7 @@ impl Shapes {
         self.cost * parameters.iter().map(|x| x * x).sum::<f64>()
     }
 
-    /// Adds the quadratic of the penalty. What is not free, no residual depends on: it keeps those parameters at 0.
+    /// Adds the quadratic of the penalty. It keeps at 0 the parameters that are not free, on which no residual depends.
     pub fn add_to(&self, Proportions(parameters): &Proportions, equations: &mut NormalEquationsOf<ALL>) {
         for (i, x) in parameters.iter().enumerate() {
             let mut jacobian = [0.0; ALL];

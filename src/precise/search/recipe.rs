@@ -9,8 +9,6 @@ use crate::report::Effort;
 
 /// Rounds of the search.
 pub const ROUNDS: usize = 7;
-/// The first round that refines.
-pub const FIRST_REFINEMENT: usize = 2;
 
 /// The task of a round for each of its poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,6 +24,13 @@ pub enum Task {
     /// Refines all seven parameters and the proportions of the mesh. The scores of the first round of this task rank the
     /// poses, and are those of the result.
     Fit,
+}
+
+impl Task {
+    /// Whether its poses come from the rotation grid.
+    pub fn is_on_rotation_grid(self) -> bool {
+        matches!(self, Self::Rotate | Self::Place)
+    }
 }
 
 /// A round: the same task for many poses, of which the best are kept for the next round.
@@ -85,8 +90,8 @@ const ROLLS: usize = 24;
 /// Maximum number of steps per turn, and of turns that are ranked, of a search whose work is limited: turns are not scaled.
 const LIMITED_TURNS: [usize; 2] = [6, 6];
 
-/// Work and poses kept of the rounds of a look for rivals, which ends with them.
-const LOOK: [[usize; 2]; 4] = [[300, 40], [1, 6], [4, 3], [5, 0]];
+/// Work and poses kept of the rounds of a search for rivals, which ends with them.
+const RIVAL_SEARCH: [[usize; 2]; 4] = [[300, 40], [1, 6], [4, 3], [5, 0]];
 
 /// Hypotheses of several views with known camera poses: every one of them coarsely; then the best, and turns of the best of
 /// these.
@@ -177,10 +182,10 @@ impl SearchSettings {
         Self { rounds: rounds(effort), turned: TURNED[effort as usize], ..self }
     }
 
-    /// The settings of a look for rivals of a pose that a search is sure of: few rotations, refined on the middle grid only.
-    pub fn look(self) -> Self {
+    /// The settings of a search for rivals of a pose that another search is sure of: few rotations, refined on the middle grid only.
+    pub fn of_rival_search(self) -> Self {
         let mut look = Self { turned: 1, ..self };
-        for (round, [work, keep]) in look.rounds.iter_mut().zip(LOOK) {
+        for (round, [work, keep]) in look.rounds.iter_mut().zip(RIVAL_SEARCH) {
             (round.work, round.keep) = (work, keep);
         }
         look

@@ -8,7 +8,7 @@ use glam::DQuat;
 
 use super::problem::Search;
 use super::ranking::{Found, best_of, distinct_up_to};
-use super::recipe::{FINE, FIRST_REFINEMENT, MIN_ROTATIONS, ROUNDS, Round, Task};
+use super::recipe::{FINE, MIN_ROTATIONS, ROUNDS, Round, Task};
 use super::tasks::{Outcome, RoundTasks};
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed};
@@ -56,7 +56,8 @@ impl Rounds {
     pub fn new(mut search: Search, initial: Option<CropPose>, global: bool) -> Self {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
         let anchors = if global { search.anchors() } else { vec![Anchor::AS_IT_IS] };
-        let index = if global { 0 } else { FIRST_REFINEMENT };
+        let is_searched = |round: &Round| !global && round.task.is_on_rotation_grid();
+        let index = search.settings.rounds.iter().take_while(|round| is_searched(round)).count();
         Self {
             found: Vec::new(),
             index,
@@ -135,7 +136,7 @@ impl Rounds {
     }
 
     fn is_on_rotation_grid(&self) -> bool {
-        matches!(self.task(), Some(Task::Rotate | Task::Place))
+        self.task().is_some_and(Task::is_on_rotation_grid)
     }
 
     /// The task of the current round.
@@ -210,7 +211,7 @@ impl Rounds {
     /// rotations of a grid are close to one another, so that the round cannot just end early.
     fn rotate_less(&mut self, work: u64, allowance: u64) -> Round {
         let rotations = self.tasks() as u64 * allowance / work.max(1);
-        let round = &mut self.search.settings.rounds[0];
+        let round = &mut self.search.settings.rounds[self.index];
         round.work = (rotations as usize).max(MIN_ROTATIONS);
         *round
     }

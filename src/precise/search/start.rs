@@ -1,4 +1,4 @@
-//! Start: a search from the rotation grid, from the poses of another search, or from a look for rivals.
+//! Start: a search from the rotation grid, from the poses of another search, or for rivals of its best pose.
 
 use core::ops::Range;
 use std::rc::Rc;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::problem::Search;
 use super::ranking::Found;
-use super::recipe::{SURE, SearchSettings, Task};
+use super::recipe::{SURE, SearchSettings};
 use super::rounds::Rounds;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
@@ -63,11 +63,11 @@ pub fn begin(
     Ok(rounds)
 }
 
-/// A look for rivals of the best pose that a search has found: from rotations between those of its grid, far from the pose.
-pub fn look(rounds: &Rounds) -> Option<Rounds> {
+/// A search for rivals of the best pose of another search: from rotations between those of its grid, far from the pose.
+pub fn rival_search(rounds: &Rounds) -> Option<Rounds> {
     let best = rounds.found.first()?;
     let search = &rounds.search;
-    let again = search.look();
+    let again = search.for_rivals();
     let count = again.settings.rotations();
     let rotations = (0..count).map(|i| super_fibonacci(i, count));
     let rotations =
@@ -77,7 +77,7 @@ pub fn look(rounds: &Rounds) -> Option<Rounds> {
     Some(look)
 }
 
-/// Whether a look has found a pose that explains the image about as well as the best one of a search. It is then added to
+/// Whether a search for rivals has found a pose that explains the image about as well as the best one of a search. It is then added to
 /// those of the search.
 pub fn has_rival(rounds: &mut Rounds, look: &Rounds) -> bool {
     rounds.search.renders += look.search.renders;
@@ -90,7 +90,7 @@ pub fn has_rival(rounds: &mut Rounds, look: &Rounds) -> bool {
     !rivals.is_empty()
 }
 
-/// What a search has found, for a later one of the same object.
+/// The results of a search, for a later one of the same object.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Findings {
     /// The poses, best first.
@@ -110,15 +110,15 @@ impl Findings {
     }
 }
 
-/// What is told to a later search of the same object.
-pub struct Told<'a> {
-    /// What the earlier one has found.
+/// The start of a later search of the same object.
+pub struct WarmStart<'a> {
+    /// The results of the earlier one.
     pub findings: &'a Findings,
-    /// What has become known of the surroundings of the object since.
-    pub known: Neighbourhood,
+    /// The surroundings of the object, where they have become known since.
+    pub surroundings: Neighbourhood,
 }
 
-/// A search among the poses that another one has found, with what is known of the surroundings of the object. Without
+/// A search among the poses that another one has found, with the surroundings of the object. Without
 /// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
 /// the ground are searched as well. `clean` is the observation, where it has been cleaned already.
 ///
@@ -128,7 +128,7 @@ pub fn resume(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
     clean: Option<Rc<CleanObservation>>,
-    Told { findings, known }: Told<'_>,
+    WarmStart { findings, surroundings: known }: WarmStart<'_>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
@@ -203,8 +203,7 @@ pub fn decimate(
 /// Runs a search to its end. `share` is the progress at its start and end, 0 to 1.
 pub async fn run(rounds: &mut Rounds, share: &Range<f64>, pauses: &Pauses, stages: &mut Stopwatch<'_>) {
     while let Some(round) = rounds.round() {
-        let is_refinement = matches!(round.task, Task::Refine | Task::Turn | Task::Fit);
-        if is_refinement && stages.running() != Some(Stage::Refine) {
+        if !round.task.is_on_rotation_grid() && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
         rounds.run(pauses).await;
@@ -212,7 +211,7 @@ pub async fn run(rounds: &mut Rounds, share: &Range<f64>, pauses: &Pauses, stage
     }
 }
 
-/// Where a pose that callers may have in another camera frame was given.
+/// The error of an initial pose, which callers may have in another camera frame.
 const INITIAL: (ErrorCode, &str) = (ErrorCode::InvalidOption, "options.initial");
 
 /// A pose of the caller. `code` and `argument` are those of its error.

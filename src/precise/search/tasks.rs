@@ -27,7 +27,7 @@ pub struct RoundTasks<'a> {
     pub view: usize,
     /// Its effort, on which its grids depend.
     pub effort: Effort,
-    /// Whether it knows the surroundings of the object.
+    /// Whether it has the surroundings of the object.
     pub is_surrounded: bool,
     /// What each of them does.
     pub task: Task,

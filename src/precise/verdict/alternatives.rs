@@ -11,7 +11,7 @@ use crate::report::Alternative;
 /// Score below an unsure best pose down to which poses are alternatives: where such a pose is wrong, the right one scores lower
 /// by up to this much.
 pub(crate) const UNSURE: f32 = 3.0 * NOISE;
-/// Maximum number of alternatives that shape tells from the best pose.
+/// Maximum number of alternatives of another shape score than the best pose.
 const MOST: usize = 12;
 /// Maximum number of alternatives that only their colours tell from the best pose, and the margin from which on colour has
 /// refuted them.

@@ -15,16 +15,16 @@ const ODDS: f64 = 15.0;
 /// shape allows are all right.
 const UNMATCHED: f64 = 0.5;
 
-/// A pose as shape and colour see it.
+/// The score of a pose by colour.
 #[derive(Debug, Clone, Copy)]
-pub struct Look {
+pub struct ColorScore {
     /// Correlation with the photo.
     pub agreement: f64,
     /// The agreement, with the difference of the shape score from that of the best pose by shape.
     pub total: f64,
 }
 
-impl Look {
+impl ColorScore {
     /// A pose whose shape score is above that of the best pose by this much, per view.
     pub fn new(agreement: f64, shape: f32) -> Self {
         Self { agreement, total: agreement + SHAPE * f64::from(shape) }
@@ -34,7 +34,7 @@ impl Look {
 /// Which of several poses colour chooses. The first is the best by shape.
 #[derive(Debug, Clone)]
 pub struct Choice {
-    looks: Vec<Look>,
+    scores: Vec<ColorScore>,
     /// Index of the chosen pose.
     pub chosen: usize,
     /// Indices of the poses that look different from the chosen one, best first.
@@ -44,16 +44,16 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// The choice among poses; `differ` tells whether the poses of two indices are rivals. `None` without any.
-    pub fn among(looks: Vec<Look>, differ: impl Fn(usize, usize) -> bool) -> Option<Self> {
-        let first = looks.first()?;
-        let is_used = looks.iter().fold(f64::NEG_INFINITY, |most, look| most.max(look.agreement)) >= AGREES;
-        let best = (0..looks.len()).fold(0, |best, k| if looks[k].total > looks[best].total { k } else { best });
-        let chosen = if is_used && looks[best].total > first.total + MIN_GAIN { best } else { 0 };
-        let rivals: Vec<usize> = (0..looks.len()).filter(|&other| differ(other, chosen)).collect();
-        let order = largest(rivals.iter().map(|&rival| looks[rival].total as f32), rivals.len());
+    /// The choice among poses; `differ` decides whether the poses of two indices are rivals. `None` without any.
+    pub fn among(scores: Vec<ColorScore>, differ: impl Fn(usize, usize) -> bool) -> Option<Self> {
+        let first = scores.first()?;
+        let is_used = scores.iter().fold(f64::NEG_INFINITY, |most, look| most.max(look.agreement)) >= AGREES;
+        let best = (0..scores.len()).fold(0, |best, k| if scores[k].total > scores[best].total { k } else { best });
+        let chosen = if is_used && scores[best].total > first.total + MIN_GAIN { best } else { 0 };
+        let rivals: Vec<usize> = (0..scores.len()).filter(|&other| differ(other, chosen)).collect();
+        let order = largest(rivals.iter().map(|&rival| scores[rival].total as f32), rivals.len());
         let rivals = order.into_iter().map(|i| rivals[i as usize]).collect();
-        Some(Self { looks, chosen, rivals, is_used })
+        Some(Self { scores, chosen, rivals, is_used })
     }
 
     /// Probability that the chosen pose is right, given that it or one of these rivals is. `gain` is by how much its agreement
@@ -65,7 +65,7 @@ impl Choice {
 
     /// By how much the agreement of a rival is below that of the chosen pose.
     pub fn margin(&self, rival: usize, gain: f64) -> f64 {
-        self.looks[self.chosen].agreement + gain - self.looks[rival].agreement
+        self.scores[self.chosen].agreement + gain - self.scores[rival].agreement
     }
 
     /// For the result.
@@ -76,12 +76,12 @@ impl Choice {
             (_, _, false) => ColorVerdict::Agreed,
             (_, _, true) => ColorVerdict::Decided,
         };
-        let agreement = self.looks[self.chosen].agreement + gain;
+        let agreement = self.scores[self.chosen].agreement + gain;
         ColorReport { verdict, agreement, margin: self.rivals.first().map(|&rival| self.lead(rival, gain)) }
     }
 
     fn lead(&self, rival: usize, gain: f64) -> f64 {
-        if self.is_used { self.looks[self.chosen].total + gain - self.looks[rival].total } else { 0.0 }
+        if self.is_used { self.scores[self.chosen].total + gain - self.scores[rival].total } else { 0.0 }
     }
 }
 

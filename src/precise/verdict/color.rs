@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::{DQuat, DVec3};
 
-use super::choice::{Choice, HIDDEN, Look, SHAPE, best_roll};
+use super::choice::{Choice, ColorScore, HIDDEN, SHAPE, best_roll};
 use super::lookalikes::{Likeness, Lookalike, lookalikes};
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::{Photo, PhotoRegion};
@@ -41,10 +41,10 @@ pub const LOOSE: f64 = 0.05;
 struct Compared {
     found: Found,
     appearance: Appearance,
-    look: Look,
+    look: ColorScore,
 }
 
-/// A pose that shape cannot tell from the chosen one, but that looks different.
+/// A pose of about the same shape score as the chosen one, but of other colours.
 pub struct Rival {
     /// The pose, with the score of its shape.
     pub found: Found,
@@ -54,7 +54,7 @@ pub struct Rival {
     pub is_turn: bool,
 }
 
-/// What colour says.
+/// The verdict of colour.
 pub struct Judgment {
     /// The chosen pose; `None` if it is that of shape.
     pub chosen: Option<Found>,
@@ -63,7 +63,7 @@ pub struct Judgment {
     /// Probability that the chosen pose is right up to the symmetry of the shape, given that it is one of those compared.
     pub certainty: f64,
     /// Probability that it is the right one of the poses that this symmetry makes equivalent; `None` where colour does not
-    /// tell them apart.
+    /// distinguish them.
     pub turn: Option<f64>,
     /// For the result.
     pub report: ColorReport,
@@ -71,7 +71,7 @@ pub struct Judgment {
     pub is_used: bool,
 }
 
-/// What the photo says about the poses that a search has found, with a pause point after each comparison.
+/// The verdict of the photo on the poses of a search, with a pause point after each comparison.
 pub fn judgment<'a>(
     rounds: &'a Rounds,
     photo: &'a Photo,
@@ -87,12 +87,12 @@ pub fn judgment<'a>(
 
 /// Chooses among the compared poses.
 fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared: &[Compared]) -> Judgment {
-    let looks = compared.iter().map(|compared| compared.look).collect();
+    let scores = compared.iter().map(|compared| compared.look).collect();
     let differ = |a: usize, b: usize| {
         let [a, b] = [a, b].map(|k| &compared[k]);
         are_rivals(a.found.pose.rotation, b.found.pose.rotation) && a.appearance.difference(&b.appearance) > DIFFERENT
     };
-    let Some(choice) = Choice::among(looks, differ) else { return Judgment::none() };
+    let Some(choice) = Choice::among(scores, differ) else { return Judgment::none() };
     let is_changed = choice.chosen != 0;
     let mut found = compared[choice.chosen].found;
     if is_changed {
@@ -109,7 +109,7 @@ fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared:
     Judgment::new(&choice, (found, is_other), pose_of, gain, &rounds.search.equivalence)
 }
 
-/// The poses of a search that shape cannot tell from the best one, which is the first, and what they look like. Empty if
+/// The poses of a search with about the shape score of the best one, which is the first, and their colours. Empty if
 /// nothing can be compared.
 async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, pauses: &Pauses) -> Vec<Compared> {
     let search = &rounds.search;
@@ -120,14 +120,14 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, p
     };
     let Some(best) = rounds.found.first() else { return Vec::new() };
     let Some((of_best, appearance)) = look_at(&mut canvas, best.pose) else { return Vec::new() };
-    let look = Look::new(appearance.agreement, 0.0);
+    let look = ColorScore::new(appearance.agreement, 0.0);
     let score = Score { total: best.score.total, ..of_best };
     let mut list = vec![Compared { found: Found { score, ..*best }, appearance, look }];
     let [rough, _] = COLORED;
     let refiner = Refiner { objective: search.objective(rough.grid), lock_scale: search.settings.lock_scale };
     for Lookalike { pose, likeness } in lookalikes(rounds) {
         let is_rough = likeness == Likeness::Rough;
-        // A turn of the best pose doubles its error. What the search has found near the turn is more accurate.
+        // A turn of the best pose doubles its error. The poses of the search near the turn are more accurate.
         let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
         let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
         let pose = match known {
@@ -145,7 +145,7 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, p
             score.total = best.score.total + shape;
             // What a symmetry makes equivalent is compared, whatever the inaccuracy of the mesh takes off its score.
             if likeness == Likeness::Equal || score.total > best.score.total - NOISE {
-                let look = Look::new(appearance.agreement, shape);
+                let look = ColorScore::new(appearance.agreement, shape);
                 list.push(Compared { found: Found { pose, score, ..*best }, appearance, look });
             }
         }
@@ -180,7 +180,7 @@ pub fn roll(
     let (angle, gain) = best_roll(|angle| {
         let score = objective.score(&mut canvas, &rolled(angle));
         let appearance = photo.compare(&canvas, colors, &search.mesh.frame, search.grid(FINE));
-        appearance.map_or(f64::NEG_INFINITY, |a| Look::new(a.agreement, score.total).total)
+        appearance.map_or(f64::NEG_INFINITY, |a| ColorScore::new(a.agreement, score.total).total)
     })?;
     Some((rolled(angle), gain))
 }

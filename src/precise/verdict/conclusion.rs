@@ -64,7 +64,7 @@ pub fn reliability(
     };
     let by_shape = confidence(best, &listed(NOISE, false), conditioning);
     let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
-    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour tells them apart.
+    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour distinguishes them.
     let shows_turns = color.is_some_and(|color| color.is_used);
     let alternatives = listed(if confidence < SURE { UNSURE } else { NOISE }, shows_turns);
     Ok(Reliability { by_shape, confidence, alternatives })
@@ -89,14 +89,15 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
         residual_m,
     };
     // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
-    // wrong; what it tells is which of several poses is the better one.
+    // wrong; it is evidence of which of several poses is the better one.
     let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
+    let as_fixed = if search.settings.lock_scale { search.conditioning_as_fixed(&best.pose) } else { conditioning };
     let Reliability { confidence, alternatives, .. } = reliability(&found, color, by_image.as_ref(), search)?;
     let certainty = Certainty {
         confidence,
         turn_confidence: color.and_then(|color| color.turn),
         alternatives,
-        uncertainty: conditioning.map(|c| Uncertainty {
+        uncertainty: as_fixed.map(|c| Uncertainty {
             scale: c.scale,
             rotation_deg: c.rotation.0.to_degrees(),
             rotation_axis: c.rotation.1.to_array(),

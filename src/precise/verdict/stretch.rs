@@ -2,7 +2,7 @@
 //!
 //! The result of a search is a similarity. What the search fitted beside it, x = s·R·e^E·p + t with a symmetric E of trace 0
 //! (see [`search::proportions`](crate::precise::search::proportions)), is refined here from that similarity with the
-//! freedom that was asked for, and kept. Lengths that it changes by no more than the evidence tells apart stay as the
+//! freedom that was asked for, and kept. Lengths that it changes by no more than their deviation stay as the
 //! similarity has them.
 
 use glam::{DMat3, DVec3};
@@ -15,7 +15,7 @@ use crate::precise::drawing::equivalence::Equivalence;
 use crate::precise::drawing::pose::{CropPose, MeshFrame};
 use crate::precise::drawing::render::Canvas;
 use crate::precise::options::Proportions as Freedom;
-use crate::precise::scoring::conditioning::{covariance, deviation, fix_roll};
+use crate::precise::scoring::conditioning::{covariance, deviation, fix_roll, gradient_of_scale};
 use crate::precise::search::ascent::{Ascent, ascend};
 use crate::precise::search::problem::Search;
 use crate::precise::search::proportions::{InProportion, PROPORTIONS, Proportions, Shapes, Stretched};
@@ -47,7 +47,7 @@ const LEAST: f64 = 1e-6;
 /// The best proportions of a mesh near a pose; `None` if they are not asked for, or the size of the mesh is given, so that
 /// it is right.
 pub fn stretch(search: &Search, mesh: &Mesh, pose: &CropPose, freedom: Freedom) -> Option<Stretch> {
-    if freedom == Freedom::Keep || search.settings.lock_scale || search.prior.scale.is_some_and(|[a, b]| a == b) {
+    if freedom == Freedom::Keep || search.settings.lock_scale {
         return None;
     }
     let shapes = shapes(&search.equivalence, freedom);
@@ -62,9 +62,7 @@ pub fn stretch(search: &Search, mesh: &Mesh, pose: &CropPose, freedom: Freedom) 
         let mut equations = problem.equations(&at, &score);
         let free_axis = search.equivalence.free_axis(at.pose.rotation);
         free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
-        // log s = size + distance; distance is in units of the size.
-        let mut of_scale = [0.0; PARAMETERS];
-        (of_scale[3], of_scale[6]) = (1.0, libm::exp(at.pose.size));
+        let of_scale = gradient_of_scale(&at.pose);
         uncertainty = deviations_of_lengths(&equations, &of_scale, &shapes)?;
         if grid == FINEST {
             let log_scale = |pose: &CropPose| pose.size + pose.distance;

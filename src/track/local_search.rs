@@ -1,21 +1,18 @@
 //! The evidence of a frame near expected poses, and the pose that fits it best.
 
-use std::rc::Rc;
-
 use glam::Vec3;
 
 use super::detection::Lead;
-use super::evidence::{Evidence, of_mask, of_pose};
+use super::evidence::{Evidence, TrackedMesh, of_mask, of_pose};
 use crate::evidence::frame::Frame;
 use crate::geometry::pinhole::Pinhole;
-use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
 use crate::precise::scoring::score::Score;
 use crate::precise::search::cascade::Subject;
 use crate::precise::search::problem::Search;
 use crate::precise::search::ranking::Found;
-use crate::precise::search::recipe::{FINE, SearchSettings, TRACKED};
+use crate::precise::search::recipe::{FINE, TRACKED};
 use crate::precise::search::refine::Refiner;
 
 /// Most times that the mask of a frame without one is predicted, and how far a pose may be from that of its mask for the next
@@ -24,7 +21,7 @@ const PREDICTIONS: usize = 3;
 const NEAR: f64 = 0.04;
 
 /// The pose found in a frame.
-pub struct Seen {
+pub struct FramePose {
     /// The pose.
     pub found: Found,
     /// The evidence.
@@ -37,10 +34,10 @@ pub struct Seen {
     pub is_predicted: bool,
 }
 
-impl Seen {
+impl FramePose {
     /// The share of the object that the frame shows: of its vertices, those inside the image, times the share of its
     /// silhouette in the image that the mask covers.
-    pub fn shown(&self, frame: &Frame) -> f32 {
+    pub fn shown_share(&self, frame: &Frame) -> f32 {
         let pose = &self.found.pose;
         let (scale, translation) = pose.scale_translation();
         let Pinhole { fx, fy, cx, cy } = frame.camera;
@@ -57,28 +54,20 @@ impl Seen {
     }
 }
 
-/// Finds the object near expected poses.
-pub struct Sight {
-    /// The mesh.
-    pub mesh: Rc<MeshPyramid>,
-    /// Grids and weights.
-    pub settings: SearchSettings,
-}
-
-impl Sight {
+impl TrackedMesh {
     /// The evidence of a frame where its mask is or, without one, where a pose predicts it; `None` if nothing is seen there.
     pub fn evidence(&self, frame: &Frame, expected: &CropPose) -> Option<Evidence> {
         match frame.mask {
-            Some(_) => of_mask(frame, &self.mesh, &self.settings),
-            None => of_pose(frame, expected, &self.mesh, &self.settings),
+            Some(_) => of_mask(frame, self),
+            None => of_pose(frame, expected, self),
         }
         .ok()
         .flatten()
     }
 
-    /// The best pose near the expected ones, of which the first tells where the evidence is; `wide`: also in their
+    /// The best pose near the expected ones, of which the first is where the evidence was taken; `wide`: also in their
     /// neighbourhood.
-    pub fn around(&self, frame: &Frame, evidence: &Evidence, expected: &[CropPose], wide: bool) -> Option<Seen> {
+    pub fn around(&self, frame: &Frame, evidence: &Evidence, expected: &[CropPose], wide: bool) -> Option<FramePose> {
         let first = *expected.first()?;
         let has_mask = frame.mask.is_some();
         let mut evidence = evidence.shared();
@@ -92,7 +81,7 @@ impl Sight {
             for round in 1..PREDICTIONS {
                 let is_last = round + 1 == PREDICTIONS || apart(&from, &found.pose) < NEAR;
                 from = found.pose;
-                evidence = of_pose(frame, &from, &self.mesh, &self.settings).ok().flatten()?;
+                evidence = of_pose(frame, &from, self).ok().flatten()?;
                 found = self.refined(&evidence.search, &[from], !is_last)?;
                 if is_last {
                     break;
@@ -100,7 +89,7 @@ impl Sight {
             }
         }
         let visible = if has_mask { 1.0 } else { visible(&evidence.search, &found.pose) };
-        Some(Seen { found, evidence, lead: None, visible, is_predicted: !has_mask })
+        Some(FramePose { found, evidence, lead: None, visible, is_predicted: !has_mask })
     }
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
@@ -146,7 +135,7 @@ impl Subject for AtItsSize<'_> {
     }
 }
 
-/// What a fit is measured by: the agreement of silhouette and depth.
+/// The measure of a fit: the agreement of silhouette and depth.
 pub fn agreement(score: &Score) -> f32 {
     score.overlap * score.depth
 }

@@ -38,7 +38,7 @@ pub type Ranked = Found<WorldPose, JointScore>;
 
 /// The views on whose evidence poses are refined.
 #[derive(Clone)]
-pub struct Views<'a> {
+pub struct ViewSet<'a> {
     /// Those that take part.
     pub parts: Vec<Part<'a>>,
     /// Whether the size of the object is fixed.
@@ -61,7 +61,7 @@ impl Part<'_> {
     }
 }
 
-impl Subject for Views<'_> {
+impl Subject for ViewSet<'_> {
     type Pose = WorldPose;
     type Score = JointScore;
 
@@ -76,7 +76,7 @@ impl Subject for Views<'_> {
     }
 }
 
-impl<'a> Views<'a> {
+impl<'a> ViewSet<'a> {
     /// The best poses for all views, best first, with their scores on the fine grid.
     pub fn join(&mut self, hypotheses: Vec<WorldPose>) -> Vec<Ranked> {
         let mut kept = self.cascade(&JOINT, hypotheses);
@@ -103,9 +103,9 @@ impl<'a> Views<'a> {
         self.cascade(core::slice::from_ref(stage), vec![pose]).first().map_or(pose, |polished| polished.pose)
     }
 
-    /// The joint objective on the fine grids, for the final numbers.
+    /// The joint objective on the fine grids at a free size, for the final numbers.
     pub fn on_fine_grids(&self) -> Joint<'a> {
-        self.on_grids(FINE)
+        Joint { lock_scale: false, ..self.on_grids(FINE) }
     }
 
     fn on_grids(&self, index: usize) -> Joint<'a> {
@@ -129,7 +129,7 @@ impl<'a> Views<'a> {
 
     /// The pose at the size on which silhouettes and depths agree best, and the standard deviation of that size.
     pub fn fused_size(&mut self, pose: WorldPose) -> Option<(WorldPose, f64)> {
-        let mut joint = Self { lock_scale: false, ..self.clone() }.on_fine_grids();
+        let mut joint = self.on_fine_grids();
         let (size, moved) = SizeEvidence::fused(&mut joint, &pose, [SILHOUETTE_ERROR, DEPTH_ERROR])?;
         // Each view by itself, where its own evidence puts the object: that does not depend on errors of the camera poses.
         let mut canvas = Canvas::default();
@@ -142,7 +142,7 @@ impl<'a> Views<'a> {
             apart += view.camera.place(&alone.pose).center.distance_squared(moved.center);
             views.extend(SizeEvidence::at(view.objective, &alone.pose, SILHOUETTE_ERROR));
         }
-        // What the cameras are off, the distances between the sides that they see are off.
+        // Errors of the cameras are errors of the distances between the sides that they see.
         let apart = (apart / joint.views.len().max(1) as f64).sqrt() * libm::exp(-moved.log_scale);
         let size = size.with_error(apart);
         let (log_scale, sd) = match mean(views.into_iter()) {
