@@ -1,10 +1,10 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
-import { plainArgument } from "./input/border.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
+import { plainArgument } from "./values/border.js";
 import { failure, invalidArgument, Sim3AlignError } from "./values/error.js";
 import { isRecord, withoutUndefined } from "./values/values.js";
 

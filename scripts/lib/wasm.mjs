@@ -31,7 +31,7 @@ export const wasmModules = [
   { name: "formats", crate: "sim3align-module-formats", budget: 260_000 },
   { name: "depth-files", crate: "sim3align-depth-files", budget: 242_000 },
   { name: "splats", crate: "sim3align-splats", budget: 62_000 },
-  { name: "physics", crate: "sim3align-module-physics", budget: 70_000 },
+  { name: "physics", crate: "sim3align-module-physics", budget: 72_000 },
 ];
 
 const optimise = ["-O3", "--strip-debug", "--strip-producers", "--strip-target-features"];

@@ -1,11 +1,11 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
 
 import { onAbort } from "../concurrency/on-abort.js";
-import { plainArgument, plainOptions } from "../input/border.js";
 import type { LazyModules, WasmModules } from "../modules/modules.js";
 import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "../types/platform.js";
+import { plainArgument } from "../values/border.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isKind, isRecord, withoutUndefined } from "../values/values.js";
+import { isKind, isRecord, record, withoutUndefined } from "../values/values.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {
@@ -40,7 +40,7 @@ export interface BundledAssets {
 
 /** Options without undefined properties. The core checks names and values. */
 export function checkedOptions<T extends object>(options: T | undefined) {
-  const own = options === undefined ? ({} as T) : plainOptions(options);
+  const own = options === undefined ? ({} as T) : (record("options", options, "an object with options") as T);
   const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
   if (misplaced === undefined) return withoutUndefined(own);
   const found = `\`${misplaced}\`, which is an option of createAligner`;

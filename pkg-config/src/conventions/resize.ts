@@ -87,10 +87,11 @@ export function resizeCamera(
   camera: CameraInput,
   size: ImageSize & { fromWidth: number; fromHeight: number },
 ): PinholeCamera & ImageSize {
-  const { width, height } = sizeOf("size", size);
+  const sizes = record("size", size, "{ fromWidth, fromHeight, width, height }");
+  const { width, height } = sizeOf("size", sizes);
   const from = {
-    width: whole("size.fromWidth", size.fromWidth, 1),
-    height: whole("size.fromHeight", size.fromHeight, 1),
+    width: whole("size.fromWidth", sizes.fromWidth, 1),
+    height: whole("size.fromHeight", sizes.fromHeight, 1),
   };
   const { fx, fy, cx, cy } = pinholeOf("camera", camera, from);
   const [x, y] = [width / from.width, height / from.height];
@@ -108,7 +109,7 @@ export function resizeCamera(
  * @throws {@link Sim3AlignError} `EMPTY_MASK` if no pixel is the object
  */
 export function maskBox(mask: PixelArray<MaskPixels>, options: { marginPx?: number } = {}): PixelBox {
-  const { marginPx = 0 } = optionsOf(options);
+  const { marginPx = 0 } = optionsOf(options, ["marginPx"]);
   const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
   const margin = whole("options.marginPx", marginPx, 0);
   let [left, top, right, bottom] = [width, height, -1, -1];
@@ -151,9 +152,11 @@ export interface CropInput {
  * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that exceeds them
  */
 export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
-  const { depth, mask, pointMap, image, camera } = record("input", input, "{ depth, mask, camera }") as CropInput;
-  const { width, height } = sizeOf("box", box);
-  const [left, top] = [whole("box.left", box.left, 0), whole("box.top", box.top, 0)];
+  const given = record("input", input, "{ depth, mask, camera }");
+  const { depth, mask, pointMap, image, camera } = given as CropInput;
+  const region = record("box", box, "{ left, top, width, height }");
+  const { width, height } = sizeOf("box", region);
+  const [left, top] = [whole("box.left", region.left, 0), whole("box.top", region.top, 0)];
   const images = Object.entries({ depth, mask, pointMap, image }).filter(([, part]) => part !== undefined);
   const [first] = images;
   if (first === undefined) {
@@ -182,7 +185,7 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
       image: [maskKinds, hasAlpha ? 4 : 3],
     },
   };
-  const cropped = { ...input } as Record<string, unknown>;
+  const cropped = { ...given };
   for (const [name, part] of images) {
     const [kinds, channels] = formats[name] as (typeof formats)[string];
     const pixels = pixelsOf<DepthPixels | MaskPixels>(`input.${name}`, part, kinds, channels);
@@ -192,5 +195,5 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
     const { fx, fy, cx, cy } = pinholeOf("input.camera", camera, size);
     cropped.camera = { fx, fy, cx: cx - left, cy: cy - top, width, height };
   }
-  return cropped as T;
+  return cropped as unknown as T;
 }

@@ -2,7 +2,7 @@
 
 import type { CocoRle, PixelArray } from "../input/types.js";
 import { describe, failure, type Sim3AlignError } from "../values/error.js";
-import { finiteNumbers, flattened, isRecord, record, whole } from "../values/values.js";
+import { finiteNumbers, flattened, isRecord, optionsOf, record, whole } from "../values/values.js";
 import { type JsonFile, numbersIn, parsedJson } from "./json.js";
 import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 
@@ -23,7 +23,8 @@ export function toCocoRle(
   mask: PixelArray<MaskPixels>,
   options: { compressed: false },
 ): CocoRle & { counts: readonly number[] };
-export function toCocoRle(mask: PixelArray<MaskPixels>, { compressed = true }: { compressed?: boolean } = {}): CocoRle {
+export function toCocoRle(mask: PixelArray<MaskPixels>, options: { compressed?: boolean } = {}): CocoRle {
+  const { compressed = true } = optionsOf(options, ["compressed"]);
   const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
   const counts: number[] = [];
   let run = 0;
