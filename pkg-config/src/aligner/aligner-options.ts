@@ -3,9 +3,8 @@
 import { onAbort } from "../concurrency/on-abort.js";
 import type { LazyModules, WasmModules } from "../modules/modules.js";
 import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "../types/platform.js";
-import { plainArgument } from "../values/border.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isKind, isRecord, record, withoutUndefined } from "../values/values.js";
+import { checkNames, isKind, record, withoutUndefined } from "../values/values.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {
@@ -57,14 +56,10 @@ const alignerOptions: readonly string[] = [
 
 /** The options of `createAligner`. Each is checked where it is used. */
 export function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
-  if (!isRecord(options)) {
-    throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
-  }
-  const own = plainArgument("options", options);
-  const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
-  if (unknown === undefined) return own;
+  const own = record("options", options, "an object with options");
   const remedy = "Check the spelling. Options of a call, such as `quality`, belong to the call.";
-  throw failure("UNKNOWN_OPTION", unknown, "an unknown option", `one of ${alignerOptions.join(", ")}`, remedy);
+  checkNames("", own, alignerOptions, remedy, "UNKNOWN_OPTION");
+  return own;
 }
 
 /** The function of the caller that creates workers. */

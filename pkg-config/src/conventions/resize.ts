@@ -13,6 +13,7 @@ import {
   sizeOf,
 } from "../formats/pixels.js";
 import type { CameraInput, PinholeCamera, PixelArray } from "../input/types.js";
+import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { optionsOf, record, whole } from "../values/values.js";
 
@@ -93,7 +94,7 @@ export function resizeCamera(
     width: whole("size.fromWidth", sizes.fromWidth, 1),
     height: whole("size.fromHeight", sizes.fromHeight, 1),
   };
-  const { fx, fy, cx, cy } = pinholeOf("camera", camera, from);
+  const { fx, fy, cx, cy } = pinholeOf("camera", plainArgument("camera", camera), from);
   const [x, y] = [width / from.width, height / from.height];
   return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5, width, height };
 }

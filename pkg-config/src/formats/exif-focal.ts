@@ -92,9 +92,15 @@ const MAX_DIFFERENCE = 0.1;
 export function focalFromExif(exif: Exif, size: ImageSize): ExifFocal | undefined {
   const { make: _, model: __, ...given } = record("exif", exif, "the result of readExif");
   const numbers = Object.entries(withoutUndefined(given)).map(([name, value]) => [name, finite(`exif.${name}`, value)]);
-  const { width, height, orientation, ...camera } = Object.fromEntries(numbers) as Partial<Exif>;
-  const { width: across, height: down } = record("size", size, "{ width, height }");
-  const image = [positive("size.width", across), positive("size.height", down)] as const;
+  const { width, height } = record("size", size, "{ width, height }");
+  const image = { width: positive("size.width", width), height: positive("size.height", height) };
+  return focalFrom(Object.fromEntries(numbers), image);
+}
+
+/** The same of EXIF data that have been read. */
+export function focalFrom(exif: Partial<Exif>, size: ImageSize): ExifFocal | undefined {
+  const { width, height, orientation, ...camera } = exif;
+  const image = [size.width, size.height] as const;
   const known = width !== undefined && height !== undefined && width > 0 && height > 0;
   const isTurned = (orientation ?? 1) >= 5;
   const original = known ? (isTurned ? ([height, width] as const) : ([width, height] as const)) : image;

@@ -92,8 +92,7 @@ function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   const state = states.get(mesh);
   if (state === undefined) {
     const found = "a prepared mesh of another copy of sim3align, or a proxy of one";
-    const remedy =
-      "Import what prepares and what aligns from the same entry, sim3align or sim3align/inline; unwrap a proxy first.";
+    const remedy = "Prepare and align with the same entry of the package, and unwrap proxies.";
     throw failure("INVALID_ARGUMENT", "mesh", found, "a prepared mesh of this copy", remedy);
   }
   if (state === "disposed") {

@@ -3,7 +3,7 @@
 import { pinholeOf } from "../formats/pinhole.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { CameraInput } from "../input/types.js";
-import { withLive } from "../values/border.js";
+import { plainArgument, withLive } from "../values/border.js";
 import { failure } from "../values/error.js";
 import { positive, record } from "../values/values.js";
 import type { PerspectiveCameraLike } from "./types.js";
@@ -51,7 +51,7 @@ export function cameraFromPinhole(camera: CameraInput, lens: LensOptions): Three
   if (!(far > near)) {
     throw failure("INVALID_ARGUMENT", "lens.far", `${far}`, `a distance beyond near, ${near}`, "Swap them.");
   }
-  const { fx, fy, cx, cy } = pinholeOf("camera", camera, { width, height });
+  const { fx, fy, cx, cy } = pinholeOf("camera", plainArgument("camera", camera), { width, height });
   const projectionMatrix = new Float64Array(16);
   projectionMatrix[0] = (2 * fx) / width;
   projectionMatrix[5] = (2 * fy) / height;

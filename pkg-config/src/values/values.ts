@@ -34,12 +34,17 @@ export const stringsIn = (value: unknown): string[] =>
 /**
  * Rejects misspelt properties, which would otherwise be ignored.
  * @param prefix of their names in errors
- * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
+ * @throws {@link Sim3AlignError} with the code
  */
-export function checkNames(prefix: string, object: object, names: readonly string[], remedy: string): void {
+export function checkNames(
+  prefix: string,
+  object: object,
+  names: readonly string[],
+  remedy: string,
+  code: "INVALID_ARGUMENT" | "UNKNOWN_OPTION" = "INVALID_ARGUMENT",
+): void {
   const unknown = Object.keys(object).find((name) => !names.includes(name));
-  if (unknown === undefined) return;
-  throw failure("INVALID_ARGUMENT", `${prefix}${unknown}`, "an unknown property", names.join(", "), remedy);
+  if (unknown !== undefined) throw failure(code, prefix + unknown, "an unknown property", names.join(", "), remedy);
 }
 
 /** Three numbers: x, y, z. */
@@ -130,19 +135,23 @@ export function oneOf<T extends string>(
  * @throws {@link Sim3AlignError} `UNKNOWN_OPTION` for a name that is not among these, which would otherwise be ignored
  */
 export function optionsOf<T extends object>(options: T, names: readonly (keyof T & string)[]): T {
-  return withoutUndefined(knownOptions(record("options", options, "an object with options") as T, names)) as T;
+  return withoutUndefined(knownOptions(record("options", options, OPTIONS) as T, names)) as T;
 }
 
 /** The same for options that contain objects which are alive. */
 export function knownOptions<T extends object>(options: T, names: readonly (keyof T & string)[]): T {
-  if (!isRecord(options)) throw invalidArgument("options", options, "an object with options", "Pass { name: value }.");
-  const unknown = Object.keys(options).find((name) => !(names as readonly string[]).includes(name));
-  if (unknown === undefined) return options;
-  throw failure("UNKNOWN_OPTION", `options.${unknown}`, "an unknown option", names.join(", "), "Check the spelling.");
+  checkNames("options.", part("options", options, OPTIONS), names, "Check the spelling.", "UNKNOWN_OPTION");
+  return options;
 }
 
+const OPTIONS = "an object with options";
+
 /** An object with properties, read once: no getter of it runs later. */
-export function record(argument: string, value: unknown, expected: string): Record<string, unknown> {
-  if (isRecord(value)) return plainArgument(argument, value);
+export const record = (argument: string, value: unknown, expected: string): Record<string, unknown> =>
+  plainArgument(argument, part(argument, value, expected));
+
+/** An object with properties that has been read: a part of an argument, or an argument behind the border. */
+export function part(argument: string, value: unknown, expected: string): Record<string, unknown> {
+  if (isRecord(value)) return value;
   throw failure("INVALID_ARGUMENT", argument, describe(value), expected, "Pass an object with these properties.");
 }
