@@ -4,9 +4,8 @@ import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
-import { plainArgument } from "./values/border.js";
-import { failure, invalidArgument, Sim3AlignError } from "./values/error.js";
-import { isRecord, withoutUndefined } from "./values/values.js";
+import { failure, Sim3AlignError } from "./values/error.js";
+import { isRecord, record, withoutUndefined } from "./values/values.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
@@ -207,8 +206,7 @@ function decoded(uri: string): string {
 
 /** The files of a call, read once. */
 export function ownFiles(files: CaseFiles): CaseFiles {
-  if (isRecord(files)) return plainArgument("files", files);
-  throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
+  return record("files", files, "files by name") as CaseFiles;
 }
 
 /** The error for a missing file of a case. */

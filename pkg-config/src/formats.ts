@@ -88,7 +88,7 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<PixelArray<Uint8Array>> {
-  if (isRecord(file)) return fromCocoRle(plainArgument("rle", file as unknown as CocoRle));
+  if (isRecord(file)) return fromCocoRle(file as unknown as CocoRle);
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return call(bytes, (readers) => readers.readMask(bytes));

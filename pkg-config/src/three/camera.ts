@@ -3,9 +3,10 @@
 import { pinholeOf } from "../formats/pinhole.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { CameraInput } from "../input/types.js";
-import { plainArgument, withLive } from "../values/border.js";
+import { plainArgument } from "../values/border.js";
 import { failure } from "../values/error.js";
 import { positive, record } from "../values/values.js";
+import { withLive } from "./live.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
 /** The image size, and the near and far planes. */

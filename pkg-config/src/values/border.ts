@@ -113,20 +113,6 @@ function proxy(argument: string, value: unknown, kind: string): Sim3AlignError {
   return invalidArgument(withoutInput(argument), value, `${kind} that is no proxy`, remedy);
 }
 
-/**
- * Reads or sets objects that are alive, such as those of three.js: nothing of them is copied.
- * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for what they throw, and for what they lack
- */
-export function withLive<T>(argument: string, expected: string, work: () => T): T {
-  try {
-    return work();
-  } catch (cause) {
-    if (cause instanceof Sim3AlignError) throw cause;
-    const found = `one on which a call throws ${messageOf(cause)}`;
-    throw failure("INVALID_ARGUMENT", argument, found, expected, "Pass an object of three.js.", cause);
-  }
-}
-
 function unreadable(argument: string, cause: unknown): Sim3AlignError {
   const found = `a property that throws ${messageOf(cause)}`;
   const remedy = "The property is a getter or belongs to a proxy: see the cause of this error.";
