@@ -42,8 +42,8 @@ export function checkedOptions<T extends object>(options: T | undefined) {
   const own = options === undefined ? ({} as T) : (record("options", options, "an object with options") as T);
   const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
   if (misplaced === undefined) return withoutUndefined(own);
-  const found = `\`${misplaced}\`, which is an option of createAligner`;
-  const remedy = `Pass it once, when the aligner is created: createAligner({ ${misplaced} }).`;
+  const found = "an option of createAligner";
+  const remedy = `Pass it to createAligner({ ${misplaced} }).`;
   throw failure("UNKNOWN_OPTION", `options.${misplaced}`, found, "options of this call", remedy);
 }
 

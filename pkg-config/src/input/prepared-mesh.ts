@@ -91,9 +91,9 @@ export class PreparedMesh {
 function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   const state = states.get(mesh);
   if (state === undefined) {
-    const found = "a prepared mesh of another copy of sim3align, or a proxy of one";
-    const remedy = "Prepare and align with the same entry of the package, and unwrap proxies.";
-    throw failure("INVALID_ARGUMENT", "mesh", found, "a prepared mesh of this copy", remedy);
+    const found = "one of another copy of sim3align, or a proxy of one";
+    const remedy = "Prepare and align by one entry, and unwrap proxies.";
+    throw failure("INVALID_ARGUMENT", "mesh", found, "one of this copy", remedy);
   }
   if (state === "disposed") {
     const remedy = "Prepare it again with prepareMesh(), or dispose it later.";

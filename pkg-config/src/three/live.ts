@@ -10,7 +10,7 @@ export function withLive<T>(argument: string, expected: string, work: () => T): 
     return work();
   } catch (cause) {
     if (cause instanceof Sim3AlignError) throw cause;
-    const found = `one on which a call throws ${messageOf(cause)}`;
-    throw failure("INVALID_ARGUMENT", argument, found, expected, "Pass an object of three.js.", cause);
+    const found = `what throws ${messageOf(cause)}`;
+    throw failure("INVALID_ARGUMENT", argument, found, expected, "Pass that of three.js.", cause);
   }
 }

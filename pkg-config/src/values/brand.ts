@@ -7,15 +7,15 @@ const brandOf = (name: string) => Symbol.for(`sim3align.${name}`);
 
 /** Whether an object is of the class with this name, of any copy of the package. Throws what a proxy throws. */
 export const isBranded = (value: unknown, name: string): boolean =>
-  typeof value === "object" && value !== null && brandOf(name) in value;
+  Object(value) === value && brandOf(name) in (value as object);
 
 /** Makes `instanceof` of a class accept the objects of every copy of the package. Classes that extend it keep their own. */
 export function brand(type: abstract new (...args: never[]) => object, name: string): void {
   Object.defineProperty(type.prototype, brandOf(name), { value: true });
   Object.defineProperty(type, Symbol.hasInstance, {
     value(this: unknown, value: unknown): boolean {
-      if (this === type) return isBranded(value, name);
-      return Function.prototype[Symbol.hasInstance].call(this as CallableFunction, value);
+      const isOfThis = () => Object.prototype.isPrototypeOf.call((this as typeof type).prototype, value as object);
+      return isBranded(value, name) && (this === type || isOfThis());
     },
   });
 }
