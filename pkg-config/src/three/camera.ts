@@ -89,7 +89,7 @@ export function cameraFromPinhole(camera: CameraInput, lens: LensOptions): Three
  */
 export function applyPinhole(target: PerspectiveCameraLike, camera: CameraInput, lens: LensOptions): void {
   const { fov, aspect, near, far, view } = cameraFromPinhole(camera, lens);
-  withLive("target", "a PerspectiveCamera of three.js", () => {
+  withLive("target", "a PerspectiveCamera", () => {
     Object.assign(target, { fov, near, far, zoom: 1, filmOffset: 0 });
     target.setViewOffset(view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height);
     // setViewOffset has set the aspect for square pixels.

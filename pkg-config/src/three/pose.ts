@@ -17,7 +17,7 @@ export interface PoseOptions {
   camera?: PlacedObject | undefined;
 }
 
-const OBJECT = "an Object3D of three.js";
+const OBJECT = "an Object3D";
 const framesOfScenes = ["opencv", "opengl"] as const;
 
 /**
