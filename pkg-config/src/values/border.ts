@@ -115,6 +115,6 @@ function proxy(argument: string, value: unknown, kind: string): Sim3AlignError {
 
 function unreadable(argument: string, cause: unknown): Sim3AlignError {
   const found = `a property that throws ${messageOf(cause)}`;
-  const remedy = "The property is a getter or belongs to a proxy: see the cause of this error.";
+  const remedy = "It is a getter, or that of a proxy: see the cause.";
   return failure("INVALID_ARGUMENT", withoutInput(argument), found, "a property that can be read", remedy, cause);
 }
