@@ -105,11 +105,11 @@ function propertyOf(argument: string, value: object, name: string): unknown {
 
 function lengthOf(argument: string, array: readonly unknown[]): number {
   if (array.length <= MAX_LENGTH) return array.length;
-  throw invalidArgument(withoutInput(argument), array, `at most ${MAX_LENGTH} values`, "Pass a typed array.");
+  throw invalidArgument(withoutInput(argument), array, `at most ${MAX_LENGTH} values`, "Pass typed arrays.");
 }
 
 function proxy(argument: string, value: unknown, kind: string): Sim3AlignError {
-  const remedy = "Pass the array itself: libraries that wrap objects in proxies have a function that unwraps them.";
+  const remedy = "Pass the array itself: libraries that wrap objects can unwrap them.";
   return invalidArgument(withoutInput(argument), value, `${kind} that is no proxy`, remedy);
 }
 
