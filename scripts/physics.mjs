@@ -1,5 +1,5 @@
-/** `npm run physics`: exports scenes for simulators and measures which bodies stay at rest there; see `--help`. */
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+/** `npm run physics`: exports scenes for simulators and measures which bodies stay there, as they were found; see `--help`. */
+import { existsSync, mkdirSync, rmSync } from "node:fs";
 import { basename, join } from "node:path";
 import { command } from "./bench/command.mjs";
 import { fixed, markdownTable, median } from "./bench/table.mjs";
@@ -9,8 +9,9 @@ import { at, packageDir } from "./lib/paths.mjs";
 import { runPython } from "./lib/python.mjs";
 import { run } from "./lib/run.mjs";
 
-/** @typedef {{ name: string, fixed: boolean, movedM: number, turnedDeg: number, errorsMm?: [found: number, exported: number, after: number] }} Body */
-/** @typedef {{ folder: string, mujoco: { bodies: Body[] }, pybullet: { bodies: Body[] } }} Simulated */
+/** How far a body is from where it was found. @typedef {[rotationDeg: number, farthestPointMm: number]} Farther */
+/** @typedef {{ name: string, fixed: boolean, movedM: number, turnedDeg: number }} Body */
+/** @typedef {{ folder: string, mujoco: { bodies: (Body & { exported: Farther, after: Farther })[] }, pybullet: { bodies: Body[] } }} Simulated */
 
 /** A body that has moved less has stayed. @param {Body} body */
 const stays = ({ movedM, turnedDeg }) => movedM <= 0.005 && turnedDeg <= 5;
@@ -25,22 +26,8 @@ const isScene = (folder) => existsSync(join(folder, "objects"));
  */
 async function exportScene(scene, to) {
   mkdirSync(to, { recursive: true });
-  const json = join(to, "results.json");
   const files = ["--mjcf", join(to, "mjcf"), "--urdf", join(to, "urdf"), "--usd", join(to, "scene.usda")];
-  await run(process.execPath, [join(packageDir, "cli", "main.js"), "scene", scene, "--json", json, ...files]);
-  const [found] = Object.values(JSON.parse(readFileSync(json, "utf8")));
-  const sim3 = (/** @type {any} */ { scale, rotation, translation }) => ({
-    scale,
-    rotation: rotation.flat(),
-    translation,
-  });
-  const truths = Object.entries(found.objects).flatMap(([name, aligned]) => {
-    const file = join(scene, "objects", name, "gt.json");
-    if (!existsSync(file) || aligned.error !== undefined) return [];
-    const truth = JSON.parse(readFileSync(file, "utf8"));
-    return [[name.replace(/[^A-Za-z0-9]+/g, "_"), { aligned: sim3(aligned), truth: sim3(truth) }]];
-  });
-  writeFileSync(join(to, "truth.json"), JSON.stringify(Object.fromEntries(truths)));
+  await run(process.execPath, [join(packageDir, "cli", "main.js"), "scene", scene, ...files]);
   return to;
 }
 
@@ -66,20 +53,23 @@ async function measure(folders, { seconds, python }) {
   console.log(
     `\n${markdownTable([`${seconds} s of physics`, "scenes at rest", "free bodies at rest", "moved, median mm"], rows)}`,
   );
-  const errors = results.flatMap(({ folder, mujoco }) =>
-    mujoco.bodies.flatMap(({ name, errorsMm }) =>
-      errorsMm === undefined ? [] : [[`${basename(folder)}/${name}`, ...errorsMm.map((mm) => fixed(mm, 1))]],
-    ),
+  const bodies = results.flatMap(({ folder, mujoco }) =>
+    mujoco.bodies.map(({ name, fixed: isFixed, exported, after }) => {
+      const cells = [...exported, ...after].map((number, i) => fixed(number, i % 2 === 0 ? 2 : 1));
+      return [`${basename(folder)}/${name}`, isFixed ? "fixed" : "free", ...cells];
+    }),
   );
-  if (errors.length > 0)
-    console.log(`\n${markdownTable(["centre, mm from the true one", "found", "exported", "after"], errors)}`);
+  const measures = ["exported, °", "farthest point, mm", `after ${seconds} s, °`, "farthest point, mm"];
+  console.log(`\n${markdownTable(["from where it was found", "body", ...measures], bodies)}`);
 }
 
 await command("physics", (program) =>
   program
-    .description("Exports scenes for simulators, and measures which bodies stay within 5 mm and 5° under physics.")
-    .argument("[folder...]", "scene folders, or folders of them; true poses are compared; by default a sample")
-    .option("--seconds <n>", "of physics", "1")
+    .description(
+      "Exports scenes for simulators, and measures which bodies stay within 5 mm and 5° under physics, and how far each is then from where it was found.",
+    )
+    .argument("[folder...]", "scene folders, or folders of them; by default a sample")
+    .option("--seconds <n>", "of physics", "2")
     .option("--python <program>", "the Python that makes the environment of the simulators", "python3")
     .action(measure),
 );

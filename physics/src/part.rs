@@ -71,6 +71,25 @@ impl ConvexPart {
         gap.max_element() <= distance
     }
 
+    /// What is left of it at heights of at least `height` along a direction; `None` if that has no volume.
+    pub fn above(&self, up: DVec3, height: f64) -> Option<Self> {
+        let over = |p: DVec3| up.dot(p) - height;
+        let mut points: Vec<DVec3> = self.positions.iter().copied().filter(|p| over(*p) >= 0.0).collect();
+        if points.len() == self.positions.len() {
+            return Some(self.clone());
+        }
+        for [a, b, c] in self.corners() {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                let (low, high) = (over(from), over(to));
+                // Each edge belongs to two triangles, once in each direction.
+                if low < 0.0 && high > 0.0 {
+                    points.push(from.lerp(to, low / (low - high)));
+                }
+            }
+        }
+        Self::hull(&points)
+    }
+
     /// With all vertices moved.
     pub fn mapped(&self, map: impl Fn(DVec3) -> DVec3) -> Self {
         Self { positions: self.positions.iter().map(|p| map(*p)).collect(), triangles: self.triangles.clone() }

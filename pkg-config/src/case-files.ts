@@ -1,12 +1,11 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
-import { plainArgument } from "./input/border.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
-import { failure, invalidArgument, Sim3AlignError } from "./values/error.js";
-import { isRecord, withoutUndefined } from "./values/values.js";
+import { failure, Sim3AlignError } from "./values/error.js";
+import { isRecord, record, withoutUndefined } from "./values/values.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
@@ -224,8 +223,7 @@ export function onlyFile(
 
 /** The files of a call, read once. */
 export function ownFiles(files: CaseFiles): CaseFiles {
-  if (isRecord(files)) return plainArgument("files", files);
-  throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
+  return record("files", files, "files by name") as CaseFiles;
 }
 
 /** The error for a missing file of a case. */

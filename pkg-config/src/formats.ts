@@ -9,7 +9,6 @@ import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./form
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
-import { plainArgument, plainOptions } from "./input/border.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
@@ -30,7 +29,8 @@ import { fileReaders, formatsModule } from "./modules/readers.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type { WasmSource } from "./types/platform.js";
-import { isRecord, withoutUndefined } from "./values/values.js";
+import { plainArgument } from "./values/border.js";
+import { isRecord, optionsOf } from "./values/values.js";
 
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
@@ -79,7 +79,7 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = {}): Promise<DepthImage> {
-  const given = optionsOf(options);
+  const given = optionsOf(options, ["depthScale", "integerDepthScale", "depthKind"]);
   const bytes = await requiredBytes("file", file);
   return decodeDepth("file", bytes, given, fileReaders);
 }
@@ -91,7 +91,7 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<PixelArray<Uint8Array>> {
-  if (isRecord(file)) return fromCocoRle(plainArgument("rle", file as unknown as CocoRle));
+  if (isRecord(file)) return fromCocoRle(file as unknown as CocoRle);
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return call(bytes, (readers) => readers.readMask(bytes));
@@ -137,7 +137,7 @@ export async function readMesh(
     decodeImage?: DecodeImage | undefined;
   } = {},
 ): Promise<MeshFromFile> {
-  const given = optionsOf(options);
+  const given = optionsOf(options, ["format", "resources", "colors"]);
   const bytes = await requiredBytes("file", file);
   return decodeMesh("file", bytes, given, fileReaders);
 }
@@ -159,7 +159,7 @@ export async function externalResources(file: EncodedBytes): Promise<ExternalRes
  * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of an image of another shape
  */
 export async function readCamera(file: CameraFileInput, options: ReadCameraOptions = {}): Promise<CameraFile> {
-  const given: ReadCameraOptions = optionsOf(options);
+  const given = optionsOf(options, ["width", "height", "imageId"]);
   return parseCameraFile(await jsonOf("camera", file), given);
 }
 
@@ -184,7 +184,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<Case> {
-  return caseFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+  return caseFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
 }
 
 /**
@@ -198,7 +198,7 @@ export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {})
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
-  return sceneFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+  return sceneFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
 }
 
 /**
@@ -216,15 +216,16 @@ export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}
  * `fromSam3d` with the name of the file
  */
 export async function readSam3d(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
-  return sam3dFrom(ownFiles(files), optionsOf(settings), () => formatsModule.load());
+  return sam3dFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
 }
+
+const caseOptions = (settings: ReadCaseOptions) =>
+  optionsOf(settings, ["depthScale", "imageId", "resizeMask", "depthKind", "image"]);
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {
   const given = plainArgument(argument, file);
   return typeof given === "string" || isRecord(given) || Array.isArray(given) ? given : requiredBytes("file", given);
 }
-
-const optionsOf = <T extends object>(options: T) => withoutUndefined(plainOptions(options));
 
 const call = <T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> =>
   callReader(() => formatsModule.load(), "file", bytes, read);

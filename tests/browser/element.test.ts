@@ -1,10 +1,13 @@
 /** The custom element `<sim3-align>`, its page for iframes, and scenes by address. */
 import assert from "node:assert/strict";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { test } from "node:test";
 import { zipSync } from "fflate";
 import type { Page } from "playwright-core";
 import { browserFor, WEBGL } from "../support/browser.js";
 import { elementFolder, servedFolder } from "../support/element-host.js";
+import { installDir } from "../support/environment.js";
 import { type Files, files, inFolder, jsonFile, seen } from "../support/page-files.js";
 import { mesh, truth } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
@@ -221,26 +224,34 @@ test("src names a zip archive, a session or an index, and what cannot be opened 
 test("an iframe is controlled by messages of its parent's origin, and of no other", async () => {
   const other = await serve(servedFolder);
   const { page } = await browser.open(`${elementFolder}/frame.html?readonly`);
+  const own = new URL(page.url()).origin;
+  // The page of the site of the frame, which names the parent.
+  const html = readFileSync(join(servedFolder, elementFolder, "frame.html"), "utf8");
+  const trusting = html
+    .replace('content=""', `content="https://app.example ${own}"`)
+    .replace("./frame.js", `/${elementFolder}/frame.js`);
+  const name = `frame-${new URL(other.url).port}.html`;
+  writeFileSync(join(installDir, name), trusting);
   try {
-    const framed = async (origin: string) => {
+    const framed = async (path: string) => {
       await page.setContent("<iframe width=900 height=600></iframe>");
       await page.evaluate(
-        ([url, folder, own]) => {
+        ([url, path]) => {
           window.told = [];
           addEventListener("message", ({ data, origin }) =>
             window.told.push({ of: origin, type: data.type, detail: data }),
           );
           const frame = document.querySelector("iframe") as HTMLIFrameElement;
-          frame.src = `${url}${folder}/frame.html${own === "" ? "" : `?origin=${encodeURIComponent(own)}`}`;
+          frame.src = `${url}${path}`;
           return new Promise((resolve) => {
             frame.onload = resolve;
           });
         },
-        [other.url, elementFolder, origin] as const,
+        [other.url, path] as const,
       );
     };
     const from = new URL(other.url).origin;
-    await framed(new URL(page.url()).origin);
+    await framed(`install-test/${name}`);
     await told(page, from, "sim3align:loaded");
     await giveArrays(page);
     await page.evaluate((origin) => {
@@ -258,8 +269,8 @@ test("an iframe is controlled by messages of its parent's origin, and of no othe
     assert.equal(answer.results[0]?.name, "blob");
     assert.ok((answer.results[0]?.confidence ?? 0) > 0.5);
     assert.equal((await told<{ id: number }>(page, from, "sim3align:error")).id, 6);
-    // Without its parent's origin, the frame trusts its own only: it neither tells nor listens.
-    await framed("");
+    // Where the site does not name it, its parent is told nothing and not listened to, whatever the address of the frame says.
+    await framed(`${elementFolder}/frame.html?origin=${encodeURIComponent(own)}`);
     const frame = page.frames().find((one) => one.url().startsWith(other.url));
     await frame?.waitForSelector("sim3-align");
     const next = await frame?.evaluateHandle(() => ({

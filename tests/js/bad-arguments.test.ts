@@ -1,9 +1,10 @@
 /** Bad arguments of every call: a typed error with its code, the argument, and what to do; and an aligner that works on. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { type AlignInput, type AlignOptions, createAligner, type Sim3Like } from "sim3align";
+import { type AlignInput, type AlignOptions, createAligner, Sim3AlignError, type Sim3Like } from "sim3align";
 import { type Refusals, refuses, rejectsWith } from "../support/errors.js";
 import { glb, gltfJson, png } from "../support/files.js";
+import { entries, helperCalls } from "../support/helper-calls.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 import { poses, tableScene, tableView } from "../support/table.js";
@@ -201,5 +202,84 @@ test("memory that is detached, getters that throw, and what cannot be sent, with
     await rejectsWith(() => one.align(input, { seed: Symbol("s") as never }), "INVALID_OPTION options.seed");
     const reactive = new Proxy(input, { get: (target, name) => Reflect.get(target, name) });
     assert.deepEqual(withoutTimes(await one.align(reactive, quick)), expected, "a forwarding proxy is its target");
+  }
+});
+
+/** What no function takes in place of an object or a list, and mostly not in place of anything else. */
+const junk: readonly (() => unknown)[] = [
+  ...[null, 5, Number.NaN, "junk", Symbol("junk"), true, 10n].map((value) => () => value),
+  ...[() => ({}), () => [], () => new Map(), () => () => 1, () => [[], null], () => ({ length: 2 ** 40 })],
+  () => new Uint8Array(3),
+  () => {
+    const detached = new Float32Array(3);
+    structuredClone(detached, { transfer: [detached.buffer] });
+    return detached;
+  },
+  () => Object.defineProperty({}, "scale", { enumerable: true, get: () => assert.fail("a getter") }),
+  () => new Proxy({}, { get: () => assert.fail("a trap"), ownKeys: () => assert.fail("a trap") }),
+  () => new Proxy(new Float32Array(3), {}),
+];
+
+/** A value with one of its parts, or the whole, replaced; the paths of parts up to some levels. */
+function* damaged(value: unknown, levels: number): Generator<[where: string, make: () => unknown]> {
+  for (const [i, make] of junk.entries()) yield [` as junk ${i}`, make];
+  if (levels === 0 || typeof value !== "object" || value === null || ArrayBuffer.isView(value)) return;
+  for (const [name, part] of Object.entries(value)) {
+    const withPart = (other: object) =>
+      Array.isArray(value)
+        ? value.map((item, i) => (`${i}` === name && "value" in other ? other.value : item))
+        : Object.defineProperty({ ...value }, name, { enumerable: true, ...other });
+    for (const [where, make] of damaged(part, levels - 1))
+      yield [`.${name}${where}`, () => withPart({ value: make() })];
+    if (!Array.isArray(value)) yield [`.${name} throws`, () => withPart({ get: () => assert.fail("a getter") })];
+    if (Number(name) >= 3) return;
+  }
+}
+
+for (const [entry, exported] of Object.entries(entries)) {
+  const isFunction = (name: string) => typeof exported[name] === "function" && name !== "Sim3AlignError";
+  test(`each function of sim3align/${entry} refuses bad arguments by name, or takes them`, async () => {
+    const calls = helperCalls[entry] ?? {};
+    assert.deepEqual(Object.keys(calls).sort(), Object.keys(exported).filter(isFunction).sort(), "a call of each");
+    for (const [name, valid] of Object.entries(calls)) {
+      const call = exported[name] as (...args: unknown[]) => unknown;
+      const attempt = async (args: readonly unknown[], what: string) => {
+        try {
+          await call(...args);
+          return undefined;
+        } catch (error) {
+          assert.ok(
+            error instanceof Sim3AlignError,
+            `${name}, ${what}: ${error instanceof Error ? error.stack : error}`,
+          );
+          const { argument, found, expected, code } = error;
+          assert.ok(argument && found && expected && code !== "INTERNAL", `${name}, ${what}: ${error.message}`);
+          return error;
+        }
+      };
+      assert.equal((await attempt(valid, "valid"))?.message, undefined, name);
+      for (const [i, value] of valid.entries()) {
+        for (const [where, make] of damaged(value, 3)) {
+          const args = valid.map((other, k) => (k === i ? make() : other));
+          await attempt(args, `argument ${i}${where}`);
+        }
+      }
+    }
+  });
+}
+
+test("an option that no helper function has is refused by name", async () => {
+  const withOptions = [
+    ...["exportGlb", "exportSceneGlb", "fromBop", "fromSam3d", "maskBox", "orientedBoundingBox", "placeGlb"],
+    ...["placeSplats", "toBop", "toCocoRle", "toCuboid", "toGltfNode", "toRos", "toSam3d", "uprightGlb", "uprightMesh"],
+    ...["simulatorScene", "applyToObject3D", "meshInputFromThree", "transformFromObject3D"],
+    ...["readCamera", "readCase", "readDepth", "readMesh", "readSam3d", "readScene"],
+  ];
+  for (const name of withOptions) {
+    const [entry = ""] = Object.entries(helperCalls).find(([, calls]) => name in calls) ?? [];
+    const args = helperCalls[entry]?.[name] ?? [];
+    const options = { ...(args.at(-1) as object), nonsense: 1 };
+    const call = entries[entry]?.[name] as (...args: unknown[]) => unknown;
+    await rejectsWith(() => call(...args.slice(0, -1), options), "UNKNOWN_OPTION options.nonsense", /unknown/);
   }
 });

@@ -5,9 +5,11 @@ import { createRequire } from "node:module";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { createAligner } from "sim3align";
+import { createAligner, PreparedMesh, Sim3AlignError } from "sim3align";
+import { toSim3 } from "sim3align/conventions";
 import * as inline from "sim3align/inline";
 import { installDir, repository } from "../support/environment.js";
+import { rejectsWith } from "../support/errors.js";
 import { obj } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh } from "../support/scene.js";
@@ -161,4 +163,18 @@ test("inline: the same bits, with workers and without", async () => {
     await assert.rejects(aligner.align(input, { search: "local" }), (error) => error instanceof inline.Sim3AlignError);
     aligner.dispose();
   }
+});
+
+test("errors and prepared meshes of one copy of the package are known to the other", async () => {
+  const thrown = await (async () => toSim3(5 as never))().catch((error: unknown) => error);
+  for (const Known of [Sim3AlignError, inline.Sim3AlignError, Error]) assert.ok(thrown instanceof Known);
+  assert.notEqual(Sim3AlignError, inline.Sim3AlignError);
+  class Special extends Sim3AlignError {}
+  for (const other of [new Error("5"), null, "5", {}]) assert.ok(!(other instanceof Sim3AlignError));
+  assert.ok(!(thrown instanceof Special) && new Special(thrown as Sim3AlignError) instanceof Special);
+  using one = await createAligner();
+  using other = await inline.createAligner();
+  using prepared = await other.prepareMesh(mesh);
+  assert.ok(prepared instanceof PreparedMesh && !((await one.align(input)) instanceof PreparedMesh));
+  await rejectsWith(() => one.align({ ...input, mesh: prepared }), "INVALID_ARGUMENT mesh", /another copy.*one entry/);
 });

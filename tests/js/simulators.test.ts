@@ -62,16 +62,23 @@ test("a box has the mass, the centre and the inertia of a box, in its frame", as
 
 test("a body that leans is put at rest, with its pose before in every file; one that falls or hangs stays, fixed", async () => {
   const objects: SimulatorObject[] = [
-    { name: "leans", mesh: tower, transform: over(-0.5, 0, 0.004, 3) },
+    { name: "leans", mesh: tower, transform: over(-0.5, 0, 0.001, 0.5) },
     { name: "falls", mesh: tower, transform: over(0.5, 0, 0, 30) },
     { name: "hangs", mesh: tower, transform: over(0, 0.5, 0.4), restsOn: null },
   ];
   const scene = await simulatorScene(objects, hulls);
   const [leans, falls, hangs] = scene.bodies;
   assert.ok(leans && falls && hangs && !leans.isFixed && falls.isFixed && hangs.isFixed);
-  assertNear([leans.turnedDeg, leans.position[2], leans.found.position[2]], [3, 0, 0.004], "at rest", 1e-3);
-  assert.ok(leans.movedM > 1e-3 && leans.movedM < 0.01);
+  assertNear([leans.turnedDeg, leans.position[2], leans.found.position[2]], [0.5, 0, 0.001], "at rest", 1e-3);
+  assert.deepEqual(leans.rest, { moveM: leans.movedM, turnDeg: leans.turnedDeg });
   assert.equal(falls.movedM + falls.turnedDeg + hangs.movedM, 0);
+  assert.ok(falls.rest !== null && falls.rest.turnDeg > 12 && hangs.rest === null);
+  // Beyond the bound, a body keeps its rotation, unless a wider one is asked for.
+  const [askew] = (await simulatorScene([{ mesh: tower, transform: over(0, 0, 0, 2) }], hulls)).bodies;
+  assert.ok(askew && !askew.isFixed && askew.turnedDeg === 0 && askew.cutM > 0 && askew.movedM <= 0.0025);
+  const wide = { ...hulls, maxTurnDeg: 3, maxMoveM: 0.02 };
+  const [turned] = (await simulatorScene([{ mesh: tower, transform: over(0, 0, 0, 2) }], wide)).bodies;
+  assertNear([turned?.turnedDeg ?? 0], [2], "with a wider bound", 1e-3);
   const floating = await simulatorScene(objects, { maxParts: 1 });
   for (const { isFixed } of floating.bodies) assert.ok(isFixed, "without a support");
   const { position, rotation } = leans.found;
@@ -100,6 +107,7 @@ test("what is no scene is an error, and flat or degenerate meshes are none", asy
     [one([0, 0, 0]), {}, "EMPTY_MESH"],
     [[], { density: 0 }, "INVALID_ARGUMENT"],
     [[], { rest: "no" }, "INVALID_ARGUMENT"],
+    [[], { maxparts: 4 }, "UNKNOWN_OPTION"],
     [[], { support: { normal: [0, 0, 0], d: 1 } }, "INVALID_ARGUMENT"],
   ];
   for (const [objects, options, code] of refused)
@@ -108,6 +116,50 @@ test("what is no scene is an error, and flat or degenerate meshes are none", asy
   const scene = await simulatorScene([...flat, ...one(new Array(9).fill(0), 0, 1, 2)], { support: below });
   assert.ok((scene.bodies[0]?.mass ?? 0) > 0 && scene.bodies[1]?.isFixed);
   assert.doesNotMatch(Object.values(toMjcf(scene)).join("") + toUsd(scene), /NaN|Infinity/);
+});
+
+test("every file, body, mesh and prim has a name of its own, which means nothing else", async () => {
+  const names = ["a", "A", "a", "a_0", "a_1", "world", "Ground", "camera", "nul", "7", "a b", "a-b", "ß"];
+  const objects = names.map((name, i) => ({ name, mesh: tower, transform: over(i, 0, 0) }));
+  const scene = await simulatorScene(objects, hulls);
+  // A scene that a caller has put together of others has their names.
+  const twice = { ...scene, bodies: [...scene.bodies, ...scene.bodies.map((body) => ({ ...body, inside: [] }))] };
+  for (const one of [scene, twice]) {
+    const [mjcf, urdf, usd] = [toMjcf(one), toUrdf(one), toUsd(one)];
+    // Paths in an object are distinct; a surface and a part for each body, distinct without case as well.
+    for (const files of [mjcf, urdf]) {
+      const meshes = Object.keys(files).filter((path) => path.startsWith("meshes/"));
+      assert.equal(new Set(meshes.map((path) => path.toLowerCase())).size, 2 * one.bodies.length);
+    }
+    const all = (text: string, pattern: RegExp) =>
+      Array.from(text.matchAll(pattern), ([, name = ""]) => name.toLowerCase());
+    const inMjcf = mjcf["scene.xml"] ?? "";
+    const found: [kind: string, names: string[], count: number][] = [
+      ["MJCF mesh", all(inMjcf, /<mesh name="([^"]*)"/g), 2 * one.bodies.length],
+      ["MJCF body", ["world", ...all(inMjcf, /<body name="([^"]*)"/g)], 1 + one.bodies.length],
+      [
+        "URDF body",
+        JSON.parse(urdf["scene.json"] ?? "").bodies.map(({ name }: { name: string }) => name),
+        1 + one.bodies.length,
+      ],
+      ["USD prim", all(usd, /^ {4}def \w+ "([^"]*)"/gm), 3 + one.bodies.length],
+    ];
+    for (const [kind, list, count] of found) {
+      assert.deepEqual([new Set(list).size, list.length], [count, count], `${kind}: ${list}`);
+      for (const name of list) assert.match(name, /^[A-Za-z_]\w*$/, kind);
+    }
+    // Each body loads its own meshes: those of a box have eight vertices, all the same here, so that names have to agree.
+    for (const [path, text] of Object.entries(urdf).filter(
+      ([path]) => path.endsWith(".urdf") && path !== "ground.urdf",
+    )) {
+      const own = all(text, /<mesh filename="([^"]*)"/g);
+      assert.equal(own[0], `meshes/${path.replace(".urdf", ".obj")}`.toLowerCase());
+      assert.ok(
+        own.every((file) => Object.keys(urdf).some((name) => name.toLowerCase() === file)),
+        path,
+      );
+    }
+  }
 });
 
 /** The results of the simulators after a second of physics. */
@@ -153,8 +205,12 @@ test("MuJoCo, PyBullet and USD load a scene; its bodies stay, and have the same 
   const objects: SimulatorObject[] = [
     { name: "tray", mesh: tray(), transform: over(0, 0, 0) },
     { name: "in the tray", mesh: box(0.06, 0.06, 0.06), transform: over(0.07, 0.07, 0.021), restsOn: 0 },
-    { name: "leans", mesh: tower, transform: over(-0.5, 0, 0.004, 3) },
+    { name: "leans", mesh: tower, transform: over(-0.5, 0, 0.001, 2) },
     { name: "hangs", mesh: tower, transform: over(0, 0.5, 0.4), restsOn: null },
+    // Names of parts, of other bodies, and of what simulators have themselves.
+    ...["tray_0", "tray", "world", "ground", "camera", "light", "physics"].map((name, i) => ({
+      ...{ name, mesh: box(0.05, 0.05, 0.05), transform: over(-0.5 + 0.1 * i, 0.4, 0) },
+    })),
   ];
   const scene = await simulatorScene(objects, { support: below, camera: { fy: 600, width: 640, height: 480 } });
   const { mujoco, pybullet, usd } = simulated(write("simple", scene));

@@ -10,7 +10,7 @@ use sim3align::error::Result;
 use sim3align::geometry::mesh::Mesh;
 use sim3align_physics::body::Pose;
 use sim3align_physics::part::ConvexPart;
-use sim3align_physics::scene::{Object, On, Settings, Settled, settle};
+use sim3align_physics::scene::{Motion, Object, On, Settings, Settled, settle};
 use wasm_bindgen::prelude::*;
 
 /// Bodies at rest: `([{ mesh, transform, on }], { density, parts, turnDeg, moveM, rest,
@@ -57,7 +57,7 @@ fn read(object: &JsValue) -> Result<Object> {
 }
 
 fn body(settled: &Settled) -> JsValue {
-    let Settled { body, found, is_free, moved_m, turned_deg, inside } = settled;
+    let Settled { body, found, is_free, motion: of_body, rest, cut_m, inside } = settled;
     let parts: Array = body.parts.iter().map(part).collect();
     let inside: Array = inside.iter().map(|i| JsValue::from(*i as f64)).collect();
     object(&[
@@ -69,10 +69,16 @@ fn body(settled: &Settled) -> JsValue {
         ("moments", vector(body.mass.moments)),
         ("axes", Float64Array::from(body.mass.axes.to_array().as_slice()).into()),
         ("isFree", (*is_free).into()),
-        ("movedM", (*moved_m).into()),
-        ("turnedDeg", (*turned_deg).into()),
+        ("movedM", of_body.move_m.into()),
+        ("turnedDeg", of_body.turn_deg.into()),
+        ("rest", rest.map_or(JsValue::NULL, motion)),
+        ("cutM", (*cut_m).into()),
         ("inside", inside.into()),
     ])
+}
+
+fn motion(Motion { move_m, turn_deg }: Motion) -> JsValue {
+    object(&[("moveM", move_m.into()), ("turnDeg", turn_deg.into())])
 }
 
 fn pose(Pose { rotation, translation }: Pose) -> JsValue {

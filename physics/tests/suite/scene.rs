@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3, Vec3};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_physics::ground::AGREE_M;
-use sim3align_physics::scene::{Object, On, Settings, Settled};
+use sim3align_physics::scene::{Motion, Object, On, Settings, Settled};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::solids::{Draw, cuboid, moved, similarity};
@@ -37,11 +37,15 @@ fn bodies_on_the_ground_are_free_and_stand_on_it() {
         let at = DVec3::new(draw.between(-1.0, 1.0), draw.between(-1.0, 1.0), draw.between(-0.004, 0.004));
         let pose = similarity(draw.between(0.5, 1.0), lean * turn, at);
         let [settled] = settle(&[object(cube(0.1), pose, On::Ground)], &SETTINGS).try_into().unwrap();
-        assert!(settled.is_free, "seed {seed}: moved {} m, {}°", settled.moved_m, settled.turned_deg);
+        assert!(settled.is_free, "seed {seed}: moved {} m, {}°", settled.motion.move_m, settled.motion.turn_deg);
         assert!(lowest(&settled).abs() < 1e-9, "seed {seed}: {}", lowest(&settled));
         let up = settled.body.pose.rotation * DVec3::Z;
         assert!(up.z > 1.0 - 1e-9, "seed {seed}: its side is {up}");
-        assert!(settled.moved_m <= SETTINGS.move_m && settled.turned_deg <= SETTINGS.turn_deg, "seed {seed}");
+        assert_eq!((settled.rest, settled.cut_m), (Some(settled.motion), 0.0), "seed {seed}");
+        let corners = || settled.body.points(settled.body.pose).zip(settled.body.points(settled.found));
+        let farthest = corners().map(|(to, from)| (to - from).length()).fold(0.0, f64::max);
+        assert!((settled.motion.move_m - farthest).abs() < 1e-12 && farthest <= SETTINGS.move_m, "seed {seed}");
+        assert!(settled.motion.turn_deg <= SETTINGS.turn_deg, "seed {seed}");
     }
 }
 
@@ -57,9 +61,39 @@ fn what_would_move_too_far_or_rests_on_nothing_is_fixed_where_it_is() {
     ] {
         let [settled] = settle(&[object(cube(0.1), pose, on)], &SETTINGS).try_into().unwrap();
         assert!(!settled.is_free, "{what}");
-        assert_eq!([settled.moved_m, settled.turned_deg], [0.0; 2], "{what}");
+        assert_eq!(settled.motion, Motion { move_m: 0.0, turn_deg: 0.0 }, "{what}");
         let given = DVec3::from_slice(pose.translation.as_slice());
         assert_eq!(settled.body.pose.translation, given, "{what}");
+    }
+}
+
+/// A block whose underside is not level, at the height of its middle: rest would turn it by the same angle.
+fn on_a_slope(slope_deg: f64, on: On) -> Object {
+    let rise = (0.1 * slope_deg.to_radians().tan()) as f32;
+    let block = cuboid(Vec3::ZERO, Vec3::splat(0.1));
+    let sloping = |p: &Vec3| if p.z == 0.0 { *p + Vec3::Z * (rise * p.x / 0.1) } else { *p };
+    let mesh = Mesh::new(block.positions().iter().map(sloping).collect(), block.triangles().to_vec()).unwrap();
+    object(mesh, moved(0.0, 0.0, -f64::from(rise) / 2.0), on)
+}
+
+#[wasm_bindgen_test]
+fn a_body_that_rest_would_turn_too_far_keeps_its_rotation_and_is_cut_level() {
+    let bounds = Settings { turn_deg: 1.0, move_m: 3e-3, ..SETTINGS };
+    let table = || object(cuboid(Vec3::ZERO, Vec3::new(0.2, 0.2, 0.1)), moved(-0.05, -0.05, -0.1), On::Nothing);
+    for on in [On::Ground, On::Object(0)] {
+        let [_, settled] = settle(&[table(), on_a_slope(3.0, on)], &bounds).try_into().unwrap();
+        assert!(settled.is_free && settled.motion.turn_deg == 0.0 && settled.motion.move_m < 1e-3, "{settled:?}");
+        assert!((settled.rest.unwrap().turn_deg - 3.0).abs() < 0.1, "{:?}", settled.rest);
+        assert_eq!(settled.body.pose.rotation, settled.found.rotation);
+        // What it stands on reaches beyond its centre of mass, and nothing of it is below.
+        let ([x, _, _], low) = (settled.body.mass.center.to_array(), lowest(&settled));
+        let level = || settled.body.points(settled.body.pose).filter(|p| p.z < 1e-6);
+        assert!(low.abs() < 1e-6 && level().any(|p| p.x > x) && level().any(|p| p.x < x), "{on:?}: {low} m");
+        assert!(settled.cut_m > 2.5e-3 && settled.cut_m <= 4e-3, "{on:?}: {} m", settled.cut_m);
+        // More is cut off no body: it is fixed where it was found.
+        let [_, settled] = settle(&[table(), on_a_slope(8.0, on)], &bounds).try_into().unwrap();
+        assert!(!settled.is_free && settled.body.pose == settled.found && settled.cut_m == 0.0, "{on:?}");
+        assert!((settled.rest.unwrap().turn_deg - 8.0).abs() < 0.1, "{:?}", settled.rest);
     }
 }
 
@@ -93,18 +127,18 @@ fn bodies_that_are_a_little_inside_of_each_other_are_moved_apart() {
     let settled = settle(&[at(0.0), at(0.096)], &SETTINGS);
     let gap = settled[1].body.pose.translation.x - settled[0].body.pose.translation.x - 0.1;
     assert!((-0.0015..0.0015).contains(&gap), "{gap} m between them");
-    assert!(settled.iter().all(|body| body.inside.is_empty() && body.is_free && body.moved_m > 0.001));
+    assert!(settled.iter().all(|body| body.inside.is_empty() && body.is_free && body.motion.move_m > 0.001));
     // Deeper, it is no error of a size: both stay, and say so.
     for x in [0.09, 0.05] {
         let settled = settle(&[at(0.0), at(x)], &SETTINGS);
         assert_eq!([&settled[0].inside, &settled[1].inside], [&vec![1], &vec![0]]);
-        assert!(settled.iter().all(|body| body.moved_m < 1e-6 && body.is_free));
+        assert!(settled.iter().all(|body| body.motion.move_m < 1e-6 && body.is_free));
     }
 }
 
 #[wasm_bindgen_test]
 fn a_ground_that_was_found_is_moved_to_what_most_bodies_stand_on() {
-    let fitting = Settings { fits_ground: true, ..SETTINGS };
+    let fitting = Settings { fits_ground: true, move_m: AGREE_M, ..SETTINGS };
     let at = |x: f64, z: f64| object(cube(0.1), moved(x, 0.0, z), On::Ground);
     let heights = [-0.006, -0.004, -0.005, 0.007];
     let mut objects: Vec<Object> = heights.iter().zip([0.0, 0.3, 0.6, 0.9]).map(|(z, x)| at(x, *z)).collect();
@@ -116,12 +150,12 @@ fn a_ground_that_was_found_is_moved_to_what_most_bodies_stand_on() {
         assert_eq!(body.is_free, !disagrees, "at {z}");
         assert!((body.found.translation.z - (z + height)).abs() < 1e-12);
         assert!((lowest(body) - if disagrees { z + height } else { 0.0 }).abs() < 1e-6, "at {z}: {}", lowest(body));
-        assert!(body.moved_m <= AGREE_M);
+        assert!(body.motion.move_m <= AGREE_M);
     }
     // What stands on no ground is moved with it.
     assert!((lowest(&settled[4]) - 0.405).abs() < 1e-6);
     // A plane that was given, and bodies that are not moved, stay.
-    for settings in [SETTINGS, Settings { rest: false, ..fitting }] {
+    for settings in [SETTINGS, Settings { fits_ground: true, rest: false, ..SETTINGS }] {
         let (settled, height) = sim3align_physics::scene::settle(&objects, &settings);
         assert_eq!(height, 0.0);
         assert!(settled[..4].iter().all(|body| body.is_free));

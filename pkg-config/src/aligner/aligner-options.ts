@@ -1,11 +1,10 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
 
 import { onAbort } from "../concurrency/on-abort.js";
-import { plainArgument, plainOptions } from "../input/border.js";
 import type { LazyModules, WasmModules } from "../modules/modules.js";
 import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "../types/platform.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isKind, isRecord, withoutUndefined } from "../values/values.js";
+import { checkNames, isKind, record, withoutUndefined } from "../values/values.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {
@@ -40,11 +39,11 @@ export interface BundledAssets {
 
 /** Options without undefined properties. The core checks names and values. */
 export function checkedOptions<T extends object>(options: T | undefined) {
-  const own = options === undefined ? ({} as T) : plainOptions(options);
+  const own = options === undefined ? ({} as T) : (record("options", options, "an object with options") as T);
   const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
   if (misplaced === undefined) return withoutUndefined(own);
-  const found = `\`${misplaced}\`, which is an option of createAligner`;
-  const remedy = `Pass it once, when the aligner is created: createAligner({ ${misplaced} }).`;
+  const found = "an option of createAligner";
+  const remedy = `Pass it to createAligner({ ${misplaced} }).`;
   throw failure("UNKNOWN_OPTION", `options.${misplaced}`, found, "options of this call", remedy);
 }
 
@@ -57,14 +56,10 @@ const alignerOptions: readonly string[] = [
 
 /** The options of `createAligner`. Each is checked where it is used. */
 export function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
-  if (!isRecord(options)) {
-    throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
-  }
-  const own = plainArgument("options", options);
-  const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
-  if (unknown === undefined) return own;
+  const own = record("options", options, "an object with options");
   const remedy = "Check the spelling. Options of a call, such as `quality`, belong to the call.";
-  throw failure("UNKNOWN_OPTION", unknown, "an unknown option", `one of ${alignerOptions.join(", ")}`, remedy);
+  checkNames("", own, alignerOptions, remedy, "UNKNOWN_OPTION");
+  return own;
 }
 
 /** The function of the caller that creates workers. */

@@ -7,7 +7,6 @@ import { checkedListener, ProgressListener } from "../calls/progress.js";
 import { checkSignals, reasonOf } from "../concurrency/on-abort.js";
 import { Queue } from "../concurrency/queue.js";
 import type { Preset } from "../generated/types.js";
-import { plainArgument } from "../input/border.js";
 import { nextMeshId, PreparedMesh, withArrays } from "../input/prepared-mesh.js";
 import { coreSim3, type Sim3Like } from "../input/sim3.js";
 import type { AlignInput, MeshInput, ViewsInput } from "../input/types.js";
@@ -30,9 +29,10 @@ import type {
   ViewsOptions,
 } from "../types/options.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "../types/results.js";
+import { checkAttached, plainArgument } from "../values/border.js";
 import { disposed, failure, internalError, Sim3AlignError } from "../values/error.js";
 import { copied } from "../values/transfer.js";
-import { checkAttached, isRecord, withoutUndefined } from "../values/values.js";
+import { isRecord, withoutUndefined } from "../values/values.js";
 import { alignAll } from "./align-all.js";
 import {
   type AlignerOptions,

@@ -6,12 +6,12 @@ import { type Engine, type MainThreadEngine, signalsOf } from "../calls/engine.j
 import { ProgressListener } from "../calls/progress.js";
 import { checkSignals, onAbort } from "../concurrency/on-abort.js";
 import type { CorrectedFrame } from "../generated/types.js";
-import { plainArgument } from "../input/border.js";
 import { coreSim3, type Sim3Like } from "../input/sim3.js";
 import type { FrameInput, MeshInput } from "../input/types.js";
 import type { CallOptions } from "../types/options.js";
 import type { SignalLike } from "../types/platform.js";
 import type { TrackedFrame } from "../types/results.js";
+import { plainArgument } from "../values/border.js";
 import { disposed, internalError, invalidArgument, Sim3AlignError } from "../values/error.js";
 import { sendableParts } from "../values/transfer.js";
 import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";

@@ -11,8 +11,8 @@ import {
   releaseHeaps,
 } from "../modules/module.js";
 import type { SignalLike } from "../types/platform.js";
+import { checkAttached } from "../values/border.js";
 import { disposed } from "../values/error.js";
-import { checkAttached } from "../values/values.js";
 import { type DataOf, dropMesh, type Job, type Method, perform, type ResultOf, trackerName } from "./calls.js";
 import { JobContext } from "./context.js";
 import type { ProgressListener } from "./progress.js";

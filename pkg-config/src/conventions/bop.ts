@@ -29,7 +29,7 @@ export interface BopPose {
  * @throws {@link Sim3AlignError} if the transform is not a similarity
  */
 export function toBop(transform: Sim3Like, options: { objId?: number } = {}): { entry: BopPose; scale: number } {
-  const { objId } = optionsOf(options);
+  const { objId } = optionsOf(options, ["objId"]);
   const { scale, rotation, translation } = similarityOf(transform);
   const entry = { cam_R_m2c: [...rotation], cam_t_m2c: translation.map((metres) => 1000 * metres) };
   return { entry: objId === undefined ? entry : { ...entry, obj_id: whole("options.objId", objId, 0) }, scale };
@@ -48,7 +48,7 @@ export function toBop(transform: Sim3Like, options: { objId?: number } = {}): { 
  * @throws {@link Sim3AlignError} for missing or invalid numbers
  */
 export function fromBop(entry: BopPose, options: { scale?: number } = {}): Sim3 {
-  const { scale = 0.001 } = optionsOf(options);
+  const { scale = 0.001 } = optionsOf(options, ["scale"]);
   const { cam_R_m2c, cam_t_m2c } = record("entry", entry, "an entry of scene_gt.json");
   const nine = finiteNumbers("entry.cam_R_m2c", cam_R_m2c, 9, "nine finite numbers, row-major");
   const [x, y, z] = vector3("entry.cam_t_m2c", cam_t_m2c);

@@ -68,7 +68,7 @@ export function toCuboid(
   box: Pick<OrientedBoundingBox, "sizeM" | "centerM" | "rotation">,
   options: CuboidOptions = {},
 ): Cuboid {
-  const { frame = "ros", front = "z", up = "y" } = optionsOf(options);
+  const { frame = "ros", front = "z", up = "y" } = optionsOf(options, ["frame", "front", "up"]);
   const { sizeM, centerM, rotation } = record("box", box, "{ sizeM, centerM, rotation }");
   const sides = finiteNumbers("box.sizeM", sizeM, 3, "three finite numbers") as Vector3;
   for (const side of sides) if (side !== 0) positive("box.sizeM", side);

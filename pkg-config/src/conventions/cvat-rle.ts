@@ -3,6 +3,7 @@
 import { filledRuns } from "../formats/coco-rle.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
+import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { flattened, whole } from "../values/values.js";
@@ -32,7 +33,9 @@ export interface CvatMaskElement {
  */
 export function fromCvatRle(mask: ArrayLike<number> | CvatMaskElement, image: ImageSize): PixelArray<Uint8Array> {
   const { width, height } = sizeOf("image", image);
-  const { runs, left, top, boxWidth, boxHeight } = isRecord(mask) ? fromElement(mask) : fromPoints(mask);
+  const { runs, left, top, boxWidth, boxHeight } = isRecord(mask)
+    ? fromElement(plainArgument("mask", mask))
+    : fromPoints(mask);
   if (left + boxWidth > width || top + boxHeight > height) {
     const found = `a box of ${boxWidth} × ${boxHeight} at ${left}, ${top} in ${width} × ${height} pixels`;
     throw failure("SIZE_MISMATCH", "mask", found, "a box within the image", "Pass the size of the annotated image.");

@@ -107,7 +107,7 @@ export interface RosPose {
  * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for another frame
  */
 export function toRos(transform: Sim3Like, options: { frame?: "body" | "optical" } = {}): RosPose {
-  const { frame = "body" } = optionsOf(options);
+  const { frame = "body" } = optionsOf(options, ["frame"]);
   const isBody = oneOf("options.frame", frame, ["body", "optical"]) === "body";
   const { rotation, translation, scale } = toFrame(transform, isBody ? "ros" : "opencv");
   const [[x, y, z], [qx, qy, qz, qw]] = [translation, rotation];

@@ -29,10 +29,10 @@ export interface GlbOptions extends GltfNodeOptions {
  */
 export function exportGlb(mesh: MeshArrays, transform: Sim3Like, options: GlbOptions = {}): Uint8Array {
   const { positions, indices } = meshOf("mesh", mesh);
-  const { mode = "node", frame = "opengl" } = optionsOf(options);
+  const { mode = "node", ...ofNode } = optionsOf(options, ["mode", "frame", "metrics", "name"]);
   const isBaked = oneOf("options.mode", mode, ["node", "baked"]) === "baked";
-  const node = toGltfNode(transform, options);
-  const placed = sim3Of(inFrame("options.frame", similarityOf(transform), frame));
+  const node = toGltfNode(transform, ofNode);
+  const placed = sim3Of(inFrame("options.frame", similarityOf(transform), ofNode.frame ?? "opengl"));
   const document = new GltfDocument();
   const added = document.addMesh({ positions: isBaked ? applyToPoints(placed, positions) : positions, indices });
   const { name, extras } = node;

@@ -1,7 +1,8 @@
 /** Transforms as glTF nodes. */
 import type { Sim3Like } from "../input/sim3.js";
+import { plainArgument } from "../values/border.js";
 import type { Quaternion, Vector3 } from "../values/values.js";
-import { isRecord, optionsOf } from "../values/values.js";
+import { isRecord, optionsOf, text } from "../values/values.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
@@ -40,12 +41,12 @@ export interface GltfNode {
  * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for an unknown frame
  */
 export function toGltfNode(transform: Sim3Like, options: GltfNodeOptions = {}): GltfNode {
-  const { frame = "opengl", metrics, name = "sim3align" } = optionsOf(options);
+  const { frame = "opengl", metrics, name = "sim3align" } = optionsOf(options, ["frame", "metrics", "name"]);
   const { scale, rotation, translation } = sim3Of(inFrame("options.frame", similarityOf(transform), frame));
-  const known = { metrics, ...factsOf(transform, metrics) };
+  const known = { metrics, ...factsOf(plainArgument("transform", transform), metrics) };
   const facts = Object.fromEntries(Object.entries(known).filter(([, fact]) => fact !== undefined && fact !== null));
   const extras = { sim3align: { frame, metresPerUnit: scale, ...facts } };
-  return { name, translation, rotation, scale: [scale, scale, scale], extras };
+  return { name: text("options.name", name), translation, rotation, scale: [scale, scale, scale], extras };
 }
 
 /** Metrics and confidence of an alignment. */

@@ -1,8 +1,9 @@
 /** Validation of meshes in arrays. */
 
 import type { MeshArrays } from "../input/types.js";
+import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
-import { checkAttached, isTypedArray, record, type Vector3, wrongKind } from "../values/values.js";
+import { isTypedArray, record, type Vector3, wrongKind } from "../values/values.js";
 
 /** A triangle mesh whose indices are in range. */
 export interface Mesh {

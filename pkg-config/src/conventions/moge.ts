@@ -32,8 +32,9 @@ export function pointMapFromMoge(output: MogeOutput): {
   pointMap: PixelArray<Float32Array>;
   camera: (PinholeCamera & ImageSize) | undefined;
 } {
-  const { points, mask, intrinsics } = record("output", output, "{ points, width, height }");
-  const size = sizeOf("output", output);
+  const given = record("output", output, "{ points, width, height }");
+  const { points, mask, intrinsics } = given;
+  const size = sizeOf("output", given);
   const { data } = pixelsOf<Float32Array>("output", { ...size, data: points }, pointKinds, 3);
   const valid = mask === undefined ? undefined : isTypedArray<Uint8Array>(mask, "Uint8Array") ? mask : flattened(mask);
   if (valid !== undefined) checkCount("output.mask", valid?.length ?? 0, size);

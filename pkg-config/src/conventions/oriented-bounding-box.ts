@@ -42,7 +42,7 @@ export function orientedBoundingBox(
   transform: Sim3Like,
   options: { box?: "axes" | "minimal" | undefined } = {},
 ): OrientedBoundingBox {
-  const { box = "axes" } = optionsOf(options);
+  const { box = "axes" } = optionsOf(options, ["box"]);
   const checked = meshOf("mesh", mesh);
   const similarity = similarityOf(transform);
   const isMinimal = oneOf("options.box", box, ["axes", "minimal"]) === "minimal";

@@ -13,6 +13,7 @@ import {
   sizeOf,
 } from "../formats/pixels.js";
 import type { CameraInput, PinholeCamera, PixelArray } from "../input/types.js";
+import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { optionsOf, record, whole } from "../values/values.js";
 
@@ -87,12 +88,13 @@ export function resizeCamera(
   camera: CameraInput,
   size: ImageSize & { fromWidth: number; fromHeight: number },
 ): PinholeCamera & ImageSize {
-  const { width, height } = sizeOf("size", size);
+  const sizes = record("size", size, "{ fromWidth, fromHeight, width, height }");
+  const { width, height } = sizeOf("size", sizes);
   const from = {
-    width: whole("size.fromWidth", size.fromWidth, 1),
-    height: whole("size.fromHeight", size.fromHeight, 1),
+    width: whole("size.fromWidth", sizes.fromWidth, 1),
+    height: whole("size.fromHeight", sizes.fromHeight, 1),
   };
-  const { fx, fy, cx, cy } = pinholeOf("camera", camera, from);
+  const { fx, fy, cx, cy } = pinholeOf("camera", plainArgument("camera", camera), from);
   const [x, y] = [width / from.width, height / from.height];
   return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5, width, height };
 }
@@ -108,7 +110,7 @@ export function resizeCamera(
  * @throws {@link Sim3AlignError} `EMPTY_MASK` if no pixel is the object
  */
 export function maskBox(mask: PixelArray<MaskPixels>, options: { marginPx?: number } = {}): PixelBox {
-  const { marginPx = 0 } = optionsOf(options);
+  const { marginPx = 0 } = optionsOf(options, ["marginPx"]);
   const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
   const margin = whole("options.marginPx", marginPx, 0);
   let [left, top, right, bottom] = [width, height, -1, -1];
@@ -151,9 +153,11 @@ export interface CropInput {
  * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that exceeds them
  */
 export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
-  const { depth, mask, pointMap, image, camera } = record("input", input, "{ depth, mask, camera }") as CropInput;
-  const { width, height } = sizeOf("box", box);
-  const [left, top] = [whole("box.left", box.left, 0), whole("box.top", box.top, 0)];
+  const given = record("input", input, "{ depth, mask, camera }");
+  const { depth, mask, pointMap, image, camera } = given as CropInput;
+  const region = record("box", box, "{ left, top, width, height }");
+  const { width, height } = sizeOf("box", region);
+  const [left, top] = [whole("box.left", region.left, 0), whole("box.top", region.top, 0)];
   const images = Object.entries({ depth, mask, pointMap, image }).filter(([, part]) => part !== undefined);
   const [first] = images;
   if (first === undefined) {
@@ -182,7 +186,7 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
       image: [maskKinds, hasAlpha ? 4 : 3],
     },
   };
-  const cropped = { ...input } as Record<string, unknown>;
+  const cropped = { ...given };
   for (const [name, part] of images) {
     const [kinds, channels] = formats[name] as (typeof formats)[string];
     const pixels = pixelsOf<DepthPixels | MaskPixels>(`input.${name}`, part, kinds, channels);
@@ -192,5 +196,5 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
     const { fx, fy, cx, cy } = pinholeOf("input.camera", camera, size);
     cropped.camera = { fx, fy, cx: cx - left, cy: cy - top, width, height };
   }
-  return cropped as T;
+  return cropped as unknown as T;
 }

@@ -56,7 +56,7 @@ const zUp = (vertices: Sam3dVertices) => zUpFrom[oneOf("options.vertices", verti
  * @throws {@link Sim3AlignError} for missing or invalid numbers; `INVALID_TRANSFORM` for a non-uniform scale
  */
 export function fromSam3d(layout: Sam3dLayout, options: { vertices?: Sam3dVertices } = {}): Sim3 {
-  const { vertices = "glb" } = optionsOf(options);
+  const { vertices = "glb" } = optionsOf(options, ["vertices"]);
   const { scale, rotation, translation } = record("layout", layout, "{ scale, rotation, translation }");
   const q = xyzwFromWxyz(finiteNumbers("layout.rotation", rotation, 4, "a quaternion: four finite numbers, w first"));
   const camera = turnTo("frame", "pytorch3d");
@@ -94,7 +94,7 @@ export function toSam3d(
   transform: Sim3Like,
   options: { vertices?: Sam3dVertices } = {},
 ): { scale: Vector3; rotation: [w: number, x: number, y: number, z: number]; translation: Vector3 } {
-  const { vertices = "glb" } = optionsOf(options);
+  const { vertices = "glb" } = optionsOf(options, ["vertices"]);
   const { scale, rotation, translation } = similarityOf(transform);
   const camera = turnTo("frame", "pytorch3d");
   const fromZUp = product(product(camera, rotation), transposed(zUp(vertices)));

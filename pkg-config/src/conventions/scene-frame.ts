@@ -1,16 +1,22 @@
 /** What exports of scenes share: the objects, the camera, and the frame on the ground. */
 import { invalidArgument } from "../values/error.js";
-import { finite, flattened, positive, record, type Vector3, vector3 } from "../values/values.js";
+import { finite, flattened, positive, record, text, type Vector3, vector3 } from "../values/values.js";
 import { cross, dot, type Matrix3, meanOf, minus, norm, scaled, turned, unit } from "./rotation.js";
 import type { Similarity } from "./similarity.js";
 
-/** The objects of a call. */
-export function sceneObjects<T>(objects: readonly T[]): T[] {
+/** The objects of a call, each with a name. */
+export function sceneObjects<T extends { name?: string | undefined }>(
+  objects: readonly T[],
+  unnamed: (index: number) => string,
+): (T & { name: string })[] {
   const list = flattened(objects);
   if (list === null) {
     throw invalidArgument("objects", objects, "an array of { mesh, transform }", "Pass one of these per object.");
   }
-  return list.map((object, i) => record(`objects[${i}]`, object, "{ mesh, transform }") as T);
+  return list.map((object, i) => {
+    const own = record(`objects[${i}]`, object, "{ mesh, transform }") as unknown as T;
+    return { ...own, name: text(`objects[${i}].name`, own.name ?? unnamed(i)) };
+  });
 }
 
 /** The camera of a call, and its vertical field of view. */

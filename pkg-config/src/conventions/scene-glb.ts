@@ -8,6 +8,7 @@ import { readGlb, writeGlb } from "./glb-file.js";
 import { GltfDocument } from "./gltf-document.js";
 import { toGltfNode } from "./gltf-node.js";
 import { meshOf } from "./mesh.js";
+import { Names } from "./names.js";
 import { meanOf, minus, norm, quaternionOf } from "./rotation.js";
 import { sceneCamera, sceneFromCamera, sceneObjects } from "./scene-frame.js";
 import { similarityOf } from "./similarity.js";
@@ -44,13 +45,14 @@ const GROUND = [1.6, 0.2] as const;
  * @throws {@link Sim3AlignError} for an invalid mesh, GLB or transform
  */
 export function exportSceneGlb(objects: readonly SceneGlbObject[], options: SceneGlbOptions = {}): Uint8Array {
-  const { support = null, camera } = optionsOf(options);
-  const parts = sceneObjects(objects);
+  const { support = null, camera } = optionsOf(options, ["support", "camera"]);
+  const parts = sceneObjects(objects, (i) => `object ${i}`);
+  const names = new Names((name) => name);
   const document = new GltfDocument();
   const centers = parts.map(({ transform }) => similarityOf(transform).translation);
   const { rotation, translation } = sceneFromCamera(support, centers, "y");
-  const children = parts.map(({ name, mesh, transform }, i) => {
-    const node = toGltfNode(transform, { name: name ?? `object ${i}`, frame: "opencv" });
+  const children = parts.map(({ name, mesh, transform }) => {
+    const node = toGltfNode(transform, { name: names.own(name), frame: "opencv" });
     if (!isRecord(mesh)) return document.push("nodes", withChildren(node, document.add(readGlb(mesh))));
     return document.push("nodes", { ...node, mesh: document.addMesh(meshOf("mesh", mesh)) });
   });

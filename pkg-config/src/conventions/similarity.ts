@@ -1,9 +1,9 @@
 /** Conversions and operations of similarity transforms. */
 
 import type { Sim3, Sim3Like } from "../input/sim3.js";
+import { checkAttached, plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import {
-  checkAttached,
   finiteNumbers,
   flattened,
   isRecord,
@@ -34,7 +34,7 @@ export interface Similarity {
 /** Validates a similarity in any of its forms. */
 export function similarityOf(transform: unknown, argument = "transform"): Similarity {
   if (!isRecord(transform)) return fromColumnMajor(argument, transform);
-  const { matrix, scale, rotation, rotationMatrix, translation } = transform;
+  const { matrix, scale, rotation, rotationMatrix, translation } = plainArgument(argument, transform);
   if (scale === undefined && matrix !== undefined) return fromColumnMajor(`${argument}.matrix`, matrix);
   if (typeof scale !== "number" || !(Number.isFinite(scale) && scale > 0)) {
     const remedy = "Pass { scale, rotation, translation }, a result of align, or a column-major 4×4 matrix.";

@@ -29,7 +29,7 @@ export function placeSplats(
   transform: Sim3Like,
   options: { frame?: CameraFrame | undefined } = {},
 ): Uint8Array {
-  const { frame = "opencv" } = optionsOf(options);
+  const { frame = "opencv" } = optionsOf(options, ["frame"]);
   const placement = inFrame("options.frame", similarityOf(transform), frame);
   const placed = Uint8Array.from(bytesOfFile("splats", splats, "the bytes of a PLY or .splat file"));
   if (isPly(placed)) placePly(placed, gaussianLayout(placed), placement);

@@ -106,7 +106,7 @@ const placedBy = (transform: Sim3Like, frame: Similarity) => ({
 
 /** The upright frame of a mesh: from it to that of the mesh. */
 function uprightFrame(mesh: MeshArrays, transform: Sim3Like, options: UprightOptions): Similarity {
-  const { support = null, up = "y" } = optionsOf(options);
+  const { support = null, up = "y" } = optionsOf(options, ["support", "up"]);
   const checked = meshOf("mesh", mesh);
   const toMesh = transposed(similarityOf(transform).rotation);
   const axis = oneOf("options.up", up, ["y", "z"]);

@@ -1,8 +1,9 @@
 /** COCO's run-length encoding of masks: column-major runs, starting with background. */
 
 import type { CocoRle, PixelArray } from "../input/types.js";
+import { plainArgument } from "../values/border.js";
 import { describe, failure, type Sim3AlignError } from "../values/error.js";
-import { finiteNumbers, flattened, isRecord, record, whole } from "../values/values.js";
+import { finiteNumbers, flattened, isRecord, optionsOf, part, whole } from "../values/values.js";
 import { type JsonFile, numbersIn, parsedJson } from "./json.js";
 import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 
@@ -23,7 +24,8 @@ export function toCocoRle(
   mask: PixelArray<MaskPixels>,
   options: { compressed: false },
 ): CocoRle & { counts: readonly number[] };
-export function toCocoRle(mask: PixelArray<MaskPixels>, { compressed = true }: { compressed?: boolean } = {}): CocoRle {
+export function toCocoRle(mask: PixelArray<MaskPixels>, options: { compressed?: boolean } = {}): CocoRle {
+  const { compressed = true } = optionsOf(options, ["compressed"]);
   const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
   const counts: number[] = [];
   let run = 0;
@@ -51,11 +53,11 @@ export function toCocoRle(mask: PixelArray<MaskPixels>, { compressed = true }: {
  * fromCocoRle({ size: [2, 2], counts: [1, 3] }).data;    // Uint8Array [0, 1, 1, 1]
  * @throws {@link Sim3AlignError} `CORRUPT_FILE` if the runs do not add up to the image size
  */
-export const fromCocoRle = (rle: CocoRle): PixelArray<Uint8Array> => decodedRle("rle", rle);
+export const fromCocoRle = (rle: CocoRle): PixelArray<Uint8Array> => decodedRle("rle", plainArgument("rle", rle));
 
 /** Like {@link fromCocoRle}; `argument` is the name of the encoding in errors. */
 export function decodedRle(argument: string, rle: unknown): PixelArray<Uint8Array> {
-  const { size, counts } = record(argument, rle, "{ size: [height, width], counts }");
+  const { size, counts } = part(argument, rle, "{ size: [height, width], counts }");
   const [height, width] = finiteNumbers(`${argument}.size`, size, 2, "[height, width]") as [number, number];
   const runs = runsOf(`${argument}.counts`, counts);
   checkSize(`${argument}.size`, { width, height });

@@ -1,5 +1,5 @@
 /** The focal length of a photo in pixels, from its EXIF data. */
-import { positive, record } from "../values/values.js";
+import { finite, positive, record, withoutUndefined } from "../values/values.js";
 import type { ImageSize } from "./pixels.js";
 
 /** What the EXIF data of a photo say of its camera; what they do not state is missing. */
@@ -90,8 +90,17 @@ const MAX_DIFFERENCE = 0.1;
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for a size that is no positive number
  */
 export function focalFromExif(exif: Exif, size: ImageSize): ExifFocal | undefined {
-  const { width, height, orientation, ...camera } = record("exif", exif, "the result of readExif") as Partial<Exif>;
-  const image = [positive("size.width", size.width), positive("size.height", size.height)] as const;
+  const { make: _, model: __, ...given } = record("exif", exif, "the result of readExif");
+  const numbers = Object.entries(withoutUndefined(given)).map(([name, value]) => [name, finite(`exif.${name}`, value)]);
+  const { width, height } = record("size", size, "{ width, height }");
+  const image = { width: positive("size.width", width), height: positive("size.height", height) };
+  return focalFrom(Object.fromEntries(numbers), image);
+}
+
+/** The same of EXIF data that have been read. */
+export function focalFrom(exif: Partial<Exif>, size: ImageSize): ExifFocal | undefined {
+  const { width, height, orientation, ...camera } = exif;
+  const image = [size.width, size.height] as const;
   const known = width !== undefined && height !== undefined && width > 0 && height > 0;
   const isTurned = (orientation ?? 1) >= 5;
   const original = known ? (isTurned ? ([height, width] as const) : ([width, height] as const)) : image;

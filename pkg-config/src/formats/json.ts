@@ -53,6 +53,8 @@ export const namesIn = (object: Record<string, unknown>) => Object.keys(object).
 /** Describes a JSON value for error messages; long text is truncated. */
 export function shown(value: unknown): string {
   if (value === undefined) return "nothing";
-  const text = isRecord(value) ? `an object with ${namesIn(value)}` : (JSON.stringify(value) ?? typeof value);
+  // A caller's object may contain what JSON cannot.
+  const json = () => JSON.stringify(value, (_, part) => (typeof part === "bigint" ? `${part}` : part));
+  const text = isRecord(value) ? `an object with ${namesIn(value)}` : (json() ?? typeof value);
   return text.length > 60 ? `${text.slice(0, 60)}…` : text;
 }

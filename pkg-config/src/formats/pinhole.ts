@@ -1,6 +1,6 @@
 /** Pinhole intrinsics from four numbers, a matrix, or a field of view. */
 import { describe, failure, invalidArgument } from "../values/error.js";
-import { finiteNumbers, flattened, record } from "../values/values.js";
+import { finiteNumbers, flattened, part } from "../values/values.js";
 import type { ImageSize } from "./pixels.js";
 
 /** Pinhole intrinsics in pixels; pixel centres have integer coordinates. */
@@ -20,7 +20,7 @@ const pixels = "Intrinsics are in pixels of the depth image: scale them together
  * @param size the size of the image; only a field of view needs it
  */
 export function pinholeOf(argument: string, camera: unknown, size?: ImageSize): Pinhole {
-  const { K, fovYDeg, fx, fy, cx, cy } = record(argument, camera, forms);
+  const { K, fovYDeg, fx, fy, cx, cy } = part(argument, camera, forms);
   if (K !== undefined) return fromMatrix(argument, K);
   if (fovYDeg === undefined) return checkedPinhole(argument, { fx, fy, cx, cy });
   if (size !== undefined) return fromFieldOfView(argument, fovYDeg, size);

@@ -1,8 +1,9 @@
 /** Images: pixels and their size. */
 
 import type { PixelArray } from "../input/types.js";
+import { checkAttached } from "../values/border.js";
 import { failure } from "../values/error.js";
-import { checkAttached, isTypedArray, record, whole, wrongKind } from "../values/values.js";
+import { isTypedArray, record, whole, wrongKind } from "../values/values.js";
 
 /** The size of an image in pixels. */
 export interface ImageSize {
@@ -41,8 +42,9 @@ export function pixelsOf<T extends ArrayLike<number>>(
   kinds: readonly string[],
   channels = 1,
 ): PixelArray<T> {
-  const { data } = record(argument, image, "{ data, width, height }");
-  const { width, height } = sizeOf(argument, image);
+  const given = record(argument, image, "{ data, width, height }");
+  const { data } = given;
+  const { width, height } = sizeOf(argument, given);
   if (!isTypedArray<T>(data, ...kinds)) throw wrongKind(`${argument}.data`, data, kinds.join(" or "), kinds[0] ?? "");
   checkAttached(`${argument}.data`, data);
   checkCount(`${argument}.data`, data.length, { width, height }, channels);

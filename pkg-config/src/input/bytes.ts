@@ -1,9 +1,9 @@
 /** Files as bytes, and detection of their type. */
 
 import type { LoadedModule } from "../modules/module.js";
+import { checkAttached } from "../values/border.js";
 import { describe, failure, invalidArgument, messageOf } from "../values/error.js";
 import { isBuffer, isKind, isTypedArray } from "../values/kinds.js";
-import { checkAttached } from "../values/values.js";
 
 /** An array of bytes. */
 export type Bytes = Uint8Array | Uint8ClampedArray;

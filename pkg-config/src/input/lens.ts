@@ -1,5 +1,5 @@
 /** Cameras whose intrinsics were not given. */
-import { type Exif, type ExifFocal, focalFromExif } from "../formats/exif-focal.js";
+import { type Exif, type ExifFocal, focalFrom } from "../formats/exif-focal.js";
 import type { Pinhole } from "../formats/pinhole.js";
 import type { ImageSize } from "../formats/pixels.js";
 import type { Warning } from "../generated/types.js";
@@ -35,7 +35,7 @@ export interface FoundCamera {
 export function foundCamera({ width, height }: ImageSize, { inDepth, photo }: CameraHints): FoundCamera {
   if (inDepth !== undefined) return { camera: inDepth, focalDeviation: undefined, source: "depth file", warnings: [] };
   const center = { cx: 0.5 * (width - 1), cy: 0.5 * (height - 1) };
-  const exif: ExifFocal | undefined = photo && focalFromExif(photo.exif, photo.size);
+  const exif: ExifFocal | undefined = photo && focalFrom(photo.exif, photo.size);
   if (photo !== undefined && exif !== undefined) {
     const { size } = photo;
     const [fx, fy] = [(exif.focalPx * width) / size.width, (exif.focalPx * height) / size.height];

@@ -3,7 +3,7 @@
 import { holdsGaussians } from "../formats/splat-files.js";
 import type { FileReaders } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isRecord, isTypedArray, oneOf, record, stringsIn, withoutUndefined, wrongKind } from "../values/values.js";
+import { isRecord, isTypedArray, oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/values.js";
 import type { MeshArrays, ReadMeshOptions } from "../wasm/formats.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
@@ -119,7 +119,7 @@ function colorsOf(
 /** The samples of the `readMesh` of `sim3align/formats`. */
 function samplesOf(samples: unknown): ColorSamples {
   const expected = "{ positions, normals, colors } of a mesh that was read from a file";
-  const { positions, normals, colors } = record("mesh.samples", samples, expected);
+  const { positions, normals, colors } = part("mesh.samples", samples, expected);
   for (const [name, array] of Object.entries({ positions, normals })) {
     if (!isTypedArray<Float32Array>(array, "Float32Array")) {
       throw wrongKind(`mesh.samples.${name}`, array, "a Float32Array, x, y, z per point", "Float32Array");

@@ -1,5 +1,6 @@
 /** Meshes that are read, validated and decimated once for many calls. */
-import { failure, invalidArgument } from "../values/error.js";
+import { brand } from "../values/brand.js";
+import { failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { copied } from "../values/transfer.js";
 
@@ -59,6 +60,10 @@ export function nextMeshId(): number {
  * thread that uses it holds a copy until `dispose()`, and a second one after `alignScene`, `alignViews` or `track`.
  */
 export class PreparedMesh {
+  static {
+    brand(PreparedMesh, "PreparedMesh");
+  }
+
   /** @internal */
   constructor(kept: KeptMesh, holder: MeshHolder) {
     states.set(this, { ...kept, holders: new Set([holder]) });
@@ -88,8 +93,9 @@ export class PreparedMesh {
 function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   const state = states.get(mesh);
   if (state === undefined) {
-    const remedy = "Pass the mesh itself: libraries that wrap objects in proxies have a function that unwraps them.";
-    throw invalidArgument("mesh", mesh, "a prepared mesh that is no proxy", remedy);
+    const found = "one of another copy of sim3align, or a proxy of one";
+    const remedy = "Prepare and align by one entry, and unwrap proxies.";
+    throw failure("INVALID_ARGUMENT", "mesh", found, "one of this copy", remedy);
   }
   if (state === "disposed") {
     const remedy = "Prepare it again with prepareMesh(), or dispose it later.";

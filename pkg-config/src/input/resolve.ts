@@ -2,7 +2,7 @@
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
-import { checkNames, isRecord, withoutUndefined } from "../values/values.js";
+import { checkNames, isRecord, part, withoutUndefined } from "../values/values.js";
 import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./core-input.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
@@ -42,11 +42,9 @@ export async function resolveFrame(
   readers: FileReaders,
   more: readonly string[] = [],
 ): Promise<Resolved<CoreFrame>> {
-  if (!isRecord(frame)) {
-    throw invalidArgument("frame", frame, "{ depth, camera, mask? }", "See FrameInput in the documentation.");
-  }
-  checkNames("", frame, [...frameProperties, ...more], spelling);
-  return frameOf(frame, readers, frame.mask !== undefined && frame.mask !== null);
+  const given = part("frame", frame, "{ depth, camera, mask? }");
+  checkNames("", given, [...frameProperties, ...more], spelling);
+  return frameOf(given, readers, given.mask !== undefined && given.mask !== null);
 }
 
 /** Resolved views, and what the files of each say. */
@@ -108,8 +106,5 @@ const withColors = ({ core, notes }: Resolved<CoreFrame>, colors: readonly strin
 
 /** Rejects misspelt properties, which would otherwise be ignored. */
 function checkInput(input: unknown): asserts input is Record<string, unknown> {
-  if (!isRecord(input)) {
-    throw invalidArgument("input", input, "{ depth, mask, mesh, camera }", "See AlignInput in the documentation.");
-  }
-  checkNames("input.", input, [...frameProperties, "mesh"], spelling);
+  checkNames("input.", part("input", input, "{ depth, mask, mesh, camera }"), [...frameProperties, "mesh"], spelling);
 }

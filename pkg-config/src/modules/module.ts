@@ -2,6 +2,7 @@
 
 import { Queue } from "../concurrency/queue.js";
 import type { LazySource, WasmSource } from "../types/platform.js";
+import { checkAttached } from "../values/border.js";
 import {
   failure,
   internalError,
@@ -12,7 +13,6 @@ import {
   withoutInput,
 } from "../values/error.js";
 import { isKind } from "../values/kinds.js";
-import { checkAttached } from "../values/values.js";
 import type { Exports, ModuleName } from "./exports.js";
 
 /** A compiled `WebAssembly.Module`, whose type no library but the DOM's declares. */

@@ -7,7 +7,7 @@ import { resolveView } from "../input/resolve.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
-import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values/values.js";
+import { checkNames, isRecord, isTypedArray, part, withoutUndefined } from "../values/values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */
@@ -54,10 +54,8 @@ const knownProperties: readonly string[] = [
  * @throws {@link Sim3AlignError} for arguments of the wrong type, masks of another size, and the errors of the readers
  */
 export async function readScene(scene: SceneInput, readers: FileReaders): Promise<ReadScene> {
-  if (!isRecord(scene)) {
-    throw invalidArgument("scene", scene, "{ depth, camera, objects }", "See SceneInput in the documentation.");
-  }
-  const { objects, labels, occluders, support, ...rest } = scene as SceneInput & Record<string, unknown>;
+  const parts = part("scene", scene, "{ depth, camera, objects }");
+  const { objects, labels, occluders, support, ...rest } = parts as SceneInput & Record<string, unknown>;
   const { formats } = readers;
   const { core: view, notes } = await resolveView(rest, readers);
   const size: [number, number] = [Number(view.width), Number(view.height)];
@@ -95,11 +93,11 @@ function listOf(name: string, value: unknown): unknown[] {
 }
 
 async function readObject(argument: string, object: unknown, read: Reading): Promise<ReadObject> {
-  if (!isRecord(object)) throw invalidArgument(argument, object, "{ mask, mesh }", "Pass an object of the scene.");
+  const properties = part(argument, object, "{ mask, mesh }");
   const all = [...objectProperties, ...knownProperties];
   const remedy = "Check the spelling. Options for all objects belong in the second argument.";
-  checkNames(`${argument}.`, object, all, remedy);
-  const { name, mask, label, resizeMask, mesh, ...known } = object as Partial<SceneObjectInput>;
+  checkNames(`${argument}.`, properties, all, remedy);
+  const { name, mask, label, resizeMask, mesh, ...known } = properties as Partial<SceneObjectInput>;
   if (name !== undefined && typeof name !== "string") {
     throw invalidArgument(`${argument}.name`, name, "a string", "Pass the name of the object.");
   }

@@ -1,7 +1,7 @@
 /** Scenes as MJCF, the format of MuJoCo. */
 import { wxyzFromXyzw } from "../conventions/rotation.js";
-import { overlappingPairs, type SimulatorBody, type SimulatorScene, viewRotation } from "./scene.js";
-import { meshFiles, spaced } from "./text.js";
+import { type ExportedBody, exportedScene, meshFiles, overlappingPairs, spaced, viewRotation } from "./exported.js";
+import type { SimulatorScene } from "./scene.js";
 
 /**
  * A scene as MJCF, texts by path: `scene.xml`, and a mesh in `meshes/` for each body and each of its convex parts. A `numeric` named
@@ -10,11 +10,12 @@ import { meshFiles, spaced } from "./text.js";
  * @example
  * for (const [path, text] of Object.entries(toMjcf(scene))) await writeFile(path, text);
  */
-export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): Record<string, string> {
+export function toMjcf(scene: SimulatorScene): Record<string, string> {
+  const { bodies, hasGround, camera } = exportedScene(scene);
   const assets = bodies.flatMap(({ name, parts }) => [
     // Its inertia is not used: surfaces of generated meshes need not be closed.
     `<mesh name="${name}" file="${name}.obj" inertia="shell"/>`,
-    ...parts.map((_, k) => `<mesh name="${name}_${k}" file="${name}_${k}.obj"/>`),
+    ...parts.map((part) => `<mesh name="${part.name}" file="${part.name}.obj"/>`),
   ]);
   const world: string[] = [`<light directional="true" pos="0 0 3" dir="0.3 0.4 -1"/>`];
   if (hasGround) {
@@ -57,7 +58,7 @@ ${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>
   return { ...meshFiles(bodies), "scene.xml": text };
 }
 
-function bodyLines(body: SimulatorBody): string[] {
+function bodyLines(body: ExportedBody): string[] {
   const { name, position, rotation, isFixed, parts, color } = body;
   const pose = `pos="${spaced(position)}" quat="${spaced(wxyzFromXyzw(rotation))}"`;
   const inertial = `<inertial pos="${spaced(body.centerOfMass)}" quat="${spaced(wxyzFromXyzw(body.principalAxes))}" mass="${spaced([body.mass])}" diaginertia="${spaced(body.principalMoments)}"/>`;
@@ -66,7 +67,7 @@ function bodyLines(body: SimulatorBody): string[] {
     ...(isFixed ? [] : ["  <freejoint/>"]),
     ...(parts.length > 0 ? [`  ${inertial}`] : []),
     `  <geom class="visual" mesh="${name}" rgba="${spaced([...color, 1])}"/>`,
-    ...parts.map((_, k) => `  <geom class="collision" mesh="${name}_${k}"/>`),
+    ...parts.map((part) => `  <geom class="collision" mesh="${part.name}"/>`),
     "</body>",
   ];
 }

@@ -1,6 +1,7 @@
 /** Scenes for simulators: rigid bodies at rest, the ground and the camera, in a frame with z up. */
 import { meshOf } from "../conventions/mesh.js";
-import { type Matrix3, product, quaternionOf, rotationOfUnit, transposed } from "../conventions/rotation.js";
+import { Names } from "../conventions/names.js";
+import { quaternionOf } from "../conventions/rotation.js";
 import { sceneCamera, sceneFromCamera, sceneObjects } from "../conventions/scene-frame.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
 import type { MeshArrays } from "../input/types.js";
@@ -43,7 +44,7 @@ export interface SimulatorOptions {
   maxParts?: number | undefined;
   /** Largest angle by which a body is turned so that it rests, degrees. */
   maxTurnDeg?: number | undefined;
-  /** Largest distance of the centre of mass of a body from where it was found, metres. */
+  /** Largest distance of any point of the surface of a body from where it was found, metres. */
   maxMoveM?: number | undefined;
   /** Whether bodies are put at rest; without it, each keeps the pose of its transform. */
   rest?: boolean | undefined;
@@ -52,7 +53,10 @@ export interface SimulatorOptions {
 }
 
 /** Defaults of {@link SimulatorOptions}. */
-export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 12, maxMoveM: 0.02, rest: true } as const;
+export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 1, maxMoveM: 0.0025, rest: true } as const;
+
+/** Their names. */
+const OPTIONS = ["support", "camera", "density", "maxParts", "maxTurnDeg", "maxMoveM", "rest", "wasm"] as const;
 
 /** A convex surface. */
 export interface ConvexPart {
@@ -92,10 +96,20 @@ export interface SimulatorBody extends SimulatorPose {
   mesh: { positions: Float32Array; indices: Uint32Array };
   /** The mean colour, red, green and blue, 0 to 1, sRGB-encoded. */
   color: Vector3;
-  /** How far its centre of mass is from its place in the pose of the transform, metres. */
+  /** How far the farthest point of its surface is from its place in the pose of the transform, metres. */
   movedM: number;
   /** How far it was turned, degrees. */
   turnedDeg: number;
+  /**
+   * How far its farthest point would move, and how far it would turn, so that the whole body rests: beyond `maxMoveM` or
+   * `maxTurnDeg`, it keeps its rotation. `null` if it rests on nothing in the scene, or would tip over there.
+   */
+  rest: { moveM: number; turnDeg: number } | null;
+  /**
+   * By how much its parts are cut level from below, metres, so that it rests at the rotation at which it was found. Its surface
+   * is whole, and sinks into what it stands on by at most as much.
+   */
+  cutM: number;
   /** Indices of the bodies that it is partly inside of: collisions with these are left out where a format can say so. */
   inside: number[];
 }
@@ -122,7 +136,7 @@ interface Physics {
     objects: readonly object[],
     settings: object,
   ): {
-    bodies: (Pick<SimulatorBody, "parts" | "mass" | "movedM" | "turnedDeg" | "inside"> &
+    bodies: (Pick<SimulatorBody, "parts" | "mass" | "movedM" | "turnedDeg" | "rest" | "cutM" | "inside"> &
       Record<"pose" | "found", BodyPose> &
       Record<"center" | "moments" | "axes", Float64Array> & { isFree: boolean })[];
     supportHeightM: number;
@@ -138,8 +152,9 @@ const physicsModule = /* @__PURE__ */ new WasmModule<Physics>(
 
 /**
  * Makes a scene for simulators. Each object becomes a rigid body with convex parts for collisions (V-HACD), and mass and
- * inertia of a density. An object that rests on the support or on another object is turned and moved a little, so that it
- * rests there by itself; one that leans, hangs, or stands on what is no object is fixed. `found` keeps the pose before.
+ * inertia of a density. An object that rests on the support or on another object is moved and turned a little, so that it
+ * rests there by itself, or keeps its rotation while the underside of its parts is cut level; one for which neither is enough, one
+ * that hangs, and one that stands on what is no object are fixed where they were found. `found` keeps the pose before.
  *
  * @example
  * const { objects, support } = await aligner.alignScene(scene);
@@ -151,9 +166,9 @@ export async function simulatorScene(
   objects: readonly SimulatorObject[],
   options: SimulatorOptions = {},
 ): Promise<SimulatorScene> {
-  const { support = null, camera, wasm, ...given } = optionsOf(options);
+  const { support = null, camera, wasm, ...given } = optionsOf(options, OPTIONS);
   const settings = settingsOf(given);
-  const own = sceneObjects(objects);
+  const own = sceneObjects(objects, (i) => `object_${i}`);
   const poses = own.map(({ transform }) => similarityOf(transform));
   const centers = poses.map(({ translation }) => translation);
   const worldFromCamera = sceneFromCamera(support, centers, "z");
@@ -166,13 +181,14 @@ export async function simulatorScene(
   }));
   const fitsGround = support?.confidence !== undefined && support.confidence < 1;
   const { bodies, supportHeightM } = module.call((physics) => physics.settleBodies(sent, { ...settings, fitsGround }));
-  const names = uniqueNames(own.map(({ name }, i) => name ?? `object_${i}`));
+  const names = new Names();
   return {
     bodies: bodies.map(({ pose, found, center, moments, axes, isFree, ...body }, i): SimulatorBody => {
       const { positions, indices } = meshes[i] as (typeof meshes)[number];
       const { scale } = poses[i] as Similarity;
+      const name = names.own((own[i] as (typeof own)[number]).name);
       return {
-        ...{ name: names[i] as string, ...poseOf(pose), found: poseOf(found), isFixed: !isFree, ...body },
+        ...{ name, ...poseOf(pose), found: poseOf(found), isFixed: !isFree, ...body },
         centerOfMass: Array.from(center) as Vector3,
         principalMoments: Array.from(moments) as Vector3,
         principalAxes: Array.from(axes) as Quaternion,
@@ -227,18 +243,6 @@ function meshWithIndices(mesh: unknown): { positions: Float32Array; indices: Uin
   };
 }
 
-/** Names of letters, digits and underscores, each once. */
-function uniqueNames(given: readonly string[]): string[] {
-  const seen = new Set<string>();
-  return given.map((name) => {
-    const plain = `${name}`.replace(/[^A-Za-z0-9]+/g, "_").replace(/^(?=\d|$)/, "_");
-    let own = plain;
-    for (let k = 2; seen.has(own.toLowerCase()); k++) own = `${plain}_${k}`;
-    seen.add(own.toLowerCase());
-    return own;
-  });
-}
-
 const GREY: Vector3 = [0.7, 0.7, 0.7];
 
 function meanColour(mesh: SimulatorObject["mesh"]): Vector3 {
@@ -250,24 +254,3 @@ function meanColour(mesh: SimulatorObject["mesh"]): Vector3 {
   });
   return sum.map((part) => (3 * part) / colors.length / 255) as Vector3;
 }
-
-/** The inertia about the centre of mass, in the axes of the body: rows. */
-export function inertiaOf({ principalMoments, principalAxes }: SimulatorBody): Matrix3 {
-  const axes = rotationOfUnit(principalAxes);
-  const scaled = axes.map((x, i) => x * (principalMoments[i % 3] as number)) as unknown as Matrix3;
-  return product(scaled, transposed(axes));
-}
-
-/** World from the view of MuJoCo's and USD's cameras, which look along −z, with y up: half a turn about x. */
-export const viewRotation = ({ rotation: [x, y, z, w] }: SimulatorScene["camera"] & object): Quaternion => [
-  w,
-  z,
-  -y,
-  -x,
-];
-
-/** The pairs of bodies of which one is partly inside the other, by name. */
-export const overlappingPairs = (bodies: readonly SimulatorBody[]): [one: string, other: string][] =>
-  bodies.flatMap(({ name, inside }, i) =>
-    inside.flatMap((k): [string, string][] => (k > i ? [[name, (bodies[k] as SimulatorBody).name]] : [])),
-  );

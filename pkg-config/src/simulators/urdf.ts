@@ -1,7 +1,15 @@
 /** Scenes as URDF: a file per body, and a list of their poses. */
 import { entry } from "../conventions/rotation.js";
-import { inertiaOf, overlappingPairs, type SimulatorBody, type SimulatorScene } from "./scene.js";
-import { meshFiles, spaced } from "./text.js";
+import {
+  type ExportedBody,
+  type ExportedScene,
+  exportedScene,
+  inertiaOf,
+  meshFiles,
+  overlappingPairs,
+  spaced,
+} from "./exported.js";
+import type { SimulatorScene } from "./scene.js";
 
 /** A program that loads the files into PyBullet. */
 const loader = `"""Loads the scene into PyBullet: \`python load.py\` shows it; load(client) returns the bodies by name."""
@@ -41,7 +49,8 @@ if __name__ == "__main__":
  * A scene as URDF, texts by path: `NAME.urdf` for each body, `ground.urdf`, their meshes, `scene.json` with poses (metres, quaternions
  * x, y, z, w, z up; `found` is the pose before a body was put at rest), and `load.py` for PyBullet.
  */
-export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): Record<string, string> {
+export function toUrdf(scene: SimulatorScene): Record<string, string> {
+  const { bodies, hasGround, camera } = exportedScene(scene);
   const files: Record<string, string> = { "load.py": loader, ...meshFiles(bodies) };
   for (const body of bodies) files[`${body.name}.urdf`] = urdfOf(body);
   if (hasGround) files["ground.urdf"] = ground;
@@ -50,23 +59,23 @@ export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): Record<st
     found: { position: found.position, quaternion: found.rotation },
   }));
   const floor = { name: "ground", file: "ground.urdf", position: [0, 0, 0], quaternion: [0, 0, 0, 1], fixed: true };
-  const scene = {
+  const list = {
     gravity: [0, 0, -9.81],
     bodies: hasGround ? [floor, ...entries] : entries,
     withoutCollision: overlappingPairs(bodies),
     camera: camera === null ? null : viewOf(camera),
   };
-  files["scene.json"] = `${JSON.stringify(scene, null, 2)}\n`;
+  files["scene.json"] = `${JSON.stringify(list, null, 2)}\n`;
   return files;
 }
 
-function viewOf({ position, rotation, fovYDeg, width, height }: SimulatorScene["camera"] & object) {
+function viewOf({ position, rotation, fovYDeg, width, height }: ExportedScene["camera"] & object) {
   return { position, quaternion: rotation, fovYDeg, width, height };
 }
 
 const contact = `<contact><lateral_friction value="0.8"/><rolling_friction value="0.001"/><spinning_friction value="0.002"/></contact>`;
 
-function urdfOf(body: SimulatorBody): string {
+function urdfOf(body: ExportedBody): string {
   const { name, mass, centerOfMass, parts, color } = body;
   const inertia = inertiaOf(body);
   const at = (i: 0 | 1 | 2, j: 0 | 1 | 2) => spaced([entry(inertia, i, j)]);
@@ -76,7 +85,7 @@ function urdfOf(body: SimulatorBody): string {
     contact,
     `<inertial><origin xyz="${spaced(centerOfMass)}" rpy="0 0 0"/><mass value="${spaced([mass])}"/><inertia ixx="${at(0, 0)}" ixy="${at(0, 1)}" ixz="${at(0, 2)}" iyy="${at(1, 1)}" iyz="${at(1, 2)}" izz="${at(2, 2)}"/></inertial>`,
     `<visual>${mesh(name)}<material name="colour"><color rgba="${spaced([...color, 1])}"/></material></visual>`,
-    ...parts.map((_, k) => `<collision>${mesh(`${name}_${k}`)}</collision>`),
+    ...parts.map((part) => `<collision>${mesh(part.name)}</collision>`),
   ];
   return robot(name, lines);
 }

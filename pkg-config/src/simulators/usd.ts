@@ -2,8 +2,8 @@
 import { bounds } from "../conventions/mesh.js";
 import { wxyzFromXyzw } from "../conventions/rotation.js";
 import { lightOf } from "../input/colors.js";
-import { type SimulatorBody, type SimulatorScene, viewRotation } from "./scene.js";
-import { spaced } from "./text.js";
+import { type ExportedBody, exportedScene, spaced, viewRotation } from "./exported.js";
+import type { SimulatorScene } from "./scene.js";
 
 const tuple = (numbers: ArrayLike<number>) => `(${spaced(numbers).replaceAll(" ", ", ")})`;
 /** Quaternions of USD begin with w. */
@@ -21,7 +21,8 @@ const COLLIDER = ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"];
  * the camera. Bodies that are fixed are colliders only. `found:translate` and `found:orient` are the pose of a body before it
  * was put at rest.
  */
-export function toUsd({ bodies, hasGround, camera }: SimulatorScene): string {
+export function toUsd(scene: SimulatorScene): string {
+  const { bodies, hasGround, camera } = exportedScene(scene);
   const prims: string[] = [
     `def PhysicsScene "physics"
 {
@@ -70,7 +71,7 @@ ${indented(prims.join("\n\n"))}
 `;
 }
 
-function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
+function bodyPrim(body: ExportedBody, names: readonly string[]): string {
   const { name, isFixed, inside, position, rotation, found, parts, color } = body;
   const filtered = inside.map((k) => `</World/${names[k]}>`);
   const schemas = [

@@ -3,8 +3,10 @@
 import { pinholeOf } from "../formats/pinhole.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { CameraInput } from "../input/types.js";
+import { plainArgument } from "../values/border.js";
 import { failure } from "../values/error.js";
-import { positive } from "../values/values.js";
+import { positive, record } from "../values/values.js";
+import { withLive } from "./live.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
 /** The image size, and the near and far planes. */
@@ -43,13 +45,14 @@ export interface ThreeCamera {
  * @throws {@link Sim3AlignError} `INVALID_CAMERA`, or for sizes below one pixel
  */
 export function cameraFromPinhole(camera: CameraInput, lens: LensOptions): ThreeCamera {
-  const { width, height } = sizeOf("lens", lens);
-  const near = positive("lens.near", lens.near ?? 0.01);
-  const far = positive("lens.far", lens.far ?? 100);
+  const given = record("lens", lens, "{ width, height, near?, far? }");
+  const { width, height } = sizeOf("lens", given);
+  const near = positive("lens.near", given.near ?? 0.01);
+  const far = positive("lens.far", given.far ?? 100);
   if (!(far > near)) {
     throw failure("INVALID_ARGUMENT", "lens.far", `${far}`, `a distance beyond near, ${near}`, "Swap them.");
   }
-  const { fx, fy, cx, cy } = pinholeOf("camera", camera, { width, height });
+  const { fx, fy, cx, cy } = pinholeOf("camera", plainArgument("camera", camera), { width, height });
   const projectionMatrix = new Float64Array(16);
   projectionMatrix[0] = (2 * fx) / width;
   projectionMatrix[5] = (2 * fy) / height;
@@ -86,9 +89,11 @@ export function cameraFromPinhole(camera: CameraInput, lens: LensOptions): Three
  */
 export function applyPinhole(target: PerspectiveCameraLike, camera: CameraInput, lens: LensOptions): void {
   const { fov, aspect, near, far, view } = cameraFromPinhole(camera, lens);
-  Object.assign(target, { fov, near, far, zoom: 1, filmOffset: 0 });
-  target.setViewOffset(view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height);
-  // setViewOffset has set the aspect for square pixels.
-  target.aspect = aspect;
-  target.updateProjectionMatrix();
+  withLive("target", "a PerspectiveCamera", () => {
+    Object.assign(target, { fov, near, far, zoom: 1, filmOffset: 0 });
+    target.setViewOffset(view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height);
+    // setViewOffset has set the aspect for square pixels.
+    target.aspect = aspect;
+    target.updateProjectionMatrix();
+  });
 }

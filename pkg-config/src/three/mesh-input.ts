@@ -3,7 +3,8 @@
 import { cofactors, determinant, type Matrix3, matrixOf as matrix3Of, turned } from "../conventions/rotation.js";
 import type { MeshArrays } from "../input/types.js";
 import { describe, failure } from "../values/error.js";
-import { finiteNumbers, oneOf } from "../values/values.js";
+import { finiteNumbers, oneOf, optionsOf, whole } from "../values/values.js";
+import { withLive } from "./live.js";
 import { surfaceSamples } from "./surface-samples.js";
 import { type Texels, texelsOf } from "./texels.js";
 import { type AttributeLike, type GeometryLike, isObject, type MeshTree, type PlacedObject } from "./types.js";
@@ -55,8 +56,16 @@ const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
  */
 export function meshInputFromThree(
   source: GeometryLike | MeshTree,
-  { frame = "object" }: { frame?: "object" | "world" | undefined } = {},
+  options: { frame?: "object" | "world" | undefined } = {},
 ): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
+  return withLive("source", "a BufferGeometry or an Object3D", () => meshOf(source, options));
+}
+
+function meshOf(
+  source: GeometryLike | MeshTree,
+  options: { frame?: "object" | "world" | undefined },
+): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
+  const { frame = "object" } = optionsOf(options, ["frame"]);
   oneOf("options.frame", frame, ["object", "world"]);
   const arrays: Arrays = { positions: [], indices: [], colors: [], isColored: false, isUnknown: false, textured: [] };
   if (isGeometry(source)) append(arrays, source, identity, { vertexColors: true });
@@ -75,6 +84,16 @@ export function meshInputFromThree(
   return { ...mesh, colors: Float32Array.from(arrays.colors), colorSpace: "linear" };
 }
 
+/** Most vertices, corners and instances of one object. */
+const MOST = 1 << 26;
+
+/** A number of items, which ends the loop over them. */
+function countOf(argument: string, value: unknown): number {
+  const count = whole(argument, value, 0);
+  if (count <= MOST) return count;
+  throw failure("INVALID_ARGUMENT", argument, describe(value), `at most ${MOST}`, "Split the object.");
+}
+
 const isGeometry = (value: unknown): value is GeometryLike => isObject(value) && isObject(value.attributes);
 const isTree = (value: unknown): value is MeshTree => isObject(value) && typeof value.traverse === "function";
 
@@ -91,7 +110,7 @@ function appendTree(arrays: Arrays, tree: MeshTree, frame: "object" | "world") {
     const local = product(base, matrixOf(found.matrixWorld.elements));
     if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local, found.material);
     const { array } = found.instanceMatrix as { array: ArrayLike<number> };
-    for (let i = 0; i < (found.count as number); i++) {
+    for (let i = 0; i < countOf("source.count", found.count); i++) {
       const instance = Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0);
       append(arrays, found.geometry, product(local, instance), found.material);
     }
@@ -104,7 +123,8 @@ function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4,
   if (!position || typeof position.getX !== "function") return;
   const first = arrays.positions.length / 3;
   const [a = 0, b = 0, c = 0, , d = 0, e = 0, f = 0, , g = 0, h = 0, k = 0, , tx = 0, ty = 0, tz = 0] = m;
-  for (let i = 0; i < position.count; i++) {
+  const vertices = countOf("source.attributes.position.count", position.count);
+  for (let i = 0; i < vertices; i++) {
     // The getters handle normalised and interleaved attributes.
     const [x, y, z] = [position.getX(i), position.getY(i), position.getZ(i)];
     arrays.positions.push(a * x + d * y + g * z + tx, b * x + e * y + h * z + ty, c * x + f * y + k * z + tz);
@@ -112,7 +132,7 @@ function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4,
   appendColors(arrays, attributes.color as AttributeLike | undefined, position.count, material);
   const firstTriangle = arrays.indices.length / 3;
   const corner = (i: number) => first + (index === null ? i : index.getX(i));
-  const count = index === null ? position.count : index.count;
+  const count = index === null ? vertices : countOf("source.index.count", index.count);
   const isMirrored = determinant(linearOf(m)) < 0;
   // Reflections invert the orientation of triangles: swap two corners.
   for (let i = 0; i + 2 < count; i += 3) {

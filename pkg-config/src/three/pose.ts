@@ -2,7 +2,8 @@
 import { fromFrame, toFrame } from "../conventions/frames.js";
 import { compose, invert, toSim3 } from "../conventions/similarity.js";
 import type { Sim3, Sim3Like } from "../input/sim3.js";
-import { finiteNumbers, oneOf } from "../values/values.js";
+import { finiteNumbers, knownOptions, oneOf } from "../values/values.js";
+import { withLive } from "./live.js";
 import type { PlacedObject, PosableObject } from "./types.js";
 
 /** Options of {@link applyToObject3D} and {@link transformFromObject3D}. */
@@ -16,6 +17,7 @@ export interface PoseOptions {
   camera?: PlacedObject | undefined;
 }
 
+const OBJECT = "an Object3D";
 const framesOfScenes = ["opencv", "opengl"] as const;
 
 /**
@@ -37,13 +39,22 @@ const framesOfScenes = ["opencv", "opengl"] as const;
 export function applyToObject3D(
   object: PosableObject & { readonly parent?: PlacedObject | null },
   transform: Sim3Like,
-  { frame = "opengl", camera }: PoseOptions = {},
+  options: PoseOptions = {},
 ): void {
+  withLive("object", OBJECT, () => place(object, transform, options));
+}
+
+function place(
+  object: PosableObject & { readonly parent?: PlacedObject | null },
+  transform: Sim3Like,
+  options: PoseOptions,
+): void {
+  const { frame = "opengl", camera } = knownOptions(options, ["frame", "camera"]);
   oneOf("options.frame", frame, framesOfScenes);
   let pose = toFrame(transform, camera === undefined ? frame : "opengl");
   if (camera !== undefined) {
     pose = compose(worldFromCamera(camera), pose);
-    if (object.parent) pose = compose(invert(worldFrom(object.parent)), pose);
+    if (object.parent) pose = compose(invert(worldFrom("object.parent", object.parent)), pose);
   }
   object.position.set(...pose.translation);
   object.quaternion.set(...pose.rotation);
@@ -65,19 +76,26 @@ export function applyToObject3D(
  * await aligner.align(input, { initial, search: "local" });
  * @throws {@link Sim3AlignError} `INVALID_TRANSFORM` for an object with a non-uniform scale or a reflection
  */
-export function transformFromObject3D(object: PosableObject, { frame = "opengl", camera }: PoseOptions = {}): Sim3 {
-  oneOf("options.frame", frame, framesOfScenes);
-  if (camera !== undefined) return fromFrame(compose(invert(worldFromCamera(camera)), worldFrom(object)), "opengl");
-  object.updateMatrix();
-  return fromFrame(numbersOf(object.matrix.elements), frame);
+export function transformFromObject3D(object: PosableObject, options: PoseOptions = {}): Sim3 {
+  return withLive("object", OBJECT, () => {
+    const { frame = "opengl", camera } = knownOptions(options, ["frame", "camera"]);
+    oneOf("options.frame", frame, framesOfScenes);
+    if (camera !== undefined)
+      return fromFrame(compose(invert(worldFromCamera(camera)), worldFrom("object", object)), "opengl");
+    object.updateMatrix();
+    return fromFrame(numbersOf("object.matrix", object.matrix), frame);
+  });
 }
 
-function worldFrom(object: PlacedObject): Sim3 {
-  object.updateWorldMatrix(true, false);
-  return toSim3(numbersOf(object.matrixWorld.elements));
-}
+/** The transform of an object in its scene. */
+const worldFrom = (argument: string, object: PlacedObject): Sim3 =>
+  withLive(argument, OBJECT, () => {
+    object.updateWorldMatrix(true, false);
+    return toSim3(numbersOf(`${argument}.matrixWorld`, object.matrixWorld));
+  });
 
 /** Removes the scale that a camera inherits from its parents, which three.js ignores when rendering. */
-const worldFromCamera = (camera: PlacedObject): Sim3Like => ({ ...worldFrom(camera), scale: 1 });
+const worldFromCamera = (camera: PlacedObject): Sim3Like => ({ ...worldFrom("options.camera", camera), scale: 1 });
 
-const numbersOf = (elements: unknown) => finiteNumbers("matrix.elements", elements, 16, "16 finite numbers");
+const numbersOf = (argument: string, { elements }: { readonly elements: unknown }) =>
+  finiteNumbers(`${argument}.elements`, elements, 16, "16 finite numbers");

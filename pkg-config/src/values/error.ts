@@ -1,5 +1,6 @@
 /** The error type of the package, and conversions to it. */
 import type { ErrorCode as CoreErrorCode } from "../generated/types.js";
+import { brand } from "./brand.js";
 import { proxiedKind, typedArrayKind } from "./kinds.js";
 
 /**
@@ -41,6 +42,10 @@ export class Sim3AlignError extends Error implements ErrorParts {
   readonly found: string;
   readonly expected: string;
   readonly remedy: string;
+  static {
+    brand(Sim3AlignError, "Sim3AlignError");
+  }
+
   /** With `transfer: true`: the input, if the worker could return it. */
   input?: unknown;
 

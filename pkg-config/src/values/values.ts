@@ -1,6 +1,7 @@
 /** Validation of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
-import { describe, failure, invalidArgument, type Sim3AlignError, withoutInput } from "./error.js";
-import { isAttached, isBuffer, isKind, isRecord, isTypedArray, typedArrayKind } from "./kinds.js";
+import { plainArgument } from "./border.js";
+import { describe, failure, invalidArgument, type Sim3AlignError } from "./error.js";
+import { isKind, isRecord, isTypedArray, typedArrayKind } from "./kinds.js";
 
 export { isKind, isRecord, isTypedArray };
 
@@ -9,33 +10,6 @@ export function wrongKind(argument: string, value: unknown, expected: string, ty
   const isArray = isKind(value, "Array") || (ArrayBuffer.isView(value) && !isKind(value, "DataView"));
   const remedy = isArray ? `Convert it: ${typedArray}.from(${argument}).` : "Pass one of these.";
   return invalidArgument(argument, value, expected, remedy);
-}
-
-/**
- * Checks all typed arrays and buffers in an argument, which consists of plain objects and arrays. Detached memory must
- * neither reach the modules, which would trap, nor a worker of Node, which would get no message.
- * @param argument its name in errors
- * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
- */
-export function checkAttached(argument: string, value: unknown): void {
-  if (ArrayBuffer.isView(value) || isBuffer(value)) {
-    if (!isAttached(value)) throw detached(argument, value);
-  } else if (isRecord(value) || Array.isArray(value)) {
-    for (const [name, inner] of Object.entries(value)) {
-      if (typeof inner === "object")
-        checkAttached(`${argument}${Array.isArray(value) ? `[${name}]` : `.${name}`}`, inner);
-    }
-  }
-}
-
-function detached(argument: string, value: unknown): Sim3AlignError {
-  return failure(
-    "INVALID_ARGUMENT",
-    withoutInput(argument),
-    `${describe(value).replace(/ of 0$/, "")} whose memory is detached: it was moved to another thread, or shrunk`,
-    "an array with its memory",
-    "After a call with transfer: true, use the arrays in `input` of the result or of the error.",
-  );
 }
 
 /** Copies an object without its undefined properties. */
@@ -60,12 +34,17 @@ export const stringsIn = (value: unknown): string[] =>
 /**
  * Rejects misspelt properties, which would otherwise be ignored.
  * @param prefix of their names in errors
- * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
+ * @throws {@link Sim3AlignError} with the code
  */
-export function checkNames(prefix: string, object: object, names: readonly string[], remedy: string): void {
+export function checkNames(
+  prefix: string,
+  object: object,
+  names: readonly string[],
+  remedy: string,
+  code: "INVALID_ARGUMENT" | "UNKNOWN_OPTION" = "INVALID_ARGUMENT",
+): void {
   const unknown = Object.keys(object).find((name) => !names.includes(name));
-  if (unknown === undefined) return;
-  throw failure("INVALID_ARGUMENT", `${prefix}${unknown}`, "an unknown property", names.join(", "), remedy);
+  if (unknown !== undefined) throw failure(code, prefix + unknown, "an unknown property", names.join(", "), remedy);
 }
 
 /** Three numbers: x, y, z. */
@@ -133,6 +112,12 @@ export function whole(argument: string, value: unknown, least: number): number {
   throw failure("INVALID_ARGUMENT", argument, describe(value), `an integer of at least ${least}`, remedy);
 }
 
+/** A text, such as a name. */
+export function text(argument: string, value: unknown): string {
+  if (typeof value === "string") return value;
+  throw failure("INVALID_ARGUMENT", argument, describe(value), "a string", "Pass a text.");
+}
+
 /** One of several names. */
 export function oneOf<T extends string>(
   argument: string,
@@ -145,13 +130,28 @@ export function oneOf<T extends string>(
   throw failure(code, argument, describe(value), expected, "Check the spelling.");
 }
 
-/** The options of a call. */
-export function optionsOf<T extends object>(options: T): T {
-  return record("options", options, "an object with options") as T;
+/**
+ * The options of a call, read once.
+ * @throws {@link Sim3AlignError} `UNKNOWN_OPTION` for a name that is not among these, which would otherwise be ignored
+ */
+export function optionsOf<T extends object>(options: T, names: readonly (keyof T & string)[]): T {
+  return withoutUndefined(knownOptions(record("options", options, OPTIONS) as T, names)) as T;
 }
 
-/** An object with properties. */
-export function record(argument: string, value: unknown, expected: string): Record<string, unknown> {
+/** The same for options that contain objects which are alive. */
+export function knownOptions<T extends object>(options: T, names: readonly (keyof T & string)[]): T {
+  checkNames("options.", part("options", options, OPTIONS), names, "Check the spelling.", "UNKNOWN_OPTION");
+  return options;
+}
+
+const OPTIONS = "an object with options";
+
+/** An object with properties, read once: no getter of it runs later. */
+export const record = (argument: string, value: unknown, expected: string): Record<string, unknown> =>
+  plainArgument(argument, part(argument, value, expected));
+
+/** An object with properties that has been read: a part of an argument, or an argument behind the border. */
+export function part(argument: string, value: unknown, expected: string): Record<string, unknown> {
   if (isRecord(value)) return value;
   throw failure("INVALID_ARGUMENT", argument, describe(value), expected, "Pass an object with these properties.");
 }

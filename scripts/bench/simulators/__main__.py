@@ -1,10 +1,9 @@
 """Loads exported scenes into simulators, and prints a line of JSON for each: `python -m simulators SECONDS FOLDER...`.
 
 A folder holds `mjcf/scene.xml`, `urdf/` and `scene.usda`; what is missing is left out. After SECONDS of physics, each body
-has its state: whether it is fixed, how far its centre of mass has moved (metres) and how far it has turned (degrees).
-
-With `truth.json` (by body: `aligned` and `truth`, camera from mesh), a body in MuJoCo also has its errors: how far the
-centre of its mesh is from the true one where it was found, where it was exported, and after SECONDS (millimetres).
+has its state: whether it is fixed, how far its centre of mass has moved (metres) and how far it has turned (degrees). In
+MuJoCo, a body also has how far it is from where it was found, as exported and after SECONDS: its rotation (degrees) and the
+farthest point of its surface (millimetres).
 """
 
 import importlib.util
@@ -32,40 +31,34 @@ def rotation_of(wxyz):
     )
 
 
-def centre_of(path):
-    """The middle of the box of a mesh, in the frame of its body, metres."""
+def surface_of(path):
+    """The vertices of a mesh, in the frame of its body, metres."""
     with open(path) as file:
-        points = np.array([line.split()[1:4] for line in file if line.startswith("v ")], float)
-    return (points.min(axis=0) + points.max(axis=0)) / 2
+        return np.array([line.split()[1:4] for line in file if line.startswith("v ")], float)
 
 
-def errors_of(centre, poses, aligned, truth):
-    """How far the centre is from the true one at poses (position, quaternion), of which the first is the aligned one."""
-    sim3 = lambda pose: (pose["scale"], np.array(pose["rotation"]).reshape(3, 3), np.array(pose["translation"]))
-    scale, rotation, translation = sim3(aligned)
-    position, quaternion = poses[0]
-    world_rotation = rotation_of(quaternion) @ rotation.T
-    world_translation = position - world_rotation @ translation
-    true_scale, true_rotation, true_translation = sim3(truth)
-    in_camera = true_scale * (true_rotation @ (centre / scale)) + true_translation
-    true_centre = world_rotation @ in_camera + world_translation
-    return [1000 * float(np.linalg.norm(rotation_of(q) @ centre + p - true_centre)) for p, q in poses]
+def farther(surface, found, pose):
+    """From a pose (position, quaternion) to another: the rotation, degrees, and the motion of the farthest point, mm."""
+    place = lambda position, quaternion: surface @ rotation_of(quaternion).T + position
+    farthest = np.linalg.norm(place(*pose) - place(*found), axis=1).max()
+    return [turned(found[1], pose[1]), 1000 * float(farthest)]
 
 
-def in_mujoco(path, seconds, truth):
+def in_mujoco(path, seconds):
     import mujoco
 
     model = mujoco.MjModel.from_xml_path(path)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     before = (data.xipos.copy(), data.xquat.copy())
-    start = data.xpos.copy()
+    start = list(zip(data.xpos.copy(), data.xquat.copy()))
     while data.time < seconds:
         mujoco.mj_step(model, data)
     bodies = []
     for i in range(1, model.nbody):
         name = model.body(i).name
         found = model.numeric(f"{name}_found").data
+        surface = surface_of(os.path.join(os.path.dirname(path), "meshes", f"{name}.obj"))
         geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == i and model.geom_contype[g] != 0]
         bodies.append(
             {
@@ -75,12 +68,10 @@ def in_mujoco(path, seconds, truth):
                 "parts": len(geoms),
                 "movedM": float(np.linalg.norm(data.xipos[i] - before[0][i])),
                 "turnedDeg": turned(before[1][i], data.xquat[i]),
+                "exported": farther(surface, (found[:3], found[3:]), start[i]),
+                "after": farther(surface, (found[:3], found[3:]), (data.xpos[i], data.xquat[i])),
             }
         )
-        if name in truth:
-            centre = centre_of(os.path.join(os.path.dirname(path), "meshes", f"{name}.obj"))
-            poses = [(found[:3], found[3:]), (start[i], before[1][i]), (data.xpos[i], data.xquat[i])]
-            bodies[-1]["errorsMm"] = errors_of(centre, poses, **truth[name])
     cameras = [
         {
             "position": data.cam_xpos[i].tolist(),
@@ -165,10 +156,8 @@ def main():
     seconds = float(sys.argv[1])
     for folder in sys.argv[2:]:
         result = {"folder": folder}
-        known = os.path.join(folder, "truth.json")
-        truth = json.load(open(known)) if os.path.exists(known) else {}
         for name, path, run in [
-            ("mujoco", os.path.join(folder, "mjcf", "scene.xml"), lambda p: in_mujoco(p, seconds, truth)),
+            ("mujoco", os.path.join(folder, "mjcf", "scene.xml"), lambda p: in_mujoco(p, seconds)),
             ("pybullet", os.path.join(folder, "urdf"), lambda p: in_pybullet(p, seconds)),
             ("usd", os.path.join(folder, "scene.usda"), in_usd),
         ]:

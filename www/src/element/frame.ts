@@ -20,16 +20,31 @@ interface Request {
 }
 
 const parameters = new URLSearchParams(location.search);
-/** The only origin that this page listens and speaks to: a page that frames it cannot choose another one. */
-const origin = parameters.get("origin") ?? location.origin;
+/**
+ * The origins that this page listens and speaks to: its own, and those that it names itself. Whoever frames it chooses its
+ * address, and must not choose these.
+ */
+const origins = new Set([location.origin]);
+for (const meta of document.querySelectorAll<HTMLMetaElement>('meta[name="sim3align-parents"]')) {
+  for (const address of meta.content.split(/\s+/).filter(Boolean)) origins.add(new URL(address).origin);
+}
+if (parameters.has("origin")) {
+  const remedy =
+    'Name its origin in the page of the frame: <meta name="sim3align-parents" content="https://app.example">.';
+  console.warn(`sim3align: the parameter origin is ignored: a frame does not trust whoever embeds it. ${remedy}`);
+}
+/** Those that the parent may have: where the browser does not tell its origin, it delivers to that one only. */
+const { ancestorOrigins } = location as { ancestorOrigins?: DOMStringList };
+const parents = [...origins].filter((one) => ancestorOrigins === undefined || one === ancestorOrigins[0]);
 
 const element = new Sim3AlignElement();
 const address = parameters.get("case");
 if (parameters.has("readonly")) element.readonly = true;
 if (address !== null) element.setAttribute("src", address);
 
-const send = (type: string, content: object = {}) =>
-  parent.postMessage({ type: `${PREFIX}${type}`, ...content }, { targetOrigin: origin });
+function send(type: string, content: object = {}): void {
+  for (const targetOrigin of parents) parent.postMessage({ type: `${PREFIX}${type}`, ...content }, { targetOrigin });
+}
 
 for (const type of events) {
   element.addEventListener(type, (event) => send(type, { detail: (event as CustomEvent).detail }));
@@ -59,7 +74,8 @@ async function answer(request: Request): Promise<void> {
 }
 
 addEventListener("message", ({ source, origin: from, data }: MessageEvent<Partial<Request> | null>) => {
-  if (source !== parent || from !== origin || typeof data?.type !== "string" || !data.type.startsWith(PREFIX)) return;
+  if (source !== parent || !origins.has(from) || typeof data?.type !== "string" || !data.type.startsWith(PREFIX))
+    return;
   answer(data as Request).catch((cause) => send("error", { id: data.id, detail: errorDetail(cause) }));
 });
 

@@ -3,10 +3,9 @@
  * and typed arrays that have their memory.
  */
 
-import { failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "../values/error.js";
-import { isBuffer, isKind, isRecord, proxiedKind } from "../values/kinds.js";
-import { checkAttached } from "../values/values.js";
-import { PreparedMesh } from "./prepared-mesh.js";
+import { isBranded } from "./brand.js";
+import { describe, failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
+import { isAttached, isBuffer, isKind, isRecord, proxiedKind } from "./kinds.js";
 
 /** No argument has more levels: a camera file of several images has five. Deeper objects are left out. */
 const MAX_LEVELS = 8;
@@ -25,10 +24,31 @@ export function plainArgument<T>(argument: string, value: T): T {
   return copyOf(argument, value, MAX_LEVELS, new Map()) as T;
 }
 
-/** The options of a call, read once. */
-export function plainOptions<T extends object>(options: T): T {
-  if (isRecord(options)) return plainArgument("options", options as T);
-  throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
+/**
+ * Checks all typed arrays and buffers in an argument, which consists of plain objects and arrays. Detached memory must
+ * neither reach the modules, which would trap, nor a worker of Node, which would get no message.
+ * @param argument its name in errors
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
+ */
+export function checkAttached(argument: string, value: unknown): void {
+  if (ArrayBuffer.isView(value) || isBuffer(value)) {
+    if (!isAttached(value)) throw detached(argument, value);
+  } else if (isRecord(value) || Array.isArray(value)) {
+    for (const [name, inner] of Object.entries(value)) {
+      if (typeof inner === "object")
+        checkAttached(`${argument}${Array.isArray(value) ? `[${name}]` : `.${name}`}`, inner);
+    }
+  }
+}
+
+function detached(argument: string, value: unknown): Sim3AlignError {
+  return failure(
+    "INVALID_ARGUMENT",
+    withoutInput(argument),
+    `${describe(value).replace(/ of 0$/, "")} whose memory is detached: it was moved to another thread, or shrunk`,
+    "an array with its memory",
+    "After a call with transfer: true, use the arrays in `input` of the result or of the error.",
+  );
 }
 
 /** @param copies those so far, as an object may be in two places; `undefined` for one that is being copied */
@@ -36,6 +56,8 @@ function copyOf(argument: string, value: unknown, levels: number, copies: Map<ob
   if (typeof value !== "object" || value === null) return value;
   if (copies.has(value) || levels < 0) return copies.get(value);
   try {
+    // Throws what a hostile proxy throws.
+    Object.prototype.toString.call(value);
     const proxied = proxiedKind(value);
     if (proxied !== undefined) throw proxy(argument, value, proxied);
     if (ArrayBuffer.isView(value) || isBuffer(value)) {
@@ -43,7 +65,7 @@ function copyOf(argument: string, value: unknown, levels: number, copies: Map<ob
       return value;
     }
     const isImage = isKind(value, "ImageData") && argument.endsWith(".image");
-    if (value instanceof PreparedMesh || !(Array.isArray(value) || isRecord(value) || isImage)) return value;
+    if (isBranded(value, "PreparedMesh") || !(Array.isArray(value) || isRecord(value) || isImage)) return value;
     copies.set(value, undefined);
     const inner = (name: string, item: unknown) => copyOf(`${argument}${name}`, item, levels - 1, copies);
     const copy = Array.isArray(value)
@@ -83,16 +105,16 @@ function propertyOf(argument: string, value: object, name: string): unknown {
 
 function lengthOf(argument: string, array: readonly unknown[]): number {
   if (array.length <= MAX_LENGTH) return array.length;
-  throw invalidArgument(withoutInput(argument), array, `at most ${MAX_LENGTH} values`, "Pass a typed array.");
+  throw invalidArgument(withoutInput(argument), array, `at most ${MAX_LENGTH} values`, "Pass typed arrays.");
 }
 
 function proxy(argument: string, value: unknown, kind: string): Sim3AlignError {
-  const remedy = "Pass the array itself: libraries that wrap objects in proxies have a function that unwraps them.";
+  const remedy = "Pass the array itself: libraries that wrap objects can unwrap them.";
   return invalidArgument(withoutInput(argument), value, `${kind} that is no proxy`, remedy);
 }
 
 function unreadable(argument: string, cause: unknown): Sim3AlignError {
   const found = `a property that throws ${messageOf(cause)}`;
-  const remedy = "The property is a getter or belongs to a proxy: see the cause of this error.";
+  const remedy = "It is a getter, or that of a proxy: see the cause.";
   return failure("INVALID_ARGUMENT", withoutInput(argument), found, "a property that can be read", remedy, cause);
 }

@@ -1,0 +1,16 @@
+/** Calls of objects of three.js. */
+import { failure, messageOf, Sim3AlignError } from "../values/error.js";
+
+/**
+ * Reads or sets objects that are alive, such as those of three.js: nothing of them is copied.
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for what they throw, and for what they lack
+ */
+export function withLive<T>(argument: string, expected: string, work: () => T): T {
+  try {
+    return work();
+  } catch (cause) {
+    if (cause instanceof Sim3AlignError) throw cause;
+    const found = `what throws ${messageOf(cause)}`;
+    throw failure("INVALID_ARGUMENT", argument, found, expected, "Pass that of three.js.", cause);
+  }
+}
