@@ -54,6 +54,8 @@ pub struct Rasteriser {
     triangles: Vec<u32>,
     /// Pixels visited by the triangles of the render.
     visited: usize,
+    /// Whether the farthest surfaces are drawn: 1/z is then stored with the opposite sign, so that the largest still wins.
+    is_farthest: bool,
 }
 
 /// A vertex in camera space and, if it can be projected without clipping, on the sub-pixel grid.
@@ -104,7 +106,7 @@ impl Rasteriser {
         height: usize,
     ) {
         let near = self.place(mesh, camera_from_mesh, camera);
-        self.draw::<true, false>(mesh, camera, near, Window::whole(width, height));
+        self.draw::<true>(mesh, camera, near, Window::whole(width, height));
     }
 
     /// Like [`Rasteriser::render`], without the triangle image.
@@ -117,7 +119,7 @@ impl Rasteriser {
         height: usize,
     ) {
         let near = self.place(mesh, camera_from_mesh, camera);
-        self.draw::<false, false>(mesh, camera, near, Window::whole(width, height));
+        self.draw::<false>(mesh, camera, near, Window::whole(width, height));
     }
 
     /// Like [`Rasteriser::render_depth`], for the smallest window of the image that contains `part`, the whole mesh, and one
@@ -132,7 +134,7 @@ impl Rasteriser {
     ) -> Window {
         let near = self.place(mesh, camera_from_mesh, camera);
         let window = self.covered(image).map_or(part, |covered| part.union(covered)).grown(1, image);
-        self.draw::<false, false>(mesh, camera, near, window);
+        self.draw::<false>(mesh, camera, near, window);
         window
     }
 
@@ -147,9 +149,11 @@ impl Rasteriser {
     ) -> (Window, Vec<[f32; 2]>) {
         let near = self.place(mesh, camera_from_mesh, camera);
         let window = self.covered(image).unwrap_or_default();
-        self.draw::<false, true>(mesh, camera, near, window);
+        self.is_farthest = true;
+        self.draw::<false>(mesh, camera, near, window);
+        self.is_farthest = false;
         let farthest = self.depth.clone();
-        self.draw::<false, false>(mesh, camera, near, window);
+        self.draw::<false>(mesh, camera, near, window);
         (window, self.depth.iter().zip(farthest).map(|(nearest, farthest)| [*nearest, farthest]).collect())
     }
 
@@ -206,18 +210,13 @@ impl Rasteriser {
         near
     }
 
-    /// Draws the placed mesh: its nearest surfaces or, if `FARTHEST`, its farthest ones.
-    fn draw<const TRIANGLES: bool, const FARTHEST: bool>(
-        &mut self,
-        mesh: &Mesh,
-        camera: &Pinhole,
-        near: f64,
-        window: Window,
-    ) {
+    /// Draws the placed mesh: its nearest surfaces.
+    fn draw<const TRIANGLES: bool>(&mut self, mesh: &Mesh, camera: &Pinhole, near: f64, window: Window) {
         self.window = window;
         let pixels = window.size[0] * window.size[1];
+        let (order, nothing) = if self.is_farthest { (-1.0, f32::NEG_INFINITY) } else { (1.0, 0.0) };
         self.depth.clear();
-        self.depth.resize(pixels, 0.0);
+        self.depth.resize(pixels, nothing);
         self.triangles.clear();
         self.triangles.resize(if TRIANGLES { pixels } else { 0 }, NO_TRIANGLE);
         let volume = ClipVolume::new(camera, near);
@@ -230,19 +229,19 @@ impl Rasteriser {
             let points = corners.map(|v| v.camera);
             if corners.iter().all(|v| v.placement == Placement::Inside) {
                 let plane = || InverseDepth::of(points, &points, camera);
-                self.fill::<TRIANGLES, FARTHEST>(id, corners.map(|v| v.fixed), plane);
+                self.fill::<TRIANGLES>(id, corners.map(|v| v.fixed), plane);
             } else if corners.iter().all(|v| v.placement != Placement::Nowhere) {
                 let (polygon, count) = volume.clip(points);
                 let polygon = &polygon[..count];
                 let plane = || InverseDepth::of(points, polygon, camera);
                 for i in 2..count {
                     let fan = [polygon[0], polygon[i - 1], polygon[i]];
-                    self.fill::<TRIANGLES, FARTHEST>(id, fan.map(|p| fixed(project(p, camera))), plane);
+                    self.fill::<TRIANGLES>(id, fan.map(|p| fixed(project(p, camera))), plane);
                 }
             }
         }
-        for z in self.depth.iter_mut().filter(|w| **w > 0.0) {
-            *z = 1.0 / *z;
+        for z in &mut self.depth {
+            *z = if *z == nothing { 0.0 } else { 1.0 / (order * *z) };
         }
     }
 
@@ -277,12 +276,8 @@ impl Rasteriser {
     }
 
     /// Fills one triangle on the sub-pixel grid.
-    fn fill<const TRIANGLES: bool, const FARTHEST: bool>(
-        &mut self,
-        id: u32,
-        corners: [[i32; 2]; 3],
-        plane: impl Fn() -> InverseDepth,
-    ) {
+    fn fill<const TRIANGLES: bool>(&mut self, id: u32, corners: [[i32; 2]; 3], plane: impl Fn() -> InverseDepth) {
+        let order = if self.is_farthest { -1.0 } else { 1.0 };
         let [a, mut b, mut c] = corners.map(|p| p.map(i64::from));
         // Pixels whose centres are inside the bounding box of the triangle.
         let Window { first, size } = self.window;
@@ -323,9 +318,8 @@ impl Rasteriser {
                 if (e[0] | e[1] | e[2]) >= 0 {
                     let i = start + (u as usize - first[0]);
                     // In this order, NaN (from a plane seen edge-on) becomes the lower bound.
-                    let w = (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
-                    let drawn = self.depth[i];
-                    if if FARTHEST { drawn == 0.0 || w < drawn } else { w > drawn } {
+                    let w = order * (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
+                    if w > self.depth[i] {
                         self.depth[i] = w;
                         if TRIANGLES {
                             self.triangles[i] = id;

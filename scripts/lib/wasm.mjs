@@ -25,10 +25,10 @@ import { step } from "./step.mjs";
 
 /** @type {readonly WasmModule[]} */
 export const wasmModules = [
-  { name: "core", crate: "sim3align-core", budget: 190_000 },
-  { name: "joint", crate: "sim3align-joint", budget: 295_000 },
+  { name: "core", crate: "sim3align-core", budget: 191_500 },
+  { name: "joint", crate: "sim3align-joint", budget: 300_000 },
   { name: "registration", crate: "sim3align-registration", budget: 142_000 },
-  { name: "formats", crate: "sim3align-module-formats", budget: 260_000 },
+  { name: "formats", crate: "sim3align-module-formats", budget: 262_000 },
   { name: "depth-files", crate: "sim3align-depth-files", budget: 242_000 },
   { name: "splats", crate: "sim3align-splats", budget: 62_000 },
   { name: "webp", crate: "sim3align-webp", budget: 82_000 },

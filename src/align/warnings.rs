@@ -83,9 +83,9 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
             warnings.push(Warning {
                 code: WarningCode::SizeDoubtful,
                 message: format!(
-                    "The unit of the depth was assumed; with it, the object is {} m large, {} m away. If it is not, pass depthScale, in metres per unit: 0.01 for centimetres, 0.0002 for TUM RGB-D. The pose fits the image in any unit.",
-                    number((100.0 * size).round() / 100.0),
-                    number((100.0 * f64::from(median)).round() / 100.0)
+                    "With the assumed unit of the depth, the object is {} m large, {} m away. If it is not, pass depthScale, metres per unit: 0.01 for centimetres, 0.0002 for TUM RGB-D.",
+                    number(size),
+                    number(median.into())
                 ),
             });
         }
@@ -120,7 +120,8 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     if is_inverted {
         warnings.push(Warning {
             code: WarningCode::MaskLooksInverted,
-            message: "The mask covers the image's border, and leaves out what is inside: it looks inverted. Pass the mask of the object, not that of the background.".into(),
+            message: "The mask covers the border of the image: it seems to be that of the background. Invert it."
+                .into(),
         });
     }
     if is_everything {

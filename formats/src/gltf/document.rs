@@ -40,10 +40,11 @@ pub(super) struct Node {
     pub mesh: Option<usize>,
     pub skin: Option<usize>,
     pub children: Vec<usize>,
-    pub matrix: Option<[f32; 16]>,
-    pub translation: Option<[f32; 3]>,
-    pub rotation: Option<[f32; 4]>,
-    pub scale: Option<[f32; 3]>,
+    /// 16 numbers, or none; `translation`, `rotation` and `scale` likewise.
+    pub matrix: Vec<f32>,
+    pub translation: Vec<f32>,
+    pub rotation: Vec<f32>,
+    pub scale: Vec<f32>,
     pub extensions: NodeExtensions,
 }
 

@@ -4,6 +4,7 @@ use glam::{DMat4, DQuat, DVec3};
 use serde::Deserialize;
 
 use crate::gltf::accessor::AccessorReader;
+use crate::gltf::scene::unit;
 use crate::guard::corrupt;
 use sim3align_geometry::error::Result;
 
@@ -42,10 +43,8 @@ impl Instances {
             vectors.as_ref().and_then(|vectors| vectors.get(i)).map_or(default, |vector| vector.as_dvec3())
         };
         let transform = |i: usize| {
-            let rotation = rotations.as_ref().and_then(|rotations| rotations.get(i)).map_or(DQuat::IDENTITY, |&xyzw| {
-                let rotation = DQuat::from_array(xyzw.map(f64::from));
-                if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
-            });
+            let rotation = rotations.as_ref().and_then(|rotations| rotations.get(i));
+            let rotation = rotation.map_or(DQuat::IDENTITY, |xyzw| unit(xyzw.map(f64::from)));
             let (scale, translation) = (at(&scales, i, DVec3::ONE), at(&translations, i, DVec3::ZERO));
             DMat4::from_scale_rotation_translation(scale, rotation, translation)
         };

@@ -96,7 +96,7 @@ fn placed(document: &Document) -> Result<(Vec<usize>, Vec<Option<DMat4>>)> {
         let (Some(node), Some(place)) = (document.nodes.get(index), scene_from_node.get_mut(index)) else {
             return Err(missing("node", index, document.nodes.len()));
         };
-        let transform = scene_from_parent * parent_from_node(node);
+        let transform = scene_from_parent * parent_from_node(node)?;
         if place.replace(transform).is_some() {
             let found = format!("node {index} twice in the hierarchy");
             return Err(corrupt("mesh", found, "a tree: each node below one parent, and no cycle"));
@@ -122,21 +122,29 @@ fn roots(document: &Document) -> Result<Vec<usize>> {
     Ok(is_root.iter().enumerate().filter(|(_, is_root)| **is_root).map(|(i, _)| i).collect())
 }
 
-fn parent_from_node(node: &Node) -> DMat4 {
-    if let Some(matrix) = node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
+fn parent_from_node(node: &Node) -> Result<DMat4> {
+    if !node.matrix.is_empty() {
+        return Ok(DMat4::from_cols_array(&numbers(&node.matrix, [0.0; 16])?));
     }
-    let vector = |xyz: Option<[f32; 3]>| xyz.map(|xyz| DVec3::from_array(xyz.map(f64::from)));
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| {
-        let q = DQuat::from_array(q.map(f64::from));
-        // Some exporters write a zero quaternion for the identity.
-        if q.length_squared() > 0.0 { q.normalize() } else { DQuat::IDENTITY }
-    });
-    DMat4::from_scale_rotation_translation(
-        vector(node.scale).unwrap_or(DVec3::ONE),
-        rotation,
-        vector(node.translation).unwrap_or(DVec3::ZERO),
-    )
+    let rotation = unit(numbers(&node.rotation, [0.0, 0.0, 0.0, 1.0])?);
+    let scale = DVec3::from_array(numbers(&node.scale, [1.0; 3])?);
+    let translation = DVec3::from_array(numbers(&node.translation, [0.0; 3])?);
+    Ok(DMat4::from_scale_rotation_translation(scale, rotation, translation))
+}
+
+/// A quaternion x, y, z, w of length 1. Some exporters write zeros for the identity.
+pub(super) fn unit(xyzw: [f64; 4]) -> DQuat {
+    let rotation = DQuat::from_array(xyzw);
+    if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
+}
+
+/// The numbers of a property, or its default.
+fn numbers<const N: usize>(stored: &[f32], default: [f64; N]) -> Result<[f64; N]> {
+    if stored.is_empty() {
+        return Ok(default);
+    }
+    let numbers = <[f32; N]>::try_from(stored).map(|numbers| numbers.map(f64::from));
+    numbers.map_err(|_| corrupt("mesh", format!("{} numbers in a transform", stored.len()), format!("{N}")))
 }
 
 /// The triangles of a primitive in its mesh's frame, those of a skin in the scene's frame; `None` for points, lines and empty ones. `problem` is set if its
