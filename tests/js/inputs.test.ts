@@ -199,3 +199,44 @@ test("a mesh with a texture that can't be read is aligned by its shape, with a w
   }
   assert.deepEqual((await aligner.evaluate({ ...input, mesh: webp }, truth)).warnings, []);
 });
+
+test("a mesh at the coordinates of a map has the pose of its file", async () => {
+  const east = [500_123.25, 5_200_456.5, 312.125];
+  const { positions, indices } = mesh as MeshArrays;
+  const far = Array.from(positions, (x, i) => x + (east[i % 3] ?? 0));
+  const lines = Array.from({ length: far.length / 3 }, (_, i) => `v ${far.slice(3 * i, 3 * i + 3).join(" ")}`);
+  const faces = Array.from(
+    { length: indices.length / 3 },
+    (_, i) => `f ${Array.from(indices.subarray(3 * i, 3 * i + 3), (k) => k + 1).join(" ")}`,
+  );
+  const file = new TextEncoder().encode([...lines, ...faces].join("\n"));
+  const quick = { quality: "fast" } as const;
+  const near = await aligner.align({ ...plain, mesh } as AlignInput, quick);
+  const found = await aligner.align({ ...plain, mesh: file } as AlignInput, quick);
+  const at = (matrix: readonly number[], point: readonly number[]) =>
+    [0, 1, 2].map((row) => [0, 1, 2, 3].reduce((sum, k) => sum + (matrix[4 * k + row] ?? 0) * (point[k] ?? 1), 0));
+  for (const point of [positions.subarray(0, 3), positions.subarray(300, 303)]) {
+    const expected = at(near.matrix, [...point]);
+    const placed = at(
+      found.matrix,
+      Array.from(point, (x, axis) => x + (east[axis] ?? 0)),
+    );
+    for (const [axis, x] of expected.entries())
+      assert.ok(Math.abs((placed[axis] ?? 0) - x) < 2e-3, `${placed}, ${expected}`);
+  }
+  assert.ok(Math.abs(found.scale / near.scale - 1) < 5e-3);
+  // The pose is that of the file in arguments, too.
+  const { metrics } = await aligner.evaluate({ ...plain, mesh: file } as AlignInput, found);
+  assert.ok((metrics.silhouetteIou ?? 0) > 0.95, `${metrics.silhouetteIou}`);
+});
+
+test("intrinsics that seem to be those of another image are named", async () => {
+  const { fx, fy, cx, cy } = camera;
+  const twice = { fx: 2 * fx, fy: 2 * fy, cx: 2 * cx + 0.5, cy: 2 * cy + 0.5 };
+  const of = (cameraFile: object) =>
+    aligner.align({ ...plain, camera: undefined, cameraFile } as AlignInput, { quality: "fast" });
+  assert.ok(codesOf(await of(twice)).includes("CAMERA_DOUBTFUL"));
+  const stated = await of({ ...twice, width: 2 * width, height: 2 * height });
+  const known = await of({ fx, fy, cx, cy });
+  assert.deepEqual([stated.matrix, codesOf(known).includes("CAMERA_DOUBTFUL")], [known.matrix, false]);
+});

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type AlignInput, createAligner, type DepthKind, type Sim3 } from "sim3align";
-import { correctDepth } from "sim3align/conventions";
+import { correctDepth, depthFromRayDistance } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -13,15 +13,30 @@ const here = await createAligner();
 const quick = { quality: "fast" } as const;
 const { width, height, mask, camera } = view;
 
+/** x/z and y/z of the ray of a pixel. */
+const rayOf = (i: number) =>
+  [((i % width) - camera.cx) / camera.fx, (Math.floor(i / width) - camera.cy) / camera.fy] as const;
+
 /** The output of a model of each kind for a depth map. */
 const predicted: Record<DepthKind, (depth: Float32Array) => Float32Array> = {
   metric: (depth) => depth.slice(),
+  "ray-distance": (depth) => depth.map((z, i) => z * Math.hypot(1, ...rayOf(i))),
   "scale-invariant": (depth) => depth.map((z) => 3.7 * z),
   "affine-invariant": (depth) => depth.map((z) => 2.1 * z - 1.1),
   "affine-invariant-disparity": (depth) => depth.map((z) => (z > 0 ? 5 / z - 1.5 : Number.NaN)),
 };
 const relative = (depthKind: DepthKind): AlignInput => ({
   ...{ ...input, depth: predicted[depthKind](view.depth), depthKind },
+});
+
+test("distances along the rays are the depth that they belong to", async () => {
+  const distances = relative("ray-distance");
+  const { data } = depthFromRayDistance({ data: distances.depth as Float32Array, width, height }, camera);
+  for (const [i, z] of view.depth.entries())
+    assert.ok(Math.abs((data[i] ?? 0) - z) <= 1e-6 * z, `${data[i]} is not ${z}`);
+  const [rays, depth] = [await here.align(distances, quick), await here.align({ ...input, depth: data }, quick)];
+  assert.deepEqual([rays.matrix, rays.depthUnit], [depth.matrix, "metres (float values, assumed)"]);
+  assert.equal(rays.depthCalibration, undefined);
 });
 
 const disparity = relative("affine-invariant-disparity");

@@ -311,7 +311,7 @@ fn doubtful_depth_and_masks_are_warned_of() {
     let nearest = whole.depth().data().iter().copied().fold(f32::INFINITY, f32::min);
     let normalised = |i: usize, z: f32| if i == 0 { 0.0 } else { 0.05 + 0.95 * (z - nearest) / (0.9 - nearest) };
     let integers = |i: usize, z: f32| (f64::from((normalised(i, z) * 65535.0).round()) * 0.001) as f32;
-    let cases: [(&str, Vec<WarningCode>, &[WarningCode]); 11] = [
+    let cases: [(&str, Vec<WarningCode>, &[WarningCode]); 12] = [
         ("metres", hidden(0, metres), &[]),
         ("disparity", hidden(0, disparity), &[WarningCode::DepthLooksInverted]),
         ("hidden by half", hidden(WIDTH / 2, metres), &[]),
@@ -321,6 +321,7 @@ fn doubtful_depth_and_masks_are_warned_of() {
         ("normalised integers", seen(&integers), &[WarningCode::DepthLooksNormalised]),
         ("a sensor that lacks readings", seen(&|i, z| if i % 50 == 0 { 0.0 } else { normalised(i, z) }), &[]),
         ("a map that ends elsewhere", seen(&|i, z| 1.1 * normalised(i, z)), &[]),
+        ("centimetres", seen(&|_, z| 100.0 * z), &[WarningCode::SizeDoubtful]),
         ("millimetres", seen(&|_, z| 1000.0 * z), &[WarningCode::DepthLooksLikeMillimetres]),
         ("thousandths", seen(&|_, z| 0.001 * z), &[WarningCode::DepthLooksTooSmall]),
     ];
@@ -330,4 +331,10 @@ fn doubtful_depth_and_masks_are_warned_of() {
     let mask = Mask::filled(WIDTH, HEIGHT, 1);
     let covered = Observation::new(whole.depth().clone(), mask, whole.camera()).unwrap();
     assert!(codes(&about_observation(&covered)).contains(&WarningCode::MaskCoversImage));
+    let background = whole.mask().data().iter().map(|pixel| u8::from(*pixel == 0)).collect();
+    let background = Mask::new("mask", WIDTH, HEIGHT, background).unwrap();
+    let inverted = Observation::new(whole.depth().clone(), background, whole.camera()).unwrap();
+    let found = codes(&about_observation(&inverted));
+    assert!(found.contains(&WarningCode::MaskLooksInverted), "{found:?}");
+    assert!(!found.contains(&WarningCode::DepthLooksInverted), "{found:?}");
 }
