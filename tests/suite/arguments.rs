@@ -313,10 +313,10 @@ fn doubtful_depth_and_masks_are_warned_of() {
     let integers = |i: usize, z: f32| (f64::from((normalised(i, z) * 65535.0).round()) * 0.001) as f32;
     let cases: [(&str, Vec<WarningCode>, &[WarningCode]); 12] = [
         ("metres", hidden(0, metres), &[]),
-        ("disparity", hidden(0, disparity), &[WarningCode::DepthLooksInverted]),
+        ("disparity", hidden(0, disparity), &[WarningCode::SizeDoubtful, WarningCode::DepthLooksInverted]),
         ("hidden by half", hidden(WIDTH / 2, metres), &[]),
         ("at the bottom of a box", hidden(WIDTH, metres), &[WarningCode::DepthLooksInverted]),
-        ("disparity at the bottom of a box", hidden(WIDTH, disparity), &[]),
+        ("disparity at the bottom of a box", hidden(WIDTH, disparity), &[WarningCode::SizeDoubtful]),
         ("normalised", seen(&normalised), &[WarningCode::DepthLooksNormalised]),
         ("normalised integers", seen(&integers), &[WarningCode::DepthLooksNormalised]),
         ("a sensor that lacks readings", seen(&|i, z| if i % 50 == 0 { 0.0 } else { normalised(i, z) }), &[]),
