@@ -14,13 +14,13 @@ const quick = { quality: "fast" } as const;
 const { width, height, mask, camera } = view;
 
 /** The output of a model of each kind for a depth map. */
-const predicted: Record<DepthKind, (depth: Float32Array) => Float32Array> = {
+const predicted: Record<Exclude<DepthKind, "ray-distance">, (depth: Float32Array) => Float32Array> = {
   metric: (depth) => depth.slice(),
   "scale-invariant": (depth) => depth.map((z) => 3.7 * z),
   "affine-invariant": (depth) => depth.map((z) => 2.1 * z - 1.1),
   "affine-invariant-disparity": (depth) => depth.map((z) => (z > 0 ? 5 / z - 1.5 : Number.NaN)),
 };
-const relative = (depthKind: DepthKind): AlignInput => ({
+const relative = (depthKind: keyof typeof predicted): AlignInput => ({
   ...{ ...input, depth: predicted[depthKind](view.depth), depthKind },
 });
 

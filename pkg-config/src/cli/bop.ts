@@ -93,7 +93,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
     const read = async () => {
       const image = await (await dataset.scene(place.sceneId)).image(place.imageId, withPhoto);
       const input = { ...image, mask: await maskOf(), mesh: await modelOf(place.objectId) } as AlignInput;
-      return { input, files: {}, truth };
+      return { input, truth };
     };
     cases.push({ name, path: `${folder}${name}`, hasTruth: truth !== null, read });
   };

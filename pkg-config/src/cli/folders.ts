@@ -3,8 +3,8 @@ import { existsSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
-import { caseFiles } from "../case-files.js";
-import { viewNames } from "../scene/sam3d-files.js";
+import { partOf } from "../case-names.js";
+import { isView } from "../scene/sam3d-files.js";
 import { absolutePath, isFile, namesIn, UsageError } from "./files.js";
 import { isPattern, matchingFolders } from "./pattern.js";
 import type { CaseKey } from "./record.js";
@@ -20,8 +20,7 @@ export interface FolderKind {
   is(folder: string): boolean;
 }
 
-const partNames: readonly string[] = Object.values(caseFiles).flat();
-const hasMesh = (folder: string) => caseFiles.mesh.some((name) => existsSync(join(folder, name)));
+const hasMesh = (folder: string) => namesIn(folder).some((name) => partOf(name) === "mesh");
 const has = (folder: string, ...names: string[]) => names.every((name) => existsSync(join(folder, name)));
 
 export const caseKind: FolderKind = { noun: "case", mark: "a mesh", is: hasMesh };
@@ -35,7 +34,7 @@ export const sceneKind: FolderKind = {
 export const sam3dKind: FolderKind = {
   noun: "scene",
   mark: "a point map or depth",
-  is: (folder) => namesIn(folder).some((name) => viewNames.includes(name)),
+  is: (folder) => namesIn(folder).some(isView),
 };
 
 /** A folder to work on. */
@@ -96,7 +95,7 @@ function unique(folders: readonly string[]): { folder: string; path: string }[] 
 /** @throws {@link UsageError} for a folder that is above of what is meant */
 function refuseParent({ noun, is }: FolderKind, folder: string): void {
   if (is(folder)) return;
-  if (namesIn(folder).some((name) => partNames.includes(name))) return;
+  if (namesIn(folder).some((name) => partOf(name) !== undefined)) return;
   const inside = (path: string, depth: number): boolean =>
     namesIn(path).some((name) => is(join(path, name)) || (depth > 1 && inside(join(path, name), depth - 1)));
   if (!inside(folder, 2)) return;

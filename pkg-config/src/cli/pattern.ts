@@ -1,6 +1,7 @@
 /** Patterns of folders: `*` and `?` within a name, `[abc]`, `{a,b}`, and `**` for folders at any depth. */
 import { type Dirent, existsSync, readdirSync, realpathSync, statSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
+import { naturally } from "../values/order.js";
 import { statOf } from "./files.js";
 
 /** Whether a path has characters of patterns. */
@@ -14,7 +15,7 @@ export function matchingFolders(pattern: string): { folders: string[]; unread: s
     const parts = each.split("/").filter((part) => part !== "" && part !== ".");
     return [...matches(root, parts, unread)];
   });
-  return { folders: [...new Set(folders)].sort(), unread: [...unread] };
+  return { folders: [...new Set(folders)].sort(naturally), unread: [...unread] };
 }
 
 /** The patterns without braces that one with braces stands for. */

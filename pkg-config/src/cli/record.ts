@@ -4,7 +4,7 @@ import { appendFileSync, createReadStream, existsSync, readFileSync, truncateSyn
 import { dirname, join, relative, sep } from "node:path";
 import { createInterface } from "node:readline";
 import { isDeepStrictEqual } from "node:util";
-import { caseFiles, INITIAL_FILE } from "../case-files.js";
+import { partOf } from "../case-names.js";
 import { isRecord } from "../values/kinds.js";
 import type { Entry } from "./entry.js";
 import { absolutePath, bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
@@ -45,7 +45,8 @@ const keyOf = ({ path, name }: Pick<CaseKey, "path" | "name">) => path ?? name;
 /** What the results of a record depend on beside the cases; `pathOf` returns the paths of files as the record has them. */
 export type RecordHeader = (pathOf: (path: string) => string) => { command: string; options: Record<string, unknown> };
 
-const inputs = new Set<string>([...Object.values(caseFiles).flat(), INITIAL_FILE, "pose.json"]);
+/** Whether a file is an input by its name. A true pose only measures errors. */
+const isInput = (name: string) => ![undefined, "truth"].includes(partOf(name));
 
 /** A checksum of the inputs in a folder: its files, those of its frames and of its objects. `undefined` without files. */
 function contentHash(folder: string): string | undefined {
@@ -55,7 +56,7 @@ function contentHash(folder: string): string | undefined {
     for (const name of namesIn(part)) {
       const path = join(part, name);
       try {
-        if (!inputs.has(name) || !isFile(path)) continue;
+        if (!isInput(name) || !isFile(path)) continue;
         const bytes = readFileSync(path);
         hash.update(`${relative(folder, part).split(sep).join("/")}/${name} ${bytes.length}\n`).update(bytes);
         isEmpty = false;

@@ -20,12 +20,14 @@ import { depthRows, proportionsRows, warningLine } from "./details.js";
 import {
   type AlignEntry,
   type Entry,
+  inputEntry,
   isFailure,
   isMetric,
   rowOf,
   type SceneEntry,
   sceneEntry,
   warningsOf,
+  withFiles,
 } from "./entry.js";
 import { writeSceneFiles } from "./exports.js";
 import { isFile, UsageError } from "./files.js";
@@ -107,19 +109,19 @@ async function alignScene(
   files: RunFiles,
 ): Promise<Entry> {
   const scene = await readSceneFolder(task.scene, settings);
+  caseRun.found = scene.found;
   const options: SceneOptions = { ...optionValues(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
   // A scale that is given goes before the first poses of files.
   const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
   const input = { ...scene.input, objects, support } as SceneInput;
   const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
-  const { depthUnit, cameraSource, depthCalibration } = result;
-  const read = withoutUndefined({ depthUnit, cameraSource, depthCalibration });
+  const read = inputEntry(result);
   const errors = result.objects.map((object, i) => {
     const own = inputOf(scene, i);
     if (object.error !== undefined || own === undefined) return null;
     return errorsOf(aligner, own, { ...object, ...read }, scene.truths[i]);
   });
-  const entry = sceneEntry(result, await Promise.all(errors));
+  const entry = withFiles(sceneEntry(result, await Promise.all(errors)), scene.found);
   const names = result.objects.map(({ name }, i) => name ?? `${i}`);
   caseRun.print(...linesOf(task.name, entry, names));
   await caseRun.make(async () => caseRun.print(...(await writeSceneFiles(scene, result, flags, files))));
