@@ -1,5 +1,4 @@
 /** `sim3align align`: reads cases, aligns them, and prints the results. */
-import { readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import {
   type CaseOnDisk,
@@ -10,6 +9,7 @@ import {
   readCaseFiles,
   readCaseFolder,
 } from "../case-folder.js";
+import { partOf } from "../case-names.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import {
   type Aligner,
@@ -38,7 +38,7 @@ import {
   withFiles,
 } from "./entry.js";
 import { correctedInput } from "./exports.js";
-import { absolutePath, isFile, statOf, UsageError } from "./files.js";
+import { absolutePath, namesIn, statOf, textOf, UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { caseKind, foldersToDo } from "./folders.js";
 import { optionValues } from "./option-flags.js";
@@ -110,9 +110,9 @@ function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOp
 const isPhoto = (path: string) => /\.(jpe?g|png|webp)$/i.test(path) && !statOf(path)?.isDirectory();
 
 function hasTruth(folder: string): boolean {
-  const file = join(folder, "gt.json");
+  const name = namesIn(folder).find((name) => partOf(name) === "truth");
   try {
-    return isFile(file) && parsePoseFile("truth", readFileSync(file)) !== null;
+    return name !== undefined && parsePoseFile("truth", textOf("gt.json", join(folder, name))) !== null;
   } catch {
     // A file that cannot be read is reported for its case.
     return false;

@@ -4,7 +4,7 @@ import { MAX_WORKERS } from "../aligner/aligner-options.js";
 import { listed } from "../case-files.js";
 import type { FoundFiles } from "../case-folder.js";
 import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
-import { type Entry, errorsIn, failureEntry, intakeLines, isFailure, isMetric } from "./entry.js";
+import { type Entry, errorsIn, failureEntry, intakeLines, isFailure } from "./entry.js";
 import { UsageError } from "./files.js";
 import type { Flags } from "./flags.js";
 import { Output } from "./output.js";
@@ -13,7 +13,6 @@ import { BatchProgress, StatusLine } from "./progress.js";
 import type { CaseKey, RecordHeader } from "./record.js";
 import type { EntrySink } from "./result-files.js";
 import { OutputError, type RunFiles } from "./run-files.js";
-import { noUnitNote } from "./table.js";
 import { note, type Style } from "./terminal.js";
 
 /** The context in which a command works on a case. */
@@ -114,7 +113,6 @@ async function runCases<T extends CaseKey>(
   let [done, failed, incomplete] = [0, 0, 0];
   /** Lines about the files of cases, and these. */
   const intake = new Map<string, string[]>();
-  let hasNoUnit = false;
   let progress: BatchProgress | undefined;
 
   /** Counts a case, and adds its rows to the report. Returns its errors. */
@@ -122,7 +120,6 @@ async function runCases<T extends CaseKey>(
     const errors = errorsIn(entry);
     done += 1;
     if (errors.length > 0) failed += 1;
-    hasNoUnit ||= !isMetric(entry);
     pictures.record(name, entry);
     return errors;
   };
@@ -209,7 +206,6 @@ async function runCases<T extends CaseKey>(
     output.end();
     pictures.end();
     output.lines(!isOnly && remarks.length > 0 ? ["", ...remarks] : remarks);
-    if (hasNoUnit) output.lines(["", noUnitNote]);
     const lines = [...intake].map(([line, names]) => (isOnly ? line : `${line} (${listed(names)})`));
     if (lines.length > 0) output.lines(["", ...lines]);
     if (failedBefore.length > 0)

@@ -53,7 +53,10 @@ export function withFiles<T extends Entry>(entry: T, found: FoundFiles | undefin
   return { ...entry, inputs, unread: found.unread };
 }
 
-/** What was not read of a case, and what was assumed of what was; a line each. */
+const noUnit =
+  "Lengths have no unit, because nothing metric is known: --known-extent, or a number as --scale, makes them metric.";
+
+/** What was not read of a case, what was assumed of what was, and whether its lengths have a unit; a line each. */
 export function intakeLines(entry: Entry): string[] {
   const { frames, objects = frames } = entry;
   const all: [string, Entry][] = [["", entry], ...Object.entries((objects ?? {}) as Record<string, Entry>)];
@@ -65,6 +68,7 @@ export function intakeLines(entry: Entry): string[] {
   return [
     ...(unread.length === 0 ? [] : [`not read: ${listed(unread)}`]),
     ...(assumed.length === 0 ? [] : [`assumed: ${[...new Set(assumed)].join("; ")}`]),
+    ...(isMetric(entry) ? [] : [noUnit]),
   ];
 }
 
@@ -99,12 +103,12 @@ export type AlignEntry = ReturnType<typeof alignEntry>;
 export function alignEntry(alignment: Omit<AlignResult, "input">, errors: PoseErrors | null) {
   const { metrics, warnings } = alignment;
   const { timingsMs, ...diagnostics } = alignment.diagnostics;
-  type Certainty = Pick<AlignResult<"precise">, "alternatives" | "uncertainty" | "turnConfidence" | "proportions">;
-  const { confidence, turnConfidence, alternatives, uncertainty, proportions } = (
-    "confidence" in alignment
-      ? alignment
-      : { confidence: null, turnConfidence: null, alternatives: [], uncertainty: null }
-  ) as Certainty & { confidence: number | null };
+  type Certain = Pick<
+    AlignResult<"precise">,
+    "confidence" | "turnConfidence" | "alternatives" | "uncertainty" | "proportions"
+  >;
+  const certain = alignment as Partial<Certain>;
+  const { confidence = null, turnConfidence = null, alternatives = [], uncertainty = null, proportions } = certain;
   return {
     ...poseEntry(transformOf(alignment)),
     ...{ confidence, turnConfidence, alternatives: alternatives.map(poseEntry), uncertainty },

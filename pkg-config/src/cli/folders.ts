@@ -3,6 +3,7 @@ import { existsSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
+import { isBopScene } from "../bop/dataset.js";
 import { partOf } from "../case-names.js";
 import { isView } from "../scene/sam3d-files.js";
 import { absolutePath, isFile, namesIn, UsageError } from "./files.js";
@@ -21,21 +22,13 @@ export interface FolderKind {
 }
 
 const hasMesh = (folder: string) => namesIn(folder).some((name) => partOf(name) === "mesh");
-const has = (folder: string, ...names: string[]) => names.every((name) => existsSync(join(folder, name)));
 
 export const caseKind: FolderKind = { noun: "case", mark: "a mesh", is: hasMesh };
 export const videoKind: FolderKind = { noun: "video", mark: "a mesh", is: hasMesh };
-export const sceneKind: FolderKind = {
-  noun: "scene",
-  mark: "objects",
-  is: (folder) => has(folder, "objects") || has(folder, "mask_visib", "scene_gt.json"),
-};
-
-export const sam3dKind: FolderKind = {
-  noun: "scene",
-  mark: "a point map or depth",
-  is: (folder) => namesIn(folder).some(isView),
-};
+const hasObjects = (names: readonly string[]) => names.includes("objects") || isBopScene(names);
+export const sceneKind: FolderKind = { noun: "scene", mark: "objects", is: (folder) => hasObjects(namesIn(folder)) };
+const hasView = (folder: string) => namesIn(folder).some(isView);
+export const sam3dKind: FolderKind = { noun: "scene", mark: "a point map or depth", is: hasView };
 
 /** A folder to work on. */
 export interface FolderToDo extends CaseKey {
@@ -77,19 +70,15 @@ export async function foldersToDo(
 
 /** The folders with their absolute paths, each path once. */
 function unique(folders: readonly string[]): { folder: string; path: string }[] {
-  const seen = new Set<string>();
+  const first = new Map<string, string>();
   const repeated: string[] = [];
-  const first = folders.flatMap((folder) => {
+  for (const folder of folders) {
     const path = absolutePath(folder);
-    if (seen.has(path)) {
-      repeated.push(folder);
-      return [];
-    }
-    seen.add(path);
-    return [{ folder, path }];
-  });
+    if (first.has(path)) repeated.push(folder);
+    else first.set(path, folder);
+  }
   if (repeated.length > 0) note(`skipped, given twice: ${repeated.join(", ")}`);
-  return first;
+  return [...first].map(([path, folder]) => ({ folder, path }));
 }
 
 /** @throws {@link UsageError} for a folder that is above of what is meant */

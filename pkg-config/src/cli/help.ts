@@ -112,8 +112,6 @@ Output
 ${batches("case", "a mesh")}
 
 Examples
-  sim3align align cases/mug
-  sim3align align cases/* --json results.json
   sim3align align 'cases/**' --jsonl results.jsonl --csv results.csv --resume
   find cases -name mesh.glb -printf '%h\\n' | sim3align align --list - --workers 4 --jsonl -
   sim3align align 'cases/**' --jsonl results.jsonl --report report --resume
@@ -124,10 +122,8 @@ Examples
   sim3align align cases/mug --preset paper --seed 7 --guard 0.8,1.2 --guard-mode clamp
   sim3align align cases/mug --preset paper --options '{"fpfhRadiusVoxels": 4}' --json - | jq .mug.scale
   sim3align align --depth d.png --mask m.png --mesh mug.glb --camera 600,600,320,240 --depth-scale 0.001
-  sim3align align --depth d.npy --mask m.png --mesh mug.obj --camera fov:55 --image photo.jpg
   sim3align align photo.jpg --depth moge.npz --mask m.png --mesh mug.glb
   sim3align align photo.jpg --depth d.npy --mask m.png --mesh mug.glb --depth-kind affine-invariant-disparity
-  sim3align align cases/mug --depth-kind affine-invariant-disparity --known-extent 0.095 --known-extent-axis y
 ${status}`;
 
 export const trackHelp = `${caseFolder}
@@ -166,7 +162,6 @@ Examples
   sim3align evaluate cases/mug --transform results.json
   sim3align evaluate 'cases/**' --transform results.jsonl --csv scores.csv
   sim3align evaluate views/mug --transform views.json
-  sim3align evaluate cases/mug --transform gt --json scores.json
 ${status}`;
 
 export const sceneHelp = `
@@ -201,15 +196,12 @@ Output
 ${batches("scene", "objects")}
 
 Examples
-  sim3align scene scenes/desk
-  sim3align scene scenes/* --json scenes.json
   sim3align scene 'scenes/**' --jsonl scenes.jsonl --csv scenes.csv --resume
   sim3align scene scenes/desk --scale 0.05,0.5
   sim3align scene scenes/desk --snap --scene-glb desk.glb
   sim3align scene scenes/desk --mjcf desk-mujoco --usd desk.usda
   sim3align scene --sam3d outputs/desk --scene-glb desk.glb
   sim3align scene scenes/desk --depth-kind affine-invariant-disparity
-  sim3align scene scenes/* --report report
   sim3align scene bop/test/000048 --image-id 1 --json -
 ${status}`;
 

@@ -83,7 +83,7 @@ function isFolderBelow(link: string, folder: string): boolean {
     // By way of links, and without them.
     const above = [
       ...ancestry(resolve(folder)).map((path) => realpathSync(path)),
-      ...ancestry(realpathSync(resolve(folder))),
+      ...ancestry(realpathSync(folder || ".")),
     ];
     return !above.includes(realpathSync(link));
   } catch {
@@ -93,7 +93,4 @@ function isFolderBelow(link: string, folder: string): boolean {
 }
 
 /** A folder, and all folders above it. */
-function ancestry(path: string): string[] {
-  const above = dirname(path);
-  return above === path ? [path] : [path, ...ancestry(above)];
-}
+const ancestry = (path: string): string[] => (dirname(path) === path ? [path] : [path, ...ancestry(dirname(path))]);

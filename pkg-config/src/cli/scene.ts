@@ -12,7 +12,7 @@ import {
   type SceneOptions,
 } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
-import { bopFolders, bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
+import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
@@ -62,13 +62,8 @@ export async function sceneJob(args: readonly string[], flags: Flags, files: Run
     // The files of a whole scene are made with its result only.
     isComplete: () => sceneOutputs(flags).every(({ path, holds }) => isFile(join(path, holds?.at(-1) ?? ""))),
     async inputs({ name, scene }) {
-      const onDisk = await readSceneFolder(scene, settings);
-      const inputs = new Map<string, AlignInput>();
-      for (const [i, object] of onDisk.input.objects.entries()) {
-        const input = inputOf(onDisk, i);
-        if (input !== undefined) inputs.set(`${name}/${object.name ?? i}`, input);
-      }
-      return inputs;
+      const { input } = await readSceneFolder(scene, settings);
+      return new Map(input.objects.map((object, i) => [`${name}/${object.name ?? i}`, inputOf(input, object)]));
     },
   };
 }
@@ -117,9 +112,9 @@ async function alignScene(
   const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
   const read = inputEntry(result);
   const errors = result.objects.map((object, i) => {
-    const own = inputOf(scene, i);
+    const own = scene.input.objects[i];
     if (object.error !== undefined || own === undefined) return null;
-    return errorsOf(aligner, own, { ...object, ...read }, scene.truths[i]);
+    return errorsOf(aligner, inputOf(scene.input, own), { ...object, ...read }, scene.truths[i]);
   });
   const entry = withFiles(sceneEntry(result, await Promise.all(errors)), scene.found);
   const names = result.objects.map(({ name }, i) => name ?? `${i}`);
@@ -136,11 +131,8 @@ async function supportOf(flag: string | undefined): Promise<SceneInput["support"
 }
 
 /** The input of one object. */
-function inputOf({ input: scene }: SceneOnDisk, index: number): AlignInput | undefined {
-  const { objects, labels: _, occluders: __, support: ___, ...view } = scene;
-  const object = objects[index];
-  if (object === undefined) return undefined;
-  const { mask, mesh, resizeMask } = object;
+function inputOf(scene: SceneInput, { mask, mesh, resizeMask }: SceneInput["objects"][number]): AlignInput {
+  const { objects: _, labels: __, occluders: ___, support: ____, ...view } = scene;
   return { ...view, mask, mesh, ...withoutUndefined({ resizeMask }) } as AlignInput;
 }
 

@@ -1,6 +1,6 @@
 /** `sim3align track`: tracks an object through the frames of videos. */
 import { type FoundFiles, frameNames, openFrames } from "../case-folder.js";
-import { type Aligner, OPTIONS, type TrackOptions } from "../index.js";
+import { type Aligner, OPTIONS, type TrackedFrame, type TrackOptions } from "../index.js";
 import { fixed, significant } from "../report-page/row.js";
 import type { CaseRun, Job } from "./batch.js";
 import { depthRows } from "./details.js";
@@ -43,7 +43,7 @@ async function trackVideo(
     caseRun.print(caseRun.style.bold(name), headings(columns));
     const frames = new Map<string, Entry>();
     // How the last frame was read stands for the others.
-    let last: Parameters<typeof depthRows>[0] | undefined;
+    let last: TrackedFrame | undefined;
     let next: ReturnType<typeof read> | undefined;
     for (const [k, frame] of names.entries()) {
       const began = performance.now();
@@ -63,8 +63,8 @@ async function trackVideo(
           next.catch(() => {});
         }
         last = await tracking;
-        const { state, confidence, scale, scaleSd } = await tracking;
-        frames.set(frame, withFiles(frameEntry(await tracking), own));
+        const { state, confidence, scale, scaleSd } = last;
+        frames.set(frame, withFiles(frameEntry(last), own));
         cells = [state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2)];
       } catch (error) {
         const failed = failureEntry(error, own);
