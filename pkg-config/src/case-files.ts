@@ -1,5 +1,5 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
-import { caseFiles, fileOf, isNoInput, type Part, partOf } from "./case-names.js";
+import { fileOf, isNoInput, namesOf, type Part, partOf } from "./case-names.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import { plainArgument } from "./input/border.js";
@@ -93,7 +93,7 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
     if (name !== undefined) return name;
     const others = unread().filter((other) => partOf(other) === undefined);
     const found = `no such file in ${place}${others.length === 0 ? "" : `, beside ${listed(others)}`}`;
-    throw fileNotFound(owner ?? part, found, caseFiles[part].join(" or "));
+    throw fileNotFound(owner ?? part, found, namesOf(part).join(" or "));
   };
   const viewNames = () => withoutUndefined({ camera: find("camera"), image: find("image"), truth: find("truth") });
   const read = async (name: string) => {

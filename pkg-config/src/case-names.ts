@@ -28,29 +28,32 @@ const table = {
 /** A part of a case that is a file. */
 export type Part = keyof typeof table;
 
-const rows = Object.entries(table) as [Part, { stems: readonly string[]; extensions: readonly string[] }][];
+const parts = Object.keys(table) as Part[];
+const rowOf = (part: Part): { stems: readonly string[]; extensions: readonly string[] } => table[part];
 
-/** The names that the file of each part may have. */
-export const caseFiles = Object.fromEntries(
-  rows.map(([part, { stems, extensions }]) => [
-    part,
-    stems.flatMap((stem) => extensions.map((own) => `${stem}.${own}`)),
-  ]),
-) as Record<Part, string[]>;
+/** The names that the file of a part may have. */
+export function namesOf(part: Part): string[] {
+  const { stems, extensions } = rowOf(part);
+  return stems.flatMap((stem) => extensions.map((extension) => `${stem}.${extension}`));
+}
 
 /** The names of a part for people: `depth.npy, .png or .npz`; `rgb or image (.png or .jpg)`. */
 export function namesText(part: Part): string {
-  const { stems, extensions } = table[part];
+  const { stems, extensions } = rowOf(part);
   const endings = either(extensions.map((extension) => `.${extension}`));
   return stems.length === 1 ? `${stems[0]}${endings}` : `${either(stems)} (${endings})`;
 }
 
 const either = (words: readonly string[]) => [words.slice(0, -1).join(", "), words.at(-1)].filter(Boolean).join(" or ");
 
-const parts = new Map(rows.flatMap(([part]) => caseFiles[part].map((name) => [name.toLowerCase(), part] as const)));
-
 /** The part that a file is by its name; `undefined` for another file, and for one in a folder below. */
-export const partOf = (name: string): Part | undefined => parts.get(name.toLowerCase().replace(/^\.\.\//, ""));
+export function partOf(path: string): Part | undefined {
+  const [, stem, ending = ""] = /^(?:\.\.\/)?(.*)\.([^.]+)$/s.exec(path.toLowerCase()) ?? [];
+  return parts.find((part) => {
+    const { stems, extensions } = rowOf(part);
+    return extensions.includes(ending) && stems.some((known) => known.toLowerCase() === stem);
+  });
+}
 
 /** Files of operating systems and of results of this package, which belong to no case. */
 export const isNoInput = (path: string): boolean =>
@@ -63,7 +66,8 @@ export const isNoInput = (path: string): boolean =>
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` if several files have names of the part: none is better than another
  */
 export function fileOf(part: Part, names: readonly string[], place: string, owner: string = part): string | undefined {
-  const order = (name: string) => caseFiles[part].findIndex((known) => known.toLowerCase() === name.toLowerCase());
+  const known = namesOf(part).map((name) => name.toLowerCase());
+  const order = (name: string) => known.indexOf(name.toLowerCase());
   const all = names.filter((name) => partOf(name) === part).sort((a, b) => order(a) - order(b));
   const ofDepth = all.filter((name) => /depth/i.test(name));
   const found = ofDepth.length === 0 ? all : all.filter((name) => !/color/i.test(name));

@@ -1,6 +1,6 @@
 /** The output of SAM 3D Objects as the files of a scene. The guide "Meshes of generators" describes the folder. */
 import type { CaseFiles, ReadCaseOptions } from "../case-files.js";
-import { caseFiles, isNoInput, partOf } from "../case-names.js";
+import { isNoInput, namesOf, partOf } from "../case-names.js";
 import { fromSam3d } from "../conventions/sam3d.js";
 import { parsedJson } from "../formats/json.js";
 import { holdsGaussians } from "../formats/splat-files.js";
@@ -17,7 +17,7 @@ import { type SceneCase, sceneFrom } from "./scene-files.js";
 const pointMaps = ["pointmap", "point_map", "moge", "points"].flatMap((name) => [`${name}.npy`, `${name}.npz`]);
 
 /** Names of files with the depth of an image: depth itself, which is metric, comes first. */
-const viewNames: readonly string[] = [...caseFiles.depth, ...pointMaps];
+const viewNames: readonly string[] = [...namesOf("depth"), ...pointMaps];
 
 /** Whether a name is that of a file with the depth of an image. */
 export const isView = (name: string): boolean => viewNames.includes(name.toLowerCase());
@@ -148,7 +148,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
     const namedMasks = masks.filter((path) => /(^|[^a-z])masks?([^a-z]|$)/i.test(baseName(path)));
     const mask = only(owner, "mask", namedMasks.length > 0 ? namedMasks : masks);
     if (mesh === undefined) throw lacks(`mesh of ${name}`, "mesh.glb, or the PLY of its Gaussians");
-    if (mask === undefined) throw lacks(`mask of ${name}`, caseFiles.mask.join(" or "));
+    if (mask === undefined) throw lacks(`mask of ${name}`, namesOf("mask").join(" or "));
     const format = extension(mesh);
     take(`${owner}/mask.${extension(mask)}`, mask);
     take(`${owner}/mesh.${format}`, mesh);
