@@ -40,15 +40,17 @@ export function failureEntry(thrown: unknown, found?: FoundFiles): FailureEntry 
 export function withFiles<T extends Entry>(entry: T, found: FoundFiles | undefined): T {
   if (found === undefined) return entry;
   const { depthUnit: unit, maskReading, imageReading, cameraSource: source = "" } = entry as InputInfo;
+  const objects = Object.entries((entry.objects ?? {}) as Record<string, InputInfo>);
   const facts: Record<string, object> = {
     depth: { unit, camera: source === "depth file" ? source : undefined },
     mask: { reading: maskReading },
+    ...Object.fromEntries(objects.map(([name, own]) => [`objects/${name}/mask`, { reading: own.maskReading }])),
     image: { reading: imageReading, camera: source.startsWith("EXIF") ? source : undefined },
   };
   const inputs: Record<string, object> = {};
   for (const [path, name] of Object.entries(found.files)) {
     const part = path.slice(path.lastIndexOf("/") + 1);
-    inputs[name] ??= withoutUndefined({ as: part, ...facts[part] });
+    inputs[name] ??= withoutUndefined({ as: part, ...(facts[path] ?? facts[part]) });
   }
   return { ...entry, inputs, unread: found.unread };
 }

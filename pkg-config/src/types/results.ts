@@ -62,7 +62,7 @@ export interface TrackedFrame extends Core.TrackedFrame, InputInfo {
 }
 
 /** The result of `evaluate`. */
-export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit"> {
+export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit" | "maskReading" | "imageReading"> {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
