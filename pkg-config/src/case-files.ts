@@ -1,10 +1,12 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
+import { fileOf, isNoInput, namesOf, type Part, partOf } from "./case-names.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
 import { failure, Sim3AlignError } from "./values/error.js";
+import { naturally } from "./values/order.js";
 import { isRecord, record, withoutUndefined } from "./values/values.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
@@ -22,36 +24,25 @@ export type ReadCaseOptions = Partial<Pick<AlignInput, "depthScale" | "imageId" 
 export interface Case {
   /** The input for `align` and `evaluate`. */
   input: AlignInput;
-  /** The name of the file of each part of the input; of the camera and of the photo, if there is one. */
-  files: Record<"depth" | "mask" | "mesh", string> & { camera?: string; image?: string };
+  /** The name of the file of each part; of the camera, of the photo and of the true pose, if there is one. */
+  files: Record<"depth" | "mask" | "mesh", string> & { camera?: string; image?: string; truth?: string };
+  /** The names of files that were not read, in order. */
+  unread: string[];
   /** The true pose; `null` if unknown. */
   truth: KnownPose | null;
 }
-
-/** File names of each part of a case. */
-export const caseFiles = {
-  depth: ["depth.npy", "depth.png", "depth.npz", "depth.exr", "depth.tiff", "depth.tif", "depth.pfm"],
-  mask: ["mask.png", "mask.npy", "mask.json"],
-  mesh: ["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl", "mesh.splat"],
-  camera: ["camera.json", "scene_camera.json"],
-  image: ["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"],
-} as const satisfies { mesh: readonly `mesh.${MeshFormat}`[]; [part: string]: readonly string[] };
-
-/** The file of an object of a scene with a first pose: one candidate among those of the search. */
-export const INITIAL_FILE = "initial.json";
 
 /** Frames whose files have been read, but not decoded. */
 export interface FrameFiles {
   /** The input for a view or a tracker. */
   input: ViewInput;
-  /** The name of the file of each part of the input. */
+  /** The name of the file of each part. */
   files: Readonly<Record<string, string>>;
+  /** The names of files that were not read, in order. */
+  unread: string[];
   /** The true pose; `null` if unknown. */
   truth: KnownPose | null;
 }
-
-/** The file with the pose of a frame's camera, and the camera's pose in it: `camera_to_world`, 4×4 by rows, metres. */
-const CAMERA_POSE_FILE = "pose.json";
 
 /**
  * Reads a frame: depth map, and optionally camera file, mask, photo, `pose.json` and `gt.json`, identified by name.
@@ -60,22 +51,23 @@ const CAMERA_POSE_FILE = "pose.json";
  */
 export async function frameFrom(files: CaseFiles, settings: ReadCaseOptions, place: string): Promise<FrameFiles> {
   const reader = filesOf(files, settings, place);
-  const names = { depth: reader.required("depth"), mask: reader.find("mask"), ...reader.viewNames() };
+  const { find, required, optional } = reader;
+  const names = { depth: required("depth"), mask: find("mask"), ...reader.viewNames(), pose: find("pose") };
   const { input, truth } = await viewFrom(reader, names, settings);
-  const pose = await reader.optional(CAMERA_POSE_FILE);
+  const pose = await optional(names.pose);
   if (pose !== undefined) input.cameraToWorld = cameraPose(pose);
-  return { input, files: withoutUndefined(names) as FrameFiles["files"], truth };
+  return { input, files: withoutUndefined(names) as FrameFiles["files"], unread: reader.unread(), truth };
 }
 
 /** Reads the view in files of these names, and its true pose. */
 async function viewFrom(
   { read, optional }: ReturnType<typeof filesOf>,
-  names: { depth: string; mask: string | undefined; camera?: string; image?: string },
+  names: { depth: string; mask: string | undefined; camera?: string; image?: string; truth?: string },
   { image: _, ...settings }: ReadCaseOptions,
 ) {
   const [depth, mask, cameraFile, image, truth] = await Promise.all([
     ...[read(names.depth), optional(names.mask), optional(names.camera), optional(names.image)],
-    optional("gt.json"),
+    optional(names.truth),
   ]);
   const input = withoutUndefined({ depth, mask, cameraFile, image, ...settings }) as ViewInput;
   return { input, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
@@ -87,28 +79,44 @@ async function viewFrom(
  * @internal
  */
 export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, place: string, owner?: string) {
+  const all = Object.keys(files);
+  const used = new Set<string>();
+  const isWanted = (part: Part | undefined) => image || part !== "image";
   /** The name of a part's file; that of the photo only if it is wanted. */
-  const find = (part: keyof typeof caseFiles) =>
-    part === "image" && !image ? undefined : onlyFile(part, (name) => name in files, place, owner);
-  const required = (part: keyof typeof caseFiles) => {
+  const find = (part: Part) => (isWanted(part) ? fileOf(part, all, place, owner) : undefined);
+  /** The names of files that were not read, in order. */
+  const unread = () =>
+    all.filter((name) => !used.has(name) && !isNoInput(name) && isWanted(partOf(name))).sort(naturally);
+  const required = (part: Part) => {
     const name = find(part);
     if (name !== undefined) return name;
-    throw fileNotFound(owner ?? part, `no such file in ${place}`, caseFiles[part].join(" or "));
+    const others = unread().filter((other) => partOf(other) === undefined);
+    const found = `no such file in ${place}${others.length === 0 ? "" : `, beside ${listed(others)}`}`;
+    throw fileNotFound(owner ?? part, found, namesOf(part).join(" or "));
   };
-  const viewNames = () => withoutUndefined({ camera: find("camera"), image: find("image") });
+  const viewNames = () => withoutUndefined({ camera: find("camera"), image: find("image"), truth: find("truth") });
   const read = async (name: string) => {
+    used.add(name);
     const file = files[name];
     return requiredBytes(name, typeof file === "function" ? await file() : file);
   };
-  const optional = (name: string | undefined) => (name !== undefined && name in files ? read(name) : undefined);
+  const optional = async (name: string | undefined) => (name === undefined ? undefined : read(name));
   /** Reads a file that the mesh refers to. */
   const beside = async (path: string) => {
     if (path in files) return read(path);
     throw fileNotFound("mesh", `no ${path} in ${place}`, "the files that the mesh refers to");
   };
-  return { find, required, viewNames, read, optional, beside };
+  return { find, required, viewNames, read, optional, beside, unread };
 }
 
+/** Names that are listed. */
+const LISTED = 10;
+
+/** Names in a sentence; of many, the first ones. */
+export const listed = (names: readonly string[]): string =>
+  names.length > LISTED ? `${names.slice(0, LISTED).join(", ")} and ${names.length - LISTED} more` : names.join(", ");
+
+/** The pose of a frame's camera: `camera_to_world`, 4×4 by rows, metres. */
 function cameraPose(bytes: Uint8Array): number[] {
   const json = parsedJson("pose", bytes);
   const rows = isRecord(json) ? numbersIn(json.camera_to_world, 16) : null;
@@ -134,7 +142,7 @@ export async function caseFrom(
   const names = { depth: required("depth"), mask: required("mask"), mesh: required("mesh"), ...viewNames() };
   const { input, truth } = await viewFrom(reader, names, settings);
   const mesh = await meshFile(names.mesh, await reader.read(names.mesh), formats, reader.beside);
-  return { input: { ...input, mesh } as AlignInput, files: names, truth };
+  return { input: { ...input, mesh } as AlignInput, files: names, unread: reader.unread(), truth };
 }
 
 /**
@@ -150,7 +158,7 @@ export async function meshFile(
   read: (path: string) => Promise<Uint8Array>,
 ): Promise<MeshFile> {
   const format = /\.([^./\\]+)$/.exec(name)?.[1]?.toLowerCase() as MeshFormat | undefined;
-  if (!caseFiles.mesh.some((known) => known === `mesh.${format}`)) return { bytes };
+  if (format === undefined || partOf(`mesh.${format}`) !== "mesh") return { bytes };
   if (format !== "gltf" && format !== "obj") return { bytes, format };
   const resources: Record<string, Uint8Array> = {};
   const readers = await formats();
@@ -202,23 +210,6 @@ function decoded(uri: string): string {
   } catch {
     return uri;
   }
-}
-
-/**
- * The name of the file of a part; `undefined` without one.
- * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` if several files have names of the part: none is better than another
- * @internal
- */
-export function onlyFile(
-  part: keyof typeof caseFiles,
-  isThere: (name: string) => boolean,
-  place: string,
-  owner: string = part,
-): string | undefined {
-  const names = caseFiles[part].filter(isThere);
-  if (names.length < 2) return names[0];
-  const remedy = `Remove or rename the others; on the command line, --${part} names one, with --depth, --mask and --mesh.`;
-  throw failure("INVALID_ARGUMENT", owner, `${names.join(" and ")} in ${place}`, "one of them", remedy);
 }
 
 /** The files of a call, read once. */

@@ -1,30 +1,37 @@
 /** Cases on disk (Node only). */
-import { existsSync } from "node:fs";
 import { readdir, readFile, stat } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
 import {
   type Case,
   type CaseFiles,
-  caseFiles,
   caseFrom,
   type FrameFiles,
   fileNotFound,
+  filesOf,
   frameFrom,
   meshFile,
-  onlyFile,
   type ReadCaseOptions,
 } from "./case-files.js";
+import { partOf } from "./case-names.js";
 import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
 import { formatsModule } from "./modules/readers.js";
 import { failure, Sim3AlignError } from "./values/error.js";
+import { naturally } from "./values/order.js";
 import { withoutUndefined } from "./values/values.js";
 
 export type { ReadCaseOptions } from "./case-files.js";
 
-/** A case on disk. `files` contains paths. */
-export interface CaseOnDisk extends Omit<Case, "files"> {
-  name: string;
+/** The files of a folder: which each part is, and those that were not read. Names are relative to the folder. */
+export interface FoundFiles {
+  folder: string;
   files: Readonly<Record<string, string>>;
+  unread: readonly string[];
+}
+
+/** A case on disk. */
+export interface CaseOnDisk extends Pick<Case, "input" | "truth"> {
+  name: string;
+  found: FoundFiles;
 }
 
 /** The files of a case, given individually. */
@@ -44,40 +51,68 @@ export const loadFormats = () => formatsModule.load();
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
-  const found = await caseFrom(filesIn("case", folder, await pathsIn(folder)), settings, loadFormats, folder);
-  return { ...found, name: basename(resolve(folder)), files: pathsOf(folder, found.files) };
+  const files = filesIn("case", folder, await pathsIn(folder));
+  const { input, truth, ...found } = await caseFrom(files, settings, loadFormats, folder);
+  return { name: basename(resolve(folder)), input, truth, found: { folder, ...found } };
 }
 
 /** Files of a folder, read on demand. */
 export const filesIn = (argument: string, folder: string, paths: readonly string[]): CaseFiles =>
   Object.fromEntries(paths.map((path) => [path, () => read(argument, join(folder, path))]));
 
-const pathsOf = (folder: string, files: Readonly<Record<string, string>>) =>
-  Object.fromEntries(Object.entries(files).map(([part, name]) => [part, join(folder, name)]));
+/** A frame on disk. */
+export interface FrameOnDisk extends Pick<FrameFiles, "input" | "truth"> {
+  name: string;
+  found: FoundFiles;
+}
 
-/** Several frames of one object, on disk. */
-export interface FramesOnDisk {
-  /** The mesh. */
+/** A folder with frames of one object. */
+export interface FramesFolder {
   mesh: MeshFile;
-  /** The frames, by their names, in order. */
-  frames: ({ name: string } & FrameFiles)[];
+  /** The names of the frames, in order. */
+  names: readonly string[];
+  /** Reads a frame. */
+  read(name: string): Promise<FrameOnDisk>;
+  /** The files beside the frames; without the camera, until a frame was read that has none. */
+  found(): FoundFiles;
 }
 
 /** The names of the `frame_*` folders of a case, in order; none for a case of one view. */
 export async function frameNames(folder: string): Promise<string[]> {
   const entries = await readdir(folder, { withFileTypes: true }).catch(() => []);
-  const names = entries.filter((entry) => entry.isDirectory() && entry.name.startsWith("frame_"));
-  return names.map(({ name }) => name).sort();
+  const names = entries.filter((entry) => entry.isDirectory() && isFrame(entry.name));
+  return names.map(({ name }) => name).sort(naturally);
 }
 
+const isFrame = (path: string) => path.startsWith("frame_");
+
 /**
- * Reads a case folder with `frame_*` folders.
+ * Opens a case folder with `frame_*` folders. A camera beside these is that of the frames without one.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
-export async function readFrames(folder: string, settings: ReadCaseOptions = {}): Promise<FramesOnDisk> {
-  const names = await frameNames(folder);
-  const frames = names.map(async (name) => ({ name, ...(await readFrame(join(folder, name), settings)) }));
-  return { mesh: await readMeshFile(meshIn(folder)), frames: await Promise.all(frames) };
+export async function openFrames(folder: string, settings: ReadCaseOptions = {}): Promise<FramesFolder> {
+  const shared = filesOf(filesIn("case", folder, await pathsIn(folder)), settings, folder);
+  const meshName = shared.required("mesh");
+  const mesh = await meshFile(meshName, await shared.read(meshName), loadFormats, shared.beside);
+  let camera: string | undefined;
+  return {
+    ...{ mesh, names: await frameNames(folder) },
+    async read(name) {
+      const place = join(folder, name);
+      const paths = await filesBelow(place, "", 1);
+      const above = paths.some((path) => partOf(path) === "camera") ? undefined : shared.find("camera");
+      camera ??= above;
+      const beside = above === undefined ? {} : { [`../${above}`]: () => shared.read(above) };
+      const files = { ...filesIn("frame", place, paths), ...beside };
+      const { input, truth, ...found } = await frameFrom(files, settings, place);
+      return { name, input, truth, found: { folder: place, ...found } };
+    },
+    found: () => ({
+      folder,
+      files: withoutUndefined({ mesh: meshName, camera }) as FoundFiles["files"],
+      unread: shared.unread().filter((path) => !isFrame(path)),
+    }),
+  };
 }
 
 /** A frame as an input for `align` and `evaluate`; `undefined` without a mask. */
@@ -86,31 +121,32 @@ export function inputOfFrame({ input }: Pick<FrameFiles, "input">, mesh: MeshFil
   return view.mask === undefined ? undefined : ({ ...view, mesh } as AlignInput);
 }
 
-/** The path of the mesh of a case. */
-export function meshIn(folder: string): string {
-  const name = onlyFile("mesh", (name) => existsSync(join(folder, name)), folder);
-  if (name === undefined) throw fileNotFound("mesh", `no such file in ${folder}`, caseFiles.mesh.join(" or "));
-  return join(folder, name);
-}
-
 /** Reads a mesh file, and the files next to it that it refers to. */
 export async function readMeshFile(path: string): Promise<MeshFile> {
   const beside = (uri: string) => read("mesh", join(dirname(path), uri));
   return meshFile(path, await read("mesh", path), loadFormats, beside);
 }
 
-/** Reads a frame of a case. `files` contains paths. */
-export async function readFrame(folder: string, settings: ReadCaseOptions): Promise<FrameFiles> {
-  const frame = await frameFrom(filesIn("frame", folder, await readdir(folder)), settings, folder);
-  return { ...frame, files: pathsOf(folder, frame.files) };
-}
-
 /** Paths of the files in a case folder; includes subfolders only if the mesh may refer to them. */
 async function pathsIn(folder: string): Promise<string[]> {
   const names = await namesIn("case", folder, "a folder with depth, mask and mesh");
-  const mesh = caseFiles.mesh.find((name) => names.includes(name));
-  if (mesh !== "mesh.gltf" && mesh !== "mesh.obj") return names;
-  return (await readdir(folder, { recursive: true })).map((path) => path.replaceAll("\\", "/"));
+  const refers = names.some((name) => partOf(name) === "mesh" && /\.(gltf|obj)$/i.test(name));
+  return filesBelow(folder, "", refers ? LEVELS : 1);
+}
+
+/** Levels of folders in which the files that a mesh refers to are looked for. */
+const LEVELS = 8;
+
+/** The paths of the files in a folder below `root`, down to so many levels; links are followed. */
+export async function filesBelow(root: string, folder: string, levels: number): Promise<string[]> {
+  const paths: string[] = [];
+  for (const name of await readdir(join(root, folder)).catch(() => [])) {
+    const path = `${folder}${name}`;
+    const entry = await stat(join(root, path)).catch(() => undefined);
+    if (!entry?.isDirectory()) paths.push(path);
+    else if (levels > 1) paths.push(...(await filesBelow(root, `${path}/`, levels - 1)));
+  }
+  return paths;
 }
 
 /**
@@ -142,12 +178,9 @@ export async function readCaseFiles(
   ]);
   const stated = typeof camera === "object" ? camera.value : undefined;
   const input: object = withoutUndefined({ depth, mask, mesh, camera: stated, cameraFile, image, ...more });
-  return {
-    name,
-    input: input as AlignInput,
-    files: withoutUndefined({ ...files, camera: cameraPath, image: imagePath }) as CaseOnDisk["files"],
-    truth: null,
-  };
+  const named = withoutUndefined({ ...files, camera: cameraPath, image: withImage ? imagePath : undefined });
+  const found = { folder: "", files: named as FoundFiles["files"], unread: [] };
+  return { name, input: input as AlignInput, found, truth: null };
 }
 
 /** The largest file that Node reads at once, bytes. */

@@ -53,6 +53,12 @@ export interface MeshFromFile {
   warnings: string[];
 }
 
+/** A mask from a file, row-major; 1 is the object. */
+export interface MaskFromFile extends PixelArray<Uint8Array> {
+  /** Which values of the file are the object: `"values of 127.5 or more, of 0 to 255"`; not of COCO RLE. */
+  reading?: string;
+}
+
 /** The files that a mesh file refers to, by the names in it. */
 export interface ExternalResources {
   /** The buffers of a `.gltf`, without which it cannot be read. */
@@ -91,7 +97,7 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
  * @returns row-major; 1 is the object
  * @throws {@link Sim3AlignError} for any other file
  */
-export async function readMask(file: EncodedBytes | CocoRle): Promise<PixelArray<Uint8Array>> {
+export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskFromFile> {
   if (isRecord(file)) return fromCocoRle(file as unknown as CocoRle);
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
@@ -175,8 +181,11 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 }
 
 /**
- * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl|splat`, and
- * optionally `camera.json` or `scene_camera.json`, `rgb.png|jpg` or `image.png|jpg`, and `gt.json`.
+ * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json|jpg|jpeg`,
+ * `mesh.glb|gltf|obj|ply|stl|splat`, and optionally a camera (`camera.json`, `scene_camera.json`, `cam_K.txt`, `K.txt`,
+ * `intrinsics.txt`, …, as JSON, text or YAML), a photo (`rgb`, `image`, `photo`, `color` or `colour`, as
+ * `.png|jpg|jpeg|webp`), and `gt.json`. Upper and lower case are the same. Intrinsics of the colour camera are passed over
+ * beside those of the depth camera (`intrinsic_depth.txt`). What is not read is in `unread`.
  * @param files by name, relative to the folder
  *
  * @example

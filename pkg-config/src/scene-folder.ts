@@ -1,9 +1,9 @@
 /** Scenes on disk (Node only): scene folders, and images in the layout of BOP. */
-import { readdir, stat } from "node:fs/promises";
+import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { BopScene, bopModels, isBopScene, readBopModel } from "./bop/dataset.js";
 import type { ReadCaseOptions } from "./case-files.js";
-import { filesIn, loadFormats, namesIn } from "./case-folder.js";
+import { type FoundFiles, filesBelow, filesIn, loadFormats, namesIn } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -12,8 +12,10 @@ import type { SceneInput, SceneObjectInput } from "./scene/types.js";
 import { oncePerKey, withoutUndefined } from "./values/values.js";
 
 /** A scene on disk. */
-export interface SceneOnDisk extends SceneCase {
+export interface SceneOnDisk extends Pick<SceneCase, "input" | "truths"> {
   name: string;
+  /** Its files; `undefined` for a scene of BOP, whose folder has the files of other images. */
+  found?: FoundFiles;
 }
 
 /** How to read a scene. */
@@ -53,24 +55,12 @@ async function readFolder(folder: string, { models, sam3d, ...settings }: SceneS
   const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
   if (!sam3d) paths.push(...(await filesBelow(folder, "objects/", LEVELS)));
   const from = sam3d ? sam3dFrom : sceneFrom;
-  const found = await from(filesIn("scene", folder, paths), settings, loadFormats, folder);
-  return { ...found, name: basename(resolve(folder)) };
+  const { input, truths, ...found } = await from(filesIn("scene", folder, paths), settings, loadFormats, folder);
+  return { name: basename(resolve(folder)), input, truths, found: { folder, ...found } };
 }
 
 /** Levels of folders in which the files of a scene are looked for. */
 const LEVELS = 4;
-
-/** The paths of the files in a folder below `root`, down to so many levels; links are followed. */
-async function filesBelow(root: string, folder: string, levels: number): Promise<string[]> {
-  const paths: string[] = [];
-  for (const name of await readdir(join(root, folder)).catch(() => [])) {
-    const path = `${folder}${name}`;
-    const entry = await stat(join(root, path)).catch(() => undefined);
-    if (!entry?.isDirectory()) paths.push(path);
-    else if (levels > 1) paths.push(...(await filesBelow(root, `${path}/`, levels - 1)));
-  }
-  return paths;
-}
 
 /** Reads one image of a scene of BOP. */
 async function readBop(folder: string, { models, imageId, sam3d: _, ...settings }: SceneSettings) {

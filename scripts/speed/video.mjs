@@ -1,5 +1,5 @@
 /** CPU time of a tracked frame as WebAssembly on this thread. */
-import { basename, join } from "node:path";
+import { basename } from "node:path";
 import { fixed, markdownTable, quantile } from "../bench/table.mjs";
 import { bumpyRing, compiledModule, createAligner, pictureOf } from "./inputs.mjs";
 
@@ -11,16 +11,17 @@ import { bumpyRing, compiledModule, createAligner, pictureOf } from "./inputs.mj
  * @returns {Promise<Video>}
  */
 async function readVideo(folder) {
-  const [{ frameNames, meshIn, readFrame, readMeshFile }, { resolveFrame }, { fileReaders }] = await Promise.all(
+  const [{ openFrames }, { resolveFrame }, { fileReaders }] = await Promise.all(
     ["case-folder.js", "input/resolve.js", "modules/readers.js"].map(compiledModule),
   );
   const frames = [];
-  for (const name of await frameNames(folder)) {
-    const { cameraToWorld: _, ...input } = (await readFrame(join(folder, name), {})).input;
+  const { mesh, names, read } = await openFrames(folder);
+  for (const name of names) {
+    const { cameraToWorld: _, ...input } = (await read(name)).input;
     const { maskWidth: __, maskHeight: ___, ...frame } = (await resolveFrame(input, fileReaders)).core;
     frames.push(frame);
   }
-  return { name: basename(folder), mesh: await readMeshFile(meshIn(folder)), frames };
+  return { name: basename(folder), mesh, frames };
 }
 
 /** A bumpy ring that turns before a wall. @param {number} count @returns {Video} */

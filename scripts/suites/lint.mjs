@@ -11,7 +11,9 @@ import { checkCodes, checkDocuments } from "./documents.mjs";
 /** Crates of the workspace besides the aligner. */
 const crates = [
   ...["formats", "geometry", "lab", "physics"],
-  ...["core", "depth-files", "formats", "joint", "physics", "registration", "splats", "webp"].map((name) => `modules/${name}`),
+  ...["core", "depth-files", "formats", "joint", "physics", "registration", "splats", "webp"].map(
+    (name) => `modules/${name}`,
+  ),
 ];
 
 export async function lint() {

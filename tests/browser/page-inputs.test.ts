@@ -156,6 +156,27 @@ test("mask and mesh dropped on an own scene replace what they name, if that is w
   assert.ok((await opened.metric("iou")) > 0.3);
 });
 
+test("a camera as text is the camera, of two one is used, and any unit can be entered", async (opened, page) => {
+  const { "camera.json": _, ...rest } = files;
+  const { fx, fy, cx, cy } = pinhole;
+  const text = Buffer.from(`${fx} 0 ${cx}\n0 ${fy} ${cy}\n0 0 1\n`);
+  await drop(opened, { ...rest, "intrinsic_color.txt": text, "intrinsic_depth.txt": text });
+  const sheet = await opened.sheet();
+  const doubt = await sheet.locator('[data-field="camera"] .doubt').textContent();
+  assert.match(doubt ?? "", /intrinsic_depth\.txt is used, intrinsic_color\.txt not\./);
+  await page.click("#intake-cancel");
+  await drop(opened, { ...rest, "K.txt": text });
+  await opened.shows("Own files");
+  await opened.click("#edit-files");
+  await opened.sheet();
+  assert.equal(Number(await page.inputValue("#camera-fx")), Number(fx.toPrecision(7)));
+  await page.fill("#depth-factor", "0.3");
+  await page.press("#depth-factor", "Enter");
+  await opened.sheet();
+  assert.equal(await page.inputValue("#depth-scale"), "0.3");
+  assert.match((await page.textContent("#depth-unit")) ?? "", /0\.3 m \(depthScale\)/);
+});
+
 test("intrinsics can be entered, or assumed with a warning", async (opened, page) => {
   const { "camera.json": _, ...rest } = files;
   await drop(opened, rest);

@@ -91,10 +91,11 @@ refusesInputs([
     /16-bit grey PNG, a \.npy array, or a \.npz/,
   ],
   [{ mask: png(new Uint8Array(6).fill(1), 3, 2) }, "SIZE_MISMATCH mask", /3 × 2 pixels/],
-  [{ mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, "UNSUPPORTED_FORMAT mask", /PNG/],
+  [{ mask: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }, "UNSUPPORTED_FORMAT mask", /PNG/],
+  [{ mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, "CORRUPT_FILE mask", /JPEG/],
   [{ mesh: external }, "INVALID_ARGUMENT mesh.resources", /mesh\.bin/],
   [{ mesh: { bytes: glb(mesh), format: "fbx" } }, "INVALID_OPTION mesh.format", /fbx/],
-  [{ image: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }, "UNSUPPORTED_FORMAT image"],
+  [{ image: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }, "CORRUPT_FILE image", /WebP/],
 ]);
 
 const options: Refusals<unknown> = [

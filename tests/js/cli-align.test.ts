@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner, OPTIONS, type Sim3 } from "sim3align";
 import { files, folder, pixels, results, run, succeeds, writeCase } from "../support/command-line.js";
-import { cocoRle, gltfBuffer, gltfJson, obj, png } from "../support/files.js";
+import { cocoRle, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { columnMajor, mesh, poseJson, truth, view } from "../support/scene.js";
 
@@ -74,7 +74,11 @@ test("--json has everything that align returns, and the proportions; --json - le
   const input = { depth: files["depth.npy"], mask: pixels, mesh: files["mesh.glb"], camera };
   const alignment = await aligner.align(input, { seed: 5, quality: "fast", proportions: "axes" });
   const { errors } = await aligner.evaluate(input, alignment, { truth });
-  const { timingsMs, errors: foundErrors, ...found } = blob;
+  const { timingsMs, errors: foundErrors, inputs, unread, ...found } = blob;
+  const parts = { "depth.npy": "depth", "mask.png": "mask", "mesh.glb": "mesh" };
+  for (const [name, part] of Object.entries({ ...parts, "camera.json": "camera", "gt.json": "truth" }))
+    assert.equal(inputs[name].as, part);
+  assert.deepEqual([Object.keys(inputs).length, unread], [5, ["meta.json"]]);
   assert.ok(timingsMs.total > 0);
   const written = <T extends Sim3>({ rotation, rotationMatrix, ...others }: T) => {
     return { ...others, rotation: rotationMatrix, quaternion: rotation };
@@ -86,6 +90,29 @@ test("--json has everything that align returns, and the proportions; --json - le
   assert.deepEqual(Object.keys(foundErrors), Object.keys(errors));
   // The truth's rotation comes as rows there, as a quaternion here.
   assert.ok(Math.abs(foundErrors.scaleError - errors.scaleError) < 1e-6);
+});
+
+test("files that were read are named with how they were read; a line has the others, and one what was assumed", () => {
+  const { "camera.json": _, ...rest } = files;
+  const intrinsics = { fx: camera.fx, fy: camera.fy, cx: camera.cx, cy: camera.cy };
+  writeCase("clean", { ...rest, "depth.npy": npy(millimetres, height, width) });
+  writeCase("clean", { "K.json": { ...intrinsics, depthScale: 0.001 }, ".hidden": "", "results.json": "" });
+  const clean = succeeds("align clean --json clean.json", ...quick).stdout;
+  assert.doesNotMatch(clean, /not read|assumed/);
+  const { inputs } = results("clean.json").clean;
+  const unit = "0.001 m (camera file)";
+  assert.deepEqual(inputs["depth.npy"], { as: "depth", unit });
+  assert.deepEqual(inputs["mask.png"], { as: "mask", reading: "values of 255" });
+  assert.deepEqual(inputs["K.json"], { as: "camera" });
+  writeCase("left", { ...rest, "depth.npy": npy(millimetres, height, width), "rgb.bmp": "", "K.npy": "" });
+  const left = succeeds("align left", ...quick).stdout;
+  assert.match(
+    left,
+    /\n\nnot read: K\.npy, rgb\.bmp\nassumed: depth unit 0\.001 m \(16-bit integers\); focal length\n$/,
+  );
+  writeCase("also-left", { ...rest, "depth.npy": npy(millimetres, height, width), "rgb.bmp": "", "K.npy": "" });
+  const both = succeeds("align left also-left clean --workers 1", ...quick).stdout;
+  assert.match(both, /\nnot read: K\.npy, rgb\.bmp \(left, also-left\)\n/);
 });
 
 test("bad cases are reported, the good ones aligned, and the exit status is that of a failure", () => {

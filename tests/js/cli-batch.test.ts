@@ -31,7 +31,7 @@ const { "depth.npy": _, ...incomplete } = files;
 
 for (const name of ["a", "b", "c", "endless", "held"]) writeCase(name, complete);
 writeCase('x, "y"', {});
-for (const name of ["cases/a1", "cases/a2", "cases/b1", "cases/deep/c1", "odd/[x]", "odd/x"])
+for (const name of ["cases/a1", "cases/a2", "cases/b1", "cases/deep/c1", "odd/[x]", "odd/x", "order/c9", "order/c10"])
   writeCase(name, incomplete);
 mkdirSync(inFolder("cases", "a1", "textures"));
 writeFileSync(inFolder("cases", "a-file"), "");
@@ -60,6 +60,7 @@ const named: Record<string, string> = {
   "names/[!=]*": "\\u001b[31mred,a\\nb,u\u2028v",
   "{cases,names}/[a-c][1-9\n]*": "a1,a2,b1,a\\nb",
   "odd/[x]": "[x]",
+  "order/c*": "c9,c10",
   "cases/a* --list list.txt": "a1,a2,b1,[x],x",
   "--list -": "a2,a1",
 };

@@ -104,3 +104,26 @@ test("what fails in a video is reported with its file", () => {
   assert.match(torn.frames.frame_01.error.file, /frame_01.depth\.npy$/);
   assert.equal(torn.frames.frame_00.state, "tracking");
 });
+
+test("frames are in the order of their numbers; a camera beside them is that of the frames without one", () => {
+  const numbers = [1, 2, 9, 10, 11];
+  writeCase("numbers", {
+    "mesh.glb": glb(mesh),
+    "camera.json": frameFiles(frameAt(0))["camera.json"],
+    "notes.txt": "",
+  });
+  for (const [k, number] of numbers.entries()) {
+    const { "camera.json": _, ...others } = frameFiles(frameAt(k));
+    writeCase(`numbers/frame_${number}`, others);
+  }
+  const { stdout } = succeeds("track numbers --json numbers.json");
+  const { frames, inputs, unread } = results("numbers.json").numbers;
+  assert.deepEqual(
+    Object.keys(frames),
+    numbers.map((number) => `frame_${number}`),
+  );
+  assert.deepEqual(frames.frame_10.inputs["../camera.json"], { as: "camera" });
+  assert.equal("cameraSource" in frames.frame_10, false);
+  assert.deepEqual([Object.keys(inputs), unread], [["mesh.glb", "camera.json"], ["notes.txt"]]);
+  assert.match(stdout, /not read: notes\.txt\n/);
+});

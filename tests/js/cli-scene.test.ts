@@ -25,6 +25,7 @@ test("a scene folder gives JSON, a table, lengths in the proportions that were f
   assert.match(stdout, /table: support n = .*thing-0.*support.*thing-2/s);
   const { table } = results("s.json");
   assert.deepEqual(Object.keys(table.objects), names);
+  assert.deepEqual(table.inputs["objects/thing-0/mask.png"], { as: "mask", reading: "values of 1" });
   const lines = stdout.split("\n");
   for (const [i, pose] of poses.entries()) {
     const { scale, matrix, rotation, confidence, errors, contact, proportions } = table.objects[`thing-${i}`];

@@ -10,9 +10,13 @@ const { width, height, depth, mask, camera } = view;
 const aligner = await createAligner();
 const plain = { depth: { data: depth, width, height }, mask, camera, mesh };
 
-/** The result without the unit that was taken, which tells the forms apart. */
+/** The result without how the files were read, which tells the forms apart. */
 async function evaluated(changes: object): Promise<Evaluation> {
-  const { depthUnit: _, ...evaluation } = await aligner.evaluate({ ...plain, ...changes } as AlignInput, truth);
+  const {
+    depthUnit: _,
+    maskReading: __,
+    ...evaluation
+  } = await aligner.evaluate({ ...plain, ...changes } as AlignInput, truth);
   return evaluation;
 }
 

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createAligner } from "sim3align";
-import { type ReadCameraOptions, readCamera, readCase, readPose } from "sim3align/formats";
+import { type CaseFiles, type ReadCameraOptions, readCamera, readCase, readPose } from "sim3align/formats";
 import { type Fault, rejectsWith } from "../support/errors.js";
 import { cocoRle, fixture, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -103,9 +103,9 @@ test("of several images one has to be chosen", async () => {
   assert.equal((await readCamera({ "0": entry(5), "1": entry(6) }, { imageId: "000000" })).fx, 5);
 });
 
-const corrupt = ["", "nonsense", Buffer.of(0x7b, 0xff, 0x7d), `{"fx":1e999}`, "[".repeat(100_000)];
+const corrupt = ["", "nonsense", Buffer.of(0x7b, 0xff, 0x7d), "[".repeat(100_000)];
 const others: unknown[] = [
-  ...["1", "[]", "[1,2,3]", "{}", { fx: 600, fy: 610, cx: 319.5 }, { ...intrinsics, fx: "600" }],
+  ...["1", "[]", "[1,2,3]", "{}", `{"fx":1e999}`, { fx: 600, fy: 610, cx: 319.5 }, { ...intrinsics, fx: "600" }],
   ...[{ K: [1, 2, 3] }, { K: [...rows, rows[0]] }, { K: "eye" }, { K: null }, { intrinsic_matrix: 7 }],
   ...[{ "0": { cam_R_m2c: [] } }, { ...intrinsics, fx: Number.NaN }],
 ];
@@ -199,9 +199,10 @@ test("a case is read from files by their names, lazily where they are functions"
   };
   const { "mask.json": maskFile, ...withoutMask } = files;
   const all = { ...files, "mask.json": lazy("mask.json", maskFile), "notes.txt": lazy("notes.txt", new Uint8Array()) };
-  const { input: found, files: names, truth: pose } = await readCase(all);
-  assert.deepEqual(read, ["mask.json"]);
-  assert.deepEqual(names, { depth: "depth.npy", mask: "mask.json", mesh: "mesh.gltf", camera: "camera.json" });
+  const { input: found, files: names, unread, truth: pose } = await readCase(all);
+  assert.deepEqual([read, unread], [["mask.json"], ["notes.txt"]]);
+  const parts = { depth: "depth.npy", mask: "mask.json", mesh: "mesh.gltf", camera: "camera.json", truth: "gt.json" };
+  assert.deepEqual(names, parts);
   assert.deepEqual([pose?.symmetry, pose?.transform.translation], ["auto", truth.translation]);
   const aligner = await createAligner();
   assert.deepEqual(await aligner.evaluate(found, truth), await aligner.evaluate(input, truth));
@@ -245,4 +246,47 @@ test("a case's photo, textures and settings go into its input; a camera may be m
     (await readCase({ ...files, "depth.npy": png(Uint16Array.from(depth), width, height) })).files.depth,
     "depth.npy",
   );
+});
+
+test("the usual names of each part are found, in any case; what is not read is named", async () => {
+  const { "camera.json": _, ...rest } = files;
+  const { "mask.json": maskFile, ...withoutMask } = rest;
+  const text = Buffer.from("600 0 319.5\n0 610 239.5\n0 0 1\n");
+  const photo = fixture("photo.jpg");
+  const others = { "notes.txt": text, "view_10.png": photo, "view_9.png": photo, "sub/more.txt": text };
+  const known = { ".DS_Store": text, "Thumbs.db": text, "results.json": text, "results.jsonl.lock": text };
+  const rows: [string, CaseFiles, Record<string, string>, string[]?][] = [
+    ...["cam_K.txt", "K.txt", "Intrinsics.TXT", "intrinsic.txt", "intrinsics.json", "cameras.txt", "camera.yaml"].map(
+      (camera): (typeof rows)[number] => [camera, { ...rest, [camera]: text }, { camera }],
+    ),
+    ...["rgb.webp", "IMAGE.JPEG", "photo.jpg", "color.png", "Colour.JPG"].map((image): (typeof rows)[number] => [
+      image,
+      { ...rest, [image]: photo },
+      { image },
+    ]),
+    ["a mask in capitals", { ...withoutMask, "MASK.Json": maskFile }, { mask: "MASK.Json" }],
+    [
+      "the depth camera's intrinsics before the colour camera's",
+      { ...rest, "intrinsic_color.txt": text, "intrinsic_depth.txt": text },
+      { camera: "intrinsic_depth.txt" },
+      ["intrinsic_color.txt"],
+    ],
+    ["other files", { ...rest, ...others, ...known }, {}, ["notes.txt", "sub/more.txt", "view_9.png", "view_10.png"]],
+    ["what only scenes have", { ...rest, "initial.json": text }, {}, ["initial.json"]],
+  ];
+  for (const [what, all, parts, unread = []] of rows) {
+    const found = await readCase(all);
+    for (const [part, name] of Object.entries(parts))
+      assert.equal((found.files as Record<string, string>)[part], name, what);
+    assert.deepEqual(found.unread, unread, what);
+  }
+  assert.deepEqual((await readCase({ ...rest, "K.txt": text })).input.cameraFile, text);
+  assert.deepEqual((await readCase({ ...rest, "photo.jpg": photo }, { image: false })).unread, [], "not wanted");
+  for (const [name, part] of [
+    ["K.txt", "camera"],
+    ["GT.json", "truth"],
+  ] as const)
+    await rejectsWith(() => readCase({ ...files, [name]: text }), `INVALID_ARGUMENT ${part}`, /one of them/);
+  const unknown = { ...withoutMask, "mask.bmp": photo };
+  await rejectsWith(() => readCase(unknown), "FILE_NOT_FOUND mask", /no such file in the files, beside mask\.bmp/);
 });

@@ -93,12 +93,27 @@ test("a point map may be in OpenCV's frame; depth in metres, and a file of MoGe,
   }
 });
 
+test("one of several masks is that of the object by its name; what is not read is named", async () => {
+  const pictures = { "a/render.png": mask, "a/render_mask_2.txt": "", "b.png": mask, "poses.csv": "" };
+  const { files, unread } = await read({ ...whole, ...pictures });
+  const parts = { mask: "a/mask.png", mesh: "a/mesh.glb", initial: "a/pose.json" };
+  const named = Object.entries(parts).map(([part, path]) => [`objects/a/${part}`, path]);
+  assert.deepEqual(files, { depth: "pointmap.npy", camera: "pointmap.npy", ...Object.fromEntries(named) });
+  assert.deepEqual(unread, ["a/render_mask_2.txt", "a/render.png", "b.png", "poses.csv"]);
+});
+
 const whole: Files = { "pointmap.npy": points, "a/mask.png": mask, "a/mesh.glb": glb, "a/pose.json": layout };
 const without = (name: string): Files => Object.fromEntries(Object.entries(whole).filter(([path]) => path !== name));
+const below = (folder: string): Files =>
+  Object.fromEntries(Object.entries(whole).map(([path, content]) => [`${folder}/${path}`, content]));
 const damaged: [what: string, files: Files, fault: Fault, words: RegExp][] = [
   ["no depth", without("pointmap.npy"), "FILE_NOT_FOUND sam3d", /pointmap\.npy/],
   ["no mask", without("a/mask.png"), "FILE_NOT_FOUND objects/a", /no mask of a/],
   ["no mesh", without("a/mesh.glb"), "FILE_NOT_FOUND objects/a", /no mesh of a/],
+  ["two views", { ...below("a"), ...below("b") }, "INVALID_ARGUMENT sam3d", /a\/pointmap\.npy and b\/pointmap\.npy/],
+  ["two masks", { ...whole, "a.png": mask, "a/mask.npy": mask }, "INVALID_ARGUMENT objects/a", /one mask/],
+  ["two meshes", { ...whole, "a.glb": glb }, "INVALID_ARGUMENT objects/a", /a\.glb and a\/mesh\.glb/],
+  ["two poses", { ...whole, "a.json": layout }, "INVALID_ARGUMENT objects/a", /a\.json and a\/pose\.json/],
   ["no object", { "pointmap.npy": points, "0.png": mask }, "FILE_NOT_FOUND scene", /no objects/],
   ["half a point map", { ...whole, "pointmap.npy": points.subarray(0, 9999) }, "CORRUPT_FILE pointmap.npy", /cut off/],
   ["a map of depth", { ...whole, "pointmap.npy": mask }, "UNSUPPORTED_FORMAT pointmap.npy", /height × width × 3/],

@@ -47,8 +47,9 @@ export function interrupted(text: RegExp, signal: NodeJS.Signals, ...args: strin
   const child = spawn(process.execPath, [commandLine, ...args], { cwd: folder });
   let [stdout, stderr] = ["", ""];
   child.stdout.on("data", (chunk) => {
+    const isSent = text.test(stdout);
     stdout += chunk;
-    if (text.test(stdout)) child.kill(signal);
+    if (!isSent && text.test(stdout)) child.kill(signal);
   });
   child.stderr.on("data", (chunk) => {
     stderr += chunk;

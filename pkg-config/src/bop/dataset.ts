@@ -8,6 +8,7 @@ import { isNumber, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { MeshFile } from "../input/types.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
+import { naturally } from "../values/order.js";
 import { oncePerKey } from "../values/values.js";
 
 /** BOP's lengths are in millimetres. */
@@ -228,7 +229,7 @@ export class BopDataset {
     const hasTargets = isTest && (await readdir(this.#folder)).includes(paths.targets);
     const path = file ?? (hasTargets ? join(this.#folder, paths.targets) : undefined);
     if (path === undefined) {
-      const ids = names.filter((name) => /^\d+$/.test(name)).sort();
+      const ids = names.filter((name) => /^\d+$/.test(name)).sort(naturally);
       const scenes = ids.map(async (id) => (await this.scene(Number(id))).visibleTargets(Number(id)));
       return (await Promise.all(scenes)).flat();
     }

@@ -1,15 +1,15 @@
 /** `sim3align align`: reads cases, aligns them, and prints the results. */
-import { readFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import {
   type CaseOnDisk,
   frameNames,
   inputOfFrame,
+  openFrames,
   type ReadCaseOptions,
   readCaseFiles,
   readCaseFolder,
-  readFrames,
 } from "../case-folder.js";
+import { partOf } from "../case-names.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import {
   type Aligner,
@@ -35,9 +35,10 @@ import {
   type ViewsEntry,
   viewsEntry,
   warningsOf,
+  withFiles,
 } from "./entry.js";
 import { correctedInput } from "./exports.js";
-import { absolutePath, isFile, statOf, UsageError } from "./files.js";
+import { absolutePath, namesIn, statOf, textOf, UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { caseKind, foldersToDo } from "./folders.js";
 import { optionValues } from "./option-flags.js";
@@ -57,7 +58,7 @@ export interface CaseToDo extends CaseKey {
   /** Whether it has a true pose. */
   readonly hasTruth: boolean;
   /** Reads a case of one view. */
-  read(): Promise<Pick<CaseOnDisk, "input" | "truth" | "files">>;
+  read(): Promise<CaseView>;
 }
 
 /** The job of a command line. */
@@ -106,12 +107,12 @@ function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOp
 }
 
 /** Whether an argument names a photo; folders may be named like one. */
-const isPhoto = (path: string) => /\.(jpe?g|png)$/i.test(path) && !statOf(path)?.isDirectory();
+const isPhoto = (path: string) => /\.(jpe?g|png|webp)$/i.test(path) && !statOf(path)?.isDirectory();
 
 function hasTruth(folder: string): boolean {
-  const file = join(folder, "gt.json");
+  const name = namesIn(folder).find((name) => partOf(name) === "truth");
   try {
-    return isFile(file) && parsePoseFile("truth", readFileSync(file)) !== null;
+    return name !== undefined && parsePoseFile("truth", textOf("gt.json", join(folder, name))) !== null;
   } catch {
     // A file that cannot be read is reported for its case.
     return false;
@@ -163,14 +164,15 @@ const notes = (name: string, entry: Entry, style: Style) =>
     : warningsOf(entry).map((warning) => `${name}: ${warningLine(warning, style)}`);
 
 /** A view of the object of a case: the case itself, or one of its frames. */
-export interface CaseView extends Pick<CaseOnDisk, "input" | "truth" | "files"> {
+export interface CaseView extends Pick<CaseOnDisk, "input" | "truth">, Partial<Pick<CaseOnDisk, "found">> {
   frame?: string;
 }
 
 /** The view of a case, or those of its frames with a mask. */
 export async function viewsOf(folder: string, settings: ReadCaseOptions): Promise<CaseView[]> {
   if ((await frameNames(folder)).length === 0) return [await readCaseFolder(folder, settings)];
-  const { mesh, frames } = await readFrames(folder, settings);
+  const { mesh, names, read } = await openFrames(folder, settings);
+  const frames = await Promise.all(names.map(read));
   return frames.flatMap(({ name, ...frame }) => {
     const input = inputOfFrame(frame, mesh);
     return input === undefined ? [] : [{ ...frame, frame: name, input }];
@@ -181,16 +183,18 @@ async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun
   const { name, folder } = task;
   if (folder !== undefined && (await frameNames(folder)).length > 0)
     return alignFrames(aligner, name, folder, flags, caseRun);
-  const { input, truth, files } = await task.read();
-  caseRun.files = files;
+  const { input, truth, found } = await task.read();
+  caseRun.found = found;
   const options = await alignOptions(flags, name);
   const alignment = await aligner.align(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
-  return alignEntry(alignment, await errorsOf(aligner, input, alignment, truth));
+  return withFiles(alignEntry(alignment, await errorsOf(aligner, input, alignment, truth)), found);
 }
 
 /** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
 async function alignFrames(aligner: Aligner, name: string, folder: string, flags: Flags, caseRun: CaseRun) {
-  const { mesh, frames } = await readFrames(folder, caseSettings(flags));
+  const { mesh, names, read, found } = await openFrames(folder, caseSettings(flags));
+  const frames = await Promise.all(names.map(read));
+  caseRun.found = found();
   const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
   const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
   const { preset, ...options } = await alignOptions(flags, name);
@@ -204,8 +208,7 @@ async function alignFrames(aligner: Aligner, name: string, folder: string, flags
     const [pose, input] = [alignment.views[k], inputOfFrame(frame, mesh)];
     return pose === undefined || input === undefined ? null : errorsOf(aligner, input, pose, frame.truth);
   });
-  const names = frames.map((frame) => frame.name);
-  return viewsEntry(alignment, names, await Promise.all(errors));
+  return withFiles(viewsEntry(alignment, frames, await Promise.all(errors)), found());
 }
 
 /** The errors of a metric pose relative to the true one; `null` without a true pose. */

@@ -1,8 +1,10 @@
 /** Runs a batch of cases and records each result. A batch can be interrupted and resumed. */
 import { availableParallelism } from "node:os";
 import { MAX_WORKERS } from "../aligner/aligner-options.js";
+import { listed } from "../case-files.js";
+import type { FoundFiles } from "../case-folder.js";
 import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
-import { type Entry, errorsIn, failureEntry, isFailure, isMetric } from "./entry.js";
+import { type Entry, errorsIn, failureEntry, intakeLines, isFailure } from "./entry.js";
 import { UsageError } from "./files.js";
 import type { Flags } from "./flags.js";
 import { Output } from "./output.js";
@@ -11,13 +13,12 @@ import { BatchProgress, StatusLine } from "./progress.js";
 import type { CaseKey, RecordHeader } from "./record.js";
 import type { EntrySink } from "./result-files.js";
 import { OutputError, type RunFiles } from "./run-files.js";
-import { noUnitNote } from "./table.js";
 import { note, type Style } from "./terminal.js";
 
 /** The context in which a command works on a case. */
 export interface CaseRun {
-  /** The file of each argument, set by the command once it has found them; the entry of a failure has them. */
-  files: Readonly<Record<string, string>>;
+  /** The files of the case, set by the command once it has found them; the entry of a failure has them. */
+  found: FoundFiles | undefined;
   readonly style: Style;
   /** Whether the reader of the output has closed it. */
   isClosed(): boolean;
@@ -70,8 +71,6 @@ export function failedLines(name: string, entry: Entry, style: Style): string[] 
 
 /** Items that are read while several workers are busy. One worker does the items in their order. */
 const READ_AHEAD = 2;
-/** Failures of an earlier run that are named. */
-const NAMED = 10;
 
 /**
  * Works on each case that is not in the record, and writes and prints the results.
@@ -112,7 +111,8 @@ async function runCases<T extends CaseKey>(
   const remarks: string[] = [];
   const failedBefore: string[] = [];
   let [done, failed, incomplete] = [0, 0, 0];
-  let hasNoUnit = false;
+  /** Lines about the files of cases, and these. */
+  const intake = new Map<string, string[]>();
   let progress: BatchProgress | undefined;
 
   /** Counts a case, and adds its rows to the report. Returns its errors. */
@@ -120,7 +120,6 @@ async function runCases<T extends CaseKey>(
     const errors = errorsIn(entry);
     done += 1;
     if (errors.length > 0) failed += 1;
-    hasNoUnit ||= !isMetric(entry);
     pictures.record(name, entry);
     return errors;
   };
@@ -169,7 +168,7 @@ async function runCases<T extends CaseKey>(
     let isComplete = true;
     const show = (state: string) => line?.show(`[1/1] ${task.name}  ${state}`);
     const caseRun: CaseRun = {
-      ...{ files: {}, style, isClosed: () => output.isClosed },
+      ...{ found: undefined, style, isClosed: () => output.isClosed },
       print(...lines) {
         line?.clear();
         if (line === undefined) early.push(...lines);
@@ -184,7 +183,7 @@ async function runCases<T extends CaseKey>(
       caseRun.onProgress = ({ stage, fraction }) =>
         show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`);
     show("reading");
-    const work = job.run(aligner, task, caseRun).catch((error) => failureEntry(error, caseRun.files));
+    const work = job.run(aligner, task, caseRun).catch((error) => failureEntry(error, caseRun.found));
     const entry = await work.finally(() => line?.clear());
     // Before the record: a case that is there has all its files.
     if (!(await draw(task, entry, false))) isComplete = false;
@@ -193,6 +192,7 @@ async function runCases<T extends CaseKey>(
       if (isComplete) output.record(task, entry);
       else incomplete += 1;
       output.add(task.name, entry);
+      for (const line of intakeLines(entry)) intake.set(line, [...(intake.get(line) ?? []), task.name]);
       const { rows = [], remarks: more = [] } = linesOf(task, entry);
       remarks.push(...more);
       progress?.clear();
@@ -206,11 +206,10 @@ async function runCases<T extends CaseKey>(
     output.end();
     pictures.end();
     output.lines(!isOnly && remarks.length > 0 ? ["", ...remarks] : remarks);
-    if (hasNoUnit) output.lines(["", noUnitNote]);
-    if (failedBefore.length === 0) return;
-    const more = failedBefore.length > NAMED ? ` and ${failedBefore.length - NAMED} more` : "";
-    const names = `${failedBefore.slice(0, NAMED).join(", ")}${more}`;
-    note(`failed earlier: ${names}; remove their lines from the record to try again`);
+    const lines = [...intake].map(([line, names]) => (isOnly ? line : `${line} (${listed(names)})`));
+    if (lines.length > 0) output.lines(["", ...lines]);
+    if (failedBefore.length > 0)
+      note(`failed earlier: ${listed(failedBefore)}; remove their lines from the record to try again`);
   };
   const interrupt = () => {
     try {

@@ -14,7 +14,7 @@ import type { Flags } from "./flags.js";
 import { StatusLine } from "./progress.js";
 import { isResults } from "./result-files.js";
 import type { OutputName, RunFiles } from "./run-files.js";
-import { pairs } from "./table.js";
+import { type Pair, pairs } from "./table.js";
 import { note } from "./terminal.js";
 
 /** The options of `align` that apply to targets of known size. */
@@ -93,7 +93,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
     const read = async () => {
       const image = await (await dataset.scene(place.sceneId)).image(place.imageId, withPhoto);
       const input = { ...image, mask: await maskOf(), mesh: await modelOf(place.objectId) } as AlignInput;
-      return { input, files: {}, truth };
+      return { input, truth };
     };
     cases.push({ name, path: `${folder}${name}`, hasTruth: truth !== null, read });
   };
@@ -141,14 +141,11 @@ async function score(
 
 function scoreLines(evaluation: BopEvaluation): string[] {
   const { averageRecall, vsd, mssd, mspd, add, addS, targets, estimates, secondsPerImage } = evaluation;
+  const recalls = { AR: averageRecall, "AR VSD": vsd, "AR MSSD": mssd, "AR MSPD": mspd };
+  const shares = { ...recalls, "ADD < 0.1 d": add, "ADD-S < 0.1 d": addS };
   return pairs([
     ["poses", `${estimates} of ${targets} targets`],
-    ["AR", fixed(averageRecall, 4)],
-    ["AR VSD", fixed(vsd, 4)],
-    ["AR MSSD", fixed(mssd, 4)],
-    ["AR MSPD", fixed(mspd, 4)],
-    ["ADD < 0.1 d", fixed(add, 4)],
-    ["ADD-S < 0.1 d", fixed(addS, 4)],
+    ...Object.entries(shares).map(([name, share]): Pair => [name, fixed(share, 4)]),
     ["time per image", secondsPerImage === null ? "–" : `${fixed(secondsPerImage, 2)} s`],
   ]);
 }

@@ -61,14 +61,18 @@ export const commands: readonly CommandRow[] = [
     flags: [
       ...batchFlags("case"),
       ["--depth <file>", "depth map (.npy, 16-bit .png, .npz, .exr, .tiff or .pfm), instead of a case folder", ofCase],
-      ["--mask <file>", "mask (.png, .npy, or .json with COCO RLE)", ofCase],
+      ["--mask <file>", "mask (.png, .jpg, .npy, or .json with COCO RLE)", ofCase],
       ["--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)", ofCase],
       [
         "--camera <file|fx,fy,cx,cy|fov:deg>",
         "camera: a file, intrinsics or a vertical field of view",
         { parse: camera, ...ofCase },
       ],
-      ["--image <file>", "photo (.png or .jpg) with the field of view of the depth map, also without the flag", ofCase],
+      [
+        "--image <file>",
+        "photo (.png, .jpg or .webp) with the field of view of the depth map, also without the flag",
+        ofCase,
+      ],
       ["--preset <name>", "method (default precise)", { choices: ["precise", "paper"] }],
       ...pictureFlags,
       ...caseFlags,

@@ -40,7 +40,7 @@ export function alignDetails(name: string, entry: AlignEntry, style: Style): str
       ...proportionsRows(entry, lengths),
       ...depthRows(entry),
     ]),
-    ...(metrics === undefined ? [] : metricsSection(metrics, lengths, style)),
+    ...metricsSection(metrics, lengths, style),
     ...errorsSection(errors, lengths, style),
     ...section(
       "Stages",
@@ -153,16 +153,17 @@ export function evaluationDetails(name: string, entry: Entry, style: Style): str
   ];
 }
 
-function metricsSection(metrics: Metrics, lengths: Lengths, style: Style): string[] {
-  const rows: Pair[] = [
-    ["silhouette IoU", fixed(metrics.iou, 4)],
-    ["boundary F", fixed(metrics.boundaryF, 4)],
-    ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`],
-    ["Chamfer", `${lengths.millimetres(metrics.chamferMm, 3)} (both directions)`],
-    ["uni-Chamfer", `${lengths.millimetres(metrics.uniChamferMm, 3)} (observed to surface)`],
-    ["fitness", fixed(metrics.fitness, 4)],
-    ["normal consistency", fixed(metrics.normalConsistency, 4)],
-    ["depth MAE", lengths.millimetres(metrics.depthMaeMm, 3)],
+function metricsSection(metrics: Metrics | undefined, lengths: Lengths, style: Style): string[] {
+  if (metrics === undefined) return [];
+  const share = (name: string, of: number | null): Pair => [name, fixed(of, 4)];
+  const length = (name: string, mm: number | null, more = ""): Pair => [name, lengths.millimetres(mm, 3) + more];
+  const rows = [
+    ...[share("silhouette IoU", metrics.iou), share("boundary F", metrics.boundaryF)],
+    ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`] as const,
+    length("Chamfer", metrics.chamferMm, " (both directions)"),
+    length("uni-Chamfer", metrics.uniChamferMm, " (observed to surface)"),
+    ...[share("fitness", metrics.fitness), share("normal consistency", metrics.normalConsistency)],
+    length("depth MAE", metrics.depthMaeMm),
   ];
   return section("Metrics", rows, style);
 }

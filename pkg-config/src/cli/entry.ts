@@ -1,7 +1,11 @@
 /** The JSON entry of a case: the model of a result for files, tables, pictures and reports. */
 
+import { join } from "node:path";
+import { listed } from "../case-files.js";
+import type { FoundFiles, FrameOnDisk } from "../case-folder.js";
 import type { AlignResult, InputInfo, PoseErrors, SceneResult, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
 import type { Message, Row } from "../report-page/row.js";
+import { isAssumed } from "../types/results.js";
 import { describe, failure, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/values.js";
@@ -18,16 +22,56 @@ export interface FailureEntry extends Entry {
 
 /**
  * The entry of a failure.
- * @param files the file of each argument
+ * @param found the files that were found before
  * @throws {@link UsageError}, {@link OutputError} for errors that concern all cases
  */
-export function failureEntry(thrown: unknown, files: Readonly<Record<string, string>> = {}): FailureEntry {
+export function failureEntry(thrown: unknown, found?: FoundFiles): FailureEntry {
   if (thrown instanceof UsageError || thrown instanceof OutputError) throw thrown;
-  const { code, argument, found, expected, remedy, message } = asSim3AlignError(thrown);
+  const { code, argument, found: what, expected, remedy, message } = asSim3AlignError(thrown);
   // All cases would fail with this error, but for that of an initial pose, which may differ from case to case.
   if (argument.startsWith("options") && !argument.startsWith("options.initial")) throw new UsageError(message);
-  const file = files[argument.split(".")[0] ?? ""];
-  return { error: { code, argument, found, expected, remedy, message, ...(file === undefined ? {} : { file }) } };
+  const part = argument.split(".")[0] ?? "";
+  const file = found?.files[part === "cameraFile" ? "camera" : part];
+  const path = found === undefined || file === undefined ? {} : { file: join(found.folder, file) };
+  return withFiles({ error: { code, argument, found: what, expected, remedy, message, ...path } }, found);
+}
+
+/** An entry with the files of its folder: what each was read as, and how; and those that were not read. */
+export function withFiles<T extends Entry>(entry: T, found: FoundFiles | undefined): T {
+  if (found === undefined) return entry;
+  const { depthUnit: unit, maskReading, imageReading, cameraSource: source = "" } = entry as InputInfo;
+  const objects = Object.entries((entry.objects ?? {}) as Record<string, InputInfo>);
+  const facts: Record<string, object> = {
+    depth: { unit, camera: source === "depth file" ? source : undefined },
+    mask: { reading: maskReading },
+    ...Object.fromEntries(objects.map(([name, own]) => [`objects/${name}/mask`, { reading: own.maskReading }])),
+    image: { reading: imageReading, camera: source.startsWith("EXIF") ? source : undefined },
+  };
+  const inputs: Record<string, object> = {};
+  for (const [path, name] of Object.entries(found.files)) {
+    const part = path.slice(path.lastIndexOf("/") + 1);
+    inputs[name] ??= withoutUndefined({ as: part, ...(facts[path] ?? facts[part]) });
+  }
+  return { ...entry, inputs, unread: found.unread };
+}
+
+const noUnit =
+  "Lengths have no unit, because nothing metric is known: --known-extent, or a number as --scale, makes them metric.";
+
+/** What was not read of a case, what was assumed of what was, and whether its lengths have a unit; a line each. */
+export function intakeLines(entry: Entry): string[] {
+  const { frames, objects = frames } = entry;
+  const all: [string, Entry][] = [["", entry], ...Object.entries((objects ?? {}) as Record<string, Entry>)];
+  const unread = all.flatMap(([part, { unread }]) => ((unread ?? []) as string[]).map((name) => join(part, name)));
+  const assumed = all.flatMap(([, { depthUnit, cameraSource }]) => [
+    ...(isAssumed({ depthUnit } as InputInfo) ? [`depth unit ${String(depthUnit).replace(", assumed", "")}`] : []),
+    ...(cameraSource === "estimate" ? ["focal length"] : []),
+  ]);
+  return [
+    ...(unread.length === 0 ? [] : [`not read: ${listed(unread)}`]),
+    ...(assumed.length === 0 ? [] : [`assumed: ${[...new Set(assumed)].join("; ")}`]),
+    ...(isMetric(entry) ? [] : [noUnit]),
+  ];
 }
 
 function asSim3AlignError(error: unknown): Sim3AlignError {
@@ -48,9 +92,9 @@ const transformOf = ({ scale, rotation, rotationMatrix, translation, matrix }: S
   ...{ scale, rotation, rotationMatrix, translation, matrix },
 });
 
-/** How depth and camera were read. */
-const inputEntry = ({ depthUnit, cameraSource, depthCalibration }: InputInfo) =>
-  withoutUndefined({ depthUnit, cameraSource, depthCalibration }) as InputInfo;
+/** How the files were read. */
+export const inputEntry = ({ depthUnit, cameraSource, maskReading, imageReading, depthCalibration }: InputInfo) =>
+  withoutUndefined({ depthUnit, cameraSource, maskReading, imageReading, depthCalibration }) as InputInfo;
 
 export type AlignEntry = ReturnType<typeof alignEntry>;
 
@@ -61,12 +105,12 @@ export type AlignEntry = ReturnType<typeof alignEntry>;
 export function alignEntry(alignment: Omit<AlignResult, "input">, errors: PoseErrors | null) {
   const { metrics, warnings } = alignment;
   const { timingsMs, ...diagnostics } = alignment.diagnostics;
-  type Certainty = Pick<AlignResult<"precise">, "alternatives" | "uncertainty" | "turnConfidence" | "proportions">;
-  const { confidence, turnConfidence, alternatives, uncertainty, proportions } = (
-    "confidence" in alignment
-      ? alignment
-      : { confidence: null, turnConfidence: null, alternatives: [], uncertainty: null }
-  ) as Certainty & { confidence: number | null };
+  type Certain = Pick<
+    AlignResult<"precise">,
+    "confidence" | "turnConfidence" | "alternatives" | "uncertainty" | "proportions"
+  >;
+  const certain = alignment as Partial<Certain>;
+  const { confidence = null, turnConfidence = null, alternatives = [], uncertainty = null, proportions } = certain;
   return {
     ...poseEntry(transformOf(alignment)),
     ...{ confidence, turnConfidence, alternatives: alternatives.map(poseEntry), uncertainty },
@@ -80,19 +124,24 @@ export function alignEntry(alignment: Omit<AlignResult, "input">, errors: PoseEr
 export type ViewsEntry = ReturnType<typeof viewsEntry>;
 
 /** The entry of several views: the pose in the world, if the camera poses are known, and that in each frame. */
-export function viewsEntry(alignment: ViewsAlignment, frames: readonly string[], errors: (PoseErrors | null)[]) {
+export function viewsEntry(
+  alignment: ViewsAlignment,
+  frames: readonly Pick<FrameOnDisk, "name" | "found">[],
+  errors: (PoseErrors | null)[],
+) {
   const { scale, world, confidence, alternatives, uncertainty, proportions, warnings } = alignment;
   const { timingsMs, ...diagnostics } = alignment.diagnostics;
   const views = alignment.views.map(({ camera, ...view }, k) => {
     const rest = errors[k] ?? null;
-    return { ...poseEntry(view), camera: poseEntry(camera), ...(rest === null ? {} : { errors: rest }) };
+    const entry = { ...poseEntry(view), camera: poseEntry(camera), ...(rest === null ? {} : { errors: rest }) };
+    return withFiles(entry, frames[k]?.found);
   });
   return {
     // Without camera poses, there is no world: the poses are those of the frames.
     ...(world === "given" ? poseEntry(transformOf(alignment)) : { scale }),
     ...{ world, confidence, alternatives: alternatives.map(poseEntry), uncertainty },
     ...(proportions === undefined ? {} : { proportions: poseEntry(proportions) }),
-    ...{ frames: Object.fromEntries(frames.map((name, k) => [name, views[k] as (typeof views)[number]])) },
+    ...{ frames: Object.fromEntries(frames.map(({ name }, k) => [name, views[k] as (typeof views)[number]])) },
     ...{ warnings, timingsMs, diagnostics },
   };
 }
@@ -101,9 +150,9 @@ export function viewsEntry(alignment: ViewsAlignment, frames: readonly string[],
 export const frameEntry = (tracked: TrackedFrame) => poseEntry(tracked);
 
 /** The entry of a video, with the frames so far. */
-export function trackEntry(frames: ReadonlyMap<string, Entry>) {
+export function trackEntry(frames: ReadonlyMap<string, Entry>, found: FoundFiles) {
   const poses = [...frames.values()].filter((entry) => !isFailure(entry));
-  return { scale: poses.at(-1)?.scale ?? null, frames: Object.fromEntries(frames) };
+  return withFiles({ scale: poses.at(-1)?.scale ?? null, frames: Object.fromEntries(frames) }, found);
 }
 
 export type SceneEntry = ReturnType<typeof sceneEntry>;

@@ -5,7 +5,7 @@ import { failure } from "../values/error.js";
 import { evaluationColumns, viewsOf } from "./align.js";
 import { failedLines, type Job } from "./batch.js";
 import { evaluationDetails } from "./details.js";
-import { type Entry, failureEntry, isFailure, posesIn } from "./entry.js";
+import { type Entry, failureEntry, isFailure, posesIn, withFiles } from "./entry.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { caseKind, type FolderToDo, foldersToDo } from "./folders.js";
 import { optionValues } from "./option-flags.js";
@@ -31,16 +31,16 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
     folders: tasks.map(({ folder }) => folder),
     async run(aligner, { name, folder }) {
       const frames = new Map<string, Entry>();
-      for (const { frame, input, truth, files } of await viewsOf(folder, caseSettings(flags))) {
+      for (const { frame, input, truth, found } of await viewsOf(folder, caseSettings(flags))) {
         const evaluate = async (): Promise<Entry> => {
           const target = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
           if (transform === "gt" && truth === null) throw noTruth(frame === undefined ? folder : `${folder}/${frame}`);
           const matrix =
             transform === "gt" ? truth?.transform.matrix : await readTransform("transform", transform, name, frame);
           const evaluation = await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...options, ...target });
-          return { ...evaluation, ...(depthKind === "metric" ? {} : { isMetric: false }) };
+          return withFiles({ ...evaluation, ...(depthKind === "metric" ? {} : { isMetric: false }) }, found);
         };
-        const entry = await evaluate().catch((error) => failureEntry(error, files));
+        const entry = await evaluate().catch((error) => failureEntry(error, found));
         if (frame === undefined) return entry;
         frames.set(frame, entry);
       }

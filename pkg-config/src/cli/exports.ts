@@ -56,9 +56,8 @@ export function exportedArrays<M extends MeshArrays>(
   pose: Sim3Like,
   { proportions, upright }: ExportedAs,
 ): ExportedMesh<M> {
-  const stretched = inProportion(mesh, pose, proportions);
-  if (upright === undefined) return { ...stretched, transform: withFacts(stretched.transform, pose) };
-  const straight = uprightMesh(stretched.mesh, stretched.transform, upright);
+  const own = inProportion(mesh, pose, proportions);
+  const straight = upright === undefined ? own : uprightMesh(own.mesh, own.transform, upright);
   return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
 }
 

@@ -1,6 +1,7 @@
 /** Paths and files on the command line. */
 import { closeSync, openSync, readdirSync, readFileSync, readSync, realpathSync, type Stats, statSync } from "node:fs";
 import { basename, dirname, join, resolve } from "node:path";
+import { naturally } from "../values/order.js";
 
 /** An invalid command line, which ends the program. */
 export class UsageError extends Error {}
@@ -8,7 +9,7 @@ export class UsageError extends Error {}
 /** The names in a folder; none if it cannot be read. */
 export function namesIn(folder: string): string[] {
   try {
-    return readdirSync(folder).sort();
+    return readdirSync(folder).sort(naturally);
   } catch {
     return [];
   }

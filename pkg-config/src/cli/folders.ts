@@ -3,8 +3,9 @@ import { existsSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { text } from "node:stream/consumers";
-import { caseFiles } from "../case-files.js";
-import { viewNames } from "../scene/sam3d-files.js";
+import { isBopScene } from "../bop/dataset.js";
+import { partOf } from "../case-names.js";
+import { isView } from "../scene/sam3d-files.js";
 import { absolutePath, isFile, namesIn, UsageError } from "./files.js";
 import { isPattern, matchingFolders } from "./pattern.js";
 import type { CaseKey } from "./record.js";
@@ -20,23 +21,14 @@ export interface FolderKind {
   is(folder: string): boolean;
 }
 
-const partNames: readonly string[] = Object.values(caseFiles).flat();
-const hasMesh = (folder: string) => caseFiles.mesh.some((name) => existsSync(join(folder, name)));
-const has = (folder: string, ...names: string[]) => names.every((name) => existsSync(join(folder, name)));
+const hasMesh = (folder: string) => namesIn(folder).some((name) => partOf(name) === "mesh");
 
 export const caseKind: FolderKind = { noun: "case", mark: "a mesh", is: hasMesh };
 export const videoKind: FolderKind = { noun: "video", mark: "a mesh", is: hasMesh };
-export const sceneKind: FolderKind = {
-  noun: "scene",
-  mark: "objects",
-  is: (folder) => has(folder, "objects") || has(folder, "mask_visib", "scene_gt.json"),
-};
-
-export const sam3dKind: FolderKind = {
-  noun: "scene",
-  mark: "a point map or depth",
-  is: (folder) => namesIn(folder).some((name) => viewNames.includes(name)),
-};
+const hasObjects = (names: readonly string[]) => names.includes("objects") || isBopScene(names);
+export const sceneKind: FolderKind = { noun: "scene", mark: "objects", is: (folder) => hasObjects(namesIn(folder)) };
+const hasView = (folder: string) => namesIn(folder).some(isView);
+export const sam3dKind: FolderKind = { noun: "scene", mark: "a point map or depth", is: hasView };
 
 /** A folder to work on. */
 export interface FolderToDo extends CaseKey {
@@ -78,25 +70,21 @@ export async function foldersToDo(
 
 /** The folders with their absolute paths, each path once. */
 function unique(folders: readonly string[]): { folder: string; path: string }[] {
-  const seen = new Set<string>();
+  const first = new Map<string, string>();
   const repeated: string[] = [];
-  const first = folders.flatMap((folder) => {
+  for (const folder of folders) {
     const path = absolutePath(folder);
-    if (seen.has(path)) {
-      repeated.push(folder);
-      return [];
-    }
-    seen.add(path);
-    return [{ folder, path }];
-  });
+    if (first.has(path)) repeated.push(folder);
+    else first.set(path, folder);
+  }
   if (repeated.length > 0) note(`skipped, given twice: ${repeated.join(", ")}`);
-  return first;
+  return [...first].map(([path, folder]) => ({ folder, path }));
 }
 
 /** @throws {@link UsageError} for a folder that is above of what is meant */
 function refuseParent({ noun, is }: FolderKind, folder: string): void {
   if (is(folder)) return;
-  if (namesIn(folder).some((name) => partNames.includes(name))) return;
+  if (namesIn(folder).some((name) => partOf(name) !== undefined)) return;
   const inside = (path: string, depth: number): boolean =>
     namesIn(path).some((name) => is(join(path, name)) || (depth > 1 && inside(join(path, name), depth - 1)));
   if (!inside(folder, 2)) return;

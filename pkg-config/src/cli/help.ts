@@ -1,27 +1,33 @@
 /** The help texts of the commands: layouts of folders, frames and units, outputs, and examples. */
+import { namesText } from "../case-names.js";
 import { csvHeadings } from "./result-files.js";
+
+/** The names of a part, in lines that are indented by two. */
+const named = (part: Parameters<typeof namesText>[0]) => namesText(part).replace(/(.{60,105}), /g, "$1,\n  ");
 
 const caseFolder = `
 A case folder holds
-  depth.npy, .png, .npz, .exr, .tiff or .pfm
+  ${named("depth")}
                                  z-depth; floats are metres, whole numbers (16-bit PNG) millimetres unless
                                  --depth-scale or the camera file says otherwise; 0 and NaN are "no reading";
                                  --depth-kind for what depth models guess without a unit
-  mask.png, .npy or .json        non-zero is the object; JSON is COCO RLE {"size": [h, w], "counts": …}
-  mesh.glb, .gltf, .obj, .ply or .stl
+  ${named("mask")}
+                                 the object: half of the range or more; JSON is COCO RLE {"size": [h, w], "counts": …}
+  ${named("mesh")}
                                  the object in its own frame, in any unit
-  camera.json (optional)         {"fx", "fy", "cx", "cy"}, {"K"}, {"fovYDeg"}, or ROS CameraInfo; or BOP's
-                                 scene_camera.json; without it, the camera is that of the depth file or of the EXIF data
-                                 of the photo, or the focal length is estimated
-  rgb.png or .jpg, image.png or .jpg (optional)
-                                 the photo, registered to the depth map; compared with the colours of the mesh
+  ${named("camera")}
+                                 optional, JSON or text: {"fx", "fy", "cx", "cy"}, {"K"}, {"fovYDeg"}, ROS CameraInfo,
+                                 BOP's scene_camera.json, or the numbers alone, of a matrix or four; without it, the
+                                 camera is that of the depth file or of the EXIF data of the photo, or the focal length
+                                 is estimated; of a depth and a colour camera, that of the depth is read
+  ${named("image")}
+                                 optional: the photo, registered to the depth map; compared with the colours of the mesh
   gt.json (optional)             {"scale", "rotation": 3×3 row-major, "translation": m, "symmetry"}: the true pose
-or a mesh and folders frame_*, each with depth, and optionally
-  camera.json                    as above
-  mask.png, .npy or .json        in at least one frame; in all of them without pose.json
-  rgb.png or .jpg, image.png or .jpg
-                                 the photo of the frame
-  pose.json                      {"camera_to_world": 4×4 row by row, m}: the camera's pose; in all frames or it is not used`;
+or a mesh and folders frame_*, each with a depth map, and optionally a camera and a photo as above, and
+  a mask                         in at least one frame; in all of them without pose.json
+  pose.json                      {"camera_to_world": 4×4 row by row, m}: the camera's pose; in all frames or it is not used
+A camera beside the frames is that of the frames without one. Frames are in the order of their numbers. Upper and lower case
+are the same. Files that are not read are named at the end.`;
 
 const conventions = `
 Frames and units
@@ -91,9 +97,10 @@ Output
   it. A single case is shown in detail. The confidence is the probability that the pose is right, 0 to 1. An alternative
   is another pose that explains the observation nearly as well.
   --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, turnConfidence, alternatives,
-  uncertainty, proportions, metrics, warnings, depthUnit, cameraSource, depthCalibration, timingsMs, diagnostics } };
-  proportions, cameraSource and depthCalibration where there are any. A case that failed has { error: { code, argument,
-  found, expected, remedy, message } }. With --preset paper, confidences and uncertainty are null and alternatives is empty.
+  uncertainty, proportions, metrics, warnings, depthUnit, cameraSource, depthCalibration, timingsMs, diagnostics, inputs,
+  unread } }; proportions, cameraSource and depthCalibration where there are any. inputs has what each file was read as:
+  { "depth.png": { as: "depth", unit }, "mask.png": { as: "mask", reading }, … }; unread names the others. A case that
+  failed has { error: { code, argument, found, expected, remedy, message } }. With --preset paper, confidences and uncertainty are null and alternatives is empty.
   A case with frames has { scale, rotation, translation, …, frames: { "<frame>": { scale, rotation, translation, …,
   confidence, role, camera } } }: its own pose is world from mesh, if the camera poses are known; those of the frames are
   camera from mesh.
@@ -105,8 +112,6 @@ Output
 ${batches("case", "a mesh")}
 
 Examples
-  sim3align align cases/mug
-  sim3align align cases/* --json results.json
   sim3align align 'cases/**' --jsonl results.jsonl --csv results.csv --resume
   find cases -name mesh.glb -printf '%h\\n' | sim3align align --list - --workers 4 --jsonl -
   sim3align align 'cases/**' --jsonl results.jsonl --report report --resume
@@ -117,10 +122,8 @@ Examples
   sim3align align cases/mug --preset paper --seed 7 --guard 0.8,1.2 --guard-mode clamp
   sim3align align cases/mug --preset paper --options '{"fpfhRadiusVoxels": 4}' --json - | jq .mug.scale
   sim3align align --depth d.png --mask m.png --mesh mug.glb --camera 600,600,320,240 --depth-scale 0.001
-  sim3align align --depth d.npy --mask m.png --mesh mug.obj --camera fov:55 --image photo.jpg
   sim3align align photo.jpg --depth moge.npz --mask m.png --mesh mug.glb
   sim3align align photo.jpg --depth d.npy --mask m.png --mesh mug.glb --depth-kind affine-invariant-disparity
-  sim3align align cases/mug --depth-kind affine-invariant-disparity --known-extent 0.095 --known-extent-axis y
 ${status}`;
 
 export const trackHelp = `${caseFolder}
@@ -159,13 +162,12 @@ Examples
   sim3align evaluate cases/mug --transform results.json
   sim3align evaluate 'cases/**' --transform results.jsonl --csv scores.csv
   sim3align evaluate views/mug --transform views.json
-  sim3align evaluate cases/mug --transform gt --json scores.json
 ${status}`;
 
 export const sceneHelp = `
 A scene folder holds
-  depth.npy or .png …                   as a case folder, see "sim3align align --help"; also camera.json and the photo
-  objects/NAME/mask.png, .npy or .json  the mask of each object
+  depth.npy or .png …                   as a case folder, see "sim3align align --help"; also the camera and the photo
+  objects/NAME/mask.png, …              the mask of each object
   objects/NAME/mesh.glb, …              its mesh; textures are kept by --scene-glb
   objects/NAME/initial.json (optional)  a pose to start from, as gt.json: one candidate among those of the search
   objects/NAME/gt.json (optional)       its true pose
@@ -194,15 +196,12 @@ Output
 ${batches("scene", "objects")}
 
 Examples
-  sim3align scene scenes/desk
-  sim3align scene scenes/* --json scenes.json
   sim3align scene 'scenes/**' --jsonl scenes.jsonl --csv scenes.csv --resume
   sim3align scene scenes/desk --scale 0.05,0.5
   sim3align scene scenes/desk --snap --scene-glb desk.glb
   sim3align scene scenes/desk --mjcf desk-mujoco --usd desk.usda
   sim3align scene --sam3d outputs/desk --scene-glb desk.glb
   sim3align scene scenes/desk --depth-kind affine-invariant-disparity
-  sim3align scene scenes/* --report report
   sim3align scene bop/test/000048 --image-id 1 --json -
 ${status}`;
 

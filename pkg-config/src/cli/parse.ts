@@ -19,30 +19,28 @@ export function workers(text: string): number | "auto" {
   return value;
 }
 
-/** Parses comma-separated numbers. */
-function numbers(text: string, count: number): number[] | null {
-  const values = text.split(",").map((part) => (part.trim() === "" ? Number.NaN : Number(part)));
-  return values.length === count && !values.some(Number.isNaN) ? values : null;
-}
+/** The numbers of a text with commas. */
+const valuesOf = (text: string) => text.split(",").map((part) => (part.trim() === "" ? Number.NaN : Number(part)));
 
-function listOf(text: string, count: number, expected: string): number[] {
-  const values = numbers(text, count);
-  if (values === null) throw new InvalidArgumentError(`Expected ${expected}.`);
-  return values;
+/** Parses comma-separated numbers, as many as one of the counts says. */
+function numbers(text: string, counts: readonly number[], expected: string): number[] {
+  const values = valuesOf(text);
+  if (counts.includes(values.length) && !values.some(Number.isNaN)) return values;
+  throw new InvalidArgumentError(`Found ${values.length} values, expected ${expected}.`);
 }
 
 /** Parses MIN,MAX or `none`. (Commander treats null as a missing value.) */
 export const guard = (text: string) =>
-  text === "none" ? text : (listOf(text, 2, 'MIN,MAX, such as 0.5,1.5, or "none"') as [number, number]);
+  text === "none" ? text : (numbers(text, [2], 'MIN,MAX, such as 0.5,1.5, or "none"') as [number, number]);
 
 /** Parses X,Y,Z. */
-export const direction = (text: string) => listOf(text, 3, "X,Y,Z, such as 0,-1,0") as [number, number, number];
+export const direction = (text: string) => numbers(text, [3], "X,Y,Z, such as 0,-1,0") as [number, number, number];
 
 /** Parses `free`, a number, or MIN,MAX. */
 export function scale(text: string): ScaleOption {
   if (text === "free") return text;
-  const [value, max] = numbers(text, 1) ?? listOf(text, 2, '"free", a number, such as 0.001, or MIN,MAX');
-  return max === undefined ? (value as number) : [value as number, max];
+  const [value = 0, max] = numbers(text, [1, 2], '"free", a number, such as 0.001, or MIN,MAX');
+  return max === undefined ? value : [value, max];
 }
 
 /** Parses a name, which the core checks, or a JSON array of axes. */
@@ -67,26 +65,15 @@ export function jsonObject(text: string): Record<string, unknown> {
 
 /** Parses fx,fy,cx,cy or fov:DEGREES; anything else is a file. */
 export function camera(text: string): string | { value: CameraInput } {
-  const intrinsics = numbers(text, 4);
-  if (intrinsics !== null) {
-    const [fx = 0, fy = 0, cx = 0, cy = 0] = intrinsics;
+  // Two numbers or more are no name of a file.
+  if (valuesOf(text).filter((value) => !Number.isNaN(value)).length >= 2) {
+    const expected = "four numbers: fx,fy,cx,cy in pixels, such as 600,600,319.5,239.5";
+    const [fx = 0, fy = 0, cx = 0, cy = 0] = numbers(text, [4], expected);
     if (fx > 0 && fy > 0) return { value: { fx, fy, cx, cy } };
     throw new InvalidArgumentError("Expected focal lengths above 0: fx,fy,cx,cy in pixels.");
-  }
-  if (looksLikeNumbers(text)) {
-    const found = text.split(",").length;
-    throw new InvalidArgumentError(
-      `Found ${found} values, expected four numbers: fx,fy,cx,cy in pixels, such as 600,600,319.5,239.5.`,
-    );
   }
   if (!text.startsWith("fov:")) return text;
   const fovYDeg = number(text.slice("fov:".length));
   if (fovYDeg > 0 && fovYDeg < 180) return { value: { fovYDeg } };
   throw new InvalidArgumentError("Expected a vertical field of view above 0 and below 180 degrees.");
-}
-
-/** Whether the text is a list with two numbers or more, which is no name of a file. */
-function looksLikeNumbers(text: string): boolean {
-  const isNumber = (part: string) => part.trim() !== "" && !Number.isNaN(Number(part));
-  return text.split(",").filter(isNumber).length >= 2;
 }

@@ -1,6 +1,7 @@
 /** Patterns of folders: `*` and `?` within a name, `[abc]`, `{a,b}`, and `**` for folders at any depth. */
 import { type Dirent, existsSync, readdirSync, realpathSync, statSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
+import { naturally } from "../values/order.js";
 import { statOf } from "./files.js";
 
 /** Whether a path has characters of patterns. */
@@ -14,7 +15,7 @@ export function matchingFolders(pattern: string): { folders: string[]; unread: s
     const parts = each.split("/").filter((part) => part !== "" && part !== ".");
     return [...matches(root, parts, unread)];
   });
-  return { folders: [...new Set(folders)].sort(), unread: [...unread] };
+  return { folders: [...new Set(folders)].sort(naturally), unread: [...unread] };
 }
 
 /** The patterns without braces that one with braces stands for. */
@@ -82,7 +83,7 @@ function isFolderBelow(link: string, folder: string): boolean {
     // By way of links, and without them.
     const above = [
       ...ancestry(resolve(folder)).map((path) => realpathSync(path)),
-      ...ancestry(realpathSync(resolve(folder))),
+      ...ancestry(realpathSync(folder || ".")),
     ];
     return !above.includes(realpathSync(link));
   } catch {
@@ -92,7 +93,4 @@ function isFolderBelow(link: string, folder: string): boolean {
 }
 
 /** A folder, and all folders above it. */
-function ancestry(path: string): string[] {
-  const above = dirname(path);
-  return above === path ? [path] : [path, ...ancestry(above)];
-}
+const ancestry = (path: string): string[] => (dirname(path) === path ? [path] : [path, ...ancestry(dirname(path))]);

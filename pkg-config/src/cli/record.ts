@@ -1,10 +1,10 @@
 /** The record of a batch, from which it can be resumed: a line with its settings, and a line of JSON for each case. */
 import { createHash } from "node:crypto";
 import { appendFileSync, createReadStream, existsSync, readFileSync, truncateSync } from "node:fs";
-import { dirname, join, relative, sep } from "node:path";
+import { basename, dirname, join, relative, sep } from "node:path";
 import { createInterface } from "node:readline";
 import { isDeepStrictEqual } from "node:util";
-import { caseFiles, INITIAL_FILE } from "../case-files.js";
+import { partOf } from "../case-names.js";
 import { isRecord } from "../values/kinds.js";
 import type { Entry } from "./entry.js";
 import { absolutePath, bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
@@ -45,23 +45,20 @@ const keyOf = ({ path, name }: Pick<CaseKey, "path" | "name">) => path ?? name;
 /** What the results of a record depend on beside the cases; `pathOf` returns the paths of files as the record has them. */
 export type RecordHeader = (pathOf: (path: string) => string) => { command: string; options: Record<string, unknown> };
 
-const inputs = new Set<string>([...Object.values(caseFiles).flat(), INITIAL_FILE, "pose.json"]);
-
 /** A checksum of the inputs in a folder: its files, those of its frames and of its objects. `undefined` without files. */
 function contentHash(folder: string): string | undefined {
+  // A true pose only measures errors.
+  const isInput = (path: string) => ![undefined, "truth"].includes(partOf(basename(path))) && isFile(path);
   const hash = createHash("sha256");
   let isEmpty = true;
-  for (const part of partsOf(folder)) {
-    for (const name of namesIn(part)) {
-      const path = join(part, name);
-      try {
-        if (!inputs.has(name) || !isFile(path)) continue;
-        const bytes = readFileSync(path);
-        hash.update(`${relative(folder, part).split(sep).join("/")}/${name} ${bytes.length}\n`).update(bytes);
-        isEmpty = false;
-      } catch {
-        // What cannot be read is reported for the case.
-      }
+  for (const path of partsOf(folder).flatMap((part) => namesIn(part).map((name) => join(part, name)))) {
+    try {
+      if (!isInput(path)) continue;
+      const bytes = readFileSync(path);
+      hash.update(`${relative(folder, path).split(sep).join("/")} ${bytes.length}\n`).update(bytes);
+      isEmpty = false;
+    } catch {
+      // What cannot be read is reported for the case.
     }
   }
   return isEmpty ? undefined : hash.digest("hex").slice(0, 32);

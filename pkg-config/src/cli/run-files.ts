@@ -15,7 +15,7 @@ import {
   writeSync,
 } from "node:fs";
 import { basename, dirname, extname, join, sep } from "node:path";
-import { caseFiles, INITIAL_FILE } from "../case-files.js";
+import { partOf } from "../case-names.js";
 import { bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
 
 /** A file or folder that a command line names. */
@@ -41,9 +41,6 @@ export interface OutputName extends NamedFile {
 
 /** An output that cannot be written whole. */
 export class OutputError extends Error {}
-
-/** Names that a case has for its files. */
-const reserved = new Set<string>([...Object.values(caseFiles).flat(), INITIAL_FILE, "gt.json", "pose.json"]);
 
 /** Levels of folders in which inputs are looked for. */
 const LEVELS = 5;
@@ -138,7 +135,7 @@ export class RunFiles {
     const refuse = (input: string) => {
       throw new UsageError(`${flag} ${path}: this is a file of the input ${input}. Pass another name.`);
     };
-    const part = reserved.has(basename(place).toLowerCase()) ? this.#scan().parts.get(dirname(place)) : undefined;
+    const part = partOf(basename(place)) && this.#scan().parts.get(dirname(place));
     if (part !== undefined) refuse(part);
     if (isOwn !== undefined) {
       const beginning = identity === undefined ? "" : bytesOf(place, 0, 4096).toString();
@@ -166,7 +163,7 @@ export class RunFiles {
         const path = join(folder, name);
         const identity = identityOf(path);
         if (refersToFiles(name)) models.push(path);
-        if (identity !== undefined && (levels > 1 || reserved.has(name))) files.set(identity, input);
+        if (identity !== undefined && (levels > 1 || partOf(name) !== undefined)) files.set(identity, input);
         if (levels > 1 && statOf(path)?.isDirectory()) add(path, input, levels - 1);
       }
     };

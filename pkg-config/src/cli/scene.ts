@@ -12,7 +12,7 @@ import {
   type SceneOptions,
 } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
-import { bopFolders, bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
+import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
@@ -20,12 +20,14 @@ import { depthRows, proportionsRows, warningLine } from "./details.js";
 import {
   type AlignEntry,
   type Entry,
+  inputEntry,
   isFailure,
   isMetric,
   rowOf,
   type SceneEntry,
   sceneEntry,
   warningsOf,
+  withFiles,
 } from "./entry.js";
 import { writeSceneFiles } from "./exports.js";
 import { isFile, UsageError } from "./files.js";
@@ -60,13 +62,8 @@ export async function sceneJob(args: readonly string[], flags: Flags, files: Run
     // The files of a whole scene are made with its result only.
     isComplete: () => sceneOutputs(flags).every(({ path, holds }) => isFile(join(path, holds?.at(-1) ?? ""))),
     async inputs({ name, scene }) {
-      const onDisk = await readSceneFolder(scene, settings);
-      const inputs = new Map<string, AlignInput>();
-      for (const [i, object] of onDisk.input.objects.entries()) {
-        const input = inputOf(onDisk, i);
-        if (input !== undefined) inputs.set(`${name}/${object.name ?? i}`, input);
-      }
-      return inputs;
+      const { input } = await readSceneFolder(scene, settings);
+      return new Map(input.objects.map((object, i) => [`${name}/${object.name ?? i}`, inputOf(input, object)]));
     },
   };
 }
@@ -107,19 +104,19 @@ async function alignScene(
   files: RunFiles,
 ): Promise<Entry> {
   const scene = await readSceneFolder(task.scene, settings);
+  caseRun.found = scene.found;
   const options: SceneOptions = { ...optionValues(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
   // A scale that is given goes before the first poses of files.
   const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
   const input = { ...scene.input, objects, support } as SceneInput;
   const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
-  const { depthUnit, cameraSource, depthCalibration } = result;
-  const read = withoutUndefined({ depthUnit, cameraSource, depthCalibration });
+  const read = inputEntry(result);
   const errors = result.objects.map((object, i) => {
-    const own = inputOf(scene, i);
+    const own = scene.input.objects[i];
     if (object.error !== undefined || own === undefined) return null;
-    return errorsOf(aligner, own, { ...object, ...read }, scene.truths[i]);
+    return errorsOf(aligner, inputOf(scene.input, own), { ...object, ...read }, scene.truths[i]);
   });
-  const entry = sceneEntry(result, await Promise.all(errors));
+  const entry = withFiles(sceneEntry(result, await Promise.all(errors)), scene.found);
   const names = result.objects.map(({ name }, i) => name ?? `${i}`);
   caseRun.print(...linesOf(task.name, entry, names));
   await caseRun.make(async () => caseRun.print(...(await writeSceneFiles(scene, result, flags, files))));
@@ -134,11 +131,8 @@ async function supportOf(flag: string | undefined): Promise<SceneInput["support"
 }
 
 /** The input of one object. */
-function inputOf({ input: scene }: SceneOnDisk, index: number): AlignInput | undefined {
-  const { objects, labels: _, occluders: __, support: ___, ...view } = scene;
-  const object = objects[index];
-  if (object === undefined) return undefined;
-  const { mask, mesh, resizeMask } = object;
+function inputOf(scene: SceneInput, { mask, mesh, resizeMask }: SceneInput["objects"][number]): AlignInput {
+  const { objects: _, labels: __, occluders: ___, support: ____, ...view } = scene;
   return { ...view, mask, mesh, ...withoutUndefined({ resizeMask }) } as AlignInput;
 }
 

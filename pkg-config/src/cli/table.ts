@@ -67,10 +67,6 @@ export function pairs(entries: readonly Pair[]): string[] {
   return entries.map(([name, value]) => `  ${pad(name, longest, false)}  ${value}`);
 }
 
-/** The note on results whose lengths have no unit. */
-export const noUnitNote =
-  "Lengths have no unit, because nothing metric is known: --known-extent, or a number as --scale, makes them metric.";
-
 /** How lengths are printed. */
 export class Lengths {
   constructor(readonly isMetric: boolean) {}

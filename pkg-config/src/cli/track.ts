@@ -1,11 +1,10 @@
 /** `sim3align track`: tracks an object through the frames of videos. */
-import { join } from "node:path";
-import { frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
-import { type Aligner, OPTIONS, type TrackOptions } from "../index.js";
+import { type FoundFiles, frameNames, openFrames } from "../case-folder.js";
+import { type Aligner, OPTIONS, type TrackedFrame, type TrackOptions } from "../index.js";
 import { fixed, significant } from "../report-page/row.js";
 import type { CaseRun, Job } from "./batch.js";
 import { depthRows } from "./details.js";
-import { type Entry, failureEntry, frameEntry, trackEntry } from "./entry.js";
+import { type Entry, failureEntry, frameEntry, trackEntry, withFiles } from "./entry.js";
 import { UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
@@ -35,29 +34,27 @@ async function trackVideo(
   flags: Flags,
   caseRun: CaseRun,
 ): Promise<Entry> {
-  const names = await frameNames(folder);
+  const { mesh, names, read, found } = await openFrames(folder, caseSettings(flags));
   const options = optionValues(flags, OPTIONS.track);
   if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
-  const mesh = meshIn(folder);
-  caseRun.files = { mesh };
-  const tracker = await aligner.track(await readMeshFile(mesh), options as TrackOptions);
+  caseRun.found = found();
+  const tracker = await aligner.track(mesh, options as TrackOptions);
   try {
     caseRun.print(caseRun.style.bold(name), headings(columns));
-    const read = (frame: string) => readFrame(join(folder, frame), caseSettings(flags));
     const frames = new Map<string, Entry>();
     // How the last frame was read stands for the others.
-    let last: Parameters<typeof depthRows>[0] | undefined;
+    let last: TrackedFrame | undefined;
     let next: ReturnType<typeof read> | undefined;
     for (const [k, frame] of names.entries()) {
       const began = performance.now();
-      let files: Readonly<Record<string, string>> = {};
+      let own: FoundFiles | undefined;
       let cells: string[];
       try {
         const reading = next ?? read(frame);
         next = undefined;
-        const { files: own, input: view } = await reading;
-        files = own;
-        const { cameraToWorld: _, ...input } = view;
+        const view = await reading;
+        own = view.found;
+        const { cameraToWorld: _, ...input } = view.input;
         const tracking = tracker.next(input);
         const following = names[k + 1];
         if (following !== undefined) {
@@ -66,20 +63,20 @@ async function trackVideo(
           next.catch(() => {});
         }
         last = await tracking;
-        const { state, confidence, scale, scaleSd } = await tracking;
-        frames.set(frame, frameEntry(await tracking));
+        const { state, confidence, scale, scaleSd } = last;
+        frames.set(frame, withFiles(frameEntry(last), own));
         cells = [state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2)];
       } catch (error) {
-        const failed = failureEntry(error, files);
+        const failed = failureEntry(error, own);
         frames.set(frame, failed);
         cells = [failed.error.code, "–", "–", "–"];
       }
-      caseRun.partial(trackEntry(frames));
+      caseRun.partial(trackEntry(frames, found()));
       caseRun.print(tableLine(columns, [frame, ...cells, fixed(performance.now() - began, 0)]));
       if (caseRun.isClosed()) break;
     }
     if (last !== undefined) caseRun.print(...pairs(depthRows(last)));
-    return trackEntry(frames);
+    return trackEntry(frames, found());
   } finally {
     tracker.close();
   }

@@ -1,8 +1,10 @@
 /** Transforms from JSON files. */
 import { read } from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
-import { failure, type Sim3AlignError } from "../values/error.js";
+import { failure } from "../values/error.js";
 import { isRecord, oncePerKey } from "../values/values.js";
+
+const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
 
 /** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
 const jsonIn = oncePerKey(async (path: string, argument: string) =>
@@ -22,7 +24,7 @@ export async function readTransform(
   frame?: string,
 ): Promise<number[]> {
   const json = await jsonIn(path, argument);
-  const invalid = (found: string, expected: string) => invalidTransform(argument, found, expected);
+  const invalid = (found: string, expected: string) => failure("INVALID_TRANSFORM", argument, found, expected, remedy);
   const own = entryOf(json, name, invalid);
   const { frames } = own as Readonly<Record<string, unknown>>;
   const entry = frame !== undefined && isRecord(frames) ? entryOf(frames, frame, invalid) : own;
@@ -43,7 +45,6 @@ function parse(text: string, argument: string, path: string): unknown {
       }),
     );
   } catch (cause) {
-    const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
     throw failure("CORRUPT_FILE", argument, `${path}: ${(cause as Error).message}`, "JSON", remedy, cause);
   }
 }
@@ -59,9 +60,4 @@ function entryOf(json: unknown, name: string, invalid: (found: string, expected:
     `an object with ${Object.keys(json).slice(0, 12).join(", ") || "nothing"}`,
     `a transform, or an entry for ${name}`,
   );
-}
-
-function invalidTransform(argument: string, found: string, expected: string): Sim3AlignError {
-  const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
-  return failure("INVALID_TRANSFORM", argument, found, expected, remedy);
 }

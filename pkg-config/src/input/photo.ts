@@ -12,27 +12,36 @@ import { type ImageReaders, isWebp } from "./webp.js";
 const kinds =
   "a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a PNG, JPEG or WebP file";
 
+/** A photo for the core. */
+export interface ReadPhoto {
+  image?: Photo;
+  /** How it was turned, if not as its EXIF data say. */
+  imageReading?: string;
+}
+
 /**
  * The pixels of a photo, if there is one.
  * @param size the size of the depth map, which is that of a bare array
  */
-export async function readPhoto(image: unknown, size: StatedSize, readers: ImageReaders): Promise<Photo | undefined> {
-  if (image === undefined || image === null) return undefined;
+export async function readPhoto(image: unknown, size: StatedSize, readers: ImageReaders): Promise<ReadPhoto> {
+  if (image === undefined || image === null) return {};
   if (isRecord(image) && "data" in image) {
     const { data, width, height } = image;
     if (!isBytes(data)) throw wrongKind("image.data", data, "a Uint8Array of RGB or RGBA pixels", "Uint8Array");
-    return pixels("image.", data, { width, height } as StatedSize);
+    return { image: pixels("image.", data, { width, height } as StatedSize) };
   }
-  if (isTypedArray<Uint8ClampedArray>(image, "Uint8ClampedArray")) return pixels("", image, size);
+  if (isTypedArray<Uint8ClampedArray>(image, "Uint8ClampedArray")) return { image: pixels("", image, size) };
   const bytes = await fileBytes("image", image);
   if (bytes === null) throw wrongKind("image", image, kinds, "Uint8Array");
   if (bytes === image && !beginsLikeImage(bytes) && channelsOf(bytes, size) !== undefined)
-    return pixels("", bytes, size);
+    return { image: pixels("", bytes, size) };
   const photo = await decodePhoto(bytes, readers);
-  if (isShapeOf(photo, size) || !isShapeOf({ width: photo.height, height: photo.width }, size)) return photo;
+  if (isShapeOf(photo, size) || !isShapeOf({ width: photo.height, height: photo.width }, size)) return { image: photo };
   // EXIF data turn the photo, but the depth map is as the sensor read it.
   const stored = await decodePhoto(bytes, readers, true);
-  return isShapeOf(stored, size) ? stored : photo;
+  return isShapeOf(stored, size)
+    ? { image: stored, imageReading: "as stored, in the shape of the depth map" }
+    : { image: photo };
 }
 
 /**

@@ -5,10 +5,9 @@ import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray, oneOf, withoutUndefined } from "../values/values.js";
 import { cameraOf, type ResolvedCamera } from "./camera.js";
-import type { Photo } from "./colors.js";
 import type { CoreInput, CoreView } from "./core-input.js";
 import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
-import { readPhoto, readPhotoExif } from "./photo.js";
+import { type ReadPhoto, readPhoto, readPhotoExif } from "./photo.js";
 import { depthKinds, isAffineInvariant } from "./types.js";
 
 /** An input for the core, and what its files say. */
@@ -57,7 +56,8 @@ async function depthView(input: Record<string, unknown>, readers: FileReaders): 
   // Integers of an unknown unit are read as they are.
   const isMetric = depthKind === "metric" || depthKind === "ray-distance";
   const integerScale = isMetric ? integerDepthScale : 1;
-  const image = await readPhoto(input.image, sides, readers);
+  const photo = await readPhoto(input.image, sides, readers);
+  const { image } = photo;
   const exif = camera.isGiven ? undefined : await readPhotoExif(input.image, readers);
   const hints = { inDepth, photo: exif && image && { exif, size: image } };
   const resolved = camera.resolve(sides.width, sides.height, hints);
@@ -67,7 +67,7 @@ async function depthView(input: Record<string, unknown>, readers: FileReaders): 
     depthKind === "ray-distance" && resolved.camera !== undefined
       ? { depth: depthOfRays(data, sides.width as number, resolved.camera, scale ?? (isFloat ? 1 : DEFAULT_SCALE)) }
       : { depth: data, depthScale: scale, depthKind: isMetric ? undefined : depthKind };
-  return viewOf(read, sides, image, resolved, unit);
+  return viewOf(read, sides, photo, resolved, unit);
 }
 
 async function pointMapView(
@@ -83,23 +83,23 @@ async function pointMapView(
   const kinds = depthKinds.filter((kind) => !isAffineInvariant(kind) && kind !== "ray-distance");
   const depthKind = oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT");
   const { data, ...sides } = readPointMap(pointMap, input as { width?: number; height?: number });
-  const image = await readPhoto(input.image, sides, readers);
+  const photo = await readPhoto(input.image, sides, readers);
   const isMetric = depthKind === "metric";
   const read = { pointMap: data, depthKind: isMetric ? undefined : depthKind };
   const camera = await cameraOf(input);
   // Intrinsics that were not given are fitted to the point map.
   const resolved = camera.isGiven ? camera.resolve(sides.width, sides.height) : { camera: undefined, warnings: [] };
-  return viewOf(read, sides, image, resolved, isMetric ? "metres (point map)" : `unknown (${depthKind})`);
+  return viewOf(read, sides, photo, resolved, isMetric ? "metres (point map)" : `unknown (${depthKind})`);
 }
 
 function viewOf(
   depth: { [K in "depth" | "depthScale" | "depthKind" | "pointMap"]?: CoreInput[K] | undefined },
   { width, height }: Omit<SizedArray<unknown>, "data">,
-  image: Photo | undefined,
+  { image, imageReading }: ReadPhoto,
   { camera, focalDeviation, source, warnings }: ResolvedCamera,
   depthUnit: string,
 ): Resolved<CoreView> {
   const view = withoutUndefined({ ...depth, width, height, image, camera, focalDeviation });
-  const notes = { warnings, colors: [], depthUnit, ...withoutUndefined({ cameraSource: source }) };
+  const notes = { warnings, colors: [], depthUnit, ...withoutUndefined({ cameraSource: source, imageReading }) };
   return { core: view as CoreView, notes };
 }

@@ -1,4 +1,5 @@
 /** The table: sorted, filtered, and with elements for the rows in sight only. */
+import { naturally } from "../values/order.js";
 import { byId, element } from "./dom.js";
 import { type Column, type ColumnName, cellOf, columns, numberIn, type ReportRow } from "./row.js";
 
@@ -185,9 +186,6 @@ function isForOthers({ target, defaultPrevented, ctrlKey, altKey, metaKey }: Key
 
 function compared(a: number | string | null, b: number | string | null, isDescending: boolean): number {
   if (a === null || b === null) return Number(a === null) - Number(b === null);
-  const order =
-    typeof a === "string" || typeof b === "string"
-      ? String(a).localeCompare(String(b), "en", { numeric: true })
-      : a - b;
+  const order = typeof a === "string" || typeof b === "string" ? naturally(String(a), String(b)) : a - b;
   return isDescending ? -order : order;
 }

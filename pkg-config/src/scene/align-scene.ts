@@ -10,6 +10,7 @@ import type { Modules } from "../modules/module.js";
 import type { Progress } from "../types/options.js";
 import { withNotes } from "../types/results.js";
 import { isOfInput, Sim3AlignError } from "../values/error.js";
+import { withoutUndefined } from "../values/values.js";
 import { othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
 
@@ -64,11 +65,12 @@ export async function alignScene(
 
 function resultOf(scene: ReadScene, placed: readonly PlacedOrError[], arrangement: Arrangement): SceneResult {
   const objects = placed.map((of, i): SceneAlignment | SceneFailure => {
-    const { name } = scene.objects[i] as ReadObject;
-    const named = name === undefined ? {} : { name };
+    const { name, maskReading } = scene.objects[i] as ReadObject;
+    const named = withoutUndefined({ name });
     if (of instanceof Sim3AlignError) return { ...named, error: of };
     // Contacts may have moved the pose.
-    const moved = { ...named, ...of.alignment, ...arrangement.objects[i] } as SceneAlignment;
+    const aligned = { ...named, ...of.alignment, ...arrangement.objects[i] };
+    const moved = { ...aligned, ...withoutUndefined({ maskReading }) } as SceneAlignment;
     const { proportions } = moved;
     const before = of.alignment?.translation;
     if (proportions === undefined || before === undefined) return moved;

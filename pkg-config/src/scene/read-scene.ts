@@ -32,6 +32,8 @@ type KnownOfObject = Omit<SceneObjectInput, (typeof objectProperties)[number]>;
 export interface ReadObject {
   name: string | undefined;
   mask: Uint8Array;
+  /** Which values of its mask file are the object, for people. */
+  maskReading?: string | undefined;
   mesh: unknown;
   known: KnownOfObject;
 }
@@ -66,7 +68,7 @@ export async function readScene(scene: SceneInput, readers: FileReaders): Promis
   for (const [i, object] of given.entries()) readObjects.push(await readObject(`objects[${i}]`, object, read));
   const masks: Uint8Array[] = [];
   for (const [i, mask] of listOf("occluders", occluders ?? []).entries()) {
-    masks.push(await maskOf(`occluders[${i}]`, mask, undefined, read));
+    masks.push((await maskOf(`occluders[${i}]`, mask, undefined, read)).mask);
   }
   const others = otherLabels(given, read.labels);
   if (others !== null) masks.push(others);
@@ -101,16 +103,25 @@ async function readObject(argument: string, object: unknown, read: Reading): Pro
   if (name !== undefined && typeof name !== "string") {
     throw invalidArgument(`${argument}.name`, name, "a string", "Pass the name of the object.");
   }
-  const pixels =
+  const own =
     mask === undefined && label !== undefined
-      ? labelled(`${argument}.label`, label, read)
+      ? { mask: labelled(`${argument}.label`, label, read) }
       : await maskOf(`${argument}.mask`, mask, resizeMask, read);
-  return { name, mask: pixels, mesh, known: withoutUndefined(known) as KnownOfObject };
+  return { name, ...own, mesh, known: withoutUndefined(known) as KnownOfObject };
 }
 
-async function maskOf(argument: string, mask: unknown, resize: unknown, read: Reading): Promise<Uint8Array> {
+async function maskOf(
+  argument: string,
+  mask: unknown,
+  resize: unknown,
+  read: Reading,
+): Promise<Pick<ReadObject, "mask" | "maskReading">> {
   const [width, height] = read.size;
-  const { data, ...own } = await readMask(mask, width * height, read.formats).catch((error) => {
+  const {
+    data,
+    reading: maskReading,
+    ...own
+  } = await readMask(mask, width * height, read.formats).catch((error) => {
     throw error instanceof Sim3AlignError ? renamed(error, error.argument.replace(/^mask/, argument)) : error;
   });
   const [from, rows] = [own.width ?? width, own.height ?? height];
@@ -118,16 +129,17 @@ async function maskOf(argument: string, mask: unknown, resize: unknown, read: Re
   if (pixels.length !== from * rows) {
     throw failure("WRONG_LENGTH", argument, `${pixels.length} values`, `${from} × ${rows}`, "Pass one per pixel.");
   }
-  if (from === width && rows === height) return pixels;
+  if (from === width && rows === height) return { mask: pixels, maskReading };
   if (resize !== "nearest") {
     const found = `${from} × ${rows} pixels for a depth map of ${width} × ${height}`;
     const remedy = 'Resize the mask to the depth map, or set resizeMask: "nearest".';
     throw failure("SIZE_MISMATCH", argument, found, "depth and mask of the same size", remedy);
   }
-  return Uint8Array.from({ length: width * height }, (_, i) => {
+  const resized = Uint8Array.from({ length: width * height }, (_, i) => {
     const [u, v] = [i % width, Math.floor(i / width)];
     return pixels[nearest(v, height, rows) * from + nearest(u, width, from)] ?? 0;
   });
+  return { mask: resized, maskReading };
 }
 
 const labelKinds = "{ data, width, height } with a Uint8Array, Uint16Array or Uint32Array";

@@ -1,5 +1,6 @@
 /** The output of SAM 3D Objects as the files of a scene. The guide "Meshes of generators" describes the folder. */
-import { type CaseFiles, caseFiles, INITIAL_FILE, type ReadCaseOptions } from "../case-files.js";
+import type { CaseFiles, ReadCaseOptions } from "../case-files.js";
+import { isNoInput, namesOf, partOf } from "../case-names.js";
 import { fromSam3d } from "../conventions/sam3d.js";
 import { parsedJson } from "../formats/json.js";
 import { holdsGaussians } from "../formats/splat-files.js";
@@ -7,6 +8,7 @@ import { requiredBytes } from "../input/bytes.js";
 import type { DepthKind } from "../input/types.js";
 import type { LoadFormats } from "../modules/readers.js";
 import { failure, renamed, Sim3AlignError } from "../values/error.js";
+import { naturally } from "../values/order.js";
 import { flattened, isRecord } from "../values/values.js";
 import { viewOfPointMap } from "./point-map-file.js";
 import { type SceneCase, sceneFrom } from "./scene-files.js";
@@ -15,7 +17,10 @@ import { type SceneCase, sceneFrom } from "./scene-files.js";
 const pointMaps = ["pointmap", "point_map", "moge", "points"].flatMap((name) => [`${name}.npy`, `${name}.npz`]);
 
 /** Names of files with the depth of an image: depth itself, which is metric, comes first. */
-export const viewNames: readonly string[] = [...caseFiles.depth, ...pointMaps];
+const viewNames: readonly string[] = [...namesOf("depth"), ...pointMaps];
+
+/** Whether a name is that of a file with the depth of an image. */
+export const isView = (name: string): boolean => viewNames.includes(name.toLowerCase());
 
 /** Formats of the mesh of an object, in order of preference: only GLB has materials. */
 const meshFormats = ["glb", "obj", "stl", "ply", "splat"];
@@ -26,10 +31,10 @@ const kindWords =
 
 /** What the files of one object are. */
 interface ObjectPaths {
-  mask?: string;
+  masks: string[];
   meshes: string[];
-  pose?: string;
-  truth?: string;
+  poses: string[];
+  truths: string[];
 }
 
 /** A scene folder made of other files. */
@@ -38,6 +43,8 @@ export interface MadeScene {
   files: CaseFiles;
   /** What its depth is, unless something else is known: point maps of SAM 3D Objects have no unit. */
   depthKind: DepthKind;
+  /** The paths of the files that these were made of, by their names. */
+  sources: Readonly<Record<string, string>>;
 }
 
 /**
@@ -54,7 +61,11 @@ export async function sam3dFrom(
   const made = await sam3dScene(files, place);
   // A point map of a large image is smaller than the image.
   const { depthKind = made.depthKind, resizeMask = "nearest", ...more } = settings;
-  return sceneFrom(made.files, { depthKind, resizeMask, ...more }, formats, place);
+  const scene = await sceneFrom(made.files, { depthKind, resizeMask, ...more }, formats, place);
+  const named = Object.entries(scene.files).map(([part, name]) => [part, made.sources[name] ?? name]);
+  const used = new Set(Object.values(made.sources));
+  const isLeft = (path: string) => !used.has(path) && !isNoInput(path);
+  return { ...scene, files: Object.fromEntries(named), unread: Object.keys(files).filter(isLeft).sort(naturally) };
 }
 
 /**
@@ -68,59 +79,86 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
   const objects = new Map<string, ObjectPaths>();
   const ofObject = (path: string): ObjectPaths => {
     const name = objectName(path.slice(root.length));
-    const known = objects.get(name) ?? { meshes: [] };
+    const known = objects.get(name) ?? { masks: [], meshes: [], poses: [], truths: [] };
     objects.set(name, known);
     return known;
   };
   const made: Record<string, CaseFiles[string]> = {};
+  const sources: Record<string, string> = {};
   const bytesOf = async (path: string) => {
     const file = files[path];
     return requiredBytes(path, typeof file === "function" ? await file() : file);
   };
-  const take = (name: string, path: string | undefined) => {
-    if (path !== undefined) made[name] = files[path] as CaseFiles[string];
+  const take = (name: string, path: string | undefined, content = path && files[path]) => {
+    if (path === undefined) return;
+    made[name] = content as CaseFiles[string];
+    sources[name] = path;
+  };
+  /** The only one of several files, such as two views of an object, none of which is better than another. */
+  const only = (owner: string, what: string, paths: readonly string[]): string | undefined => {
+    if (paths.length < 2) return paths[0];
+    const remedy = "Keep the files of one view, or rename those that are not meant.";
+    throw failure("INVALID_ARGUMENT", owner, `${paths.join(" and ")} in ${place}`, `one ${what}`, remedy);
   };
   // Files nearer to the root first: those of the image.
   const level = (path: string) => path.split("/").length;
-  const paths = Object.keys(files).sort((a, b) => level(a) - level(b) || (a < b ? -1 : 1));
-  const named = (names: readonly string[]) => {
-    const found = names.map((name) => paths.find((path) => baseName(path).toLowerCase() === name));
-    return found.find((path) => path !== undefined);
+  const paths = Object.keys(files).sort((a, b) => level(a) - level(b) || naturally(a, b));
+  const nearest = (what: string, isOne: (name: string) => boolean) => {
+    const found = paths.filter((path) => isOne(baseName(path).toLowerCase()));
+    return only(
+      "sam3d",
+      what,
+      found.filter((path) => level(path) === level(found[0] as string)),
+    );
   };
-  const [view, image] = [named(viewNames), named([...caseFiles.image, "input.png", "input.jpg"])];
+  const named = viewNames.filter((name) => paths.some((path) => baseName(path).toLowerCase() === name));
+  const view = nearest("view", (name) => name === named[0]);
+  const image = nearest("photo", (name) => partOf(name) === "image" || /^input\.(png|jpg)$/.test(name));
   if (view === undefined) throw missing("sam3d", `no point map in ${place}`, "pointmap.npy, or depth.*");
   const isPointMap = pointMaps.includes(baseName(view).toLowerCase());
+  const cameraFile = nearest("camera", (name) => partOf(name) === "camera");
   if (isPointMap && extension(view) === "npy") {
     const { depth, camera } = viewOfPointMap(view, await bytesOf(view));
-    Object.assign(made, { "depth.npy": depth, "camera.json": camera });
+    take("depth.npy", view, depth);
+    if (cameraFile === undefined) take("camera.json", view, camera);
   } else take(`depth.${extension(view)}`, view);
-  take("camera.json", named(caseFiles.camera));
+  take(`camera.${cameraFile && extension(cameraFile)}`, cameraFile);
   take(`image.${image && extension(image)}`, image);
   for (const path of paths) {
     const ending = extension(path);
     const own = ofObject(path);
     if (meshFormats.includes(ending)) own.meshes.push(path);
-    else if (ending === "json" && /^(gt|truth)\b/.test(baseName(path))) own.truth ??= path;
-    else if (ending === "json" && isPose(parsedJson(path, await bytesOf(path)))) own.pose ??= path;
-    else if (isMask(path, ending) && path !== view && path !== image) own.mask ??= path;
+    else if (ending === "json" && /^(gt|truth)\b/.test(baseName(path))) own.truths.push(path);
+    else if (ending === "json" && isPose(parsedJson(path, await bytesOf(path)))) own.poses.push(path);
+    else if (isMask(path, ending) && path !== view && path !== image) own.masks.push(path);
   }
-  for (const [name, { mask, meshes, pose, truth }] of objects) {
+  for (const [name, { masks, meshes, poses, truths }] of objects) {
     // Most masks of an image are of objects that were not reconstructed.
-    if (meshes.length === 0 && pose === undefined) continue;
-    const lacks = (what: string, expected: string) => missing(`objects/${name}`, `no ${what} in ${place}`, expected);
+    if (meshes.length === 0 && poses.length === 0) continue;
+    const owner = `objects/${name}`;
+    const lacks = (what: string, expected: string) => missing(owner, `no ${what} in ${place}`, expected);
     const rank = (path: string) => meshFormats.indexOf(extension(path));
-    const [mesh] = meshes.sort((a, b) => rank(a) - rank(b));
+    const best = Math.min(...meshes.map(rank));
+    const mesh = only(
+      owner,
+      "mesh",
+      meshes.filter((path) => rank(path) === best),
+    );
+    // Pictures of an object are no masks if another one is by its name.
+    const namedMasks = masks.filter((path) => /(^|[^a-z])masks?([^a-z]|$)/i.test(baseName(path)));
+    const mask = only(owner, "mask", namedMasks.length > 0 ? namedMasks : masks);
     if (mesh === undefined) throw lacks(`mesh of ${name}`, "mesh.glb, or the PLY of its Gaussians");
-    if (mask === undefined) throw lacks(`mask of ${name}`, caseFiles.mask.join(" or "));
+    if (mask === undefined) throw lacks(`mask of ${name}`, namesOf("mask").join(" or "));
     const format = extension(mesh);
-    take(`objects/${name}/mask.${extension(mask)}`, mask);
-    take(`objects/${name}/mesh.${format}`, mesh);
-    take(`objects/${name}/gt.json`, truth);
+    take(`${owner}/mask.${extension(mask)}`, mask);
+    take(`${owner}/mesh.${format}`, mesh);
+    take(`${owner}/gt.json`, only(owner, "true pose", truths));
     const isZUp = format === "splat" || (format === "ply" && holdsGaussians(await bytesOf(mesh), format));
+    const pose = only(owner, "pose", poses);
     const initial = pose === undefined ? null : placement(pose, await bytesOf(pose), isZUp);
-    if (initial !== null) made[`objects/${name}/${INITIAL_FILE}`] = initial;
+    if (initial !== null) take(`${owner}/initial.json`, pose, initial);
   }
-  return { files: made, depthKind: isPointMap ? "scale-invariant" : "metric" };
+  return { files: made, depthKind: isPointMap ? "scale-invariant" : "metric", sources };
 }
 
 function missing(argument: string, found: string, expected: string): Sim3AlignError {

@@ -1,7 +1,8 @@
 /** A scene from files: one view, and the mask and the mesh of each object. */
-import { type CaseFiles, fileNotFound, filesOf, INITIAL_FILE, meshFile, type ReadCaseOptions } from "../case-files.js";
+import { type CaseFiles, fileNotFound, filesOf, meshFile, type ReadCaseOptions } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import type { LoadFormats } from "../modules/readers.js";
+import { naturally } from "../values/order.js";
 import { withoutUndefined } from "../values/values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
@@ -11,6 +12,10 @@ export interface SceneCase {
   input: SceneInput;
   /** The true pose of each object; `null` if unknown. */
   truths: (KnownPose | null)[];
+  /** The path of the file of each part: `depth`, `camera`, `image`, `objects/NAME/mask`, … */
+  files: Record<string, string>;
+  /** The paths of files that were not read, in order. */
+  unread: string[];
 }
 
 /**
@@ -24,39 +29,52 @@ export async function sceneFrom(
   formats: LoadFormats,
   place = "the files",
 ): Promise<SceneCase> {
-  const ofView = filesOf(files, settings, place);
-  const depth = await ofView.read(ofView.required("depth"));
-  const objects: SceneObjectInput[] = [];
-  const truths: (KnownPose | null)[] = [];
-  for (const name of objectsIn(files)) {
-    const own = filesOf(within(files, `objects/${name}/`), settings, `${place}/objects/${name}`, `objects/${name}`);
-    const [maskName, meshName] = [own.required("mask"), own.required("mesh")];
-    const mask = await own.read(maskName);
-    const mesh = await meshFile(meshName, await own.read(meshName), formats, own.beside);
-    const [initial, truth] = [await own.optional(INITIAL_FILE), await own.optional("gt.json")];
-    const pose = initial && parsePoseFile(`objects/${name}/${INITIAL_FILE}`, initial)?.transform;
+  const names = objectsIn(files);
+  const ofView = filesOf(
+    within(files, (path) => (isOfObject(path) ? undefined : path)),
+    settings,
+    place,
+  );
+  const view = { depth: ofView.required("depth"), camera: ofView.find("camera"), image: ofView.find("image") };
+  const depth = await ofView.read(view.depth);
+  const [objects, truths, unread]: [SceneObjectInput[], (KnownPose | null)[], string[]] = [[], [], []];
+  const found: Record<string, string | undefined> = { ...view };
+  for (const name of names) {
+    const folder = `objects/${name}/`;
+    const inFolder = within(files, (path) => (path.startsWith(folder) ? path.slice(folder.length) : undefined));
+    const own = filesOf(inFolder, settings, `${place}/objects/${name}`, `objects/${name}`);
+    const { required, find, read, optional } = own;
+    const parts = { mask: required("mask"), mesh: required("mesh"), initial: find("initial"), truth: find("truth") };
+    const mask = await read(parts.mask);
+    const mesh = await meshFile(parts.mesh, await read(parts.mesh), formats, own.beside);
+    const [initial, truth] = [await optional(parts.initial), await optional(parts.truth)];
+    const pose = initial && parsePoseFile(`${folder}${parts.initial}`, initial)?.transform;
     objects.push({ name, mask, mesh, ...withoutUndefined({ resizeMask, initial: pose }) } as SceneObjectInput);
     truths.push(truth === undefined ? null : parsePoseFile("truth", truth));
+    for (const [part, file] of Object.entries(parts)) found[`${folder}${part}`] = file && `${folder}${file}`;
+    unread.push(...own.unread().map((path) => `${folder}${path}`));
   }
   if (objects.length === 0) throw fileNotFound("scene", `no objects in ${place}`, "objects/NAME/ with mask and mesh");
-  const { image: _, ...view } = settings;
-  const [cameraFile, image] = [
-    await ofView.optional(ofView.find("camera")),
-    await ofView.optional(ofView.find("image")),
-  ];
-  return { input: withoutUndefined({ depth, cameraFile, objects, image, ...view }) as SceneInput, truths };
+  const { image: _, ...more } = settings;
+  const [cameraFile, image] = [await ofView.optional(view.camera), await ofView.optional(view.image)];
+  const input = withoutUndefined({ depth, cameraFile, objects, image, ...more }) as SceneInput;
+  const read = withoutUndefined(found) as SceneCase["files"];
+  return { input, truths, files: read, unread: [...ofView.unread(), ...unread] };
 }
+
+const isOfObject = (path: string) => /^objects\/[^/]+\/./.test(path);
 
 /** The names of the folders in `objects/`, in order. */
 function objectsIn(files: CaseFiles): string[] {
-  const names = Object.keys(files).flatMap((path) => /^objects\/([^/]+)\/./.exec(path)?.[1] ?? []);
-  return [...new Set(names)].sort();
+  const names = Object.keys(files).flatMap((path) => (isOfObject(path) ? (path.split("/")[1] as string) : []));
+  return [...new Set(names)].sort(naturally);
 }
 
-/** The files of a folder, by their paths in it. */
-const within = (files: CaseFiles, folder: string): CaseFiles =>
+/** Files by other paths; without those that have none. */
+const within = (files: CaseFiles, pathOf: (path: string) => string | undefined): CaseFiles =>
   Object.fromEntries(
-    Object.entries(files).flatMap(([path, file]) =>
-      path.startsWith(folder) ? [[path.slice(folder.length), file]] : [],
-    ),
+    Object.entries(files).flatMap(([path, file]) => {
+      const own = pathOf(path);
+      return own === undefined ? [] : [[own, file]];
+    }),
   );

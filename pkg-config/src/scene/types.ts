@@ -59,7 +59,7 @@ export interface SceneOptions extends Omit<AlignOptions, "onProgress" | "initial
 }
 
 /** An object of a scene, aligned. */
-export interface SceneAlignment extends Omit<Alignment, "input" | keyof InputInfo> {
+export interface SceneAlignment extends Omit<Alignment, "input" | keyof InputInfo>, Pick<InputInfo, "maskReading"> {
   /** The name of the input. */
   name?: string;
   /** What it rests on. */

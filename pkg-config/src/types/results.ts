@@ -16,6 +16,8 @@ export interface InputInfo {
   cameraSource?: string;
   /** Which values of the mask file are the object: `"values of 127.5 or more, of 0 to 255"`. */
   maskReading?: string;
+  /** How the photo was turned, if not as its EXIF data say: `"as stored, in the shape of the depth map"`. */
+  imageReading?: string;
   /**
    * What the depth and the lens were taken to be, if they were not fully known. All lengths of the result are metres if
    * `isMetric`; otherwise, their unit is unknown, and `correctDepth` of `sim3align/conventions` returns the depth map in it.
@@ -60,7 +62,7 @@ export interface TrackedFrame extends Core.TrackedFrame, InputInfo {
 }
 
 /** The result of `evaluate`. */
-export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit"> {
+export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit" | "maskReading" | "imageReading"> {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -81,7 +83,7 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
 /** What the files of an input say, for its result. */
-export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource" | "maskReading"> {
+export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource" | "maskReading" | "imageReading"> {
   /** What was subtracted from the coordinates of the mesh file. */
   origin?: readonly number[];
   /** Of the view. */
@@ -93,15 +95,15 @@ export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource"
 /** How the files of a view were read. */
 export const sourcesOf = ({ warnings: _, colors: __, origin: ___, ...sources }: InputNotes) => sources;
 
-/** A unit that nothing states. */
-export const ASSUMED = "assumed)";
+/** Whether nothing states the unit of the depth. */
+export const isAssumed = ({ depthUnit }: Pick<InputInfo, "depthUnit">): boolean =>
+  depthUnit?.endsWith("assumed)") === true;
 
 /** A result with what its files say; their warnings before those of the core. */
 export function withNotes<T extends { warnings: Core.Warning[] }>(result: T, notes: InputNotes): T {
   const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
   // Of a unit that is stated, no size is doubtful.
-  const isAssumed = notes.depthUnit?.endsWith(ASSUMED) === true;
-  const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || isAssumed);
+  const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || isAssumed(notes));
   const warnings = [...notes.warnings, ...ofColors, ...ofCore];
   return { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };
 }

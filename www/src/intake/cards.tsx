@@ -75,6 +75,7 @@ const depthFiles = ".png,.npy,.npz,.exr,.tif,.tiff,.pfm";
 const depthUnits = [
   ["", "Auto"],
   ["1", "metres"],
+  ["0.01", "centimetres"],
   ["0.001", "millimetres"],
   ["0.0001", "0.1 mm"],
   ["0.0002", "0.2 mm"],
@@ -89,6 +90,13 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
   const kind = depthKind ?? read;
   const range = useMemo(() => (depth === null ? null : depthRange(depth.data)), [depth]);
   const image = useImage(ground, depth);
+  const scale = `${depthScale ?? ""}`;
+  const units: readonly (readonly [string, string])[] = depthUnits;
+  const choices = units.some(([own]) => own === scale) ? units : [...units, [scale, `${scale} m`] as const];
+  const setScale = (value: string) => {
+    const factor = Number(value);
+    return change((now) => ({ ...now, depthScale: factor > 0 ? factor : null }));
+  };
   return (
     <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept={depthFiles}>
       <Picture image={image} label="Depth map" class="shot" />
@@ -108,11 +116,16 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
       {kind === "metric" && (
         <label class="field-inline" for="depth-scale">
           <span>Unit</span>
-          <Choices
-            id="depth-scale"
-            value={`${depthScale ?? ""}` as (typeof depthUnits)[number][0]}
-            choices={depthUnits}
-            onChoose={(value) => change((now) => ({ ...now, depthScale: value === "" ? null : Number(value) }))}
+          <Choices id="depth-scale" value={scale} choices={choices} onChoose={setScale} />
+          <input
+            id="depth-factor"
+            type="number"
+            step="any"
+            min="0"
+            placeholder="m"
+            aria-label="Metres per unit"
+            value={scale}
+            onChange={({ currentTarget }) => setScale(currentTarget.value)}
           />
         </label>
       )}
@@ -168,7 +181,7 @@ export function CameraCard({ open }: { open: Draft }) {
       return { ...now, camera: { kind: "numbers", ...entered } };
     });
   return (
-    <Card field="camera" title="Camera" chosen={chosenCamera(camera, cameraSource)} accept=".json,.yaml,.yml">
+    <Card field="camera" title="Camera" chosen={chosenCamera(camera, cameraSource)} accept=".json,.yaml,.yml,.txt">
       <div class="camera-numbers">
         {intrinsics.map((name) => (
           <label key={name} class="field-inline">

@@ -1,6 +1,7 @@
 /** What is missing, contradictory or implausible in the inputs of a scene. */
+import { doubtOfSize } from "sim3align/formats/pinhole";
 import { depthRange } from "../draw/colours.js";
-import { baseName } from "../load/files.js";
+import { baseName, folderOf } from "../load/files.js";
 import type { Inputs } from "../load/inputs.js";
 import { doubt, error, type Problem, type Remedy, withoutObject } from "../load/problems.js";
 import type { Reading, ReadObject } from "../load/read-scene.js";
@@ -31,6 +32,7 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
       one.field === "camera" && one.code === "SIZE_MISMATCH" ? scaling(one, reading) : one,
     ),
     ...notUsed(inputs),
+    ...several(inputs),
     ...missing(inputs),
     ...guessed(inputs, reading),
     ...depth,
@@ -66,6 +68,18 @@ function notUsed({ files }: Inputs): Problem[] {
   };
   const what = `${names.join(", ")}${more}: not used. Save photos as JPEG or PNG, masks as PNG, and meshes as GLB, OBJ, PLY or STL.`;
   return [doubt("files", what, [leaveOut])];
+}
+
+/** Of several files in one folder for what is one file, one is used. */
+function several({ files, camera, photo }: Inputs): Problem[] {
+  const used = { camera: camera?.kind === "file" ? camera.file : null, photo };
+  return (["camera", "photo"] as const).flatMap((role) => {
+    const own = used[role];
+    const isRival = ({ file, role: other }: (typeof files)[number]) =>
+      other === role && file !== own && folderOf(file.path) === folderOf(own?.path ?? "");
+    const names = own === null ? [] : files.filter(isRival).map(({ file }) => baseName(file.path));
+    return names.length === 0 ? [] : [doubt(role, `${baseName(own?.path ?? "")} is used, ${names.join(", ")} not.`)];
+  });
 }
 
 /** A camera of an image of another size: where that was resized as a whole, its intrinsics can be scaled. */
@@ -141,11 +155,11 @@ function ofDepth({ depthScale }: Inputs, { depth, raw }: Reading): Problem[] {
 export const fovYDegOf = ({ fy }: { fy: number }, { height }: { height: number }): number =>
   (360 / Math.PI) * Math.atan(height / (2 * fy));
 
-function ofCamera({ camera, depth }: Reading): Problem[] {
+function ofCamera({ camera, cameraSize, depth }: Reading): Problem[] {
   if (camera === null || depth === null) return [];
   const fovDeg = fovYDegOf(camera, depth);
   const [narrow, wide] = PLAUSIBLE_FOV_DEG;
-  const isOutside = camera.cx < 0 || camera.cy < 0 || camera.cx > depth.width || camera.cy > depth.height;
+  const ofOtherSize = cameraSize === null ? doubtOfSize(camera, depth) : undefined;
   return [
     ...(fovDeg < narrow || fovDeg > wide
       ? [
@@ -155,7 +169,7 @@ function ofCamera({ camera, depth }: Reading): Problem[] {
           ),
         ]
       : []),
-    ...(isOutside ? [doubt("camera", "The principal point (cx, cy) is outside the image.")] : []),
+    ...(ofOtherSize === undefined ? [] : [doubt("camera", ofOtherSize)]),
   ];
 }
 

@@ -41,7 +41,8 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
       return;
     }
     made = await fromSam3d(extracted);
-    typed = await rolesOf(made?.files ?? extracted);
+    const left = made?.left.map((file): Typed => ({ file, role: "unused" })) ?? [];
+    typed = [...(await rolesOf(made?.files ?? extracted)), ...left];
   } catch (cause) {
     if (change === lastChange) refuse(errorOf("files", cause));
     return;

@@ -1,5 +1,5 @@
 /** The role of each file of a drop: by its name, and where the name says nothing, by how the file begins. */
-import { INITIAL_FILE } from "sim3align/case-files";
+import { type Part, partOf } from "sim3align/case-names";
 import { baseName, extension, type NamedFile } from "../load/files.js";
 import type { Role, Typed } from "../load/inputs.js";
 import { isBlackAndWhite } from "../load/label-masks.js";
@@ -27,6 +27,7 @@ const depthWords = "d|depth|depthmap|disparity|zbuffer";
 const maskWords = "mask|masks|matte|silhouette|visib|alpha";
 const labelWords = "label|labels|seg|segmentation|instance|semantic|panoptic|ids";
 const photoWords = "rgb|photo|image|img|color|colour|frame|left|right";
+const cameraWords = /cam|intrin|calib/;
 const textureWords = "texture|albedo|basecolor|diffuse|normal|roughness|metallic|material";
 
 /** The roles of files. */
@@ -41,12 +42,19 @@ export function rolesOf(files: readonly NamedFile[]): Promise<Typed[]> {
   );
 }
 
+/** The roles of the usual names; of JSON, the content says more. */
+const roleOfPart: Partial<Record<Part, Role>> = { depth: "depth", mask: "mask", camera: "camera", image: "photo" };
+
 async function roleOf(file: NamedFile): Promise<Role> {
   const ending = extension(file.path);
   if (meshExtensions.includes(ending)) return "mesh";
   if (resourceExtensions.includes(ending)) return "resource";
-  if (ending === "json" || ending === "yaml" || ending === "yml") return roleOfJson(file, await headOf(file, 1 << 22));
   const name = baseName(file.path).toLowerCase();
+  if (ending === "json" || ending === "yaml" || ending === "yml") return roleOfJson(file, await headOf(file, 1 << 22));
+  const part = partOf(name);
+  const usual = part && roleOfPart[part];
+  if (usual !== undefined) return usual;
+  if (ending === "txt") return cameraWords.test(name) ? "camera" : "unused";
   const byName = pixelRole(name) ?? pixelRole(folderOf(file.path));
   if (photoExtensions.includes(ending)) return byName === "unused" ? byName : photoOrMask(file, byName);
   if (depthExtensions.includes(ending)) {
@@ -94,10 +102,10 @@ function roleOfJson(file: NamedFile, bytes: Uint8Array): Role {
   if (has("camera_to_world")) return "pose";
   if (/^(meta|results?|scene_gt_info|package|pose|plane)\b/.test(name)) return "unused";
   if (/^(gt|truth)\b/.test(name)) return "truth";
-  if (name === INITIAL_FILE) return "initial";
+  if (partOf(name) === "initial") return "initial";
   if (["fx", "K", "k", "cam_K", "intrinsic_matrix", "fovYDeg", "fov_y_deg", "camera_matrix"].some(has)) return "camera";
   if (has("rotation") || has("matrix")) return "truth";
-  return /cam|intrin|calib/.test(name) ? "camera" : "unused";
+  return partOf(name) === "camera" || cameraWords.test(name) ? "camera" : "unused";
 }
 
 async function headOf(file: NamedFile, length: number): Promise<Uint8Array> {

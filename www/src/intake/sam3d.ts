@@ -7,6 +7,8 @@ import { baseName, extension, type NamedFile } from "../load/files.js";
 /** The files of a scene folder, and what its depth is. */
 interface MadeScene {
   files: readonly NamedFile[];
+  /** Files that it was not made of. */
+  left: readonly NamedFile[];
   depthKind: DepthKind;
 }
 
@@ -17,16 +19,18 @@ interface MadeScene {
 export async function fromSam3d(files: readonly NamedFile[]): Promise<MadeScene | null> {
   const layouts = await Promise.all(files.map(isLayout));
   if (!layouts.includes(true)) return null;
-  const { files: made, depthKind } = await sam3dScene(
-    Object.fromEntries(files.map(({ path, bytes }) => [path, bytes])),
-    "the files",
-  );
+  const {
+    files: made,
+    depthKind,
+    sources,
+  } = await sam3dScene(Object.fromEntries(files.map(({ path, bytes }) => [path, bytes])), "the files");
   const folder = (files[0]?.path ?? "").split("/").slice(0, -1)[0] ?? "SAM 3D";
   const named = Object.entries(made).map(([path, file]) => ({
     path: `${folder}/${path}`,
     bytes: async () => requiredBytes(path, typeof file === "function" ? await file() : file),
   }));
-  return { files: named, depthKind };
+  const used = new Set(Object.values(sources));
+  return { files: named, left: files.filter(({ path }) => !used.has(path)), depthKind };
 }
 
 /** Whether a file has a pose as its tensors are written: the size is a list. */

@@ -1,4 +1,5 @@
 /** Divides the files of a drop into scenes: one depth map each, with the files that belong to it. */
+import { naturally } from "sim3align/values/order";
 import { baseName, folderOf, type NamedFile, stem } from "../load/files.js";
 import {
   type Inputs,
@@ -33,7 +34,7 @@ interface Group {
 }
 
 async function grouped(typed: readonly Typed[]): Promise<Group[]> {
-  const depths = typed.filter(({ role }) => role === "depth").sort((a, b) => (a.file.path < b.file.path ? -1 : 1));
+  const depths = typed.filter(({ role }) => role === "depth").sort((a, b) => naturally(a.file.path, b.file.path));
   const [first] = depths;
   if (first === undefined) return [{ files: typed, id: null }];
   const folders = new Set(depths.map(({ file }) => folderOf(file.path)));
@@ -101,7 +102,10 @@ interface NamedMask {
 
 async function sceneFrom(files: readonly Typed[], id: string | null): Promise<Inputs> {
   const of = (role: Role) => files.filter((one) => one.role === role).map(({ file }) => file);
-  const [depth = null, photo = null, camera] = [of("depth")[0], of("photo")[0], of("camera")[0]];
+  const [depth = null, photo = null] = [of("depth")[0], of("photo")[0]];
+  // Beside the intrinsics of the depth camera may be those of the colour camera.
+  const cameras = of("camera");
+  const camera = cameras.find(({ path }) => /depth/i.test(baseName(path))) ?? cameras[0];
   const meshes = byPath(of("mesh")).map((file) => ({ file, siblings: files.map((one) => one.file) }));
   const masks = await masksOf(files, depth, photo);
   const truths = byPath(of("truth"));
@@ -125,7 +129,7 @@ function withInitial(object: ObjectFiles, initials: readonly NamedFile[]): Objec
   return initial === undefined ? object : { ...object, initial };
 }
 
-const byPath = (files: readonly NamedFile[]) => [...files].sort((a, b) => (a.path < b.path ? -1 : 1));
+const byPath = (files: readonly NamedFile[]) => [...files].sort((a, b) => naturally(a.path, b.path));
 
 function nameOf(files: readonly Typed[], depth: NamedFile | null): string {
   const parts = (depth ?? files[0]?.file)?.path.split("/") ?? [];

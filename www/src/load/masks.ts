@@ -12,13 +12,17 @@ export interface ReadMask {
   data: Uint8Array;
   width: number;
   height: number;
+  /** Which values of its file are the object, for people. */
+  reading?: string;
 }
 
 /** The endings of files that may be masks. */
 export const maskExtensions = ["png", "npy", "json", ...photoExtensions];
 
 const plainMask = once(async (file: NamedFile): Promise<ReadMask> => {
-  if (photoExtensions.includes(extension(file.path))) return (await import("./label-masks.js")).maskOfPicture(file);
+  const ending = extension(file.path);
+  if (photoExtensions.includes(ending) && !ending.startsWith("jp"))
+    return (await import("./label-masks.js")).maskOfPicture(file);
   return readMask(await file.bytes());
 });
 

@@ -22,6 +22,8 @@ export const colourOf = (index: number): string => colours[index % colours.lengt
 /** An object, as far as it could be read. */
 export interface ReadObject {
   mask: Uint8Array | null;
+  /** Which values of the mask file are the object, for people. */
+  maskReading?: string | undefined;
   mesh: MeshFromFile | null;
   glb: Uint8Array | null;
   truth: ObjectParts["truth"];
@@ -115,6 +117,7 @@ export async function readInputs(
     readingPhoto,
     Promise.all(
       inputs.objects.map(async ({ mask, mesh, truth, initial }, i): Promise<ReadObject> => {
+        let maskReading: string | undefined;
         const [readMask, readMesh, readTruth, first] = await Promise.all([
           mask === null || shown === null
             ? null
@@ -123,6 +126,7 @@ export async function readInputs(
                 mask.file,
                 async () => {
                   const own = await maskOf(mask);
+                  maskReading = own.reading;
                   const isOfPhoto = isSameSize(own, await readingPhoto);
                   return atSize(own, shown.width, shown.height, inputs.resizeMasks || isOfPhoto || read === null);
                 },
@@ -133,7 +137,7 @@ export async function readInputs(
           truthOf(initial === undefined ? null : { file: initial }),
         ]);
         const { mesh: arrays = null, glb = null } = readMesh ?? {};
-        return { mask: readMask, mesh: arrays, glb, truth: readTruth, initial: first?.transform };
+        return { mask: readMask, maskReading, mesh: arrays, glb, truth: readTruth, initial: first?.transform };
       }),
     ),
   ]);

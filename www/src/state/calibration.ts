@@ -24,7 +24,8 @@ const NEAREST = 0.3;
 
 /** Numbers that show the relief of a depth map until an alignment has found those of the objects. */
 export function provisional(values: Float32Array, depthKind: DepthKind): Numbers {
-  if (depthKind === "metric" || depthKind === "scale-invariant") return { depthKind, scale: 1, shift: 0 };
+  if (depthKind === "scale-invariant") return { depthKind, scale: 1, shift: 0 };
+  if (depthKind === "metric" || depthKind === "ray-distance") return { depthKind: "metric", scale: 1, shift: 0 };
   const step = 2 * Math.floor(values.length / 40_000) + 1;
   const sorted = values.filter((d, i) => i % step === 0 && Number.isFinite(d)).sort();
   const at = (share: number) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0;
