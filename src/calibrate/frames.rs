@@ -7,7 +7,9 @@ use super::raw_view::{Focal, RawView};
 use super::{Calibrated, Object, calibrated, known_scale, subject};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::check_mask_size;
+use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::Mask;
+use crate::geometry::order::median;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::Pauses;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
@@ -63,6 +65,11 @@ pub async fn calibrate_views(
     calibrated.collect()
 }
 
+/// Change of the median ratio of two depth maps from which on it is that of the model's factor, not of what moved.
+const JUMP: f64 = 0.03;
+/// Distance in pixels between the depths that are compared with those of the next frame.
+const STRIDE: usize = 7;
+
 /// The calibrations of the frames of a video, one after the other.
 #[derive(Debug, Clone, Default)]
 pub struct Sequence {
@@ -82,11 +89,14 @@ struct Last {
     estimate: Estimate,
     pose: Pictured,
     calibration: Calibration,
+    /// Depths of the last frame in the unit of the results, see [`STRIDE`].
+    depths: Vec<f32>,
 }
 
 impl Sequence {
     /// Calibrates the next frame: the first one as a view, the later ones from the pose in the one before, at its focal
-    /// length and its size. A frame without a mask, or in which the object is not found, is taken to be as the one before.
+    /// length and its size. A frame without a mask, or in which the object is not found, is taken to be as the one before, but for
+    /// a jump of the factor of scale-invariant depth, which most of the image shows.
     ///
     /// # Errors
     /// As [`calibrate`](super::calibrate) for the first frame.
@@ -111,7 +121,8 @@ impl Sequence {
             let calibration = times(estimate.calibration, factor);
             let (focal, focal_deviation) = (calibration.focal, estimate.focal_deviation);
             let (size, pose) = (factor * pose.scale(), pose.rebased(focal));
-            self.last = Some(Last { size, is_metric, focal, focal_deviation, estimate, pose, calibration });
+            let depths = depths_of(&result);
+            self.last = Some(Last { size, is_metric, focal, focal_deviation, estimate, pose, calibration, depths });
             return Ok(result);
         };
         let view = RawView {
@@ -131,11 +142,26 @@ impl Sequence {
                 (last.estimate, last.pose) = (estimate, pose);
             }
         }
+        if view.kind == DepthKind::ScaleInvariant && frame.mask.is_none() {
+            let values = view.values.data().iter().step_by(STRIDE);
+            let pairs = last.depths.iter().zip(values).filter(|(last, value)| **last > 0.0 && **value > 0.0);
+            if let Some(factor) = median(pairs.map(|(last, value)| *last / *value)).map(f64::from)
+                && (factor / last.calibration.scale - 1.0).abs() > JUMP
+            {
+                last.calibration.scale = factor;
+            }
+        }
         let calibration = Calibration { focal: 1.0, ..last.calibration };
         let mut estimate = last.estimate.clone();
         estimate.focal_deviation = last.focal_deviation;
-        calibrated(&view, calibration, Some(&estimate), is_metric)
+        let result = calibrated(&view, calibration, Some(&estimate), is_metric)?;
+        last.depths = depths_of(&result);
+        Ok(result)
     }
+}
+
+fn depths_of(Calibrated { depth, .. }: &Calibrated) -> Vec<f32> {
+    depth.data().iter().step_by(STRIDE).copied().collect()
 }
 
 /// The estimate of a frame alone, and the pose of the object.

@@ -142,6 +142,28 @@ fn views_and_frames_share_a_camera_and_a_unit() {
     assert_eq!((last.scale, last.shift), (second.scale, second.shift));
 }
 
+/// Frames without masks from a model whose factor jumps by up to a fifth: each is in the unit of the first one. A factor that
+/// hardly changes is kept, so that what moves does not add up.
+#[wasm_bindgen_test]
+fn the_factor_of_each_frame_follows_from_the_frame_before() {
+    let (seen, body) = (observe(&body(), &truth()), body());
+    let (mesh, options) = (PreparedMesh::borrowed(&body), quick());
+    let mut sequence = Sequence::default();
+    let mut scales = Vec::new();
+    for (i, factor) in [1.0, 0.83, 1.15, 1.16, 0.9].into_iter().enumerate() {
+        let mut view = raw(&seen, DepthKind::ScaleInvariant, Focal::Known, 1.0);
+        let values = view.values.data().iter().map(|value| value * factor).collect();
+        view.values = Image::new("depth", view.values.width(), view.values.height(), values).unwrap();
+        let mask = (i == 0).then(|| seen.mask().clone());
+        let frame = RawFrame { view, mask, world_from_camera: None };
+        let found = finished(sequence.next(&frame, &mesh, &options, &mut Silent, &Pauses::none())).unwrap();
+        scales.push(found.calibration.scale * f64::from(factor));
+    }
+    for (i, scale) in scales.iter().enumerate() {
+        assert!((scale / scales[0] - 1.0).abs() < 0.02, "frame {i}: {scales:?}");
+    }
+}
+
 #[wasm_bindgen_test]
 fn the_confidence_counts_how_well_the_relief_is_known() {
     let seen = observe(&body(), &truth());
