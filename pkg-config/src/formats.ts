@@ -37,6 +37,7 @@ export type { KnownPose } from "./conventions/pose-file.js";
 export type { CameraFile, ReadCameraOptions } from "./formats/camera-file.js";
 export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
 export type { DepthImage, ReadDepthOptions } from "./input/types.js";
+export type { DecodeImage } from "./input/webp.js";
 export type { SceneCase } from "./scene/scene-files.js";
 export { Sim3AlignError } from "./values/error.js";
 
