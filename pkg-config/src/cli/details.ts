@@ -155,15 +155,15 @@ export function evaluationDetails(name: string, entry: Entry, style: Style): str
 
 function metricsSection(metrics: Metrics | undefined, lengths: Lengths, style: Style): string[] {
   if (metrics === undefined) return [];
-  const share = (name: string, of: number | null): Pair => [name, fixed(of, 4)];
-  const length = (name: string, mm: number | null, more = ""): Pair => [name, lengths.millimetres(mm, 3) + more];
-  const rows = [
-    ...[share("silhouette IoU", metrics.iou), share("boundary F", metrics.boundaryF)],
-    ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`] as const,
-    length("Chamfer", metrics.chamferMm, " (both directions)"),
-    length("uni-Chamfer", metrics.uniChamferMm, " (observed to surface)"),
-    ...[share("fitness", metrics.fitness), share("normal consistency", metrics.normalConsistency)],
-    length("depth MAE", metrics.depthMaeMm),
+  const rows: Pair[] = [
+    ["silhouette IoU", fixed(metrics.iou, 4)],
+    ["boundary F", fixed(metrics.boundaryF, 4)],
+    ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`],
+    ["Chamfer", `${lengths.millimetres(metrics.chamferMm, 3)} (both directions)`],
+    ["uni-Chamfer", `${lengths.millimetres(metrics.uniChamferMm, 3)} (observed to surface)`],
+    ["fitness", fixed(metrics.fitness, 4)],
+    ["normal consistency", fixed(metrics.normalConsistency, 4)],
+    ["depth MAE", lengths.millimetres(metrics.depthMaeMm, 3)],
   ];
   return section("Metrics", rows, style);
 }

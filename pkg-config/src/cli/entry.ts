@@ -55,9 +55,6 @@ export function withFiles<T extends Entry>(entry: T, found: FoundFiles | undefin
   return { ...entry, inputs, unread: found.unread };
 }
 
-const noUnit =
-  "Lengths have no unit, because nothing metric is known: --known-extent, or a number as --scale, makes them metric.";
-
 /** What was not read of a case, what was assumed of what was, and whether its lengths have a unit; a line each. */
 export function intakeLines(entry: Entry): string[] {
   const { frames, objects = frames } = entry;
@@ -70,7 +67,7 @@ export function intakeLines(entry: Entry): string[] {
   return [
     ...(unread.length === 0 ? [] : [`not read: ${listed(unread)}`]),
     ...(assumed.length === 0 ? [] : [`assumed: ${[...new Set(assumed)].join("; ")}`]),
-    ...(isMetric(entry) ? [] : [noUnit]),
+    ...(isMetric(entry) ? [] : ["Lengths have no unit: --known-extent, or a number as --scale, makes them metric."]),
   ];
 }
 
