@@ -42,6 +42,8 @@ pub enum WarningCode {
     NotConverged,
     /// Even the best pose explains the observation poorly: the mesh may be of another object.
     MeshDoubtful,
+    /// The pose is in doubt, and the mirror image of the mesh fits far better. `align` of the package looks at it.
+    MeshLooksMirrored,
     /// Parts of the mesh are not of the object, and do not count: floating ones, inner shells, a ground plate.
     MeshPartsLeftOut,
     /// A view contradicts the others and does not count (`alignViews`).

@@ -30,6 +30,7 @@ import { fromOrigin, type Origin, toOrigin } from "../values/origin.js";
 import { isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
+import { comparedWithMirror } from "./mirror.js";
 
 /** Two clouds and, for `estimateSim3`, the correspondences between their points. */
 type Clouds = NonNullable<Registration["input"]>;
@@ -88,9 +89,10 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   align: {
     module: "core",
     run: (job, context) =>
-      aligned(job, context, job.options, (input, context, origin) =>
-        context.search("align", input, toOrigin(job.options, origin)),
-      ),
+      aligned(job, context, job.options, async (input, context, origin) => {
+        const options = toOrigin(job.options, origin);
+        return comparedWithMirror(await context.search("align", input, options), input, options, context);
+      }),
   },
   alignPaper: {
     module: "registration",

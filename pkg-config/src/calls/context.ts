@@ -99,6 +99,11 @@ export class JobContext {
     ];
   }
 
+  /** The same job without progress. */
+  quiet(): JobContext {
+    return new JobContext(this.modules, this.#scheduler, undefined);
+  }
+
   /** Calls a module with an input. */
   async call<N extends ModuleName, T>(name: N, input: object, work: (exports: Exports[N]) => T): Promise<T> {
     const module: LoadedModule<Exports[N]> = await this.modules[name]();
