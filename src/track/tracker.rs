@@ -5,7 +5,7 @@ use crate::precise::no_candidate;
 use crate::precise::search::recipe::SearchSettings;
 use crate::precise::search::start;
 use core::borrow::Borrow;
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 
 use super::detection::{Detection, DetectionPrior, Lead};
 use super::evidence::{Evidence, TrackedMesh, is_set};
@@ -63,6 +63,10 @@ const VISIBLE: [f32; 2] = [0.35, 0.12];
 const ENOUGH: f32 = 0.5;
 /// The same for a rotation that differs from the last certain one by more than an object turns unseen.
 const MOST_SHOWN: f32 = 0.8;
+/// Distances from its last place, in diagonals, at which a lost object is looked for without a mask, and the directions.
+const BESIDE: [f64; 2] = [0.25, 0.5];
+const DIRECTIONS: [[f64; 2]; 8] =
+    [[1.0, 0.0], [0.7, 0.7], [0.0, 1.0], [-0.7, 0.7], [-1.0, 0.0], [-0.7, -0.7], [0.0, -1.0], [0.7, -0.7]];
 /// Standard deviation of the size of a correction, relative.
 const CORRECTION_SD: f64 = 0.005;
 
@@ -246,8 +250,24 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         };
         let anew = anew.filter(shows_enough_anew).map(|seen| self.unturned(frame, seen, before));
         let best = if fit(&anew, self) > BETTER * fit(&near, self) { anew } else { near };
+        if self.state == TrackState::Lost && frame.mask.is_none() && fit(&best, self) < UNCERTAIN {
+            return self.beside(frame, &sized(last));
+        }
         let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
         best.filter(|seen| self.fit(seen) >= least && seen.visible >= VISIBLE[1])
+    }
+
+    /// The pose of a lost object that has come back beside the place where it was last.
+    fn beside(&self, frame: &Frame, last: &WorldPose) -> Option<FramePose> {
+        let diagonal = libm::exp(last.log_scale);
+        let found =
+            BESIDE.iter().flat_map(|&apart| DIRECTIONS.map(|[x, y]| DVec3::new(x, y, 0.0) * (apart * diagonal)));
+        let seen = found.filter_map(|offset| {
+            let pose = PlacedCamera::AT_ORIGIN.see(&WorldPose { center: last.center + offset, ..*last })?;
+            self.tracked.around(frame, &self.tracked.evidence(frame, &pose)?, &[pose], false)
+        });
+        let fits = seen.filter(|seen| self.fit(seen) >= FITS && seen.visible >= VISIBLE[0]);
+        fits.max_by(|a, b| self.fit(a).total_cmp(&self.fit(b)))
     }
 
     /// The pose found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
@@ -384,7 +404,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let expected = self.last.map(|last| self.motion.carried(&last));
         self.state = TrackState::Lost;
         self.motion = Motion::REST;
-        let pose = expected.unwrap_or(WorldPose { rotation: DQuat::IDENTITY, log_scale: 0.0, center: glam::DVec3::Z });
+        let pose = expected.unwrap_or(WorldPose { rotation: DQuat::IDENTITY, log_scale: 0.0, center: DVec3::Z });
         self.remember(pose, false);
         TrackedFrame {
             camera_from_mesh: (&pose.similarity(&self.tracked.pyramid.frame)).into(),

@@ -79,6 +79,36 @@ fn an_object_that_is_gone_is_lost_and_found_again() {
 }
 
 #[wasm_bindgen_test]
+fn an_object_that_comes_back_beside_its_place_is_found_without_a_mask() {
+    let mut tracker = tracker(TrackOptions::default());
+    let away = |k: usize| {
+        let moved = Vector3::new(0.07, -0.02, 0.0);
+        Similarity { translation: place(k).translation + moved, ..place(k) }
+    };
+    for k in 0..6 {
+        let seen = match k {
+            0 => frame(0),
+            1 => without_mask(frame(1)),
+            // Gone: the wall behind it is seen.
+            2 | 3 => {
+                let Frame { depth, mask, .. } = frame(k);
+                let mask = mask.unwrap();
+                let wall = |(z, mask): (&f32, &u8)| if *mask == 0 { *z } else { 1.8 };
+                let values = depth.data().iter().zip(mask.data()).map(wall).collect();
+                let depth = DepthMap::from_metres(depth.width(), depth.height(), values).unwrap();
+                Frame { depth, mask: None, ..frame(k) }
+            }
+            _ => without_mask(frame_of(&observe(&body(), &away(1)))),
+        };
+        let found = tracker.next(&seen, &mut Silent).unwrap();
+        assert_eq!(found.state == TrackState::Lost, k == 2 || k == 3, "frame {k}");
+        if k == 5 {
+            assert_right(&body(), &pose(&found), &away(1), "beside its place");
+        }
+    }
+}
+
+#[wasm_bindgen_test]
 fn a_correction_moves_all_frames_of_its_stretch() {
     let mut tracker = tracker(TrackOptions::default());
     let found = [0, 1, 2, 3].map(|k| pose(&tracker.next(&frame(k), &mut Silent).unwrap()));
