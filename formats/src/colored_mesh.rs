@@ -18,13 +18,6 @@ pub struct ColoredMesh {
     pub problem: Option<Error>,
 }
 
-impl From<Mesh> for ColoredMesh {
-    /// The mesh without colours.
-    fn from(mesh: Mesh) -> Self {
-        Self { mesh, colors: None, origin: DVec3::ZERO, problem: None }
-    }
-}
-
 /// The parts of a mesh file to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {

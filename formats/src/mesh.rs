@@ -99,7 +99,15 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
 /// [`ErrorCode::CompressedMesh`], [`ErrorCode::InvalidArgument`] for a missing external buffer,
 /// and those of [`Mesh::new`].
 pub fn read_mesh(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<Mesh> {
-    read(bytes, options, Content::Shape).map(|read| read.mesh)
+    read_shape(bytes, options).map(|read| read.mesh)
+}
+
+/// [`read_mesh`] with the origin of the mesh in its file, see [`ColoredMesh::origin`].
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_shape(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<ColoredMesh> {
+    read(bytes, options, Content::Shape)
 }
 
 /// Reads a mesh with the colours of its surface: the same mesh as [`read_mesh`], with colours from vertices (glTF

@@ -48,7 +48,7 @@ test("--help explains the layout, frames, units and exit status, and has a flag 
     assert.ok(stdout.includes(kind === "boolean" && value === true ? `--no-${flag}` : `--${flag}`), name);
   }
   const help = stdout.replace(/\s+/g, " ");
-  assert.match(help, /--quality <name> how much work the search does \(auto, fast, balanced, best; default auto\)/);
+  assert.match(help, /--quality <name> how much work a search does \(auto, fast, balanced, best; default auto\)/);
   assert.match(help, /--ransac-iterations <n> [^(]*\(1 to 10000000; default 100000\)/);
 });
 

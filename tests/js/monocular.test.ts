@@ -18,14 +18,14 @@ const rayOf = (i: number) =>
   [((i % width) - camera.cx) / camera.fx, (Math.floor(i / width) - camera.cy) / camera.fy] as const;
 
 /** The output of a model of each kind for a depth map. */
-const predicted: Record<Exclude<DepthKind, "ray-distance">, (depth: Float32Array) => Float32Array> = {
+const predicted: Record<DepthKind, (depth: Float32Array) => Float32Array> = {
   metric: (depth) => depth.slice(),
   "ray-distance": (depth) => depth.map((z, i) => z * Math.hypot(1, ...rayOf(i))),
   "scale-invariant": (depth) => depth.map((z) => 3.7 * z),
   "affine-invariant": (depth) => depth.map((z) => 2.1 * z - 1.1),
   "affine-invariant-disparity": (depth) => depth.map((z) => (z > 0 ? 5 / z - 1.5 : Number.NaN)),
 };
-const relative = (depthKind: keyof typeof predicted): AlignInput => ({
+const relative = (depthKind: DepthKind): AlignInput => ({
   ...{ ...input, depth: predicted[depthKind](view.depth), depthKind },
 });
 

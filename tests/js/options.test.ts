@@ -63,7 +63,7 @@ const values: Record<Method, Record<string, unknown>> = {
     ...{ supportAngleDeg: 20, icp: "none", lockScale: false, icpIterations: 1 },
   },
   alignViews: { ...shared, ...sizes, quality: "balanced", symmetry: "none", proportions: "axes", metrics: false },
-  track: { ...sizes, quality: "best", initial: truth, metrics: true },
+  track: { ...sizes, quality: "best", symmetry, initial: truth, metrics: true },
   evaluate: { ...shared, truth: halfTurned, symmetry, layout: false },
   register: {
     ...{ ...clouds, maxPoints: 200, voxelSize: 0.3, voxelDivisions: 10, fpfhRadiusVoxels: 3 },

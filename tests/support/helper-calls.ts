@@ -51,6 +51,7 @@ export const helperCalls: Readonly<Record<string, Readonly<Record<string, readon
     correctDepth: [depth, { depthKind: "scale-invariant", scale: 2, shift: 0 }],
     cropInput: [{ depth, mask, camera }, box],
     depthFromDisparity: [depth, { scale: 1, shift: 0 }],
+    depthFromRayDistance: [depth, camera],
     depthFromTensor: [{ data: depth.data, dims: [3, 4] }],
     exportGlb: [mesh, pose, { mode: "node", frame: "opengl", name: "mug" }],
     exportPly: [mesh, pose],

@@ -4,12 +4,10 @@ use js_sys::{Array, Function, Reflect, Uint8Array};
 use sim3align_formats::bindings::{
     Options, decoded_image, depth_image, depth_options, image, mesh_arrays, object, set, string, to_bytes, to_js,
 };
-use sim3align_formats::colored_mesh::ColoredMesh;
 use sim3align_formats::depth::read_depth_image;
 use sim3align_formats::mask::read_mask as mask_from_bytes;
 use sim3align_formats::mesh::{
-    MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
-    read_mesh as read_mesh_shape,
+    MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes, read_shape,
 };
 use sim3align_formats::photo::{read_exif as exif_from_bytes, read_photo, read_stored_photo};
 use wasm_bindgen::prelude::*;
@@ -140,7 +138,7 @@ pub fn read_mesh(
         let decode = |bytes: &[u8]| decoder.as_ref().and_then(|decode| decoded_image(decode, bytes));
         let with_resources = MeshReadOptions { format, resources: Some(&find), images: Some(&decode) };
         if options.get("colors").is_some_and(|colors| colors.is_falsy()) {
-            return read_mesh_shape(&bytes, &with_resources).map(ColoredMesh::from);
+            return read_shape(&bytes, &with_resources);
         }
         mesh_from_bytes(&bytes, &with_resources)
     };

@@ -57,6 +57,7 @@ pub struct FrameTask(RefCell<Task<'static, (TrackedFrame, Option<DepthCalibratio
 
 /// Begins to track the next frame; see `Tracker.next` in the TypeScript package. A task that is dropped before its end leaves the
 /// tracker as it was.
+#[expect(clippy::await_holding_refcell_ref, reason = "a tracker is borrowed for as long as it tracks a frame")]
 #[wasm_bindgen(js_name = beginTrackFrame, skip_typescript)]
 pub fn begin_track_frame(
     id: u32,
