@@ -20,17 +20,18 @@ const cloud = Float64Array.from(mesh.positions.subarray(0, 1500));
 const pairs = Uint32Array.from({ length: 900 }, (_, i) => (i % 6 === 1 ? (7 * i) % 500 : i >> 1));
 const target = transformed(cloud, { ...truth, scale: 2 }).map((x, i) => x + 0.01 * Math.sin(7 * i));
 
+async function tracked({ mask, mesh, ...frame }: typeof input | typeof brick, options: object): Promise<unknown> {
+  using tracker = await aligner.track(mesh, options);
+  return await tracker.next("initial" in options ? frame : { ...frame, mask });
+}
+
 type Method = Exclude<keyof typeof OPTIONS, "alignScene">;
 const calls: Record<Method, (options: object) => Promise<unknown>> = {
   align: (options) => aligner.align({ ...brick, mesh: narrow }, { ...quick, ...options }),
   paper: (options) =>
     aligner.align(input, { preset: "paper", surfaceSamples: 3000, ransacIterations: 2000, ...options }),
   alignViews: (options) => aligner.alignViews({ mesh: narrow, views }, { ...quick, ...options }),
-  async track(options) {
-    using tracker = await aligner.track(mesh, options);
-    const { mask, mesh: _, ...frame } = input;
-    return await tracker.next("initial" in options ? frame : { ...frame, mask });
-  },
+  track: (options) => tracked(input, options),
   evaluate: (options) => aligner.evaluate(brick, halfTurned, { truth, ...options }),
   register: (options) => aligner.register(cloud, target, { ransacIterations: 2000, ...options }),
   estimateSim3: (options) => aligner.estimateSim3(cloud, target, pairs, options),
@@ -63,7 +64,7 @@ const values: Record<Method, Record<string, unknown>> = {
     ...{ supportAngleDeg: 20, icp: "none", lockScale: false, icpIterations: 1 },
   },
   alignViews: { ...shared, ...sizes, quality: "balanced", symmetry: "none", proportions: "axes", metrics: false },
-  track: { ...sizes, quality: "best", symmetry, initial: truth, metrics: true },
+  track: { ...sizes, quality: "best", initial: truth, metrics: true },
   evaluate: { ...shared, truth: halfTurned, symmetry, layout: false },
   register: {
     ...{ ...clouds, maxPoints: 200, voxelSize: 0.3, voxelDivisions: 10, fpfhRadiusVoxels: 3 },
@@ -72,8 +73,16 @@ const values: Record<Method, Record<string, unknown>> = {
   estimateSim3: { ...clouds, edgeSimilarity: 0.999, inlierDistance: 0.005 },
 };
 
-/** A budget that only a call without end shows (cancel.test.ts), and a seed that no frame of this video depends on. */
-const others = ["estimateSim3 workBudget", "track seed"];
+/**
+ * A budget that only a call without end shows (cancel.test.ts), a seed that no frame of this video depends on, and what
+ * matters for a symmetric object alone.
+ */
+const others = ["estimateSim3 workBudget", "track seed", "track symmetry"];
+
+test("symmetry changes the confidence in a tracked object whose half turns look alike", async () => {
+  const seen = { ...brick, mesh: narrow };
+  assert.notEqual(bits(await tracked(seen, { symmetry: "none" })), bits(await tracked(seen, {})));
+});
 
 for (const [method, call] of Object.entries(calls) as [Method, (typeof calls)[Method]][]) {
   test(`every option of ${method} changes the outcome`, async () => {

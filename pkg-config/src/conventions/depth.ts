@@ -4,6 +4,7 @@ import { pixelsOf, pointKinds } from "../formats/pixels.js";
 import { depthOfRays } from "../formats/ray-distance.js";
 import type { DepthCalibration } from "../generated/types.js";
 import type { CameraInput, PixelArray } from "../input/types.js";
+import { plainArgument } from "../values/border.js";
 import { finite, positive, record } from "../values/values.js";
 
 /** See `src/calibrate/calibration.rs`. */
@@ -52,7 +53,8 @@ export function depthFromRayDistance(
   camera: CameraInput,
 ): PixelArray<Float32Array> {
   const { data, width, height } = pixelsOf<Float32Array>("distances", distances, pointKinds);
-  return { data: depthOfRays(data, width, pinholeOf("camera", camera, { width, height })), width, height };
+  const pinhole = pinholeOf("camera", plainArgument("camera", camera), { width, height });
+  return { data: depthOfRays(data, width, pinhole), width, height };
 }
 
 /**
