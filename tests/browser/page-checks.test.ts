@@ -62,7 +62,7 @@ const wrong: readonly (readonly [title: string, changed: Files, field: string, s
   ["an empty mask", { "mask.png": maskPng(new Uint8Array(pixels)) }, "mask", /empty/],
   [
     "intrinsics of another image",
-    { "camera.json": jsonFile({ ...pinhole, width: 640, height: 480 }) },
+    { "camera.json": jsonFile({ ...pinhole, width: 640, height: 400 }) },
     "camera",
     /160 × 120/,
   ],
@@ -118,11 +118,8 @@ test("a camera of a resized image is scaled, that of another image is not", asyn
     (await problems(opened)).camera ?? "",
     /camera\.json|320 × 120.*cropped or stretched \(0\.5 in x, 1 in y\)/,
   );
-  assert.equal(await page.getByRole("button", { name: "Scale it" }).count(), 0);
   await page.click("#intake-cancel");
   await drop(opened, otherCamera(2 * WIDTH, 2 * HEIGHT));
-  assert.match((await problems(opened)).camera ?? "", /320 × 240, and this one is 160 × 120/);
-  await page.getByRole("button", { name: "Scale it" }).click();
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.9);
   await opened.click("#edit-files");

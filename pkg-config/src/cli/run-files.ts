@@ -85,8 +85,9 @@ export class RunFiles {
         continue;
       }
       this.#claim(output);
-      // A folder of this run may be made in the folder of a file.
-      const isMade = !existsSync(dirname(path)) && folders.some((made) => realPath(path).startsWith(made));
+      // The folder of a file may be one that this run makes, or be made with one in it.
+      const own = `${dirname(realPath(path))}${sep}`;
+      const isMade = !existsSync(own) && folders.some((made) => own.startsWith(made) || made.startsWith(own));
       if (!isMade) checkWritable(flag, path);
     }
   }

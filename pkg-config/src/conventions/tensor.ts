@@ -5,6 +5,7 @@ import type { PixelArray } from "../input/types.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { typedArrayKind } from "../values/kinds.js";
+import { withLive } from "../values/live.js";
 import { flattened, isKind, isRecord, isTypedArray, record, whole, wrongKind } from "../values/values.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */
@@ -16,11 +17,16 @@ export interface TensorLike {
 }
 
 function dimensions(tensor: unknown) {
-  const { data, dims: given } = record("tensor", tensor, "a tensor: { data, dims }");
+  const expected = "a tensor: { data, dims }";
+  // Those of transformers.js do not have their properties themselves.
+  const { data, dims: given } = withLive("tensor", expected, () => {
+    const { data, dims } = Object(tensor) as TensorLike;
+    return record("tensor", typeof tensor === "object" && tensor !== null ? { data, dims } : tensor, expected);
+  });
   const dims = flattened(given);
   if (dims === null || dims.length < 2) {
-    const expected = "[…, height, width]";
-    throw failure("INVALID_ARGUMENT", "tensor.dims", describe(given), expected, "Pass one tensor, not a list of them.");
+    const remedy = "Pass one tensor, not a list of them.";
+    throw failure("INVALID_ARGUMENT", "tensor.dims", describe(given), "[…, height, width]", remedy);
   }
   const [height, width] = dims.slice(-2).map((dimension) => whole("tensor.dims", dimension, 1)) as [number, number];
   const count = dims.slice(0, -2).reduce((all: number, dimension) => all * whole("tensor.dims", dimension, 1), 1);
@@ -50,7 +56,10 @@ export function maskFromTensor(
   tensor: TensorLike,
   choice: { index?: number | undefined; scores?: TensorLike | ArrayLike<number> | undefined } = {},
 ): PixelArray<Uint8Array> {
-  const { index, scores } = record("choice", choice, "{ index } or { scores }") as typeof choice;
+  const { index, scores } = withLive("choice", "{ index } or { scores }", () => {
+    const { data = choice?.scores } = Object(choice?.scores) as { data?: unknown };
+    return record("choice", isRecord(choice) ? { ...choice, scores: data } : choice, "{ index } or { scores }");
+  }) as { index?: number; scores?: ArrayLike<number> };
   const { data, width, height, count } = dimensions(tensor);
   const chosen = index ?? (scores === undefined ? undefined : best(scores, count)) ?? (count === 1 ? 0 : undefined);
   if (chosen === undefined || !Number.isInteger(chosen) || chosen < 0 || chosen >= count) {
@@ -68,8 +77,8 @@ export function maskFromTensor(
   return { data: mask, width, height };
 }
 
-function best(scores: TensorLike | ArrayLike<number>, count: number): number {
-  const numbers = flattened(isRecord(scores) ? scores.data : scores) as number[] | null;
+function best(scores: ArrayLike<number>, count: number): number {
+  const numbers = flattened(scores) as number[] | null;
   if (numbers?.length !== count) {
     const found = numbers === null ? describe(scores) : `${numbers.length} scores`;
     throw failure("WRONG_LENGTH", "choice.scores", found, `one for each of ${count} masks`, "Pass iou_scores.");

@@ -5,8 +5,8 @@ import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { CameraInput } from "../input/types.js";
 import { plainArgument } from "../values/border.js";
 import { failure } from "../values/error.js";
+import { withLive } from "../values/live.js";
 import { positive, record } from "../values/values.js";
-import { withLive } from "./live.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
 /** The image size, and the near and far planes. */

@@ -3,8 +3,8 @@
 import { cofactors, determinant, type Matrix3, matrixOf as matrix3Of, turned } from "../conventions/rotation.js";
 import type { MeshArrays } from "../input/types.js";
 import { describe, failure } from "../values/error.js";
+import { withLive } from "../values/live.js";
 import { finiteNumbers, oneOf, optionsOf, whole } from "../values/values.js";
-import { withLive } from "./live.js";
 import { surfaceSamples } from "./surface-samples.js";
 import { type Texels, texelsOf } from "./texels.js";
 import { type AttributeLike, type GeometryLike, isObject, type MeshTree, type PlacedObject } from "./types.js";

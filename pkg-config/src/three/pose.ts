@@ -2,8 +2,8 @@
 import { fromFrame, toFrame } from "../conventions/frames.js";
 import { compose, invert, toSim3 } from "../conventions/similarity.js";
 import type { Sim3, Sim3Like } from "../input/sim3.js";
+import { withLive } from "../values/live.js";
 import { finiteNumbers, knownOptions, oneOf } from "../values/values.js";
-import { withLive } from "./live.js";
 import type { PlacedObject, PosableObject } from "./types.js";
 
 /** Options of {@link applyToObject3D} and {@link transformFromObject3D}. */

@@ -163,7 +163,7 @@ const intrinsics = ["fx", "fy", "cx", "cy"] as const;
 function chosenCamera(camera: CameraSource | null, source: string | null): string {
   if (camera === null) return source === null ? "" : cameraTitle(source);
   return camera.kind === "file"
-    ? `${baseName(camera.file.path)}${camera.isScaled ? ", scaled" : ""}`
+    ? baseName(camera.file.path)
     : camera.kind === "assumed"
       ? `${camera.fovYDeg}° assumed`
       : "entered";

@@ -29,7 +29,7 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
   const seen = depth.length === 0 ? reading : { ...reading, depth: null };
   return [
     ...reading.problems.map((one) =>
-      one.field === "camera" && one.code === "SIZE_MISMATCH" ? scaling(one, reading) : one,
+      one.field === "camera" && one.code === "SIZE_MISMATCH" ? stretched(one, reading) : one,
     ),
     ...notUsed(inputs),
     ...several(inputs),
@@ -82,23 +82,12 @@ function several({ files, camera, photo }: Inputs): Problem[] {
   });
 }
 
-/** A camera of an image of another size: where that was resized as a whole, its intrinsics can be scaled. */
-function scaling(problem: Problem, { cameraSize: from, size: to }: Reading): Problem {
+/** The camera of an image of another shape, whose intrinsics cannot be scaled. */
+function stretched(problem: Problem, { cameraSize: from, size: to }: Reading): Problem {
   if (from === null || to === null) return problem;
-  const [x, y] = [to.width / from.width, to.height / from.height];
-  const sizes = `The camera is that of an image of ${from.width} × ${from.height}, and this one is ${to.width} × ${to.height}`;
-  // Resizing rounds to whole pixels.
-  if (Math.abs(from.height * x - to.height) >= 1 && Math.abs(from.width * y - to.width) >= 1) {
-    const factors = `${Number(x.toPrecision(3))} in x, ${Number(y.toPrecision(3))} in y`;
-    const message = `${sizes}: cropped or stretched (${factors}), so its intrinsics cannot be scaled. Choose the camera of this image.`;
-    return { ...problem, message };
-  }
-  const scale: Remedy = {
-    title: "Scale it",
-    apply: (inputs) =>
-      inputs.camera?.kind === "file" ? { ...inputs, camera: { ...inputs.camera, isScaled: true } } : inputs,
-  };
-  return { ...problem, message: `${sizes}.`, remedies: [scale] };
+  const factors = [to.width / from.width, to.height / from.height].map((factor) => Number(factor.toPrecision(3)));
+  const message = `The camera is that of an image of ${from.width} × ${from.height}, and this one is ${to.width} × ${to.height}: cropped or stretched (${factors[0]} in x, ${factors[1]} in y), so its intrinsics cannot be scaled. Choose the camera of this image.`;
+  return { ...problem, message };
 }
 
 /** What was taken for granted, and decides about the sizes. */

@@ -28,8 +28,6 @@ export type CameraSource =
   | {
       kind: "file";
       file: NamedFile;
-      /** Whether its intrinsics are scaled to the size of the depth map. */
-      isScaled?: boolean;
     }
   | { kind: "numbers"; fx: number | null; fy: number | null; cx: number | null; cy: number | null }
   | { kind: "assumed"; fovYDeg: number };

@@ -1,6 +1,6 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
 import type { DepthKind, MeshArrays, PixelArray } from "sim3align";
-import { type ImageSize, resizeCamera } from "sim3align/conventions";
+import type { ImageSize } from "sim3align/conventions";
 import { type CameraFile, type MeshFromFile, readCamera, readPose } from "sim3align/formats";
 import type { RawView } from "../state/calibration.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
@@ -151,7 +151,7 @@ export async function readInputs(
                 { width: size.width, height: size.height, camera: read?.camera },
                 photo && photoFile && { ...photo, bytes: await photoFile.bytes() },
               )
-            : intrinsicsOf(source, cameraBytes, size, { imageId, from: stated }),
+            : intrinsicsOf(source, cameraBytes, size, imageId),
         );
   const view = read && viewOf(read, camera);
   return {
@@ -206,7 +206,7 @@ async function intrinsicsOf(
   source: CameraSource,
   bytes: Uint8Array | null,
   { width, height }: ImageSize,
-  { imageId, from }: { imageId: string | null; from: CameraFile | null },
+  imageId: string | null,
 ): Promise<ReadCamera> {
   if (source.kind === "assumed") {
     const { fovYDeg } = source;
@@ -218,11 +218,7 @@ async function intrinsicsOf(
   }
   if (source.kind === "numbers") return { camera: entered(source), source: null, focalUncertainty: 0, warnings: [] };
   if (bytes === null) throw new Error("The camera file could not be read.");
-  const own = source.isScaled === true ? sizeOf(from) : null;
-  if (from === null || own === null)
-    return knownCamera(bytes, imageId === null ? { width, height } : { width, height, imageId });
-  const { fx, fy, cx, cy } = resizeCamera(from, { fromWidth: own.width, fromHeight: own.height, width, height });
-  return { camera: { fx, fy, cx, cy }, source: null, focalUncertainty: 0, warnings: from.warnings };
+  return knownCamera(bytes, imageId === null ? { width, height } : { width, height, imageId });
 }
 
 /** Intrinsics that were typed. */

@@ -52,7 +52,7 @@ export interface Packed {
   /** In whose depth the poses are. */
   calibration: DepthCalibration | null;
   photo: Ref | null;
-  camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref; isScaled?: boolean } | null;
+  camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref } | null;
   imageId: string | null;
   resizeMasks: boolean;
   objects: PackedObject[];
