@@ -6,7 +6,7 @@ import type { Inputs } from "../load/inputs.js";
 import { doubt, error, type Problem, type Remedy, withoutObject } from "../load/problems.js";
 import type { Reading, ReadObject } from "../load/read-scene.js";
 import { visibleExtent } from "../load/visible-extent.js";
-import { isForeign } from "./roles.js";
+import { isForeign, isNamedPhoto } from "./roles.js";
 
 /** A typical vertical field of view of phones and laptops. */
 export const ASSUMED_FOV_DEG = 50;
@@ -76,7 +76,11 @@ function several({ files, camera, photo }: Inputs): Problem[] {
   return (["camera", "photo"] as const).flatMap((role) => {
     const own = used[role];
     const isRival = ({ file, role: other }: (typeof files)[number]) =>
-      other === role && file !== own && folderOf(file.path) === folderOf(own?.path ?? "");
+      other === role &&
+      file !== own &&
+      folderOf(file.path) === folderOf(own?.path ?? "") &&
+      // Beside a photo by name, other pictures are something else.
+      (role !== "photo" || isNamedPhoto(file) || own === null || !isNamedPhoto(own));
     const names = own === null ? [] : files.filter(isRival).map(({ file }) => baseName(file.path));
     return names.length === 0 ? [] : [doubt(role, `${baseName(own?.path ?? "")} is used, ${names.join(", ")} not.`)];
   });

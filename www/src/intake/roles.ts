@@ -30,6 +30,9 @@ const photoWords = "rgb|photo|image|img|color|colour|frame|left|right";
 const cameraWords = /cam|intrin|calib/;
 const textureWords = "texture|albedo|basecolor|diffuse|normal|roughness|metallic|material";
 
+/** Whether a file has a usual name of a photo. */
+export const isNamedPhoto = ({ path }: Pick<NamedFile, "path">): boolean => partOf(baseName(path)) === "image";
+
 /** The roles of files. */
 export function rolesOf(files: readonly NamedFile[]): Promise<Typed[]> {
   // BOP has masks of the whole object beside those of its visible part.

@@ -13,6 +13,7 @@ import {
 } from "../load/inputs.js";
 import { annotationsOf, labelValues } from "../load/label-masks.js";
 import { paired, titleOf, wordsOf } from "./pairing.js";
+import { isNamedPhoto } from "./roles.js";
 
 /** The scenes of a drop; at least one, which lacks what the files lack. */
 export async function scenesOfTyped(typed: readonly Typed[]): Promise<Inputs[]> {
@@ -102,7 +103,8 @@ interface NamedMask {
 
 async function sceneFrom(files: readonly Typed[], id: string | null): Promise<Inputs> {
   const of = (role: Role) => files.filter((one) => one.role === role).map(({ file }) => file);
-  const [depth = null, photo = null] = [of("depth")[0], of("photo")[0]];
+  const [[depth = null], photos] = [of("depth"), of("photo")];
+  const photo = photos.find(isNamedPhoto) ?? photos[0] ?? null;
   // Beside the intrinsics of the depth camera may be those of the colour camera.
   const cameras = of("camera");
   const camera = cameras.find(({ path }) => /depth/i.test(baseName(path))) ?? cameras[0];
