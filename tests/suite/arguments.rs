@@ -335,7 +335,7 @@ fn doubtful_depth_and_masks_are_warned_of() {
     assert!(codes(&about_observation(&covered)).contains(&WarningCode::MaskCoversImage));
     let background = whole.mask().data().iter().map(|pixel| u8::from(*pixel == 0)).collect();
     let background = Mask::new("mask", WIDTH, HEIGHT, background).unwrap();
-    let slope = with_depth(&whole, &|i, z| z + 0.001 * (i % WIDTH) as f32).unwrap();
+    let slope = with_depth(&whole, |i, z| z + 0.001 * (i % WIDTH) as f32).unwrap();
     let inverted = Observation::new(slope.depth().clone(), background, whole.camera()).unwrap();
     let found = codes(&about_observation(&inverted));
     assert!(found.contains(&WarningCode::MaskLooksInverted), "{found:?}");
