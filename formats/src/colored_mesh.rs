@@ -12,7 +12,7 @@ pub struct ColoredMesh {
     pub mesh: Mesh,
     /// The colours of its surface; `None` if the file has none, or none that can be read.
     pub colors: Option<SurfaceColors>,
-    /// What was subtracted from the coordinates of the file, whose 32-bit values would be too coarse; otherwise zero.
+    /// The offset subtracted from the coordinates of the file if 32 bits are too coarse for these; otherwise zero.
     pub origin: DVec3,
     /// Why the colours can't be read; the mesh can be used without them.
     pub problem: Option<Error>,

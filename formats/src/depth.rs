@@ -81,9 +81,8 @@ fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
     stored.check_bits(kind, || format!("{article} {bits}-bit PNG"))?;
     let pixels = info.decode("depth", bytes)?;
     let channels = pixels.channels.max(1);
-    let colours = if pixels.has_alpha() { channels - 1 } else { channels };
     // Some programs repeat the depth in three channels.
-    let is_grey = |pixel: &[u16]| pixel.iter().take(colours).all(|sample| Some(sample) == pixel.first());
+    let is_grey = |pixel: &[u16]| pixel.iter().take(pixels.colours()).all(|sample| Some(sample) == pixel.first());
     if info.first_palette_colour.is_some() || !pixels.samples.chunks_exact(channels).all(is_grey) {
         return Err(unsupported(
             "depth",

@@ -58,7 +58,6 @@ fn read_png(bytes: &[u8]) -> Result<MaskImage> {
     let info = PngInfo::read("mask", bytes)?;
     let pixels = info.decode("mask", bytes)?;
     let channels = pixels.channels.max(1);
-    let colours = if pixels.has_alpha() { channels - 1 } else { channels };
     let alpha = |pixel: &[u16]| pixel.last().copied().unwrap_or_default();
     let first_alpha = pixels.samples.get(..channels).map(alpha);
     let is_cut_out = pixels.has_alpha() && pixels.samples.chunks_exact(channels).any(|p| Some(alpha(p)) != first_alpha);
@@ -67,7 +66,8 @@ fn read_png(bytes: &[u8]) -> Result<MaskImage> {
         if is_cut_out {
             return alpha(pixel);
         }
-        let differences = pixel.iter().take(colours).zip(background).map(|(sample, zero)| sample.abs_diff(zero));
+        let differences =
+            pixel.iter().take(pixels.colours()).zip(background).map(|(sample, zero)| sample.abs_diff(zero));
         differences.max().unwrap_or_default()
     };
     let level_of = |i: usize| pixels.samples.get(i * channels..).and_then(|rest| rest.get(..channels)).map_or(0, level);
@@ -104,8 +104,8 @@ fn outlined(width: usize, height: usize, is_float: bool, value: &dyn Fn(usize) -
     Ok(MaskImage { object: Image::new("mask", width, height, object)?, reading })
 }
 
-/// Whether the values between 0 and the largest are those of labels: most of them equal their neighbours above and to the
-/// left, which values of a soft edge or of a network's output hardly do.
+/// Whether the image is a map of labels: most values between 0 and the largest equal their neighbours above and to the left.
+/// Values of soft edges and network outputs rarely do.
 fn has_labels(width: usize, count: usize, high: f64, value: &dyn Fn(usize) -> f64) -> bool {
     let (mut between, mut flat) = (0_usize, 0_usize);
     for i in (width + 1)..count {

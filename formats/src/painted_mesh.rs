@@ -28,7 +28,7 @@ pub(crate) struct Paint {
 pub(crate) struct PaintedMesh {
     pub mesh: Mesh,
     pub paint: Paint,
-    /// What was subtracted from the coordinates of the file.
+    /// The offset subtracted from the coordinates of the file.
     pub origin: DVec3,
 }
 

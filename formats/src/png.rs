@@ -50,6 +50,11 @@ impl PngPixels {
     pub fn has_alpha(&self) -> bool {
         matches!(self.channels, 2 | 4)
     }
+
+    /// The number of channels without alpha.
+    pub fn colours(&self) -> usize {
+        if self.has_alpha() { self.channels - 1 } else { self.channels }
+    }
 }
 
 impl<'a> PngInfo<'a> {

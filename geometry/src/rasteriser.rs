@@ -54,7 +54,7 @@ pub struct Rasteriser {
     triangles: Vec<u32>,
     /// Pixels visited by the triangles of the render.
     visited: usize,
-    /// Whether the farthest surfaces are drawn: 1/z is then stored with the opposite sign, so that the largest still wins.
+    /// Draws the farthest surfaces: 1/z is stored with the opposite sign, so that the largest still wins.
     is_farthest: bool,
 }
 

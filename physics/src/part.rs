@@ -71,7 +71,7 @@ impl ConvexPart {
         gap.max_element() <= distance
     }
 
-    /// What is left of it at heights of at least `height` along a direction; `None` if that has no volume.
+    /// The part at or above `height` along a direction; `None` if it has no volume.
     pub fn above(&self, up: DVec3, height: f64) -> Option<Self> {
         let over = |p: DVec3| up.dot(p) - height;
         let mut points: Vec<DVec3> = self.positions.iter().copied().filter(|p| over(*p) >= 0.0).collect();

@@ -246,7 +246,7 @@ fn put_down(body: &Body, mut pose: Pose, below: Option<&[Columns]>, cell: f64) -
     holds(&touched, 2.0 * cell).then_some(pose)
 }
 
-/// Whether points, from below the centre of mass, reach beyond it by a margin to all sides.
+/// Whether the hull of points, relative to the centre of mass, contains it with a margin on all sides.
 fn holds(points: &[DVec3], margin: f64) -> bool {
     (0..DIRECTIONS).all(|k| {
         let (sine, cosine) = libm::sincos(core::f64::consts::TAU * k as f64 / DIRECTIONS as f64);

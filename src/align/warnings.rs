@@ -1,7 +1,6 @@
 //! Warnings about inputs and results that are valid but suspicious.
 
 use crate::evidence::observation::Observation;
-use crate::geometry::image::bounds_of;
 use crate::geometry::order::median;
 use crate::number::number;
 use crate::precise::drawing::surplus::LeftOut;
@@ -45,13 +44,14 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let mut mask_pixels = 0_usize;
     // Allocated once: it may be a large image.
     let mut depths = Vec::with_capacity(observation.mask().data().iter().filter(|&&m| m != 0).count());
-    let mut in_border = 0_usize;
+    let (mut in_border, mut first, mut last) = (0_usize, [usize::MAX; 2], [0; 2]);
     for (i, (&m, &z)) in observation.mask().data().iter().zip(observation.depth().data()).enumerate() {
         if m == 0 {
             continue;
         }
         let (u, v) = (i % width, i / width);
         mask_pixels += 1;
+        (first, last) = ([first[0].min(u), first[1].min(v)], [last[0].max(u), last[1].max(v)]);
         in_border += usize::from(u == 0 || v == 0 || u + 1 == width || v + 1 == height);
         if z > 0.0 {
             depths.push(z);
@@ -74,8 +74,7 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
                 ),
             });
         }
-        let bounds = bounds_of(observation.mask().data(), width, |m| *m != 0);
-        let pixels = bounds.map(|[first, last]| (last - first) as f64);
+        let pixels = [0, 1].map(|axis| (last[axis] - first[axis]) as f64);
         let camera = observation.camera();
         let size = f64::from(median) * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt();
         let is_plausible = size < LARGE_M && f64::from(median) > NEAR_M;

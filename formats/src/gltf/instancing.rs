@@ -1,6 +1,6 @@
 //! `EXT_mesh_gpu_instancing`: several copies of a node's mesh, each with a transform of its own.
 
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec3, Vec3};
 use serde::Deserialize;
 
 use crate::gltf::accessor::AccessorReader;
@@ -33,13 +33,13 @@ impl Instances {
         let translations = attributes.translation.map(|index| reader.positions(index)).transpose()?;
         let scales = attributes.scale.map(|index| reader.positions(index)).transpose()?;
         let rotations = attributes.rotation.map(|index| reader.rotations(index)).transpose()?;
-        let vectors = |vectors: &Option<Vec<glam::Vec3>>| vectors.as_ref().map(Vec::len);
-        let counts = [vectors(&translations), vectors(&scales), rotations.as_ref().map(Vec::len)];
-        let count = counts.into_iter().flatten().min().unwrap_or_default();
+        let of_vectors = |vectors: &Option<Vec<Vec3>>| vectors.as_ref().map(Vec::len);
+        let counts = [of_vectors(&translations), of_vectors(&scales), rotations.as_ref().map(Vec::len)];
+        let count = counts.into_iter().flatten().next().unwrap_or_default();
         if counts.into_iter().flatten().any(|other| other != count) {
             return Err(corrupt("mesh", "instances whose attributes differ in number", "one per instance"));
         }
-        let at = |vectors: &Option<Vec<glam::Vec3>>, i: usize, default: DVec3| {
+        let at = |vectors: &Option<Vec<Vec3>>, i: usize, default: DVec3| {
             vectors.as_ref().and_then(|vectors| vectors.get(i)).map_or(default, |vector| vector.as_dvec3())
         };
         let transform = |i: usize| {

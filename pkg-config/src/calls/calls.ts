@@ -3,7 +3,7 @@
 import type { CorrectedFrame } from "../generated/types.js";
 import type { CoreInput, CoreView } from "../input/core-input.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
-import { resolveFrame, resolveInput, resolveViews } from "../input/resolve.js";
+import { resolveFrame, resolveInput, resolveViews, withMesh } from "../input/resolve.js";
 import type { AlignInput, FrameInput, MeshInput, ViewsInput } from "../input/types.js";
 import type {
   Calibrated,
@@ -26,7 +26,7 @@ import type {
 } from "../types/results.js";
 import { sourcesOf, withNotes } from "../types/results.js";
 import { failure, isOfInput } from "../values/error.js";
-import { fromOrigin, type Origin, toOrigin } from "../values/origin.js";
+import { fromOrigin, toOrigin } from "../values/origin.js";
 import { isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
@@ -89,10 +89,9 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   align: {
     module: "core",
     run: (job, context) =>
-      aligned(job, context, job.options, async (input, context, origin) => {
-        const options = toOrigin(job.options, origin);
-        return comparedWithMirror(await context.search("align", input, options), input, options, context);
-      }),
+      aligned(job, context, job.options, async (input, context, options) =>
+        comparedWithMirror(await context.search("align", input, options), input, options, context),
+      ),
   },
   alignPaper: {
     module: "registration",
@@ -153,11 +152,11 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     module: "joint",
     async run({ data, options, meshId }, context) {
       const isColored = data.image !== undefined;
-      const { mesh, warnings } = await readCoreMesh(data.mesh, context.modules, isColored, meshId);
-      const placed = await context.search("place", { ...data, mesh }, options);
+      const read = await readCoreMesh(data.mesh, context.modules, isColored, meshId);
+      const placed = await context.search("place", { ...data, mesh: read.mesh }, options);
       if (placed.alignment === undefined) return placed;
       // The view belongs to the scene, which reports what its files say.
-      const notes = { warnings: [], colors: isColored ? warnings : [], ...withoutUndefined({ origin: mesh.origin }) };
+      const notes = withMesh({ core: data, notes: { warnings: [], colors: [] } }, read);
       return { ...placed, alignment: withNotes(placed.alignment, notes) };
     },
   },
@@ -240,25 +239,19 @@ export const trackerName = (id: number) => `tracker ${id}`;
 async function aligned<T extends AlignResult>(
   { data, meshId }: Job<"align" | "alignPaper">,
   context: JobContext,
-  known: object,
-  align: (input: CoreInput, context: JobContext, origin: Origin | undefined) => Promise<T>,
+  options: object,
+  align: (input: CoreInput, context: JobContext, options: object) => Promise<T>,
 ): Promise<T> {
   const { core: read, notes } = await resolveInput(data, context.modules, meshId);
-  if (!isRaw(read)) return withNotes(await align(read, context, notes.origin), notes);
+  const known = toOrigin(options, notes.origin);
+  if (!isRaw(read)) return withNotes(await align(read, context, known), notes);
   const [first, then] = context.parts();
   const { mesh, mask, maskWidth, maskHeight, resizeMask, ...view } = read;
   const { id: _, ...own } = mesh;
-  const object = withoutUndefined({
-    mask,
-    maskWidth,
-    maskHeight,
-    resizeMask,
-    mesh: own,
-    options: toOrigin(known, notes.origin),
-  });
+  const object = withoutUndefined({ mask, maskWidth, maskHeight, resizeMask, mesh: own, options: known });
   const input = { ...view, objects: [object as CalibrationObject] };
   const calibrated = await first.task("joint", input, (j) => j.beginCalibrate(input, first.listener));
-  const found = await align(inCalibration(read, calibrated), then, notes.origin);
+  const found = await align(inCalibration(read, calibrated), then, known);
   return withNotes(withCalibration(found, calibrated), notes);
 }
 

@@ -52,7 +52,7 @@ export interface Job<T extends CaseKey> {
   lines?(task: T, entry: Entry, isOnly: boolean, style: Style): CaseLines;
   /** Reads the inputs of the poses of an entry, by their names, for pictures. */
   inputs?(task: T, entry: Entry): Promise<ReadonlyMap<string, AlignInput>>;
-  /** Whether the files that `run` makes are there; by default, it makes none. */
+  /** Whether the output files of `run` exist; by default, it has none. */
   isComplete?(): boolean;
   /** Further outputs. */
   sinks?: EntrySink[];

@@ -40,7 +40,7 @@ export function resultsFile([dataset = ""]: readonly string[], flags: Flags): Ou
   return [{ flag: "the results file", path: `${name}${csv === undefined ? "" : `_${csv}`}.csv`, isOwn }];
 }
 
-/** Whether a file begins as one of --scores, or of --json. */
+/** Whether a file begins like the output of --scores or of --json. */
 export const isScores = (beginning: string) => beginning.startsWith('{\n  "averageRecall":') || isResults(beginning);
 
 /** The job of a command line; without cases if `--evaluate` names a file, which is only scored. */

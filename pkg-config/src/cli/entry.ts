@@ -55,7 +55,7 @@ export function withFiles<T extends Entry>(entry: T, found: FoundFiles | undefin
   return { ...entry, inputs, unread: found.unread };
 }
 
-/** What was not read of a case, what was assumed of what was, and whether its lengths have a unit; a line each. */
+/** Remarks on the inputs of a case, a line each: unread files, assumptions, and lengths without a unit. */
 export function intakeLines(entry: Entry): string[] {
   const { frames, objects = frames } = entry;
   const all: [string, Entry][] = [["", entry], ...Object.entries((objects ?? {}) as Record<string, Entry>)];

@@ -46,7 +46,7 @@ export function bytesOf(path: string, position: number, length: number): Buffer 
   }
 }
 
-/** What is at a path; `undefined` if nothing is, or nothing can be. */
+/** The file status of a path; `undefined` if the path does not exist or cannot exist. */
 export function statOf(path: string): Stats | undefined {
   try {
     return statSync(path);

@@ -12,7 +12,7 @@ export interface EntrySink {
   discard?(): void;
 }
 
-/** Whether a file begins as one of --json: the names of cases, and what became of each. */
+/** Whether a file begins like the output of --json: case names with their entries. */
 export const isResults = (beginning: string) =>
   /^\{\n {2}"(?:[^"\\]|\\.)*": \{\n {4}"/.test(beginning) || /^\{\s*\}\s*$/.test(beginning);
 
@@ -41,7 +41,7 @@ export class ResultsFile implements EntrySink {
 /** The headings of a table of comma-separated values. */
 export const csvHeadings: readonly string[] = ["case", ...rowFields.map(([name]) => name)];
 
-/** Whether a file begins as one of --csv. */
+/** Whether a file begins like the output of --csv. */
 export const isCsv = (beginning: string) => beginning.startsWith(`${csvHeadings.join(",")}\n`);
 
 /**

@@ -1,6 +1,6 @@
 /** Resizes and crops images together with their intrinsics. */
 
-import { pinholeOf } from "../formats/pinhole.js";
+import { pinholeOf, resizedPinhole } from "../formats/pinhole.js";
 import {
   type DepthPixels,
   depthKinds,
@@ -94,9 +94,8 @@ export function resizeCamera(
     width: whole("size.fromWidth", sizes.fromWidth, 1),
     height: whole("size.fromHeight", sizes.fromHeight, 1),
   };
-  const { fx, fy, cx, cy } = pinholeOf("camera", plainArgument("camera", camera), from);
-  const [x, y] = [width / from.width, height / from.height];
-  return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5, width, height };
+  const pinhole = pinholeOf("camera", plainArgument("camera", camera), from);
+  return { ...resizedPinhole(pinhole, from, { width, height }), width, height };
 }
 
 /**

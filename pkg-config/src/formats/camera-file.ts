@@ -5,7 +5,7 @@ import { describe, failure, invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/values.js";
 import { cameraText } from "./camera-text.js";
 import { isNumber, type JsonFile, namesIn, parsedJson } from "./json.js";
-import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
+import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole, resizedPinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";
 
 /** The content of a camera file. */
@@ -110,10 +110,7 @@ export function scaledCamera(argument: string, camera: Pinhole, own: ImageSize, 
   const [x, y] = [image.width / own.width, image.height / own.height];
   // Sides are rounded to whole pixels.
   const rounding = 1 / Math.min(own.width, own.height, image.width, image.height);
-  if (Math.abs(Math.log(x / y)) <= 2 * rounding) {
-    const { fx, fy, cx, cy } = camera;
-    return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5 };
-  }
+  if (Math.abs(Math.log(x / y)) <= 2 * rounding) return resizedPinhole(camera, own, image);
   throw failure(
     "SIZE_MISMATCH",
     argument,

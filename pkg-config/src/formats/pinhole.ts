@@ -39,6 +39,12 @@ export function checkedPinhole(argument: string, intrinsics: Record<keyof Pinhol
   return intrinsics as Pinhole;
 }
 
+/** The intrinsics of an image that is resized as a whole. */
+export function resizedPinhole({ fx, fy, cx, cy }: Pinhole, from: ImageSize, to: ImageSize): Pinhole {
+  const [x, y] = [to.width / from.width, to.height / from.height];
+  return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5 };
+}
+
 /** Distance of a principal point from the centre, in image sizes, from which it is that of a crop or of another image. */
 const OFF_CENTRE = 0.15;
 

@@ -5,7 +5,7 @@ import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
 import { checkNames, isRecord, part, withoutUndefined } from "../values/values.js";
 import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./core-input.js";
 import { readMask } from "./mask.js";
-import { readCoreMesh } from "./mesh.js";
+import { type MeshAndWarnings, readCoreMesh } from "./mesh.js";
 import { coreSim3 } from "./sim3.js";
 import { type Resolved, readView, viewProperties } from "./view.js";
 
@@ -25,9 +25,8 @@ export async function resolveInput(
 ): Promise<Resolved<CoreInput>> {
   checkInput(input);
   const frame = await frameOf(input, readers, true);
-  const { mesh, warnings } = await readCoreMesh(input.mesh, readers, frame.core.image !== undefined, meshId);
-  const notes = { ...withColors(frame, warnings), ...withoutUndefined({ origin: mesh.origin }) };
-  return { core: { ...frame.core, mesh } as CoreInput, notes };
+  const read = await readCoreMesh(input.mesh, readers, frame.core.image !== undefined, meshId);
+  return { core: { ...frame.core, mesh: read.mesh } as CoreInput, notes: withMesh(frame, read) };
 }
 
 /** Resolves the view of an input, whose mask and mesh are not read. */
@@ -69,9 +68,7 @@ export async function resolveViews(input: unknown, readers: FileReaders, meshId?
   const isColored = frames.some(({ core }) => core.image !== undefined);
   const read = await readCoreMesh(mesh, readers, isColored, meshId);
   const core = { mesh: read.mesh, views: frames.map((frame) => frame.core) };
-  const { origin } = read.mesh;
-  const notes = frames.map((frame) => ({ ...withColors(frame, read.warnings), ...withoutUndefined({ origin }) }));
-  return { core, notes };
+  return { core, notes: frames.map((frame) => withMesh(frame, read)) };
 }
 
 async function viewOf(view: unknown, index: number, readers: FileReaders): Promise<Resolved<CoreFrame>> {
@@ -100,9 +97,15 @@ async function frameOf(
   return { core: withoutUndefined(masked) as CoreFrame, notes: { ...notes, ...maskNotes } };
 }
 
-/** Colours of a mesh matter only where there is a photo to compare them with. */
-const withColors = ({ core, notes }: Resolved<CoreFrame>, colors: readonly string[]): InputNotes =>
-  core.image === undefined ? notes : { ...notes, colors };
+/** Notes with those on the mesh; its colours matter only where there is a photo to compare them with. */
+export const withMesh = (
+  { core, notes }: { core: Pick<CoreFrame, "image">; notes: InputNotes },
+  { mesh, warnings }: MeshAndWarnings,
+): InputNotes => ({
+  ...notes,
+  ...(core.image === undefined ? {} : { colors: warnings }),
+  ...withoutUndefined({ origin: mesh.origin }),
+});
 
 /** Rejects misspelt properties, which would otherwise be ignored. */
 function checkInput(input: unknown): asserts input is Record<string, unknown> {
