@@ -26,6 +26,8 @@ pub enum Stage {
     Filter,
     /// Scale-locked ICP (§3.3).
     Icp,
+    /// The look for parts of the mesh that a generator added (`precise`).
+    Inspect,
     /// Cleaning of mask and depth, and coarser meshes (`precise`).
     Prepare,
     /// Search over a grid of rotations (`precise`).
@@ -48,6 +50,7 @@ impl Stage {
             Self::Ransac => "ransac",
             Self::Filter => "filter",
             Self::Icp => "icp",
+            Self::Inspect => "inspect",
             Self::Prepare => "prepare",
             Self::Search => "search",
             Self::Refine => "refine",

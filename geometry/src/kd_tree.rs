@@ -9,13 +9,13 @@ use wide::f32x4;
 
 use super::cloud::Bounds;
 use super::kd_nodes::{Division, Node, Query};
-use super::order::{pack, select_smallest};
+use super::order::{pack, select_smallest, value_of};
 use super::pauses::Pauses;
 
 /// Points of a leaf whose distances are computed at once.
 const LANES: usize = 4;
 
-/// Points per joint search of [`KdTree::neighborhoods`].
+/// Points per joint search of [`GroupSearch`].
 const GROUP_SIZE: usize = 12;
 
 /// Units of work of a point of a node that is made.
@@ -111,27 +111,9 @@ impl KdTree {
         self.visit(query, &mut Within { radius_squared: radius * radius, found: out });
     }
 
-    /// Calls `visit` for every point of the tree with its index and its `k` nearest neighbours within `radius`, itself
-    /// included. The neighbours are keys of squared distance and index (see [`pack`]), in an unspecified but
-    /// reproducible order. `points` must be the points that the tree was built from.
-    ///
-    /// Several times faster than one [`KdTree::k_nearest`] per point, because nearby points share a search.
-    ///
-    /// A `stride` above 1 visits about one in `stride` points only, in small groups evenly over the cloud.
-    pub fn neighborhoods(
-        &self,
-        points: &[Vec3],
-        k: usize,
-        radius: f32,
-        stride: usize,
-        mut visit: impl FnMut(u32, &[u64]),
-    ) {
-        let mut search = GroupSearch::new(self, points, k, radius);
-        for (number, group) in (1..).zip(self.groups()) {
-            if number % stride == 0 {
-                search.visit(group, &mut visit);
-            }
-        }
+    /// The indices of the points in the order of the leaves: those that follow each other are close.
+    pub fn indices(&self) -> impl Iterator<Item = u32> {
+        self.points.iter().map(|(_, index)| *index)
     }
 
     /// The points in small groups of nearby ones.
@@ -201,7 +183,8 @@ impl KdTree {
     }
 }
 
-/// Searches for the neighbours of the points of groups. See [`KdTree::neighborhoods`].
+/// Searches for the neighbours of the points of groups: several times faster than one [`KdTree::k_nearest`] per point, because
+/// nearby points share a search.
 pub struct GroupSearch<'a> {
     tree: &'a KdTree,
     points: &'a [Vec3],
@@ -218,7 +201,8 @@ impl<'a> GroupSearch<'a> {
         Self { tree, points, k, radius, found: Vec::new(), near: Vec::new(), keys: Vec::new() }
     }
 
-    /// Calls `visit` for every point of a group.
+    /// Calls `visit` for every point of a group with its index and its nearest neighbours, itself included. These are keys of
+    /// squared distance and index (see [`pack`]), in an unspecified but reproducible order.
     pub fn visit(&mut self, group: &[(Vec3, u32)], visit: &mut impl FnMut(u32, &[u64])) {
         let Self { tree, points, k, radius, found, near, keys } = self;
         let members = || group.iter().map(|(point, _)| *point);
@@ -228,6 +212,12 @@ impl<'a> GroupSearch<'a> {
         // the centre has k neighbours within r + d, all of which are within r + 2 d of the centre.
         tree.k_nearest(center, *k, found);
         let reach = found.last().filter(|_| found.len() == *k).map_or(f32::INFINITY, |n| n.distance_squared.sqrt());
+        if let [(_, index)] = group {
+            keys.clear();
+            keys.extend(found.iter().map(|n| pack(n.distance_squared, n.index)));
+            keys.retain(|key| value_of(*key) <= *radius * *radius);
+            return visit(*index, keys);
+        }
         // Of points that coincide with the centre, there may be many more.
         if spread > 0.0 || reach > 0.0 {
             tree.within(center, (reach + 2.0 * spread) * (1.0 + ROUNDING), found);

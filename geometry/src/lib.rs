@@ -10,6 +10,7 @@ pub mod angle;
 pub mod clip;
 pub mod cloud;
 pub mod components;
+pub mod curve;
 pub mod decimate;
 pub mod depth_kind;
 pub mod disjoint_sets;

@@ -10,8 +10,8 @@ use super::surface::triangle_area;
 /// The parts of a mesh. Vertices at the same position hang together, because the seams of textures double them.
 #[derive(Debug, Clone)]
 pub struct MeshParts {
-    /// The part of each triangle.
-    pub of_triangle: Vec<u32>,
+    /// The part of each vertex.
+    pub of_vertex: Vec<u32>,
     /// The parts, in the order of their first vertices.
     pub parts: Vec<MeshPart>,
 }
@@ -42,15 +42,21 @@ impl MeshParts {
         if is_whole(&mut sets) {
             return None;
         }
-        let (numbers, count) = sets.numbered();
-        let of_triangle: Vec<u32> = mesh.triangles().iter().map(|[first, ..]| numbers[*first as usize]).collect();
+        let (of_vertex, count) = sets.numbered();
         let mut parts = vec![MeshPart { area: 0.0, bounds: Bounds::NOTHING }; count];
-        for (triangle, &part) in of_triangle.iter().enumerate() {
-            let MeshPart { area, bounds } = &mut parts[part as usize];
-            *area += triangle_area(mesh, triangle);
-            *bounds = bounds.union(Bounds::of_triangle(&mesh.corners(mesh.triangles()[triangle])));
+        for (&position, &part) in positions.iter().zip(&of_vertex) {
+            let MeshPart { bounds, .. } = &mut parts[part as usize];
+            *bounds = bounds.union(Bounds { min: position, max: position });
         }
-        Some(Self { of_triangle, parts })
+        for (index, [first, ..]) in mesh.triangles().iter().enumerate() {
+            parts[of_vertex[*first as usize] as usize].area += triangle_area(mesh, index);
+        }
+        Some(Self { of_vertex, parts })
+    }
+
+    /// The part of a triangle.
+    pub fn of_triangle(&self, triangle: [u32; 3]) -> usize {
+        self.of_vertex[triangle[0] as usize] as usize
     }
 }
 

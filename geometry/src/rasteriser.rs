@@ -122,9 +122,9 @@ impl Rasteriser {
         self.draw::<false>(mesh, camera, near, Window::whole(width, height));
     }
 
-    /// Like [`Rasteriser::render_depth`], for the smallest window of the image that contains `part`, the whole mesh, and one
+    /// Like [`Rasteriser::render`], for the smallest window of the image that contains `part`, the whole mesh, and one
     /// more pixel on each side. The pixels are those of the whole image.
-    pub fn render_depth_around(
+    pub fn render_around(
         &mut self,
         mesh: &Mesh,
         camera_from_mesh: &Similarity,
@@ -134,7 +134,7 @@ impl Rasteriser {
     ) -> Window {
         let near = self.place(mesh, camera_from_mesh, camera);
         let window = self.covered(image).map_or(part, |covered| part.union(covered)).grown(1, image);
-        self.draw::<false>(mesh, camera, near, window);
+        self.draw::<true>(mesh, camera, near, window);
         window
     }
 

@@ -16,6 +16,11 @@ const STREAM: u64 = 2;
 /// direction, a line). A sheet of A4 paper has 1.4e-4, a bank card 4e-3; the rounding of f32 vertices 1e-7.
 pub const MIN_THICKNESS: f64 = 1e-4;
 
+/// The thickness, relative to the box diagonal, from which on some of the triangles show that all of a mesh is no plane, and
+/// about their number.
+const CLEARLY_THICK: f64 = 0.01;
+const FEW_TRIANGLES: usize = 4096;
+
 /// Smallest and largest diagonal of a mesh's bounding box, mesh units. Beyond, squares of distances on the surface leave
 /// the range of f32. An object of a metre has 1e9 in nanometres.
 pub const DIAGONALS: [f64; 2] = [1e-15, 1e15];
@@ -70,7 +75,7 @@ pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn
         })
         .collect();
     check_area(total)?;
-    check_diagonal(mesh)?;
+    check_diagonal(diagonal_of(mesh))?;
     // The last triangle with area; rounding must not select one after it.
     let last = ends.partition_point(|&end| end < total).min(ends.len() - 1);
     let facing = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
@@ -93,18 +98,25 @@ pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn
     Ok(())
 }
 
-/// Rejects meshes whose pose or scale cannot be determined from any view: without area, planar, or collinear.
+/// Rejects meshes whose pose or scale cannot be determined from any view: without area, planar, or collinear. Of a large mesh,
+/// a few thousand triangles are enough to show that it is none of these.
 ///
 /// # Errors
 /// [`ErrorCode::DegenerateMesh`], from the thickness along the principal axes (see [`MIN_THICKNESS`]), and those of
 /// [`each_surface_sample`].
 pub fn check_shape(mesh: &Mesh) -> Result<()> {
     check_triangles(mesh.triangles().len())?;
+    let diagonal = diagonal_of(mesh);
+    let thickness =
+        |moments: &SurfaceMoments| moments.principal_axes().values.map(|variance| variance.max(0.0).sqrt() / diagonal);
+    let some = SurfaceMoments::of_triangles(mesh, mesh.triangles().len().div_ceil(FEW_TRIANGLES));
+    if is_usual(diagonal) && thickness(&some)[0] > CLEARLY_THICK {
+        return Ok(());
+    }
     let moments = SurfaceMoments::of(mesh);
     check_area(moments.area)?;
-    let eigen = moments.principal_axes();
-    let diagonal = check_diagonal(mesh)?;
-    let [thin, middle, _] = eigen.values.map(|v| v.max(0.0).sqrt() / diagonal);
+    check_diagonal(diagonal)?;
+    let [thin, middle, _] = thickness(&moments);
     let degenerate = |found: String, remedy: &str| {
         Err(Error::new(ErrorCode::DegenerateMesh, "mesh", found, "a surface around a volume", remedy.to_owned()))
     };
@@ -137,10 +149,15 @@ pub struct SurfaceMoments {
 impl SurfaceMoments {
     /// The moments of a mesh's surface, integrated exactly. All zero for a mesh without area.
     pub fn of(mesh: &Mesh) -> Self {
+        Self::of_triangles(mesh, 1)
+    }
+
+    /// The moments of every `step`-th triangle.
+    fn of_triangles(mesh: &Mesh, step: usize) -> Self {
         // Relative to a vertex: second moments about a distant origin would lose the precision of the covariance.
         let origin = mesh.positions().first().map_or(DVec3::ZERO, |p| p.as_dvec3());
         let (mut area, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
-        for &triangle in mesh.triangles() {
+        for &triangle in mesh.triangles().iter().step_by(step.max(1)) {
             let [a, b, c] = corners(mesh, triangle).map(|p| p - origin);
             let weight = area_of([a, b, c]);
             let sum = a + b + c;
@@ -190,13 +207,20 @@ fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// The diagonal of the bounding box of the triangles, if it is within [`DIAGONALS`]; unused vertices are ignored.
-fn check_diagonal(mesh: &Mesh) -> Result<f64> {
-    let used = mesh.without_unused_vertices();
-    let Bounds { min, max } = Bounds::of(used.as_ref().unwrap_or(mesh).positions()).unwrap_or(Bounds::NOTHING);
-    let diagonal = (max.as_dvec3() - min.as_dvec3()).length();
-    if (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal) {
-        return Ok(diagonal);
+/// The diagonal of the bounding box of the triangles; unused vertices are ignored.
+fn diagonal_of(mesh: &Mesh) -> f64 {
+    let of_triangle = |triangle: &[u32; 3]| Bounds::of_triangle(&mesh.corners(*triangle));
+    let Bounds { min, max } = mesh.triangles().iter().map(of_triangle).fold(Bounds::NOTHING, Bounds::union);
+    (max.as_dvec3() - min.as_dvec3()).length()
+}
+
+fn is_usual(diagonal: f64) -> bool {
+    (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal)
+}
+
+fn check_diagonal(diagonal: f64) -> Result<()> {
+    if is_usual(diagonal) {
+        return Ok(());
     }
     Err(Error::new(
         ErrorCode::DegenerateMesh,

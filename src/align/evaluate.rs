@@ -5,9 +5,9 @@ use serde::Serialize;
 use super::warnings;
 use crate::error::Result;
 use crate::evidence::Evidence;
-use crate::evidence::clouds::Sampling;
 use crate::evidence::extents::{Extents, initial_scale};
 use crate::evidence::observation::Observation;
+use crate::evidence::sample::{MEASURED, Sampling};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::layout::LayoutErrors;
@@ -35,6 +35,9 @@ options! {
         max_observed_points: u32 = 20_000, Count(32..=1_000_000);
         /// Number of points sampled on the mesh surface.
         surface_samples: u32 = 10_000, Count(100..=1_000_000);
+        /// Number of points, evenly spread over those of each side, from which distances and normals are measured. By
+        /// default, the means are within about half a per cent of those from all: 1 000 000 measures from every point.
+        measured_points: u32 = MEASURED as u32, Count(32..=1_000_000);
     }
 }
 
@@ -120,6 +123,7 @@ pub fn evaluate_prepared(
         &Sampling {
             max_points: options.max_observed_points as usize,
             surface_samples: options.surface_samples as usize,
+            measured: options.measured_points as usize,
             seed: u64::from(options.seed),
         },
     )?;

@@ -46,7 +46,8 @@ impl Setup {
 
     fn new(preset: Preset, seed: u32, points: [u32; 2], metrics: bool) -> Self {
         let [max_points, surface_samples] = points.map(|count| count as usize);
-        Self { preset, seed, sampling: Sampling { max_points, surface_samples, seed: u64::from(seed) }, metrics }
+        let sampling = Sampling { max_points, surface_samples, seed: u64::from(seed), ..Sampling::default() };
+        Self { preset, seed, sampling, metrics }
     }
 }
 
@@ -92,7 +93,7 @@ pub(super) fn score(
     if !setup.metrics {
         return Ok(None);
     }
-    let (evidence, _) = clouds.evidence(Normals::Some, stages);
+    let (evidence, _) = clouds.evidence(Normals::Measured, stages);
     stages.enter(Stage::Metrics);
     metrics::score(observation, mesh, &solution.camera_from_mesh, evidence).map(Some)
 }

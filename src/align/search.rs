@@ -28,7 +28,7 @@ use crate::precise::verdict::conclusion;
 use crate::precise::verdict::conclusion::Certainty;
 use crate::precise::verdict::confidence::certainty_of_relief;
 use crate::precise::verdict::stretch::stretch;
-use crate::progress::{Host, Stopwatch};
+use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
 
 /// The options, validated, and the settings that follow from them.
@@ -107,9 +107,13 @@ impl<'a> Search<'a> {
         host: &'a mut dyn Host,
         pauses: &'a Pauses,
     ) -> Result<Self> {
-        let stages = Stopwatch::new(host, precise::PLAN);
+        let mut stages = Stopwatch::new(host, precise::PLAN);
+        stages.enter(Stage::Inspect);
         mesh.check()?;
-        if request.efforts.first().is_some_and(|settings| settings.is_long(1)) && mesh.has_one_form() {
+        let is_long = |settings: &&SearchSettings| settings.is_long(1);
+        if let Some(settings) = request.efforts.first().filter(is_long)
+            && mesh.has_one_form(&settings.grids)
+        {
             pauses.ask_for_help().await;
         }
         pauses.here().await;
@@ -137,7 +141,7 @@ impl<'a> Search<'a> {
         let mut clouds = Clouds::new(self.observation, self.mesh.mesh(), &setup.sampling, &mut self.stages)?;
         self.pauses.here().await;
         if setup.metrics {
-            clouds.evidence(Normals::Some, &mut self.stages);
+            clouds.evidence(Normals::Measured, &mut self.stages);
             self.pauses.here().await;
         }
         Ok(clouds)
@@ -156,7 +160,7 @@ impl<'a> Search<'a> {
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            if settings.is_long(1) && mesh.has_one_form() {
+            if settings.is_long(1) && mesh.has_one_form(&settings.grids) {
                 pauses.ask_for_help().await;
             }
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;

@@ -41,17 +41,12 @@ const FEW_ZEROS: f64 = 1e-3;
 /// Warnings about depth and mask.
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let (width, height) = (observation.mask().width(), observation.mask().height());
-    let mut mask_pixels = 0_usize;
     // Allocated once: it may be a large image.
-    let mut depths = Vec::with_capacity(observation.mask().data().iter().filter(|&&m| m != 0).count());
-    let (mut in_border, mut first, mut last) = (0_usize, [usize::MAX; 2], [0; 2]);
-    for (i, (&m, &z)) in observation.mask().data().iter().zip(observation.depth().data()).enumerate() {
-        if m == 0 {
-            continue;
-        }
-        let (u, v) = (i % width, i / width);
-        mask_pixels += 1;
-        (first, last) = ([first[0].min(u), first[1].min(v)], [last[0].max(u), last[1].max(v)]);
+    let mask_pixels = observation.pixels().count();
+    let mut depths = Vec::with_capacity(mask_pixels);
+    let mut in_border = 0_usize;
+    for i in observation.pixels() {
+        let (u, v, z) = (i % width, i / width, observation.depth().data()[i]);
         in_border += usize::from(u == 0 || v == 0 || u + 1 == width || v + 1 == height);
         if z > 0.0 {
             depths.push(z);
@@ -74,7 +69,7 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
                 ),
             });
         }
-        let pixels = [0, 1].map(|axis| (last[axis] - first[axis]) as f64);
+        let pixels = observation.bounds().map(|[first, last]| (last - first) as f64);
         let camera = observation.camera();
         let size = f64::from(median) * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt();
         let is_plausible = size < LARGE_M && f64::from(median) > NEAR_M;
@@ -150,9 +145,11 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
 
 /// Whether depths are those of a map that was normalised: some, but few, are at 0, and the largest is at the end of the range.
 fn looks_normalised(depth: &[f32]) -> bool {
-    let zeros = depth.iter().filter(|z| **z <= 0.0).count();
-    let most = depth.iter().fold(0.0, |most: f32, z| most.max(*z));
-    zeros > 0 && zeros as f64 <= FEW_ZEROS * depth.len() as f64 && FULL_RANGE_M.contains(&most)
+    // Depths are not negative: their bits are in the same order, and compared several at once.
+    let (zeros, most) = (depth.iter().map(|z| z.to_bits()))
+        .fold((0_u32, 0_u32), |(zeros, most), z| (zeros + u32::from(z == 0), most.max(z)));
+    let has_few = zeros > 0 && f64::from(zeros) <= FEW_ZEROS * depth.len() as f64;
+    has_few && FULL_RANGE_M.contains(&f32::from_bits(most))
 }
 
 /// The share of the steps of the depth out of the mask that go towards the camera; `None` if there are few steps.
@@ -161,7 +158,8 @@ fn steps_towards_camera(observation: &Observation, mask_pixels: usize) -> Option
     let width = observation.mask().width();
     let across = (ACROSS * (mask_pixels as f64).sqrt()) as usize + 1;
     let [mut pairs, mut nearer, mut farther] = [0.0; 3];
-    for i in 0..mask.len() {
+    let [columns, rows] = observation.bounds().map(|[low, high]| low.saturating_sub(across)..=high);
+    for i in rows.flat_map(|v| columns.clone().map(move |u| v * width + u)) {
         let aside = if i % width + across < width { i + across } else { mask.len() };
         for j in [aside, i + across * width] {
             let Some((other, other_depth)) = mask.get(j).zip(depth.get(j)) else { continue };

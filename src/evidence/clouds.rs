@@ -16,6 +16,7 @@ pub struct Clouds {
     extents: [Extents; 2],
     evidence: Option<Evidence>,
     counts: [usize; 2],
+    measured: usize,
 }
 
 impl Clouds {
@@ -39,6 +40,7 @@ impl Clouds {
             counts: [observed.len(), reconstructed.len()],
             clouds: Some([observed, reconstructed]),
             evidence: None,
+            measured: sampling.measured,
         })
     }
 
@@ -60,8 +62,8 @@ impl Clouds {
 
     /// The clouds with at least these normals, and the extents.
     pub fn evidence(&mut self, normals: Normals, stages: &mut Stopwatch<'_>) -> (&Evidence, [&Extents; 2]) {
-        let Self { clouds, extents, evidence, .. } = self;
-        let has_enough = |known: &Evidence| known.normals == Normals::All || normals == Normals::Some;
+        let Self { clouds, extents, evidence, measured, .. } = self;
+        let has_enough = |known: &Evidence| known.normals == Normals::All || normals == Normals::Measured;
         let known = match evidence.take() {
             Some(known) if has_enough(&known) => known,
             known => {
@@ -70,7 +72,7 @@ impl Clouds {
                     Some(known) => known.with_normals(normals),
                     None => {
                         let [observed, reconstructed] = clouds.take().unwrap_or_default();
-                        Evidence::new(observed, reconstructed, normals)
+                        Evidence::new(observed, reconstructed, normals, *measured)
                     }
                 }
             }

@@ -14,24 +14,22 @@ pub mod sample;
 
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
+use crate::geometry::curve::along_curve;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::sample_surface;
-use normals::{Neighborhood, Orientation, estimate_some_normals};
+use normals::{Estimation, Neighborhood, Orientation};
 use observation::Observation;
 use sample::Sampling;
 
 /// Neighbours for the normal estimation of observed points.
 pub const NORMAL_NEIGHBORS: usize = 30;
 
-/// Number of normals, about, from which on more would not change the first three digits of a mean over them.
-const ENOUGH_NORMALS: usize = 4096;
-
 /// The observed points that have a normal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Normals {
-    /// Enough for metrics.
-    Some,
+    /// Those from which metrics measure.
+    Measured,
     /// All.
     All,
 }
@@ -43,6 +41,9 @@ pub struct Evidence {
     pub observed: Cloud,
     /// The points with a normal.
     pub normals: Normals,
+    /// The points of each cloud from which metrics measure, evenly spread, in an order in which those that follow each other
+    /// are close.
+    pub measured: [Vec<u32>; 2],
     /// The search tree over P_obs.
     pub tree: KdTree,
     /// P_rec: points on the surface of the mesh (mesh frame), with normals.
@@ -50,22 +51,30 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// The evidence of two clouds. Estimates the normals of the observed points from [`NORMAL_NEIGHBORS`] neighbours.
-    pub fn new(observed: Cloud, reconstructed: Cloud, normals: Normals) -> Self {
+    /// The evidence of two clouds, with the normals that are needed, estimated from [`NORMAL_NEIGHBORS`] neighbours.
+    pub fn new(observed: Cloud, reconstructed: Cloud, normals: Normals, measured: usize) -> Self {
         let tree = KdTree::new(&observed.points);
-        Self { observed, normals: Normals::Some, tree, reconstructed }.with_normals(normals)
+        let step = |cloud: &Cloud| cloud.len().div_ceil(measured).max(1);
+        let of_surface = along_curve(reconstructed.points.iter().copied());
+        let measured = [
+            tree.indices().step_by(step(&observed)).collect(),
+            of_surface.into_iter().step_by(step(&reconstructed)).collect(),
+        ];
+        Self { observed, normals: Normals::Measured, measured, tree, reconstructed }.with_normals(normals)
     }
 
-    /// The evidence with the normals that are needed.
     fn with_normals(mut self, normals: Normals) -> Self {
         let points = &self.observed.points;
-        let stride = match normals {
-            Normals::Some => points.len().div_ceil(ENOUGH_NORMALS).max(1),
-            Normals::All => 1,
-        };
         let neighborhood = Neighborhood::nearest(NORMAL_NEIGHBORS);
-        let estimated = estimate_some_normals(points, &self.tree, neighborhood, Orientation::TowardsCamera, stride);
-        self.observed.normals = estimated;
+        let mut estimation = Estimation::new(points, &self.tree, neighborhood, Orientation::TowardsCamera);
+        match normals {
+            Normals::All => self.tree.groups().for_each(|group| estimation.add(group)),
+            Normals::Measured => {
+                let measured = self.measured[0].iter().filter_map(|&index| Some((*points.get(index as usize)?, index)));
+                measured.for_each(|point| estimation.add(&[point]));
+            }
+        }
+        self.observed.normals = estimation.normals;
         Self { normals, ..self }
     }
 
@@ -75,6 +84,7 @@ impl Evidence {
     /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh) for a mesh without area.
     pub fn of(observation: &Observation, mesh: &Mesh, options: &Sampling) -> Result<Self> {
         let reconstructed = sample_surface(mesh, options.surface_samples, options.seed)?;
-        Ok(Self::new(observation.cloud(options.max_points, options.seed), reconstructed, Normals::Some))
+        let observed = observation.cloud(options.max_points, options.seed);
+        Ok(Self::new(observed, reconstructed, Normals::Measured, options.measured))
     }
 }

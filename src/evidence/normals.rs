@@ -39,27 +39,7 @@ pub enum Orientation {
     AwayFrom(Vec3),
 }
 
-/// Unit normals of `points` by principal component analysis of their neighbours (Hoppe et al. 1992, §3.2): the
-/// eigenvector of the smallest eigenvalue of the covariance. The zero vector if there are fewer than three
-/// neighbours or all are collinear, and for all but about one in `stride` points. `tree` is the search tree over the same
-/// points.
-pub fn estimate_some_normals(
-    points: &[Vec3],
-    tree: &KdTree,
-    neighborhood: Neighborhood,
-    orientation: Orientation,
-    stride: usize,
-) -> Vec<Vec3> {
-    let mut estimation = Estimation::new(points, tree, neighborhood, orientation);
-    for (number, group) in (1..).zip(tree.groups()) {
-        if number % stride == 0 {
-            estimation.add(group);
-        }
-    }
-    estimation.normals
-}
-
-/// [`estimate_some_normals`] of all points, with pauses.
+/// The [`Estimation`] of all points, with pauses.
 pub async fn paused_normals(
     points: &[Vec3],
     tree: &KdTree,
@@ -75,23 +55,27 @@ pub async fn paused_normals(
     estimation.normals
 }
 
-/// The normals of some points so far.
-struct Estimation<'a> {
+/// Unit normals of points by principal component analysis of their neighbours (Hoppe et al. 1992, §3.2): the
+/// eigenvector of the smallest eigenvalue of the covariance.
+pub struct Estimation<'a> {
     points: &'a [Vec3],
     search: GroupSearch<'a>,
     orientation: Orientation,
-    normals: Vec<Vec3>,
+    /// The normals so far: zero for the others, and for points with fewer than three neighbours, or with neighbours that
+    /// are collinear.
+    pub normals: Vec<Vec3>,
 }
 
 impl<'a> Estimation<'a> {
-    fn new(points: &'a [Vec3], tree: &'a KdTree, neighborhood: Neighborhood, orientation: Orientation) -> Self {
+    /// No normals so far. `tree` is the search tree over the points.
+    pub fn new(points: &'a [Vec3], tree: &'a KdTree, neighborhood: Neighborhood, orientation: Orientation) -> Self {
         let Neighborhood { max_neighbors, radius } = neighborhood;
         let search = GroupSearch::new(tree, points, max_neighbors, radius);
         Self { points, search, orientation, normals: vec![Vec3::ZERO; points.len()] }
     }
 
-    /// Estimates the normals of a group.
-    fn add(&mut self, group: &[(Vec3, u32)]) {
+    /// Estimates the normals of points that are close to each other.
+    pub fn add(&mut self, group: &[(Vec3, u32)]) {
         let Self { points, search, orientation, normals } = self;
         search.visit(group, &mut |index, neighbors| {
             let Some((&point, slot)) = points.get(index as usize).zip(normals.get_mut(index as usize)) else { return };

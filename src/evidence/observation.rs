@@ -35,6 +35,7 @@ pub const MAX_PIXELS: usize = 1 << 24;
 pub struct Observation {
     depth: DepthMap,
     mask: Mask,
+    bounds: [[usize; 2]; 2],
     camera: Pinhole,
     photo: Option<Arc<Photo>>,
     others: Option<Arc<Mask>>,
@@ -53,7 +54,8 @@ impl Observation {
         check_pixels(&depth)?;
         camera.check_field_of_view(depth.width(), depth.height())?;
         depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
-        let observation = Self { depth, mask, camera, photo: None, others: None, relief_deviation: 0.0 };
+        let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0);
+        let observation = Self { depth, mask, bounds, camera, photo: None, others: None, relief_deviation: 0.0 };
         observation.check_readings()?;
         Ok(observation)
     }
@@ -114,6 +116,11 @@ impl Observation {
         &self.mask
     }
 
+    /// The box of the mask: first and last column, first and last row.
+    pub fn bounds(&self) -> [[usize; 2]; 2] {
+        self.bounds
+    }
+
     /// The intrinsics.
     pub fn camera(&self) -> Pinhole {
         self.camera
@@ -135,14 +142,19 @@ impl Observation {
         Cloud::from_points(random.one_of_each_run(n, max_points).map(|k| back_project(readings[k])).collect())
     }
 
+    /// The indices of the pixels of the mask, row-major.
+    pub fn pixels(&self) -> impl Iterator<Item = usize> {
+        let (mask, width, [[left, right], [top, bottom]]) = (self.mask.data(), self.mask.width(), self.bounds);
+        (top..=bottom).flat_map(move |v| v * width + left..=v * width + right).filter(|i| mask[*i] != 0)
+    }
+
     /// Index and depth of each reading inside the mask, row-major.
     fn readings(&self) -> impl Iterator<Item = (usize, f32)> {
-        let pixels = self.depth.data().iter().zip(self.mask.data()).enumerate();
-        pixels.filter(|&(_, (&z, &m))| z > 0.0 && m != 0).map(|(i, (&z, _))| (i, z))
+        self.pixels().map(|i| (i, self.depth.data()[i])).filter(|(_, z)| *z > 0.0)
     }
 
     fn check_readings(&self) -> Result<()> {
-        let mask_pixels = self.mask.data().iter().filter(|&&m| m != 0).count();
+        let mask_pixels = self.pixels().count();
         if mask_pixels == 0 {
             return Err(Error::new(
                 ErrorCode::EmptyMask,
@@ -152,7 +164,11 @@ impl Observation {
                 "Check the instance or class value of the mask, and that it was not inverted or lost in resizing.",
             ));
         }
-        let count = self.readings().count();
+        let (mut count, mut range) = (0, [f32::MAX, 0.0f32]);
+        for (_, z) in self.readings() {
+            (count, range) = (count + 1, [range[0].min(z), range[1].max(z)]);
+        }
+        let [nearest, farthest] = range;
         if count == 0 {
             return Err(Error::new(
                 ErrorCode::NoDepthInMask,
@@ -171,7 +187,6 @@ impl Observation {
                 "Use a larger image of the object, or a depth source with fewer holes.",
             ));
         }
-        let nearest = self.readings().fold(f32::MAX, |nearest, (_, z)| nearest.min(z));
         if nearest > FARTHEST_M {
             return Err(Error::new(
                 ErrorCode::NoDepthInMask,
@@ -181,17 +196,15 @@ impl Observation {
                 "Check the unit of the depth, and that it was read with the right byte order.",
             ));
         }
-        let sides = bounds_of(self.mask.data(), self.mask.width(), |m| *m != 0).map(|[low, high]| high + 1 - low);
+        let sides = self.bounds.map(|[low, high]| high + 1 - low);
         if sides[0].min(sides[1]) < MIN_SIDE {
             return Err(degenerate_mask(format!("a line of {} × {} pixels", sides[0], sides[1])));
         }
-        let mut depths = self.readings().map(|(_, z)| z);
-        let first = depths.next().unwrap_or_default();
-        if depths.all(|z| z == first) {
+        if nearest == farthest {
             return Err(Error::new(
                 ErrorCode::FlatDepth,
                 "depth",
-                format!("{} m in all {count} readings of the mask", number(f64::from(first))),
+                format!("{} m in all {count} readings of the mask", number(f64::from(nearest))),
                 "depths that vary over the object",
                 "A constant is a placeholder, not a measurement: pass the depth map itself.",
             ));

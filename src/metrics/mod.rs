@@ -22,12 +22,12 @@ use crate::evidence::Evidence;
 use crate::evidence::clouds::Sampling;
 use crate::evidence::observation::Observation;
 use crate::geometry::decimate::decimate;
-use crate::geometry::image::{DepthMap, Mask, Window, bounds_of};
+use crate::geometry::image::{DepthMap, Mask, Window};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rasteriser::Rasteriser;
 use crate::geometry::similarity::Similarity;
 use silhouette::boundary_tolerance_px;
-use surface::{Mean, surface_agreement};
+use surface::{Drawn, Mean, surface_agreement};
 
 /// Triangles above which surfaces are searched on a decimated mesh, above which it is rendered as well, and the number of
 /// triangles that it then has.
@@ -93,12 +93,13 @@ pub fn score(
     evidence: &Evidence,
 ) -> Result<Metrics> {
     check_transform(camera_from_mesh)?;
-    let agreement = surface_agreement(evidence, &searchable(mesh), camera_from_mesh);
-
     let image = [observation.mask().width(), observation.mask().height()];
-    let part = Window::of_bounds(bounds_of(observation.mask().data(), image[0], |m| *m != 0));
+    let part = Window::of_bounds(observation.bounds());
     let mut rasteriser = Rasteriser::new();
-    let window = rasteriser.render_depth_around(&drawable(mesh), camera_from_mesh, &observation.camera(), image, part);
+    let window = rasteriser.render_around(&drawable(mesh), camera_from_mesh, &observation.camera(), image, part);
+    let drawn =
+        Drawn { depth: rasteriser.depth(), triangles: rasteriser.triangles(), window, camera: observation.camera() };
+    let agreement = surface_agreement(evidence, &searchable(mesh), camera_from_mesh, &drawn);
     // All else is empty in both images.
     let (depth, mask) = (observation.depth().window(&window), observation.mask().window(&window));
     let mut silhouette = Mask::filled(window.size[0], window.size[1], 0);

@@ -26,10 +26,11 @@ use crate::progress::Stage;
 
 /// Progress at the start of each stage, 0 to 1; from profiles of real cases.
 pub const PLAN: &[(Stage, f64)] = &[
-    (Stage::Observe, 0.0),
-    (Stage::Sample, 0.01),
-    (Stage::Normals, 0.02),
-    (Stage::Prepare, 0.15),
+    (Stage::Inspect, 0.0),
+    (Stage::Observe, 0.05),
+    (Stage::Sample, 0.06),
+    (Stage::Normals, 0.07),
+    (Stage::Prepare, 0.12),
     (Stage::Search, 0.2),
     (Stage::Metrics, 0.85),
 ];

@@ -107,7 +107,7 @@ impl Request {
                 let share = efforts::share(effort, efforts.len());
                 let before = core::mem::take(&mut searched);
                 unusable.clone_from(&self.unusable);
-                if settings.is_long(observed.clone().count()) && mesh.has_one_form() {
+                if settings.is_long(observed.clone().count()) && mesh.has_one_form(&settings.grids) {
                     pauses.ask_for_help().await;
                 }
                 for (index, observation) in self.observations.iter().enumerate() {

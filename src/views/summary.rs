@@ -80,6 +80,7 @@ impl Summary {
             max_points: options.max_observed_points as usize,
             surface_samples: options.surface_samples as usize,
             seed: u64::from(options.seed),
+            ..Sampling::default()
         };
         let mut views = Vec::with_capacity(self.views.len());
         for (view, observation) in self.views.iter().zip(observations) {

@@ -82,16 +82,16 @@ pub fn alignments_have_these_bits() {
     let request = Request::new(quick()).unwrap();
     let (scan, paper) = (shapes::observe(&shapes::body(), 1.0), PaperOptions::default());
     check(&[
-        ("by shape", 0x0e74_7931_99aa_a196, of(Ok(solve(&AlignOptions::default())))),
-        ("noise and an occluder", 0x829f_a9eb_7ac3_88c0, of(align(&noisy(), &body(), &quick(), &mut Silent))),
-        ("a pose, bounds and up", 0x1129_145e_1419_1d94, of(Ok(solve(&given)))),
-        ("a large image", 0x464b_dbc0_36d9_7973, of(align(&large, &body(), &quick(), &mut Silent))),
-        ("a doubtful pose", 0x1e83_0e31_2442_41eb, of(align(&seen, &carton(), &quick(), &mut Silent))),
-        ("an inner shell", 0x913d_5a76_b5f0_e4bb, of(align(&seen, &hollow, &quick(), &mut Silent))),
-        ("proportions", 0xecd4_5731_65b2_891d, of(Ok(solve(&stretched)))),
-        ("a symmetric mesh", 0xad1d_b263_6716_680b, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
-        ("colour", 0x7af6_30bd_e1c2_78e2, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
-        ("paper", 0x4e9a_56cd_0d1b_f854, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
+        ("by shape", 0x0c85_b439_6fca_619b, of(Ok(solve(&AlignOptions::default())))),
+        ("noise and an occluder", 0xe321_c820_af1a_f5f9, of(align(&noisy(), &body(), &quick(), &mut Silent))),
+        ("a pose, bounds and up", 0x1c06_c718_c4e2_4fcd, of(Ok(solve(&given)))),
+        ("a large image", 0x963c_f3e6_1928_5883, of(align(&large, &body(), &quick(), &mut Silent))),
+        ("a doubtful pose", 0x6214_b925_c9f5_82c6, of(align(&seen, &carton(), &quick(), &mut Silent))),
+        ("an inner shell", 0x6b2a_6eb7_e7da_63b6, of(align(&seen, &hollow, &quick(), &mut Silent))),
+        ("proportions", 0xb530_256c_cf95_ca4a, of(Ok(solve(&stretched)))),
+        ("a symmetric mesh", 0x3beb_2e56_4cde_83a1, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
+        ("colour", 0xfeda_d360_8325_09af, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
+        ("paper", 0x03b9_60f6_bee1_e2f0, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
     ]);
 }
 
@@ -106,8 +106,8 @@ pub fn errors_have_these_bits() {
     let symmetries = symmetry_transformations(&[], &[]).unwrap();
     let model = BopModel { mesh: &mesh, diameter_m: 0.2, symmetries: &symmetries };
     check(&[
-        ("evaluate", 0x1233_256e_8832_7beb, of(evaluate(&seen, &mesh, &pose, &options))),
-        ("evaluate, a lemon", 0x0200_8605_1caa_3594, of(evaluate(&observe(&lemon, &truth()), &lemon, &pose, &options))),
+        ("evaluate", 0xd152_3fcd_7e4a_019e, of(evaluate(&seen, &mesh, &pose, &options))),
+        ("evaluate, a lemon", 0xa2b5_0f94_6d7f_e4bf, of(evaluate(&observe(&lemon, &truth()), &lemon, &pose, &options))),
         ("BOP", 0x58fe_20fb_4029_9ea1, of(bop_errors(&model, seen.depth(), &seen.camera(), &[pose], &[truth()]))),
     ]);
 }
@@ -157,7 +157,7 @@ pub fn scenes_views_and_videos_have_these_bits() {
     let wide = PreparedMesh::new(mapped(&body(), |p| p * Vec3::new(1.06, 0.97, 0.97)));
     let stretched = ViewsOptions { proportions: Proportions::Full, ..crate::views::options() };
     check(&[
-        ("alignScene", 0x32d0_1ec4_047b_86a8, of(align_scene(&scene::scene_of(&scene, &[], true), &mut Silent))),
+        ("alignScene", 0x555d_ded0_36f6_1b48, of(align_scene(&scene::scene_of(&scene, &[], true), &mut Silent))),
         ("alignViews", 0x4d0f_8511_9db6_a689, of(views(seen, &PreparedMesh::borrowed(&body())))),
         ("alignViews, proportions", 0xa36f_a858_9243_18a3, of(align_views(around, &wide, &stretched, &mut Silent))),
         ("alignViews, unknown cameras and colour", 0x4cb2_ce1d_888c_8363, of(views(printed, &printed_mesh()))),

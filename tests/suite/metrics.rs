@@ -42,6 +42,30 @@ fn the_true_pose_is_perfect() {
 }
 
 #[wasm_bindgen_test]
+fn means_over_a_sample_are_those_over_all_points() {
+    // A noisy sensor, a true and a wrong pose: outliers at the outline count as they do in the full means.
+    let mesh = mapped(&ellipsoid(Vec3::new(0.5, 0.8, 1.0), 48), |p| p + Vec3::new(3.0, -2.0, 1.0) * 0.1);
+    let camera = Pinhole::new(800.0, 840.0, 320.0, 232.0).unwrap();
+    let clean = rendered(&mesh, &pose(), camera, [4 * WIDTH, 4 * HEIGHT], |z| if z > 0.0 { z } else { 2.0 });
+    let random = core::cell::RefCell::new(Random::new(3, 77));
+    let noisy = with_depth(&clean, |_, z| z + 0.004 * (random.borrow_mut().uniform() as f32 - 0.5)).unwrap();
+    let wrong = Similarity { translation: pose().translation + Vector3::new(0.004, -0.003, 0.006), ..pose() };
+    for (name, pose) in [("true", pose()), ("wrong", wrong)] {
+        let of = |measured| evaluate(&noisy, &mesh, &pose, &Sampling { measured, ..Sampling::default() }).unwrap();
+        let (some, all) = (of(Sampling::default().measured), of(usize::MAX));
+        for (what, metric) in [
+            ("chamfer", (|m: &Metrics| m.chamfer_mm) as fn(&Metrics) -> Option<f64>),
+            ("uni_chamfer", |m| m.uni_chamfer_mm),
+            ("fitness", |m| m.fitness),
+            ("normals", |m| m.normal_consistency),
+        ] {
+            let ratio = metric(&some).unwrap() / metric(&all).unwrap();
+            assert!((ratio - 1.0).abs() < 0.005, "{name}, {what}: {ratio}");
+        }
+    }
+}
+
+#[wasm_bindgen_test]
 fn a_pose_out_of_sight_gives_null_or_zero() {
     let mesh = sphere(0.5, 16);
     let observation = observe(&mesh, 0.0);

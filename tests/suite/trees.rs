@@ -1,5 +1,6 @@
 //! The kd-tree and the tree of triangles against brute force.
 
+use sim3align::geometry::curve::along_curve;
 use sim3align::geometry::kd_tree::{KdTree, Neighbor};
 use sim3align::geometry::triangle_tree::TriangleTree;
 
@@ -145,4 +146,50 @@ fn points_of_a_surface_are_those_of_an_exhaustive_search() {
             assert!((f64::from(found.point.distance(query)) - expected).abs() < 3e-5 * (1.0 + expected), "{context}");
         }
     }
+}
+
+#[wasm_bindgen_test]
+fn a_tree_of_many_triangles_finds_what_trees_of_its_parts_find() {
+    const COUNT: usize = 17_000;
+    let mut random = Random::new(5, 911);
+    let mesh = triangles(&mut random, COUNT);
+    let tree = TriangleTree::new(&mesh);
+    let parts = mesh.triangles().chunks(COUNT / 3).map(|part| TriangleTree::new(&mesh.of_triangles(part)));
+    let parts: Vec<TriangleTree> = parts.collect();
+    for q in 0..60 {
+        let query = Vec3::from_array([0; 3].map(|_| (random.uniform() as f32 * 2.0 - 1.0) * [0.1, 1.0, 30.0][q % 3]));
+        let nearest = parts.iter().filter_map(|part| part.nearest(query));
+        let expected = nearest.map(|found| found.distance_squared).fold(f32::INFINITY, f32::min);
+        assert_eq!(tree.nearest(query).unwrap().distance_squared, expected, "query {q}");
+        // Whatever triangle a search begins with.
+        let near = |_| Some(random_index(q, COUNT));
+        tree.nearest_of_each_from(
+            1,
+            |_| query,
+            near,
+            |_, found| {
+                assert_eq!(found.unwrap().distance_squared, expected, "query {q}");
+            },
+        );
+    }
+}
+
+fn random_index(q: usize, count: usize) -> u32 {
+    (q * 7919 % (count + 10)) as u32
+}
+
+#[wasm_bindgen_test]
+fn an_eighth_of_the_curve_is_an_octant() {
+    let grid = |i: u32| Vec3::new((i % 8) as f32, (i / 8 % 8) as f32, (i / 64) as f32);
+    let order = along_curve((0..512).map(grid));
+    let mut sorted = order.clone();
+    sorted.sort_unstable();
+    assert!(sorted.into_iter().eq(0..512));
+    for (count, side) in [(64, 3.0), (8, 1.0)] {
+        for part in order.chunks(count) {
+            let of = |pick: fn(Vec3, Vec3) -> Vec3| part.iter().map(|i| grid(*i)).reduce(pick).unwrap();
+            assert_eq!(of(Vec3::max) - of(Vec3::min), Vec3::splat(side));
+        }
+    }
+    assert_eq!(along_curve([Vec3::ONE; 3].into_iter()), [0, 1, 2]);
 }

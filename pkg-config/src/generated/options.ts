@@ -88,6 +88,7 @@ export const EVALUATE_DEFAULTS = {
   seed: 0,
   maxObservedPoints: 20000,
   surfaceSamples: 10000,
+  measuredPoints: 2048,
 } as const satisfies EvaluateOptions;
 
 /** Defaults of `register`. */
@@ -448,6 +449,15 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track"
     seed,
     { ...maxObservedPoints, summary: "Upper bound on the depth readings used" },
     { ...surfaceSamples, summary: "Number of points sampled on the mesh surface" },
+    {
+      name: "measuredPoints",
+      kind: "integer",
+      min: 32,
+      max: 1000000,
+      isNullable: false,
+      default: 2048,
+      summary: "Number of points, evenly spread over those of each side, from which distances and normals are measured",
+    },
   ],
   register: [
     {

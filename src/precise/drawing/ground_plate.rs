@@ -20,6 +20,8 @@ const THICKNESS: f64 = 0.06;
 const WITHIN: f64 = 0.98;
 /// Least flat area of a plate relative to its rectangle: a disc with one face has 0.79, with a hole below the object less.
 const FULL: f64 = 0.5;
+/// Flat area of the decimated mesh, relative to that of a plate, below which the mesh has no plate: decimation rounds edges.
+const ROUGHLY: f64 = 0.7;
 /// Ratio of the extents of plate and object in all directions along the plate, and height of the object relative to the plate.
 const LARGER: f64 = 1.2;
 const HEIGHT: f64 = 0.1;
@@ -32,12 +34,25 @@ const BINS: usize = 64;
 /// The interval of no point.
 const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
-/// A mesh without its ground plate; `None` if it has nothing that looks like one.
-pub fn without_plate(mesh: &Mesh) -> Option<Trimmed> {
-    let faces: Vec<Face> = mesh.triangles().iter().map(|triangle| Face::of(mesh, *triangle)).collect();
-    let normal = flattest(&faces)?;
+/// A mesh without its ground plate; `None` if it has nothing that looks like one. `decimated` is the mesh with fewer triangles,
+/// which show that most meshes have too little surface in one direction.
+pub fn without_plate(mesh: &Mesh, decimated: &Mesh) -> Option<Trimmed> {
+    let few = faces_of(decimated);
+    let level = Level::of(decimated, &few)?;
+    if level.flat_area(&few) < ROUGHLY * level.least_area() {
+        return None;
+    }
+    let faces = faces_of(mesh);
+    let level = Level::of(mesh, &faces)?;
+    if level.flat_area(&faces) < level.least_area() {
+        return None;
+    }
     let parts = MeshParts::of(mesh);
-    [normal, -normal].into_iter().find_map(|down| below(mesh, &faces, parts.as_ref(), down))
+    [1.0, -1.0].into_iter().find_map(|sign| level.plate(sign, mesh, &faces, parts.as_ref()))
+}
+
+fn faces_of(mesh: &Mesh) -> Vec<Face> {
+    mesh.triangles().iter().map(|triangle| Face::of(mesh, *triangle)).collect()
 }
 
 /// A triangle: its corners, its unit normal and its area.
@@ -79,78 +94,99 @@ fn flattest(faces: &[Face]) -> Option<DVec3> {
     normal.is_finite().then_some(normal)
 }
 
-/// The mesh without a plate at its end in the direction `down`.
-fn below(mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>, down: DVec3) -> Option<Trimmed> {
-    let side = down.any_orthonormal_vector();
-    let directions: [DVec3; DIRECTIONS] = core::array::from_fn(|k| {
-        let (sin, cos) = sin_cos(core::f64::consts::PI * k as f64 / DIRECTIONS as f64);
-        side * cos + down.cross(side) * sin
-    });
-    let all = |direction: DVec3| {
-        let along = |[low, high]: [f64; 2], p: &Vec3| {
-            let at = p.as_dvec3().dot(direction);
-            [low.min(at), high.max(at)]
-        };
-        mesh.positions().iter().fold(NOWHERE, along)
-    };
-    let lengths = directions.map(|direction| length(all(direction)));
-    // A plate is as long as all of the mesh.
-    let least = FULL * lengths[0] * lengths[DIRECTIONS / 2];
-    if faces.iter().filter(|face| face.is_flat(down)).map(|face| face.area).sum::<f64>() < least {
-        return None;
-    }
-    let [_, lowest] = all(down);
-    let longest = lengths.into_iter().fold(0.0, f64::max);
-    let most = THICKNESS * longest;
-    // The flat area by the height of its upper side.
-    let mut flat = [0.0; BINS];
-    for face in faces.iter().filter(|face| face.is_flat(down)) {
-        let height = BINS as f64 * (lowest - face.along(down)[0]) / most;
-        if height < BINS as f64 {
-            flat[height as usize] += face.area;
-        }
-    }
-    let total: f64 = flat.iter().sum();
-    let mut sum = 0.0;
-    let filled = flat.iter().position(|area| {
-        sum += area;
-        sum >= WITHIN * total
-    })?;
-    let top = lowest - most * (filled + 2) as f64 / BINS as f64;
-    let low: Vec<bool> = faces.iter().map(|face| face.along(down)[0] >= top).collect();
+/// The direction that most of a mesh faces, and others across it.
+struct Level {
+    normal: DVec3,
+    directions: [DVec3; DIRECTIONS],
+    /// Lengths of the mesh in these directions.
+    lengths: [f64; DIRECTIONS],
+}
 
-    // A part of its own, where there is one: the bottom of the object is low, too.
-    let mut is_apart = vec![true; parts.map_or(0, |parts| parts.parts.len())];
-    let of_triangle = parts.map_or(&[][..], |parts| &parts.of_triangle);
-    for (low, &part) in low.iter().zip(of_triangle) {
-        is_apart[part as usize] &= low;
+impl Level {
+    fn of(mesh: &Mesh, faces: &[Face]) -> Option<Self> {
+        let normal = flattest(faces)?;
+        let side = normal.any_orthonormal_vector();
+        let directions = core::array::from_fn(|k| {
+            let (sin, cos) = sin_cos(core::f64::consts::PI * k as f64 / DIRECTIONS as f64);
+            side * cos + normal.cross(side) * sin
+        });
+        let lengths = directions.map(|direction| length(extent(mesh, direction)));
+        Some(Self { normal, directions, lengths })
     }
-    let apart: Vec<bool> = of_triangle.iter().map(|&part| is_apart[part as usize]).collect();
-    [apart, low].iter().find_map(|is_plate| {
-        if is_plate.is_empty() {
-            return None;
-        }
-        let [mut object, mut plate, mut flat] = [0.0; 3];
-        for (face, is_plate) in faces.iter().zip(is_plate) {
-            if *is_plate {
-                plate += face.area;
-                flat += if face.is_flat(down) { face.area } else { 0.0 };
-            } else {
-                object += face.area;
+
+    /// Area of the faces that are flat.
+    fn flat_area(&self, faces: &[Face]) -> f64 {
+        faces.iter().filter(|face| face.is_flat(self.normal)).map(|face| face.area).sum()
+    }
+
+    /// The least flat area of a plate, which is as long as all of the mesh.
+    fn least_area(&self) -> f64 {
+        FULL * self.lengths[0] * self.lengths[DIRECTIONS / 2]
+    }
+
+    /// The mesh without a plate at its end in the direction of the normal, or in the opposite one.
+    fn plate(&self, sign: f64, mesh: &Mesh, faces: &[Face], parts: Option<&MeshParts>) -> Option<Trimmed> {
+        let (down, least, lengths, directions) = (self.normal * sign, self.least_area(), self.lengths, self.directions);
+        let [_, lowest] = extent(mesh, down);
+        let longest = lengths.into_iter().fold(0.0, f64::max);
+        let most = THICKNESS * longest;
+        // The flat area by the height of its upper side.
+        let mut flat = [0.0; BINS];
+        for face in faces.iter().filter(|face| face.is_flat(down)) {
+            let height = BINS as f64 * (lowest - face.along(down)[0]) / most;
+            if height < BINS as f64 {
+                flat[height as usize] += face.area;
             }
         }
-        for direction in directions {
-            let [own, other] = [true, false].map(|side| interval(faces, is_plate, side, direction));
-            if !(own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)) {
+        let total: f64 = flat.iter().sum();
+        let mut sum = 0.0;
+        let filled = flat.iter().position(|area| {
+            sum += area;
+            sum >= WITHIN * total
+        })?;
+        let top = lowest - most * (filled + 2) as f64 / BINS as f64;
+        let low: Vec<bool> = faces.iter().map(|face| face.along(down)[0] >= top).collect();
+
+        // A part of its own, where there is one: the bottom of the object is low, too.
+        let mut is_apart = vec![true; parts.map_or(0, |parts| parts.parts.len())];
+        let part_of = || parts.into_iter().flat_map(|parts| mesh.triangles().iter().map(|t| parts.of_triangle(*t)));
+        low.iter().zip(part_of()).for_each(|(low, part)| is_apart[part] &= low);
+        let apart: Vec<bool> = part_of().map(|part| is_apart[part]).collect();
+        [apart, low].iter().find_map(|is_plate| {
+            if is_plate.is_empty() {
                 return None;
             }
-        }
-        let height = top - interval(faces, is_plate, false, down)[0];
-        let share = plate / (plate + object);
-        let is_ground = flat >= least && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
-        let left_out = LeftOut { ground: share, ..LeftOut::default() };
-        is_ground.then(|| Trimmed::split(mesh, left_out, &|triangle| is_plate[triangle])).flatten()
-    })
+            let [mut object, mut plate, mut flat] = [0.0; 3];
+            for (face, is_plate) in faces.iter().zip(is_plate) {
+                if *is_plate {
+                    plate += face.area;
+                    flat += if face.is_flat(down) { face.area } else { 0.0 };
+                } else {
+                    object += face.area;
+                }
+            }
+            for direction in directions {
+                let [own, other] = [true, false].map(|side| interval(faces, is_plate, side, direction));
+                if !(own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)) {
+                    return None;
+                }
+            }
+            let height = top - interval(faces, is_plate, false, down)[0];
+            let share = plate / (plate + object);
+            let is_ground = flat >= least && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
+            let left_out = LeftOut { ground: share, ..LeftOut::default() };
+            is_ground.then(|| Trimmed::split(mesh, left_out, &|triangle| is_plate[triangle])).flatten()
+        })
+    }
+}
+
+/// The interval of a mesh along a direction.
+fn extent(mesh: &Mesh, direction: DVec3) -> [f64; 2] {
+    let along = |[low, high]: [f64; 2], p: &Vec3| {
+        let at = p.as_dvec3().dot(direction);
+        [low.min(at), high.max(at)]
+    };
+    mesh.positions().iter().fold(NOWHERE, along)
 }
 
 /// The interval along a direction of the triangles for which `of` is `side`.

@@ -91,10 +91,11 @@ impl<'a> PreparedMesh<'a> {
         self.trimmed().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
     }
 
-    /// The mesh without what looks like a ground plate; `None` if it has nothing of the kind.
-    pub fn without_plate(&self) -> Option<&PreparedMesh<'static>> {
+    /// The mesh without what looks like a ground plate; `None` if it has nothing of the kind. The first call decides, by the
+    /// mesh decimated for `grids`.
+    pub fn without_plate(&self, grids: &[Grid; GRIDS]) -> Option<&PreparedMesh<'static>> {
         let of = || {
-            let trimmed = without_plate(self.mesh())?;
+            let trimmed = without_plate(self.mesh(), &self.pyramid(grids)?.fine)?;
             let left_out = LeftOut { ground: trimmed.left_out.ground, ..self.left_out() };
             let whole = Cow::Owned(self.whole.as_ref().clone());
             let trimmed = OnceCell::from(Some(Trimmed { left_out, ..trimmed }));
@@ -107,8 +108,8 @@ impl<'a> PreparedMesh<'a> {
 
     /// Whether every image of the mesh is compared with the same part of it. Helpers of a search, which have the mesh as it was
     /// given, take part only then.
-    pub fn has_one_form(&self) -> bool {
-        self.left_out().ground == 0.0 && self.without_plate().is_none()
+    pub fn has_one_form(&self, grids: &[Grid; GRIDS]) -> bool {
+        self.left_out().ground == 0.0 && self.without_plate(grids).is_none()
     }
 
     /// Checks that the surface encloses a volume.

@@ -27,7 +27,7 @@ const HARMLESS_FLOATERS: f64 = 0.01;
 const HARMLESS_SHELLS: f64 = 0.03;
 /// Passes in which floaters are found: those far out make the cells of the first one large.
 const PASSES: usize = 3;
-/// Points spread over the surface, beside the corners of the triangles, by which parts are neighbours.
+/// Points spread over the surface, beside the corners of triangles larger than a cell, by which parts are neighbours.
 const POINTS: usize = 16_384;
 /// Images in which a part that is not hidden is seen, their width, and the distance of their camera in diagonals.
 const VIEWS: usize = 48;
@@ -75,7 +75,7 @@ impl Trimmed {
                 *share += part.area / all;
             }
         }
-        Self::split(mesh, left_out, &|triangle| is_left_out[parts.of_triangle[triangle] as usize])
+        Self::split(mesh, left_out, &|triangle| is_left_out[parts.of_triangle(mesh.triangles()[triangle])])
     }
 
     /// A mesh without these of its triangles; `None` if they are none, or the rest is no shape.
@@ -108,6 +108,9 @@ fn floaters(mesh: &Mesh, parts: &MeshParts) -> Option<Vec<bool>> {
     let mut is_floater = vec![false; parts.parts.len()];
     let all = sum(parts, &|_| true);
     let is_small = |part: &MeshPart| part.area <= FLOATER_AREA * all.area;
+    if !parts.parts.iter().any(is_small) {
+        return Some(is_floater);
+    }
     for _ in 0..PASSES {
         let cluster = clusters(mesh, parts, &is_floater)?;
         let count = cluster.iter().max().map_or(0, |most| *most + 1);
@@ -151,14 +154,16 @@ fn clusters(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<u
         let known = &mut part_in[(at[2] * size[1] + at[1]) * size[0] + at[0]];
         if *known == u32::MAX {
             *known = part;
+        } else if *known != part {
+            sets.join(*known, part);
         }
-        sets.join(*known, part);
     };
-    for (triangle, &part) in mesh.triangles().iter().zip(&parts.of_triangle) {
-        mesh.corners(*triangle).into_iter().for_each(|corner| occupy(corner, part));
+    mesh.positions().iter().zip(&parts.of_vertex).for_each(|(position, part)| occupy(*position, *part));
+    let is_long = |triangle: &[u32; 3]| Bounds::of_triangle(&mesh.corners(*triangle)).extent().max_element() > cell;
+    if mesh.triangles().iter().any(is_long) {
+        let part_of = |triangle: usize| parts.of_triangle(mesh.triangles()[triangle]) as u32;
+        each_surface_sample(mesh, POINTS, 0, &mut |sample| occupy(sample.point, part_of(sample.triangle))).ok()?;
     }
-    each_surface_sample(mesh, POINTS, 0, &mut |sample| occupy(sample.point, parts.of_triangle[sample.triangle]))
-        .ok()?;
     let at = |[x, y, z]: [usize; 3]| part_in[(z * size[1] + y) * size[0] + x];
     for z in 0..size[2] {
         for y in 0..size[1] {
@@ -204,7 +209,7 @@ fn shells(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<boo
         };
         rasteriser.render(mesh, &camera_from_mesh, &camera, WIDTH, WIDTH);
         for &triangle in rasteriser.triangles().iter().filter(|triangle| **triangle != NO_TRIANGLE) {
-            is_hidden[parts.of_triangle[triangle as usize] as usize] = false;
+            is_hidden[parts.of_triangle(mesh.triangles()[triangle as usize])] = false;
         }
         if !rasteriser.is_complete() || is_harmless(&is_hidden) {
             return None;

@@ -158,11 +158,11 @@ impl Crop {
     fn new(observation: &Observation) -> Self {
         let (mask, depth) = (observation.mask(), observation.depth());
         let size = [mask.width(), mask.height()];
-        let bounds = bounds_of(mask.data(), size[0], |m| *m != 0);
+        let bounds = observation.bounds();
         let margin = (MARGIN * longer_side(&bounds)) as usize + 4;
         let origin = bounds.map(|[low, _]| low.saturating_sub(margin));
         let end = [0, 1].map(|axis| (bounds[axis][1] + margin + 1).min(size[axis]));
-        let thinning = Thinning::of(mask, (end[0] - origin[0]) * (end[1] - origin[1]));
+        let thinning = Thinning::of(observation, (end[0] - origin[0]) * (end[1] - origin[1]));
         let end = [0, 1].map(|axis| end[axis].div_ceil(thinning.step).min(thinning.count(size[axis])));
         let origin = origin.map(|first| first / thinning.step);
         let [width, height] = [0, 1].map(|axis| end[axis].saturating_sub(origin[axis]));

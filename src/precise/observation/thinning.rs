@@ -1,6 +1,6 @@
 //! Thinning: the rows and columns of an image that are used.
 
-use crate::geometry::image::Mask;
+use crate::evidence::observation::Observation;
 use crate::geometry::pinhole::Pinhole;
 
 /// Number of mask pixels that are enough: 16 samples in each of the 7000 cells of the finest grid. Of a mask with four
@@ -20,9 +20,9 @@ pub struct Thinning {
 }
 
 impl Thinning {
-    /// The thinning for a mask with `around` pixels in and around it.
-    pub fn of(mask: &Mask, around: usize) -> Self {
-        let pixels = mask.data().iter().filter(|m| **m != 0).count();
+    /// The thinning for an observation with `around` pixels in and around it.
+    pub fn of(observation: &Observation, around: usize) -> Self {
+        let (mask, pixels) = (observation.mask(), observation.pixels().count());
         let of_step = |step: usize| Self { step, first: (step - 1) / 2 };
         let least = (1..).find(|step| around / (step * step) <= MAX_PIXELS).unwrap_or(1);
         let thinned = of_step((pixels / ENOUGH_PIXELS).isqrt().max(least));

@@ -18,7 +18,7 @@ pub async fn without_invented_plate<'m>(
     settings: &SearchSettings,
     pauses: &Pauses,
 ) -> &'m PreparedMesh<'m> {
-    let Some(object) = mesh.without_plate() else { return mesh };
+    let Some(object) = mesh.without_plate(&settings.grids) else { return mesh };
     let mut scores = [0.0f32; 2];
     for (mesh, score) in [mesh, object].into_iter().zip(&mut scores) {
         for view in views.clone() {

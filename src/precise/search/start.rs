@@ -177,10 +177,11 @@ pub fn prepared(
 /// [`DegenerateMesh`](ErrorCode::DegenerateMesh).
 pub fn prepare(mesh: &PreparedMesh<'_>) -> Result<()> {
     mesh.check()?;
-    for mesh in core::iter::once(mesh).chain(mesh.without_plate()) {
-        let first = Quality::default().efforts().first();
-        let pyramid = first.and_then(|&effort| mesh.pyramid(&SearchSettings::from(effort).grids));
-        pyramid.map(|pyramid| pyramid.equivalence(&Symmetry::Auto)).transpose()?;
+    if let Some(&first) = Quality::default().efforts().first() {
+        let SearchSettings { grids, .. } = first.into();
+        for mesh in core::iter::once(mesh).chain(mesh.without_plate(&grids)) {
+            mesh.pyramid(&grids).map(|pyramid| pyramid.equivalence(&Symmetry::Auto)).transpose()?;
+        }
     }
     Ok(())
 }

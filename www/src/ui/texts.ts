@@ -82,6 +82,7 @@ export const stageTitles: { readonly [S in Stage]: string } = {
   ransac: "RANSAC",
   filter: "Filtering",
   icp: "ICP",
+  inspect: "Inspecting the mesh",
   prepare: "Preparing",
   search: "Searching",
   refine: "Refining",
