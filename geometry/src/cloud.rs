@@ -53,15 +53,20 @@ impl Bounds {
     /// The smallest box around the points; `None` for no points.
     pub fn of(points: &[Vec3]) -> Option<Self> {
         let (&first, rest) = points.split_first()?;
-        Some(rest.iter().fold(Self { min: first, max: first }, |b, &p| Self { min: b.min.min(p), max: b.max.max(p) }))
+        Some(rest.iter().fold(Self { min: first, max: first }, |b, &p| b.union(Self { min: p, max: p })))
     }
 
     /// The empty box, the identity of [`Bounds::union`].
     pub const NOTHING: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The smallest box around both.
+    // `f32::min` and `f32::max` are function calls in WebAssembly.
     pub fn union(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+        let Self { min, max } = other;
+        Self {
+            min: Vec3::select(self.min.cmplt(min), self.min, min),
+            max: Vec3::select(self.max.cmpgt(max), self.max, max),
+        }
     }
 
     /// The squared distance of a point to the box, 0 inside. Never larger than that of the point to any point of the

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::cloud::Bounds;
 use super::order::{index_of, sort_from};
 
 /// Bits of a coordinate, and its largest value.
@@ -10,12 +11,12 @@ const MOST: f32 = ((1 << BITS) - 1) as f32;
 
 /// The indices of points along the curve of Morton ("A computer oriented geodetic data base", 1966), over the cube that
 /// contains them.
-pub fn along_curve(points: impl Iterator<Item = Vec3> + Clone) -> Vec<u32> {
-    let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-    let [min, max] = points.clone().fold(nothing, |[min, max], p| [min.min(p), max.max(p)]);
-    let scale = MOST / (max - min).max_element().max(f32::MIN_POSITIVE);
-    let key = |(index, point): (u32, Vec3)| {
-        let [x, y, z] = ((point - min) * scale).to_array().map(|cell| spread(cell as u32));
+#[inline(never)]
+pub fn along_curve(points: &[Vec3]) -> Vec<u32> {
+    let all = Bounds::of(points).unwrap_or(Bounds::NOTHING);
+    let scale = MOST / all.extent().max_element().max(f32::MIN_POSITIVE);
+    let key = |(index, point): (u32, &Vec3)| {
+        let [x, y, z] = ((*point - all.min) * scale).to_array().map(|cell| spread(cell as u32));
         u64::from(x << 2 | y << 1 | z) << 32 | u64::from(index)
     };
     let mut keys: Vec<u64> = (0..).zip(points).map(key).collect();

@@ -106,20 +106,7 @@ impl Rasteriser {
         height: usize,
     ) {
         let near = self.place(mesh, camera_from_mesh, camera);
-        self.draw::<true>(mesh, camera, near, Window::whole(width, height));
-    }
-
-    /// Like [`Rasteriser::render`], without the triangle image.
-    pub fn render_depth(
-        &mut self,
-        mesh: &Mesh,
-        camera_from_mesh: &Similarity,
-        camera: &Pinhole,
-        width: usize,
-        height: usize,
-    ) {
-        let near = self.place(mesh, camera_from_mesh, camera);
-        self.draw::<false>(mesh, camera, near, Window::whole(width, height));
+        self.draw(mesh, camera, near, Window::whole(width, height));
     }
 
     /// Like [`Rasteriser::render`], for the smallest window of the image that contains `part`, the whole mesh, and one
@@ -134,7 +121,7 @@ impl Rasteriser {
     ) -> Window {
         let near = self.place(mesh, camera_from_mesh, camera);
         let window = self.covered(image).map_or(part, |covered| part.union(covered)).grown(1, image);
-        self.draw::<true>(mesh, camera, near, window);
+        self.draw(mesh, camera, near, window);
         window
     }
 
@@ -150,10 +137,10 @@ impl Rasteriser {
         let near = self.place(mesh, camera_from_mesh, camera);
         let window = self.covered(image).unwrap_or_default();
         self.is_farthest = true;
-        self.draw::<false>(mesh, camera, near, window);
+        self.draw(mesh, camera, near, window);
         self.is_farthest = false;
         let farthest = self.depth.clone();
-        self.draw::<false>(mesh, camera, near, window);
+        self.draw(mesh, camera, near, window);
         (window, self.depth.iter().zip(farthest).map(|(nearest, farthest)| [*nearest, farthest]).collect())
     }
 
@@ -183,7 +170,6 @@ impl Rasteriser {
     }
 
     /// Triangle index per pixel, row-major; [`NO_TRIANGLE`] for uncovered pixels.
-    /// Empty after [`Rasteriser::render_depth`].
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
     }
@@ -211,14 +197,14 @@ impl Rasteriser {
     }
 
     /// Draws the placed mesh: its nearest surfaces.
-    fn draw<const TRIANGLES: bool>(&mut self, mesh: &Mesh, camera: &Pinhole, near: f64, window: Window) {
+    fn draw(&mut self, mesh: &Mesh, camera: &Pinhole, near: f64, window: Window) {
         self.window = window;
         let pixels = window.size[0] * window.size[1];
         let (order, nothing) = if self.is_farthest { (-1.0, f32::NEG_INFINITY) } else { (1.0, 0.0) };
         self.depth.clear();
         self.depth.resize(pixels, nothing);
         self.triangles.clear();
-        self.triangles.resize(if TRIANGLES { pixels } else { 0 }, NO_TRIANGLE);
+        self.triangles.resize(pixels, NO_TRIANGLE);
         let volume = ClipVolume::new(camera, near);
         self.visited = 0;
         for (id, triangle) in (0..).zip(mesh.triangles()) {
@@ -229,14 +215,14 @@ impl Rasteriser {
             let points = corners.map(|v| v.camera);
             if corners.iter().all(|v| v.placement == Placement::Inside) {
                 let plane = || InverseDepth::of(points, &points, camera);
-                self.fill::<TRIANGLES>(id, corners.map(|v| v.fixed), plane);
+                self.fill(id, corners.map(|v| v.fixed), plane);
             } else if corners.iter().all(|v| v.placement != Placement::Nowhere) {
                 let (polygon, count) = volume.clip(points);
                 let polygon = &polygon[..count];
                 let plane = || InverseDepth::of(points, polygon, camera);
                 for i in 2..count {
                     let fan = [polygon[0], polygon[i - 1], polygon[i]];
-                    self.fill::<TRIANGLES>(id, fan.map(|p| fixed(project(p, camera))), plane);
+                    self.fill(id, fan.map(|p| fixed(project(p, camera))), plane);
                 }
             }
         }
@@ -276,7 +262,7 @@ impl Rasteriser {
     }
 
     /// Fills one triangle on the sub-pixel grid.
-    fn fill<const TRIANGLES: bool>(&mut self, id: u32, corners: [[i32; 2]; 3], plane: impl Fn() -> InverseDepth) {
+    fn fill(&mut self, id: u32, corners: [[i32; 2]; 3], plane: impl Fn() -> InverseDepth) {
         let order = if self.is_farthest { -1.0 } else { 1.0 };
         let [a, mut b, mut c] = corners.map(|p| p.map(i64::from));
         // Pixels whose centres are inside the bounding box of the triangle.
@@ -321,9 +307,7 @@ impl Rasteriser {
                     let w = order * (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
                     if w > self.depth[i] {
                         self.depth[i] = w;
-                        if TRIANGLES {
-                            self.triangles[i] = id;
-                        }
+                        self.triangles[i] = id;
                     }
                 }
                 for k in 0..3 {

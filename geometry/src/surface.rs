@@ -75,7 +75,7 @@ pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn
         })
         .collect();
     check_area(total)?;
-    check_diagonal(diagonal_of(mesh))?;
+    check_diagonal(mesh)?;
     // The last triangle with area; rounding must not select one after it.
     let last = ends.partition_point(|&end| end < total).min(ends.len() - 1);
     let facing = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
@@ -106,17 +106,18 @@ pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn
 /// [`each_surface_sample`].
 pub fn check_shape(mesh: &Mesh) -> Result<()> {
     check_triangles(mesh.triangles().len())?;
+    // Unused vertices only make it larger, and the mesh thinner.
     let diagonal = diagonal_of(mesh);
-    let thickness =
-        |moments: &SurfaceMoments| moments.principal_axes().values.map(|variance| variance.max(0.0).sqrt() / diagonal);
+    let thickness = |moments: &SurfaceMoments, diagonal: f64| {
+        moments.principal_axes().values.map(|variance| variance.max(0.0).sqrt() / diagonal)
+    };
     let some = SurfaceMoments::of_triangles(mesh, mesh.triangles().len().div_ceil(FEW_TRIANGLES));
-    if is_usual(diagonal) && thickness(&some)[0] > CLEARLY_THICK {
+    if is_usual(diagonal) && thickness(&some, diagonal)[0] > CLEARLY_THICK {
         return Ok(());
     }
     let moments = SurfaceMoments::of(mesh);
     check_area(moments.area)?;
-    check_diagonal(diagonal)?;
-    let [thin, middle, _] = thickness(&moments);
+    let [thin, middle, _] = thickness(&moments, check_diagonal(mesh)?);
     let degenerate = |found: String, remedy: &str| {
         Err(Error::new(ErrorCode::DegenerateMesh, "mesh", found, "a surface around a volume", remedy.to_owned()))
     };
@@ -153,6 +154,7 @@ impl SurfaceMoments {
     }
 
     /// The moments of every `step`-th triangle.
+    #[inline(never)]
     fn of_triangles(mesh: &Mesh, step: usize) -> Self {
         // Relative to a vertex: second moments about a distant origin would lose the precision of the covariance.
         let origin = mesh.positions().first().map_or(DVec3::ZERO, |p| p.as_dvec3());
@@ -207,10 +209,9 @@ fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// The diagonal of the bounding box of the triangles; unused vertices are ignored.
+/// The diagonal of the bounding box.
 fn diagonal_of(mesh: &Mesh) -> f64 {
-    let of_triangle = |triangle: &[u32; 3]| Bounds::of_triangle(&mesh.corners(*triangle));
-    let Bounds { min, max } = mesh.triangles().iter().map(of_triangle).fold(Bounds::NOTHING, Bounds::union);
+    let Bounds { min, max } = Bounds::of(mesh.positions()).unwrap_or(Bounds::NOTHING);
     (max.as_dvec3() - min.as_dvec3()).length()
 }
 
@@ -218,9 +219,12 @@ fn is_usual(diagonal: f64) -> bool {
     (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal)
 }
 
-fn check_diagonal(diagonal: f64) -> Result<()> {
+/// Checks the diagonal of the bounding box; unused vertices are ignored.
+fn check_diagonal(mesh: &Mesh) -> Result<f64> {
+    let used = mesh.without_unused_vertices();
+    let diagonal = diagonal_of(used.as_ref().unwrap_or(mesh));
     if is_usual(diagonal) {
-        return Ok(());
+        return Ok(diagonal);
     }
     Err(Error::new(
         ErrorCode::DegenerateMesh,

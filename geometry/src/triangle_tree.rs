@@ -120,7 +120,10 @@ impl TriangleTree {
             centers.push(min * half + max * half);
         }
         let indices = match centers.len() {
-            MANY.. => along_curve(centers.iter().map(|center| Vec3::from_slice(center.as_array()))),
+            MANY.. => {
+                let centers: Vec<Vec3> = centers.iter().map(|center| Vec3::from_slice(center.as_array())).collect();
+                along_curve(&centers)
+            }
             count => {
                 let mut indices: Vec<u32> = (0..count as u32).collect();
                 arrange(&centers, &mut indices, &mut Vec::with_capacity(count));
@@ -174,37 +177,29 @@ impl TriangleTree {
 
     /// Calls `visit` with the index of each of `count` points and the nearest point of the surface to it. Where searches
     /// are costly, because most triangles overlap, it leaves points out, evenly over the list. Returns the cost: the number
-    /// of triangles and boxes visited.
+    /// of triangles and boxes visited. `query` gives a point and, where one is known, a triangle near to it.
+    // One instance for all callers.
+    #[inline(never)]
     pub fn nearest_of_each(
         &self,
         count: usize,
-        point: impl Fn(usize) -> Vec3,
-        visit: impl FnMut(usize, Option<SurfacePoint>),
-    ) -> usize {
-        self.nearest_of_each_from(count, point, |_| None, visit)
-    }
-
-    /// Like [`TriangleTree::nearest_of_each`], with a triangle near to each point, where one is known.
-    pub fn nearest_of_each_from(
-        &self,
-        count: usize,
-        point: impl Fn(usize) -> Vec3,
-        near: impl Fn(usize) -> Option<u32>,
-        mut visit: impl FnMut(usize, Option<SurfacePoint>),
+        query: &dyn Fn(usize) -> (Vec3, Option<u32>),
+        visit: &mut dyn FnMut(usize, Option<SurfacePoint>),
     ) -> usize {
         let mut slots = Vec::new();
         // Consecutive points are usually close to each other, so that each search starts at the previous result.
         let mut hint = Hint::default();
         let (mut index, mut step) = (0, 1);
         while index < count {
-            if let Some(triangle) = near(index) {
+            let (point, near) = query(index);
+            if let Some(triangle) = near {
                 if slots.is_empty() {
                     slots.resize(self.indices.len(), 0);
                     self.indices.iter().enumerate().for_each(|(slot, triangle)| slots[*triangle as usize] = slot);
                 }
                 hint.slot = slots.get(triangle as usize).copied().unwrap_or_default();
             }
-            visit(index, self.nearest_from(point(index), &mut hint));
+            visit(index, self.nearest_from(point, &mut hint));
             if hint.visits > MAX_VISITS * (index + count / 16) && MIN_POINTS * step < count {
                 step *= 2;
             }

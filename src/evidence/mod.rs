@@ -55,7 +55,7 @@ impl Evidence {
     pub fn new(observed: Cloud, reconstructed: Cloud, normals: Normals, measured: usize) -> Self {
         let tree = KdTree::new(&observed.points);
         let step = |cloud: &Cloud| cloud.len().div_ceil(measured).max(1);
-        let of_surface = along_curve(reconstructed.points.iter().copied());
+        let of_surface = along_curve(&reconstructed.points);
         let measured = [
             tree.indices().step_by(step(&observed)).collect(),
             of_surface.into_iter().step_by(step(&reconstructed)).collect(),

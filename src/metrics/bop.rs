@@ -279,7 +279,7 @@ impl Distances {
     ) -> Self {
         // The places where the toolkit's renderer evaluates depth.
         let sampled = Pinhole { cx: camera.cx - 0.5, cy: camera.cy - 0.5, ..*camera };
-        rasteriser.render_depth(mesh, pose, &sampled, depth.width(), depth.height());
+        rasteriser.render(mesh, pose, &sampled, depth.width(), depth.height());
         Self::along_rays(rasteriser.depth(), depth.width(), camera)
     }
 

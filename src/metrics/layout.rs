@@ -108,24 +108,20 @@ fn icp_rotation(comparison: &PoseComparison, diameter: f64) -> f64 {
         let landed: Vec<Vector3<f64>> = points.iter().map(|p| moved.apply(*p)).collect();
         let middle = landed.iter().sum::<Vector3<f64>>() / landed.len() as f64;
         let mut equations = NormalEquations::new();
-        visits += comparison.tree.nearest_of_each(
-            landed.len(),
-            |i| vec3(&landed[i]),
-            |i, nearest| {
-                let Some(nearest) = nearest else { return };
-                // In units of the diameter about the middle, so that rotation and translation are of one size.
-                let arm = (landed[i] - middle) / diameter;
-                let off = (landed[i] - vector3(nearest.point)) / diameter;
-                for k in 0..3 {
-                    let axis = Vector3::ith(k, 1.0);
-                    let lever = arm.cross(&axis);
-                    let mut jacobian = [0.0; PARAMETERS];
-                    jacobian[..3].copy_from_slice(lever.as_slice());
-                    jacobian[3 + k] = 1.0;
-                    equations.add(&jacobian, off[k], 1.0);
-                }
-            },
-        );
+        visits += comparison.tree.nearest_of_each(landed.len(), &|i| (vec3(&landed[i]), None), &mut |i, nearest| {
+            let Some(nearest) = nearest else { return };
+            // In units of the diameter about the middle, so that rotation and translation are of one size.
+            let arm = (landed[i] - middle) / diameter;
+            let off = (landed[i] - vector3(nearest.point)) / diameter;
+            for k in 0..3 {
+                let axis = Vector3::ith(k, 1.0);
+                let lever = arm.cross(&axis);
+                let mut jacobian = [0.0; PARAMETERS];
+                jacobian[..3].copy_from_slice(lever.as_slice());
+                jacobian[3 + k] = 1.0;
+                equations.add(&jacobian, off[k], 1.0);
+            }
+        });
         let Some([a, b, c, x, y, z, _]) = equations.solve(ICP_DAMPING) else { break };
         let rotation = exp_so3(Vector3::new(a, b, c)).to_rotation_matrix();
         let shift = Vector3::new(x, y, z) * diameter;

@@ -192,11 +192,11 @@ impl Finder {
         let sum = Cell::new(0.0);
         let turned = |i: usize| match sum.get() / count as f64 / self.diagonal > most {
             // Not a number is near nothing.
-            true => Vec3::NAN,
-            false => (turn * (self.samples[i * step].as_dvec3() - self.center) + self.center).as_vec3(),
+            true => (Vec3::NAN, None),
+            false => ((turn * (self.samples[i * step].as_dvec3() - self.center) + self.center).as_vec3(), None),
         };
         let mut distances = Vec::with_capacity(count);
-        self.tree.nearest_of_each(count, turned, |_, nearest| {
+        self.tree.nearest_of_each(count, &turned, &mut |_, nearest| {
             let distance = nearest.map_or(f32::INFINITY, |s| s.distance_squared.sqrt());
             sum.set(sum.get() + f64::from(distance));
             distances.push(distance);

@@ -108,8 +108,8 @@ impl PoseComparison {
     pub(super) fn mean_distance(&self, points: &Similarity, surface: &Similarity) -> Result<f64> {
         let mesh_from_camera = surface.inverse();
         let mut distance = Mean::default();
-        let query = |i: usize| vec3(&mesh_from_camera.apply(points.apply(vector3(self.samples[i]))));
-        self.tree.nearest_of_each(self.samples.len(), query, |_, nearest| {
+        let query = |i: usize| (vec3(&mesh_from_camera.apply(points.apply(vector3(self.samples[i])))), None);
+        self.tree.nearest_of_each(self.samples.len(), &query, &mut |_, nearest| {
             distance.add(nearest.map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt() * surface.scale));
         });
         distance.value().ok_or_else(|| {

@@ -61,9 +61,11 @@ pub fn surface_agreement(
     let mut consistency = Mean::default();
     let [mut distances, mut fitting] = [[Mean::default(); 2]; 2];
     // The query is in the mesh frame, where distances are 1/s of those in the camera frame.
-    let query = |i: usize| vec3(&mesh_from_camera.apply(vector3(points[queries[i] as usize])));
-    let near = |i: usize| drawn.triangle(points[queries[i] as usize]).filter(|_| is_close(queries[i]));
-    triangle_tree.nearest_of_each_from(queries.len(), query, near, |i, nearest| {
+    let query = |i: usize| {
+        let (index, point) = (queries[i], points[queries[i] as usize]);
+        (vec3(&mesh_from_camera.apply(vector3(point))), drawn.triangle(point).filter(|_| is_close(index)))
+    };
+    triangle_tree.nearest_of_each(queries.len(), &query, &mut |i, nearest| {
         let Some(nearest) = nearest else { return };
         let index = queries[i] as usize;
         let d = f64::from(nearest.distance_squared).sqrt() * camera_from_mesh.scale;

@@ -24,7 +24,7 @@ const NEXT: [f32; 2] = [1.0, 1.414];
 pub fn with_predicted_mask(mut frame: Frame, mesh: &Mesh, camera_from_mesh: &Similarity) -> Frame {
     let (width, height) = (frame.depth.width(), frame.depth.height());
     let mut rasteriser = Rasteriser::new();
-    rasteriser.render_depth(mesh, camera_from_mesh, &frame.camera, width, height);
+    rasteriser.render(mesh, camera_from_mesh, &frame.camera, width, height);
     let area = rasteriser.depth().iter().filter(|z| **z > 0.0).count() as f32;
     let growth = (GROWTH * area.sqrt()).clamp(GROWTH_PX[0], GROWTH_PX[1]);
     let grown = Grown::new(rasteriser.depth(), width, height);

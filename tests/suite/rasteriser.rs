@@ -144,7 +144,7 @@ fn edges_follow_the_top_left_rule() {
     let picture = |corners: &[[f32; 3]], size: usize| {
         let mut rasteriser = Rasteriser::new();
         let mesh = Mesh::from_flat(corners.as_flattened(), None).unwrap();
-        rasteriser.render_depth(&mesh, &Similarity::identity(), &camera, size, size);
+        rasteriser.render(&mesh, &Similarity::identity(), &camera, size, size);
         let row = |row: &[f32]| row.iter().map(|z| if *z > 0.0 { '#' } else { '.' }).collect::<String>();
         rasteriser.depth().chunks(size).map(row).collect::<Vec<_>>().join(" ")
     };
@@ -182,7 +182,7 @@ fn triangles_that_share_edges_cover_every_pixel_once() {
             for half in halves {
                 // All vertices stay, so that the near plane does.
                 let mesh = Mesh::new(positions.clone(), vec![half]).unwrap();
-                rasteriser.render_depth(&mesh, &Similarity::identity(), &camera, WIDTH, HEIGHT);
+                rasteriser.render(&mesh, &Similarity::identity(), &camera, WIDTH, HEIGHT);
                 hits.iter_mut().zip(rasteriser.depth()).for_each(|(hits, z)| *hits += i32::from(*z > 0.0));
             }
         }

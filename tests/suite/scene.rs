@@ -55,7 +55,7 @@ fn seen(things: &[Thing], boards: &[Thing]) -> (DepthMap, Vec<Mask>) {
     let mut owner = vec![0usize; depth.len()];
     let mut rasteriser = Rasteriser::new();
     for (k, thing) in things.iter().chain(boards).enumerate() {
-        rasteriser.render_depth(&thing.mesh, &view().compose(&thing.world_from_mesh), &camera, WIDTH, HEIGHT);
+        rasteriser.render(&thing.mesh, &view().compose(&thing.world_from_mesh), &camera, WIDTH, HEIGHT);
         for (i, z) in rasteriser.depth().iter().enumerate() {
             if *z > 0.0 && (depth[i] == 0.0 || *z < depth[i]) {
                 (depth[i], owner[i]) = (*z, k + 1);

@@ -106,7 +106,7 @@ pub fn rendered(
     depth: impl Fn(f32) -> f32,
 ) -> Observation {
     let mut rasteriser = Rasteriser::new();
-    rasteriser.render_depth(mesh, pose, &camera, width, height);
+    rasteriser.render(mesh, pose, &camera, width, height);
     let drawn = |u: usize, v: usize| rasteriser.depth()[v * width + u];
     view(camera, [width, height], |u, v| drawn(u, v) > 0.0, |u, v| depth(drawn(u, v))).unwrap()
 }

@@ -43,7 +43,7 @@ pub fn fragment(place: &Mesh, eye: DVec3, yaw: f64, pitch: f64, seed: u64) -> Re
         let size = if frame == 0 { 0.0 } else { 1.0 };
         let [x, y, z, tilt] = [0.1, 0.1, 0.04, 0.12].map(|sd| size * sd * normal(random));
         let pose = looking(eye + DVec3::new(x, y, z), yaw + aside, pitch + tilt)?;
-        rasteriser.render_depth(place, &pose.inverse(), &camera, WIDTH, HEIGHT);
+        rasteriser.render(place, &pose.inverse(), &camera, WIDTH, HEIGHT);
         let drift = Similarity {
             translation: Vector3::from_fn(|_, _| 0.006 * normal(random)),
             rotation: Rotation3::new(Vector3::from_fn(|_, _| 0.004 * normal(random))),
@@ -102,7 +102,7 @@ pub fn sweep(place: &Mesh, world_from_lidar: &Similarity, seed: u64) -> Result<V
     for side in 0..4 {
         let lidar_from_camera = looking(DVec3::ZERO, FRAC_PI_2 * f64::from(side), 0.0)?;
         let camera_from_world = world_from_lidar.compose(&lidar_from_camera).inverse();
-        rasteriser.render_depth(place, &camera_from_world, &camera, SIDE, SIDE);
+        rasteriser.render(place, &camera_from_world, &camera, SIDE, SIDE);
         for (step, beam) in (0..STEPS / 4).flat_map(|step| (0..BEAMS).map(move |beam| (step, beam))) {
             // To the right of the middle of the image, and up.
             let turn = FRAC_PI_2 * ((step as f64 + 0.5) / (STEPS / 4) as f64 - 0.5);

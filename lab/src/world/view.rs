@@ -90,7 +90,7 @@ impl View {
     /// z-depth of a mesh alone, 0 beside it.
     pub fn depth_of(&self, mesh: &Mesh) -> Vec<f32> {
         let mut rasteriser = Rasteriser::new();
-        rasteriser.render_depth(mesh, &self.camera_from_world, &self.camera, self.width, self.height);
+        rasteriser.render(mesh, &self.camera_from_world, &self.camera, self.width, self.height);
         rasteriser.depth().to_vec()
     }
 

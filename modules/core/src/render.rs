@@ -23,7 +23,7 @@ pub fn render_depth(view: &JsValue, transform: &JsValue) -> Result<Float32Array,
         let camera_from_mesh = transform::similarity(transform, "transform")?;
         let prepared = mesh::mesh_of(view)?;
         let mut rasteriser = Rasteriser::new();
-        rasteriser.render_depth(prepared.whole(), &camera_from_mesh, &camera, width, height);
+        rasteriser.render(prepared.whole(), &camera_from_mesh, &camera, width, height);
         Ok(Float32Array::from(rasteriser.depth()))
     };
     run().map_err(|error| to_js(&error))

@@ -159,7 +159,10 @@ fn clusters(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<u
         }
     };
     mesh.positions().iter().zip(&parts.of_vertex).for_each(|(position, part)| occupy(*position, *part));
-    let is_long = |triangle: &[u32; 3]| Bounds::of_triangle(&mesh.corners(*triangle)).extent().max_element() > cell;
+    let is_long = |triangle: &[u32; 3]| {
+        let [a, b, c] = mesh.corners(*triangle);
+        (b - a).length_squared().max((c - a).length_squared()) > cell * cell
+    };
     if mesh.triangles().iter().any(is_long) {
         let part_of = |triangle: usize| parts.of_triangle(mesh.triangles()[triangle]) as u32;
         each_surface_sample(mesh, POINTS, 0, &mut |sample| occupy(sample.point, part_of(sample.triangle))).ok()?;
