@@ -3,11 +3,13 @@ import { fileOf, isNoInput, namesOf, type Part, partOf } from "./case-names.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import { requiredBytes } from "./input/bytes.js";
+import { refersToFiles } from "./input/formats.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
 import { failure, Sim3AlignError } from "./values/error.js";
+import { isRecord } from "./values/kinds.js";
 import { naturally } from "./values/order.js";
-import { isRecord, record, withoutUndefined } from "./values/values.js";
+import { record, withoutUndefined } from "./values/values.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
@@ -159,11 +161,11 @@ export async function meshFile(
 ): Promise<MeshFile> {
   const format = /\.([^./\\]+)$/.exec(name)?.[1]?.toLowerCase() as MeshFormat | undefined;
   if (format === undefined || partOf(`mesh.${format}`) !== "mesh") return { bytes };
-  if (format !== "gltf" && format !== "obj") return { bytes, format };
+  if (!refersToFiles(name)) return { bytes, format };
   const resources: Record<string, Uint8Array> = {};
   const readers = await formats();
-  const namesIn = (file: Uint8Array) => readers.call((module) => module.externalResources(file));
-  const { shape, colors } = namesIn(bytes);
+  const resourcesOf = (file: Uint8Array) => readers.call((module) => module.externalResources(file));
+  const { shape, colors } = resourcesOf(bytes);
   for (const uri of shape) {
     const path = pathBelow(uri);
     if (path === undefined) throw outside(uri);
@@ -179,7 +181,7 @@ export async function meshFile(
     const file = await readOptional(uri);
     // The material libraries of an OBJ refer to textures.
     if (file === undefined || format === "gltf") continue;
-    for (const texture of namesIn(file).colors) await readOptional(texture);
+    for (const texture of resourcesOf(file).colors) await readOptional(texture);
   }
   return { bytes, format, resources };
 }

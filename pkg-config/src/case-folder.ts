@@ -13,6 +13,7 @@ import {
   type ReadCaseOptions,
 } from "./case-files.js";
 import { partOf } from "./case-names.js";
+import { refersToFiles } from "./input/formats.js";
 import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
 import { formatsModule } from "./modules/readers.js";
 import { failure, Sim3AlignError } from "./values/error.js";
@@ -129,8 +130,8 @@ export async function readMeshFile(path: string): Promise<MeshFile> {
 
 /** Paths of the files in a case folder; includes subfolders only if the mesh may refer to them. */
 async function pathsIn(folder: string): Promise<string[]> {
-  const names = await namesIn("case", folder, "a folder with depth, mask and mesh");
-  const refers = names.some((name) => partOf(name) === "mesh" && /\.(gltf|obj)$/i.test(name));
+  const names = await namesInFolder("case", folder, "a folder with depth, mask and mesh");
+  const refers = names.some((name) => partOf(name) === "mesh" && refersToFiles(name));
   return filesBelow(folder, "", refers ? LEVELS : 1);
 }
 
@@ -154,7 +155,7 @@ export async function filesBelow(root: string, folder: string, levels: number): 
  * @param argument the name of the folder in errors
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` if it cannot be read
  */
-export async function namesIn(argument: string, folder: string, expected: string): Promise<string[]> {
+export async function namesInFolder(argument: string, folder: string, expected: string): Promise<string[]> {
   return readdir(folder).catch((cause) => {
     throw unreadable(argument, folder, expected, cause);
   });

@@ -30,7 +30,8 @@ import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type { WasmSource } from "./types/platform.js";
 import { plainArgument } from "./values/border.js";
-import { isRecord, optionsOf } from "./values/values.js";
+import { isRecord } from "./values/kinds.js";
+import { optionsOf } from "./values/values.js";
 
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
@@ -77,8 +78,8 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
 }
 
 /**
- * Reads a depth map: a 16-bit grey PNG, a `.npy` array, or a file of a depth model: `.npz` (with the mask and the camera
- * in it), `.exr`, `.tiff` or `.pfm`. The latter load another module, `wasm/depth-files_bg.wasm` next to this script.
+ * Reads a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM), of an NPZ with the mask and the camera in it. The last four
+ * load another module, `wasm/depth-files_bg.wasm` next to this script.
  * @param options.depthScale metres per unit, above 0; by default integers are millimetres, and floats metres
  * @param options.integerDepthScale the same for integers only: the `depthScale` of a camera file
  * @param options.depthKind what the values are, `"metric"` by default; PNGs and arrays of 8 bits are read for the
@@ -92,8 +93,8 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
 }
 
 /**
- * Reads a mask from a PNG, a JPEG, a `.npy` array, or COCO RLE (as an object, or the bytes of a JSON file). The outline of a
- * mask with soft edges is at half of its range, that of logits at 0; in a map of labels, all are the object.
+ * Reads a mask file (PNG, NPY, COCO RLE or JPEG), or COCO RLE as an object. The outline of a mask with soft edges is at half of
+ * its range, that of logits at 0; in a map of labels, all are the object.
  * @returns row-major; 1 is the object
  * @throws {@link Sim3AlignError} for any other file
  */
@@ -105,7 +106,7 @@ export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskFromFi
 }
 
 /**
- * Reads a photo from a PNG, a JPEG or a WebP. The EXIF orientation is applied; alpha and colour profiles are ignored; a photo of
+ * Reads a photo file (PNG, JPEG or WebP). The EXIF orientation is applied; alpha and colour profiles are ignored; a photo of
  * more than two megapixels is reduced by a whole number.
  * @returns red, green and blue per pixel, row-major, sRGB-encoded
  * @throws {@link Sim3AlignError} for any other file
@@ -116,7 +117,7 @@ export async function readImage(file: EncodedBytes): Promise<PixelArray<Uint8Arr
 }
 
 /**
- * Reads the EXIF data of a PNG, a JPEG or a WebP. What they do not state, or what is damaged, is missing.
+ * Reads the EXIF data of a photo file (PNG, JPEG or WebP). What they do not state, or what is damaged, is missing.
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readExif(file: EncodedBytes): Promise<Exif> {
@@ -125,10 +126,9 @@ export async function readExif(file: EncodedBytes): Promise<Exif> {
 }
 
 /**
- * Reads a GLB, glTF, OBJ, PLY or STL file. Merges all parts, and applies node transforms. Of 3D Gaussians (a PLY of 3D
- * Gaussian Splatting, or a `.splat`), another module, `wasm/splats_bg.wasm` next to this script, makes a closed mesh of the
- * surface that the opaque ones show. The result can be
- * passed as `mesh`, with its colours.
+ * Reads a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT). Merges all parts, and applies node transforms. Of 3D Gaussians (in a
+ * PLY or SPLAT file), another module, `wasm/splats_bg.wasm` next to this script, makes a closed mesh of the surface that the
+ * opaque ones show. The result can be passed as `mesh`, with its colours.
  * @param options.format by default detected from the content
  * @param options.resources the files that the mesh file refers to, by name: see {@link externalResources}
  * @param options.colors whether to read the colours, `true` by default
@@ -181,11 +181,11 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 }
 
 /**
- * Reads a case folder: `depth.npy|png|npz|exr|tiff|tif|pfm`, `mask.png|npy|json|jpg|jpeg`,
- * `mesh.glb|gltf|obj|ply|stl|splat`, and optionally a camera (`camera.json`, `scene_camera.json`, `cam_K.txt`, `K.txt`,
- * `intrinsics.txt`, …, as JSON, text or YAML), a photo (`rgb`, `image`, `photo`, `color` or `colour`, as
- * `.png|jpg|jpeg|webp`), and `gt.json`. Upper and lower case are the same. Intrinsics of the colour camera are passed over
- * beside those of the depth camera (`intrinsic_depth.txt`). What is not read is in `unread`.
+ * Reads a case folder: a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM) called `depth`, a mask file (PNG, NPY, COCO RLE
+ * or JPEG) called `mask`, a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT) called `mesh`, and optionally a camera file (JSON,
+ * text or YAML: `camera`, `K`, `intrinsics`, …), a photo file (PNG, JPEG or WebP: `rgb`, `image`, …), and `gt.json`. The guide
+ * on frames lists all names. Upper and lower case are the same. Intrinsics of the colour camera are passed over beside those of
+ * the depth camera (`intrinsic_depth.txt`). What is not read is in `unread`.
  * @param files by name, relative to the folder
  *
  * @example

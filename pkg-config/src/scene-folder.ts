@@ -3,7 +3,7 @@ import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { BopScene, bopModels, isBopScene, readBopModel } from "./bop/dataset.js";
 import type { ReadCaseOptions } from "./case-files.js";
-import { type FoundFiles, filesBelow, filesIn, loadFormats, namesIn } from "./case-folder.js";
+import { type FoundFiles, filesBelow, filesIn, loadFormats, namesInFolder } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -31,7 +31,7 @@ export interface SceneSettings extends ReadCaseOptions {
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readSceneFolder(folder: string, settings: SceneSettings = {}): Promise<SceneOnDisk> {
-  const names = await namesIn("scene", folder, "a folder with depth and objects");
+  const names = await namesInFolder("scene", folder, "a folder with depth and objects");
   return isBopScene(names) ? readBop(folder, settings) : readFolder(folder, settings);
 }
 

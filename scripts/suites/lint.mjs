@@ -6,6 +6,7 @@ import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
 import { setUp, wasmTarget } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
+import { checkTables } from "../lib/tables.mjs";
 import { checkCodes, checkDocuments } from "./documents.mjs";
 
 /** Crates of the workspace besides the aligner. */
@@ -33,6 +34,7 @@ export async function lint() {
         /** @type {const} */ ([`types of ${folder}/`, () => run(node, [tsc, "--noEmit", "--project", folder])]),
     ),
     ["links and commands of the documents", checkDocuments],
+    ["formats in documents and comments", checkTables],
     ["codes of the guide on errors", checkCodes],
     ["commands start before any package is installed", checkCommands],
     ["all Rust tests are in test programs", checkTests],

@@ -4,7 +4,8 @@ import { onAbort } from "../concurrency/on-abort.js";
 import type { LazyModules, WasmModules } from "../modules/modules.js";
 import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "../types/platform.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { checkNames, isKind, record, withoutUndefined } from "../values/values.js";
+import { isKind } from "../values/kinds.js";
+import { checkNames, record, withoutUndefined } from "../values/values.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {

@@ -31,8 +31,9 @@ import type {
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "../types/results.js";
 import { checkAttached, plainArgument } from "../values/border.js";
 import { disposed, failure, internalError, Sim3AlignError } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
 import { copied } from "../values/transfer.js";
-import { isRecord, withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/values.js";
 import { alignAll } from "./align-all.js";
 import {
   type AlignerOptions,

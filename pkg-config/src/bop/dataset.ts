@@ -2,7 +2,7 @@
 import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { fileNotFound } from "../case-files.js";
-import { namesIn, read, readMeshFile } from "../case-folder.js";
+import { namesInFolder, read, readMeshFile } from "../case-folder.js";
 import type { BopPose } from "../conventions/bop.js";
 import { isNumber, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { MeshFile } from "../input/types.js";
@@ -72,7 +72,7 @@ export class BopScene {
 
   /** @throws {@link Sim3AlignError} `FILE_NOT_FOUND` without `scene_camera.json`, `CORRUPT_FILE` */
   static async open(folder: string): Promise<BopScene> {
-    const names = await namesIn("scene", folder, "a folder with scene_camera.json and depth");
+    const names = await namesInFolder("scene", folder, "a folder with scene_camera.json and depth");
     const lists = async <T>(name: string, convert: (entry: Record<string, unknown>) => T) => {
       const json = names.includes(name) ? parsedJson(name, await read(name, join(folder, name))) : {};
       const images = new Map<string, T[]>();
@@ -224,7 +224,7 @@ export class BopDataset {
    */
   async targets(file?: string): Promise<BopTarget[]> {
     const folder = join(this.#folder, this.split);
-    const names = await namesIn("split", folder, "the folder of a split, such as test");
+    const names = await namesInFolder("split", folder, "the folder of a split, such as test");
     const isTest = this.split.split("_")[0] === "test";
     const hasTargets = isTest && (await readdir(this.#folder)).includes(paths.targets);
     const path = file ?? (hasTargets ? join(this.#folder, paths.targets) : undefined);

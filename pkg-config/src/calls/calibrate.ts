@@ -2,7 +2,7 @@
 
 import { intrinsics } from "../input/camera.js";
 import type { CoreFrame } from "../input/core-input.js";
-import { isAffineInvariant } from "../input/types.js";
+import { isAffineInvariant } from "../input/formats.js";
 import type { Calibrated } from "../modules/exports.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";

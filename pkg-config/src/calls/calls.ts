@@ -3,6 +3,7 @@
 import type { CorrectedFrame } from "../generated/types.js";
 import type { CoreInput, CoreView } from "../input/core-input.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
+import { fromOrigin, toOrigin } from "../input/origin.js";
 import { resolveFrame, resolveInput, resolveViews, withMesh } from "../input/resolve.js";
 import type { AlignInput, FrameInput, MeshInput, ViewsInput } from "../input/types.js";
 import type {
@@ -26,8 +27,8 @@ import type {
 } from "../types/results.js";
 import { sourcesOf, withNotes } from "../types/results.js";
 import { failure, isOfInput } from "../values/error.js";
-import { fromOrigin, toOrigin } from "../values/origin.js";
-import { isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
+import { isTypedArray } from "../values/kinds.js";
+import { withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
 import { comparedWithMirror } from "./mirror.js";

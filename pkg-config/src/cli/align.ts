@@ -1,5 +1,5 @@
 /** `sim3align align`: reads cases, aligns them, and prints the results. */
-import { basename, join } from "node:path";
+import { basename, extname, join } from "node:path";
 import {
   type CaseOnDisk,
   frameNames,
@@ -23,6 +23,7 @@ import {
   type Sim3,
   type ViewsOptions,
 } from "../index.js";
+import { extensionsOf } from "../input/formats.js";
 import { withoutUndefined } from "../values/values.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
 import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
@@ -107,7 +108,8 @@ function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOp
 }
 
 /** Whether an argument names a photo; folders may be named like one. */
-const isPhoto = (path: string) => /\.(jpe?g|png|webp)$/i.test(path) && !statOf(path)?.isDirectory();
+const isPhoto = (path: string) =>
+  extensionsOf("photo").includes(extname(path).slice(1).toLowerCase()) && !statOf(path)?.isDirectory();
 
 function hasTruth(folder: string): boolean {
   const name = namesIn(folder).find((name) => partOf(name) === "truth");

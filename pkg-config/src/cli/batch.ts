@@ -8,11 +8,12 @@ import { type Entry, errorsIn, failureEntry, intakeLines, isFailure } from "./en
 import { UsageError } from "./files.js";
 import type { Flags } from "./flags.js";
 import { Output } from "./output.js";
+import { OutputError } from "./output-file.js";
 import { Pictures } from "./pictures.js";
 import { BatchProgress, StatusLine } from "./progress.js";
 import type { CaseKey, RecordHeader } from "./record.js";
 import type { EntrySink } from "./result-files.js";
-import { OutputError, type RunFiles } from "./run-files.js";
+import type { RunFiles } from "./run-files.js";
 import { note, type Style } from "./terminal.js";
 
 /** The context in which a command works on a case. */

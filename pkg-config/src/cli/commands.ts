@@ -1,5 +1,6 @@
 /** The table of commands. Parsing, help, and the lists of inputs and outputs of a run follow from it. */
 import { OPTIONS } from "../index.js";
+import { formatsText } from "../input/formats.js";
 import { alignJob, paper, precise, shared } from "./align.js";
 import { type Job, runBatch } from "./batch.js";
 import { bopJob, bopOptions, isScores, resultsFile } from "./bop.js";
@@ -60,9 +61,9 @@ export const commands: readonly CommandRow[] = [
     argument: folders("case"),
     flags: [
       ...batchFlags("case"),
-      ["--depth <file>", "depth map (.npy, 16-bit .png, .npz, .exr, .tiff or .pfm), instead of a case folder", ofCase],
-      ["--mask <file>", "mask (.png, .jpg, .npy, or .json with COCO RLE)", ofCase],
-      ["--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)", ofCase],
+      ["--depth <file>", `depth map (${formatsText("depth")}), instead of a case folder`, ofCase],
+      ["--mask <file>", `mask (${formatsText("mask")})`, ofCase],
+      ["--mesh <file>", `mesh (${formatsText("mesh")})`, ofCase],
       [
         "--camera <file|fx,fy,cx,cy|fov:deg>",
         "camera: a file, intrinsics or a vertical field of view",
@@ -70,7 +71,7 @@ export const commands: readonly CommandRow[] = [
       ],
       [
         "--image <file>",
-        "photo (.png, .jpg or .webp) with the field of view of the depth map, also without the flag",
+        `photo (${formatsText("photo")}) with the field of view of the depth map, also without the flag`,
         ofCase,
       ],
       ["--preset <name>", "method (default precise)", { choices: ["precise", "paper"] }],

@@ -10,7 +10,7 @@ import { describe, failure, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/values.js";
 import { UsageError } from "./files.js";
-import { OutputError } from "./run-files.js";
+import { OutputError } from "./output-file.js";
 
 /** An entry of any kind. */
 export type Entry = Readonly<Record<string, unknown>>;

@@ -2,7 +2,8 @@
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
 import type { CameraInput, Preset } from "../index.js";
-import { type DepthKind, depthKinds } from "../input/types.js";
+import { depthKindNames } from "../input/formats.js";
+import type { DepthKind } from "../input/types.js";
 import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
 import { withoutUndefined } from "../values/values.js";
 import { UsageError } from "./files.js";
@@ -112,7 +113,7 @@ export const pictureFlags: readonly Flag[] = [
 /** How a case is read. */
 export const caseFlags: readonly Flag[] = [
   ["--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", { parse: number }],
-  ["--depth-kind <kind>", "what the values of the depth map are (default metric)", { choices: depthKinds }],
+  ["--depth-kind <kind>", "what the values of the depth map are (default metric)", { choices: depthKindNames }],
   ["--image-id <id>", "image id in a BOP scene_camera.json"],
   ["--no-image", "do not read the photo: align by shape alone"],
   ["--resize-mask <how>", "resize the mask to the size of the depth map", { choices: ["nearest"] }],

@@ -1,5 +1,6 @@
 /** The help texts of the commands: layouts of folders, frames and units, outputs, and examples. */
 import { namesText } from "../case-names.js";
+import { defaultUnits, depthKinds } from "../input/formats.js";
 import { csvHeadings } from "./result-files.js";
 
 /** The names of a part, in lines that are indented by two. */
@@ -8,7 +9,7 @@ const named = (part: Parameters<typeof namesText>[0]) => namesText(part).replace
 const caseFolder = `
 A case folder holds
   ${named("depth")}
-                                 z-depth; floats are metres, whole numbers (16-bit PNG) millimetres unless
+                                 z-depth; ${defaultUnits} unless
                                  --depth-scale or the camera file says otherwise; 0 and NaN are "no reading";
                                  --depth-kind for what depth models guess without a unit
   ${named("mask")}
@@ -34,11 +35,12 @@ Frames and units
   x_cam = s·R·p_mesh + t. The camera looks along +z, x is right, y is down (OpenCV); metres. Pixel centres are at
   whole numbers. "matrix" is column-major (three.js, glTF), "rotation" row-major, "quaternion" x, y, z, w.`;
 
-const depthKinds = `
+const kinds = `
 Depth of models
-  --depth-kind says what the values are: metric, ray-distance (along the ray of each pixel, not the optical axis),
-  scale-invariant (times an unknown factor), affine-invariant (times an
-  unknown factor, plus an unknown shift) or affine-invariant-disparity (the same of the inverse depth; near is large).
+  --depth-kind says what the values are:
+${Object.entries(depthKinds)
+  .map(([kind, { values }]) => `    ${kind.padEnd(27)} ${values}`)
+  .join("\n")}
   Factor and shift are estimated with the pose. Lengths are then metric only if one is known: --known-extent, or a number
   as --scale. Otherwise they are in units of their own, also in JSON and in GLB files, and "depthCalibration" of the JSON
   entry has { "isMetric": false }; columns in metres and millimetres are empty, and errors against gt.json are not measured.`;
@@ -88,7 +90,7 @@ ${status}`;
 
 export const alignHelp = `${caseFolder}
 ${conventions}
-${depthKinds}
+${kinds}
 ${transformFile}
 
 Output
@@ -129,7 +131,7 @@ ${status}`;
 export const trackHelp = `${caseFolder}
 A video needs a mask in its first frame only. Camera poses are not used.
 ${conventions}
-${depthKinds}
+${kinds}
 
 Output
   A row per frame: state, confidence, scale and its standard deviation, and time.
@@ -178,7 +180,7 @@ the PLY of its Gaussians, and pose.json { "rotation", "translation", "scale" }, 
 Frames are converted; its own placement is one candidate. Its point maps have no unit: pass --depth-kind metric if one has.
 ${conventions}
   The support is the plane n·x + d = 0 in the camera frame, metres; n points to the side of the objects.
-${depthKinds}
+${kinds}
   Files for simulators need metres.
 
 Output

@@ -10,9 +10,10 @@ import { alternativesOf, type Entry, posesIn } from "./entry.js";
 import { correctedInput, type ExportedAs, exportedMesh } from "./exports.js";
 import { isFile } from "./files.js";
 import type { Flags } from "./flags.js";
+import { OutputError } from "./output-file.js";
 import type { CaseKey } from "./record.js";
 import { fileName, ReportFolder } from "./report.js";
-import { OutputError, type OutputName, type RunFiles } from "./run-files.js";
+import type { OutputName, RunFiles } from "./run-files.js";
 
 /** The picture and the posed mesh of a pose. */
 const filesOfPose = ({ overlay, glb }: Flags, name: string) => ({

@@ -3,7 +3,8 @@ import { readFileSync, readlinkSync, rmSync, utimesSync, writeFileSync } from "n
 import { hostname } from "node:os";
 import { isRecord } from "../values/kinds.js";
 import { isFile, statOf, UsageError } from "./files.js";
-import { OutputError, type OutputName } from "./run-files.js";
+import { OutputError } from "./output-file.js";
+import type { OutputName } from "./run-files.js";
 
 /** The lock of a record, as an output of the run: another file of this name stays. */
 export const lockOf = (record: string): OutputName => ({

@@ -8,8 +8,8 @@ import { partOf } from "../case-names.js";
 import { isRecord } from "../values/kinds.js";
 import type { Entry } from "./entry.js";
 import { absolutePath, bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
+import { OutputFile } from "./output-file.js";
 import { lockRecord, type RecordLock } from "./record-lock.js";
-import { OutputFile } from "./run-files.js";
 
 /** The version of the package. */
 export const { version } = JSON.parse(readFileSync(new URL("../package.json", import.meta.url), "utf8")) as {

@@ -7,7 +7,8 @@ import type { CasePictures } from "../pictures/case-pictures.js";
 import { columns, type ReportDetails, type ReportRow } from "../report-page/row.js";
 import { alternativesOf, type Entry, rowOf } from "./entry.js";
 import { namesIn, UsageError } from "./files.js";
-import { OutputFile, type RunFiles } from "./run-files.js";
+import { OutputFile } from "./output-file.js";
+import type { RunFiles } from "./run-files.js";
 
 /** The fields of a row on the page. */
 const pageFields: readonly string[] = [...Object.keys(columns), "error", "warnings", "isMetric"];

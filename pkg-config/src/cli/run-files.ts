@@ -1,22 +1,10 @@
-/** The files of a run: no output is an input or another output, and each is written whole or not at all. */
-import {
-  accessSync,
-  closeSync,
-  constants,
-  existsSync,
-  fstatSync,
-  ftruncateSync,
-  mkdirSync,
-  openSync,
-  readFileSync,
-  renameSync,
-  rmSync,
-  statSync,
-  writeSync,
-} from "node:fs";
-import { basename, dirname, extname, join, sep } from "node:path";
+/** The files of a run: no output is an input or another output. */
+import { accessSync, constants, existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
+import { basename, dirname, join, sep } from "node:path";
 import { partOf } from "../case-names.js";
+import { refersToFiles } from "../input/formats.js";
 import { bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
+import { OutputError, OutputFile } from "./output-file.js";
 
 /** A file or folder that a command line names. */
 export interface NamedFile {
@@ -38,9 +26,6 @@ export interface OutputName extends NamedFile {
   /** Names in a folder, the last of which is written when all others are there. */
   holds?: readonly string[] | undefined;
 }
-
-/** An output that cannot be written whole. */
-export class OutputError extends Error {}
 
 /** Levels of folders in which inputs are looked for. */
 const LEVELS = 5;
@@ -181,9 +166,6 @@ export class RunFiles {
   }
 }
 
-/** Whether a file may refer to others, which are in its folder or below it. */
-const refersToFiles = (path: string) => [".gltf", ".obj", ".mtl"].includes(extname(path).toLowerCase());
-
 /** Whether a file has the name of another one in its text. */
 function mentions(model: string, file: string): boolean {
   if (!file.startsWith(`${dirname(realPath(model))}${sep}`) || !isFile(model)) return false;
@@ -233,99 +215,5 @@ export function makeFolder(flag: string, path: string): void {
     mkdirSync(path, { recursive: true });
   } catch (error) {
     throw new OutputError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);
-  }
-}
-
-let parts = 0;
-
-/**
- * A file that takes the place of an earlier one when it is closed; until then, its content is in a file beside it. Stdout
- * ("-"), pipes and devices are written at once.
- */
-export class OutputFile {
-  #file: number | undefined;
-  #isClosed = false;
-  readonly #part: string | undefined;
-  readonly #place: string;
-
-  /**
-   * @param isAppended whether lines are added to the file itself
-   * @param onEnd called when the content is in its place
-   */
-  constructor(
-    private readonly path: string,
-    private readonly isAppended = false,
-    private readonly onEnd = () => {},
-  ) {
-    // A link stays, and leads to the new content.
-    this.#place = path === "-" ? path : realPath(path);
-    if (!isAppended && isOrdinary(path))
-      this.#part = join(dirname(this.#place), `.sim3align-${process.pid}-${++parts}.part`);
-  }
-
-  /**
-   * Adds content, of which nothing is left if it cannot be written.
-   * @throws {@link OutputError} that names the file, such as where no space is left
-   */
-  write(content: string | Uint8Array): void {
-    if (this.#isClosed) return;
-    if (this.path === "-") {
-      process.stdout.write(content);
-      return;
-    }
-    this.#try(() => {
-      const file = this.#opened();
-      const bytes = typeof content === "string" ? Buffer.from(content) : content;
-      const before = this.isAppended ? fstatSync(file).size : undefined;
-      try {
-        for (let written = 0; written < bytes.length; )
-          written += writeSync(file, bytes, written, bytes.length - written);
-      } catch (error) {
-        if (before !== undefined) ftruncateSync(file, before);
-        throw error;
-      }
-    });
-  }
-
-  /** Writes lines, at once: another program that follows the file reads whole ones. */
-  lines(lines: readonly string[]): void {
-    this.write(lines.map((line) => `${line}\n`).join(""));
-  }
-
-  /** Puts the content in its place. */
-  end(): void {
-    if (this.path === "-" || this.#isClosed || (this.isAppended && this.#file === undefined)) return;
-    this.#try(() => {
-      closeSync(this.#opened());
-      [this.#file, this.#isClosed] = [undefined, true];
-      if (this.#part !== undefined) renameSync(this.#part, this.#place);
-      this.onEnd();
-    });
-  }
-
-  /** Leaves an earlier file as it is. */
-  discard(): void {
-    this.#isClosed = true;
-    if (this.#file !== undefined) closeSync(this.#file);
-    this.#file = undefined;
-    if (this.#part !== undefined) rmSync(this.#part, { force: true });
-  }
-
-  #opened(): number {
-    this.#file ??= openSync(this.#part ?? this.path, this.isAppended ? "a" : "w");
-    return this.#file;
-  }
-
-  #try(act: () => void): void {
-    try {
-      act();
-    } catch (cause) {
-      try {
-        this.discard();
-      } catch {
-        // The first error is that of the file.
-      }
-      throw new OutputError(`${this.path}: cannot be written: ${(cause as Error).message}.`, { cause });
-    }
   }
 }

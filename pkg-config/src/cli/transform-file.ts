@@ -2,7 +2,8 @@
 import { read } from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
 import { failure } from "../values/error.js";
-import { isRecord, oncePerKey } from "../values/values.js";
+import { isRecord } from "../values/kinds.js";
+import { oncePerKey } from "../values/values.js";
 
 const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
 

@@ -1,8 +1,8 @@
 /** The bytes of files that are passed to conversions. */
 
 import { checkAttached } from "../values/border.js";
-import { isBuffer } from "../values/kinds.js";
-import { isTypedArray, wrongKind } from "../values/values.js";
+import { isBuffer, isTypedArray } from "../values/kinds.js";
+import { wrongKind } from "../values/values.js";
 
 /** The bytes of a file, not copied. */
 export function bytesOfFile(argument: string, file: unknown, expected: string): Uint8Array {

@@ -3,7 +3,8 @@
 import type { MeshArrays } from "../input/types.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
-import { isTypedArray, record, type Vector3, wrongKind } from "../values/values.js";
+import { isTypedArray } from "../values/kinds.js";
+import { record, type Vector3, wrongKind } from "../values/values.js";
 
 /** A triangle mesh whose indices are in range. */
 export interface Mesh {

@@ -3,7 +3,8 @@
 import { pinholeOf } from "../formats/pinhole.js";
 import { checkCount, type ImageSize, pixelsOf, pointKinds, sizeOf } from "../formats/pixels.js";
 import type { PinholeCamera, PixelArray } from "../input/types.js";
-import { finiteNumbers, flattened, isTypedArray, record } from "../values/values.js";
+import { isTypedArray } from "../values/kinds.js";
+import { finiteNumbers, flattened, record } from "../values/values.js";
 
 /** The output of MoGe, with tensors as arrays. */
 export interface MogeOutput extends ImageSize {

@@ -3,7 +3,7 @@
 import { isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { Sim3 } from "../input/sim3.js";
 import { failure } from "../values/error.js";
-import { isRecord } from "../values/values.js";
+import { isRecord } from "../values/kinds.js";
 import { fromBop } from "./bop.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 

@@ -3,15 +3,8 @@
 import type { Sim3, Sim3Like } from "../input/sim3.js";
 import { checkAttached, plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
-import {
-  finiteNumbers,
-  flattened,
-  isRecord,
-  isTypedArray,
-  type Vector3,
-  vector3,
-  wrongKind,
-} from "../values/values.js";
+import { isRecord, isTypedArray } from "../values/kinds.js";
+import { finiteNumbers, flattened, type Vector3, vector3, wrongKind } from "../values/values.js";
 import {
   determinant,
   entry,

@@ -4,9 +4,9 @@ import { checkCount } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
-import { typedArrayKind } from "../values/kinds.js";
+import { isKind, isRecord, isTypedArray, typedArrayKind } from "../values/kinds.js";
 import { withLive } from "../values/live.js";
-import { flattened, isKind, isRecord, isTypedArray, record, whole, wrongKind } from "../values/values.js";
+import { flattened, record, whole, wrongKind } from "../values/values.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */
 export interface TensorLike {

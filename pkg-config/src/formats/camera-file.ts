@@ -2,9 +2,9 @@
 
 import type { PinholeCamera } from "../input/types.js";
 import { describe, failure, invalidArgument } from "../values/error.js";
-import { isRecord } from "../values/values.js";
+import { isRecord } from "../values/kinds.js";
 import { cameraText } from "./camera-text.js";
-import { isNumber, type JsonFile, namesIn, parsedJson } from "./json.js";
+import { isNumber, type JsonFile, keysText, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole, resizedPinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";
 
@@ -200,7 +200,7 @@ function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefine
   }
   const fovYDeg = number("fovYDeg", "fov_y_deg");
   const angleX = number("camera_angle_x");
-  if (fovYDeg === undefined && angleX === undefined) throw invalid(`an object with ${namesIn(entry)}`);
+  if (fovYDeg === undefined && angleX === undefined) throw invalid(`an object with ${keysText(entry)}`);
   if (size !== undefined) {
     if (fovYDeg !== undefined) return fromFieldOfView(names.file, fovYDeg, size);
     const turned = { width: size.height, height: size.width };

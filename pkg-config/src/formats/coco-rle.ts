@@ -3,7 +3,8 @@
 import type { CocoRle, PixelArray } from "../input/types.js";
 import { plainArgument } from "../values/border.js";
 import { describe, failure, type Sim3AlignError } from "../values/error.js";
-import { finiteNumbers, flattened, isRecord, optionsOf, part, whole } from "../values/values.js";
+import { isRecord } from "../values/kinds.js";
+import { finiteNumbers, flattened, optionsOf, part, whole } from "../values/values.js";
 import { type JsonFile, numbersIn, parsedJson } from "./json.js";
 import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 

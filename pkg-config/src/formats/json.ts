@@ -1,6 +1,6 @@
 /** Parsing of JSON files, and of numbers in them. */
 import { failure } from "../values/error.js";
-import { isKind, isRecord } from "../values/values.js";
+import { isKind, isRecord } from "../values/kinds.js";
 
 /** A JSON file: its bytes, its text, or its parsed content. */
 export type JsonFile = Uint8Array | string | object;
@@ -48,13 +48,13 @@ export function numbersIn(value: unknown, count: number): number[] | null {
 export const isNumber = (value: unknown): value is number => typeof value === "number" && Number.isFinite(value);
 
 /** The property names of a JSON object, for error messages. */
-export const namesIn = (object: Record<string, unknown>) => Object.keys(object).slice(0, 12).join(", ") || "nothing";
+export const keysText = (object: Record<string, unknown>) => Object.keys(object).slice(0, 12).join(", ") || "nothing";
 
 /** Describes a JSON value for error messages; long text is truncated. */
 export function shown(value: unknown): string {
   if (value === undefined) return "nothing";
   // A caller's object may contain what JSON cannot.
   const json = () => JSON.stringify(value, (_, part) => (typeof part === "bigint" ? `${part}` : part));
-  const text = isRecord(value) ? `an object with ${namesIn(value)}` : (json() ?? typeof value);
+  const text = isRecord(value) ? `an object with ${keysText(value)}` : (json() ?? typeof value);
   return text.length > 60 ? `${text.slice(0, 60)}…` : text;
 }

@@ -3,7 +3,8 @@
 import type { PixelArray } from "../input/types.js";
 import { checkAttached } from "../values/border.js";
 import { failure } from "../values/error.js";
-import { isTypedArray, record, whole, wrongKind } from "../values/values.js";
+import { isTypedArray } from "../values/kinds.js";
+import { record, whole, wrongKind } from "../values/values.js";
 
 /** The size of an image in pixels. */
 export interface ImageSize {

@@ -3,10 +3,11 @@
 import type { Pinhole } from "../formats/pinhole.js";
 import type { FileReaders } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values/values.js";
+import { isRecord, isTypedArray } from "../values/kinds.js";
+import { withoutUndefined, wrongKind } from "../values/values.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
+import { formatsText, isAffineInvariant } from "./formats.js";
 import type { DepthImage, ReadDepthOptions } from "./types.js";
-import { isAffineInvariant } from "./types.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {
@@ -25,8 +26,7 @@ export interface ReadDepth extends SizedArray<DepthArray> {
   unit: string;
 }
 
-const depthForms =
-  "a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a 16-bit PNG or of a .npy, .npz, .exr, .tiff or .pfm file";
+const depthForms = `a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a file: ${formatsText("depth")}`;
 
 /** The image size in the input, if given. */
 export interface StatedSize {

@@ -3,12 +3,13 @@
 import { decodedRle, isPolygons, polygons, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isKind, isRecord, isTypedArray, wrongKind } from "../values/values.js";
+import { isKind, isRecord, isTypedArray } from "../values/kinds.js";
+import { wrongKind } from "../values/values.js";
 import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isBytes } from "./bytes.js";
 import type { SizedArray } from "./depth.js";
+import { formatsText } from "./formats.js";
 
-const kinds =
-  "a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a PNG, a JPEG or a .npy file";
+const kinds = `a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a file: ${formatsText("mask")}`;
 
 /** A mask for the core. */
 export interface ReadMask extends SizedArray<Bytes> {

@@ -3,10 +3,12 @@
 import { holdsGaussians } from "../formats/splat-files.js";
 import type { FileReaders } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isRecord, isTypedArray, oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/values.js";
+import { isRecord, isTypedArray } from "../values/kinds.js";
+import { oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/values.js";
 import type { MeshArrays, ReadMeshOptions } from "../wasm/formats.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
+import { formatsText } from "./formats.js";
 import type { ColorSamples, CoreMesh } from "./prepared-mesh.js";
 import type { MeshFile } from "./types.js";
 import { type DecodeImage, imageDecoder } from "./webp.js";
@@ -38,8 +40,7 @@ export async function decodeMesh(
   return callReader(readers.formats, argument, bytes, (module) => module.readMesh(bytes, read), rename);
 }
 
-const kinds =
-  "{ positions, indices? }, or the bytes of a GLB, glTF, OBJ, PLY, STL or .splat file (also as { bytes, format?, resources? })";
+const kinds = `{ positions, indices? }, or the bytes of a file: ${formatsText("mesh")} (also as { bytes, format?, resources? })`;
 
 /** A mesh for the core, and why it has no colours. */
 export interface MeshAndWarnings {

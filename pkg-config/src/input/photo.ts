@@ -2,15 +2,16 @@
 
 import type { Exif } from "../formats/exif-focal.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isRecord, isTypedArray, wrongKind } from "../values/values.js";
+import { isRecord, isTypedArray } from "../values/kinds.js";
+import { wrongKind } from "../values/values.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { type Photo, photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";
+import { formatsText } from "./formats.js";
 import type { PixelArray } from "./types.js";
 import { type ImageReaders, isWebp } from "./webp.js";
 
-const kinds =
-  "a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a PNG, JPEG or WebP file";
+const kinds = `a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a file: ${formatsText("photo")}`;
 
 /** A photo for the core. */
 export interface ReadPhoto {

@@ -2,7 +2,8 @@
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
-import { checkNames, isRecord, part, withoutUndefined } from "../values/values.js";
+import { isRecord } from "../values/kinds.js";
+import { checkNames, part, withoutUndefined } from "../values/values.js";
 import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./core-input.js";
 import { readMask } from "./mask.js";
 import { type MeshAndWarnings, readCoreMesh } from "./mesh.js";

@@ -1,7 +1,7 @@
 /** Similarity transforms as arguments. */
 export type { Sim3Like } from "../types/argument-types.js";
 
-import { isKind, isRecord } from "../values/values.js";
+import { isKind, isRecord } from "../values/kinds.js";
 
 export type { Sim3 } from "../generated/types.js";
 

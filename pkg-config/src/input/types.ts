@@ -8,8 +8,8 @@ import type { Sim3Like } from "./sim3.js";
  *
  * - `"metric"`: distances along the optical axis in a known unit;
  * - `"ray-distance"`: distances from the camera's centre, along the ray of each pixel, in a known unit;
- * - `"scale-invariant"`: such distances times an unknown factor;
- * - `"affine-invariant"`: such distances times an unknown factor, plus an unknown shift;
+ * - `"scale-invariant"`: distances along the optical axis times an unknown factor;
+ * - `"affine-invariant"`: distances along the optical axis times an unknown factor, plus an unknown shift;
  * - `"affine-invariant-disparity"`: inverse distances times an unknown factor, plus an unknown shift; near is large.
  */
 export type DepthKind =
@@ -18,15 +18,6 @@ export type DepthKind =
   | "scale-invariant"
   | "affine-invariant"
   | "affine-invariant-disparity";
-
-/** The kinds, the default first. The readers and the aligner know all but `"ray-distance"`, which needs the camera. */
-export const depthKinds: readonly DepthKind[] = [
-  ...(["metric", "ray-distance", "scale-invariant", "affine-invariant", "affine-invariant-disparity"] as const),
-];
-
-/** Whether values of this kind have no zero: those that are zero or negative are values, and 8 bits may hold them. */
-export const isAffineInvariant = (kind: DepthKind | undefined): boolean =>
-  kind === "affine-invariant" || kind === "affine-invariant-disparity";
 
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
@@ -47,8 +38,7 @@ export interface PixelArray<T> {
  * - `Float32Array`: metres (times `depthScale`, if given); with `width` and `height` in the input;
  * - `Uint16Array`: multiplied by `depthScale`; with `width` and `height` in the input;
  * - either of these as `{ data, width, height }`;
- * - the bytes of a 16-bit grey PNG (multiplied by `depthScale`), of a `.npy` array, or of a `.npz`, `.exr`, `.tiff` or
- *   `.pfm` file as depth models write them.
+ * - the bytes of a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM); integers are multiplied by `depthScale`.
  */
 export type DepthInput = Float32Array | Uint16Array | PixelArray<Float32Array | Uint16Array> | EncodedBytes;
 
@@ -63,8 +53,8 @@ export interface CocoRle {
  *
  * - `Uint8Array` of the depth map's size, one byte per pixel;
  * - `{ data, width, height }`, for a mask of another size (see `resizeMask`);
- * - the bytes of a PNG or of a `.npy` array, detected by their signature;
- * - COCO RLE, as an object or as the bytes of a JSON file.
+ * - the bytes of a mask file (PNG, NPY, COCO RLE or JPEG), detected by their signature;
+ * - COCO RLE, as an object.
  */
 export type MaskInput =
   | Uint8Array
@@ -167,7 +157,7 @@ export interface MeshFile {
  *
  * - `Uint8Array` of the depth map's size, RGB or RGBA, row-major;
  * - `{ data, width, height }` or an `ImageData`;
- * - the bytes of a PNG or JPEG, detected by their signature, turned as their EXIF data say.
+ * - the bytes of a photo file (PNG, JPEG or WebP), detected by their signature, turned as their EXIF data say.
  */
 export type PhotoInput =
   | Uint8Array
@@ -177,8 +167,8 @@ export type PhotoInput =
   | BlobLike;
 
 /**
- * The object's mesh, in its own frame: arrays, a GLB, glTF, OBJ, PLY or STL file (node transforms are applied), 3D
- * Gaussians (a PLY or `.splat` file), of which a mesh of their surface is made, or a prepared mesh.
+ * The object's mesh, in its own frame: arrays, a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT; node transforms are applied;
+ * of 3D Gaussians in a PLY or SPLAT file, a mesh of their surface is made), or a prepared mesh.
  */
 export type MeshInput = MeshArrays | MeshFile | EncodedBytes | PreparedMesh;
 

@@ -3,12 +3,13 @@ import { depthOfRays } from "../formats/ray-distance.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
-import { isRecord, isTypedArray, oneOf, withoutUndefined } from "../values/values.js";
+import { isRecord, isTypedArray } from "../values/kinds.js";
+import { oneOf, withoutUndefined } from "../values/values.js";
 import { cameraOf, type ResolvedCamera } from "./camera.js";
 import type { CoreInput, CoreView } from "./core-input.js";
 import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
+import { depthKindNames, isAffineInvariant } from "./formats.js";
 import { type ReadPhoto, readPhoto, readPhotoExif } from "./photo.js";
-import { depthKinds, isAffineInvariant } from "./types.js";
 
 /** An input for the core, and what its files say. */
 export interface Resolved<T> {
@@ -46,7 +47,7 @@ export async function readView(input: Record<string, unknown>, readers: FileRead
 async function depthView(input: Record<string, unknown>, readers: FileReaders): Promise<Resolved<CoreView>> {
   const size = { width: input.width as number | undefined, height: input.height as number | undefined };
   const depthScale = input.depthScale as number | undefined;
-  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKinds, "INVALID_ARGUMENT");
+  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKindNames, "INVALID_ARGUMENT");
   const camera = await cameraOf(input);
   const { integerDepthScale } = camera;
   const reading = { depthScale, integerDepthScale, depthKind };
@@ -80,7 +81,7 @@ async function pointMapView(
     const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
     throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
   }
-  const kinds = depthKinds.filter((kind) => !isAffineInvariant(kind) && kind !== "ray-distance");
+  const kinds = depthKindNames.filter((kind) => !isAffineInvariant(kind) && kind !== "ray-distance");
   const depthKind = oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT");
   const { data, ...sides } = readPointMap(pointMap, input as { width?: number; height?: number });
   const photo = await readPhoto(input.image, sides, readers);

@@ -7,7 +7,8 @@ import { resolveView } from "../input/resolve.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
-import { checkNames, isRecord, isTypedArray, part, withoutUndefined } from "../values/values.js";
+import { isRecord, isTypedArray } from "../values/kinds.js";
+import { checkNames, part, withoutUndefined } from "../values/values.js";
 import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */

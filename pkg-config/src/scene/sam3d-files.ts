@@ -8,8 +8,9 @@ import { requiredBytes } from "../input/bytes.js";
 import type { DepthKind } from "../input/types.js";
 import type { LoadFormats } from "../modules/readers.js";
 import { failure, renamed, Sim3AlignError } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
 import { naturally } from "../values/order.js";
-import { flattened, isRecord } from "../values/values.js";
+import { flattened } from "../values/values.js";
 import { viewOfPointMap } from "./point-map-file.js";
 import { type SceneCase, sceneFrom } from "./scene-files.js";
 

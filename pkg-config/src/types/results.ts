@@ -4,9 +4,9 @@
  */
 
 import type * as Core from "../generated/types.js";
+import { fromOrigin } from "../input/origin.js";
 import type { AlignInput, FrameInput, ViewsInput } from "../input/types.js";
 import type { Sim3AlignError } from "../values/error.js";
-import { fromOrigin } from "../values/origin.js";
 
 /** How the depth map and the camera of a view were read. */
 export interface InputInfo {

@@ -1,9 +1,7 @@
 /** Validation of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
 import { plainArgument } from "./border.js";
 import { describe, failure, invalidArgument, type Sim3AlignError } from "./error.js";
-import { isKind, isRecord, isTypedArray, typedArrayKind } from "./kinds.js";
-
-export { isKind, isRecord, isTypedArray };
+import { isKind, isRecord, typedArrayKind } from "./kinds.js";
 
 /** The error for a plain array, or a typed array of the wrong type. */
 export function wrongKind(argument: string, value: unknown, expected: string, typedArray: string): Sim3AlignError {

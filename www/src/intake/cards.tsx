@@ -1,11 +1,12 @@
 /** The cards of the view: depth map, photo, camera. */
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
-import type { DepthKind } from "sim3align";
+import { depthKindNames, depthKinds, extensionsOf, type FileKind } from "sim3align/input/formats";
 import { depthRange } from "../draw/colours.js";
 import { baseName } from "../load/files.js";
 import type { CameraSource, Field } from "../load/inputs.js";
-import { cameraTitle, kindTitles } from "../panels/input-rows.js";
+import { photoExtensions } from "../load/photo.js";
+import { cameraTitle } from "../panels/input-rows.js";
 import { type Draft, draftInputs } from "../state/draft.js";
 import { Choices, FileButton } from "../ui/controls.js";
 import { percent, significant } from "../ui/format.js";
@@ -49,6 +50,10 @@ interface FieldFilesProps {
   multiple?: boolean;
 }
 
+/** The extensions of a kind of file, and others, for a file input. */
+export const acceptOf = (kind: FileKind, others: readonly string[] = []): string =>
+  [...new Set([...extensionsOf(kind), ...others])].map((ending) => `.${ending}`).join();
+
 /** A button that chooses files for a field. */
 export const FieldFiles = ({ field, title, isWrong, ...input }: FieldFilesProps) => (
   <FileButton
@@ -68,9 +73,6 @@ export const FieldFiles = ({ field, title, isWrong, ...input }: FieldFilesProps)
 const useImage = (rgba: Uint8ClampedArray | null, size: { width: number; height: number } | null) =>
   useMemo(() => rgba && size && new ImageData(Uint8ClampedArray.from(rgba), size.width, size.height), [rgba, size]);
 
-/** The extensions of depth maps. */
-const depthFiles = ".png,.npy,.npz,.exr,.tif,.tiff,.pfm";
-
 /** Metres per unit of depth, as text. An empty text is the default of the reader. */
 const depthUnits = [
   ["", "Auto"],
@@ -82,7 +84,7 @@ const depthUnits = [
   ["0.00025", "0.25 mm"],
 ] as const;
 
-const kinds = Object.entries(kindTitles) as [DepthKind, string][];
+const kinds = depthKindNames.map((kind) => [kind, depthKinds[kind].title] as const);
 
 export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
   const { depth: file, depthScale, depthKind } = draftInputs(open);
@@ -98,7 +100,7 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
     return change((now) => ({ ...now, depthScale: factor > 0 ? factor : null }));
   };
   return (
-    <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept={depthFiles}>
+    <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept={acceptOf("depth")}>
       <Picture image={image} label="Depth map" class="shot" />
       <p class="quiet">
         {depth !== null && `${depth.width} × ${depth.height}`}
@@ -145,7 +147,7 @@ export function PhotoCard({ open }: { open: Draft }) {
       field="photo"
       title="Photo"
       chosen={file === null ? "optional" : baseName(file.path)}
-      accept="image/png,image/jpeg,image/webp"
+      accept={acceptOf("photo", photoExtensions)}
     >
       <Picture image={image} label="Photo" class="shot" />
       <p class="quiet">{photo !== null && `${photo.width} × ${photo.height}`}</p>
@@ -181,7 +183,7 @@ export function CameraCard({ open }: { open: Draft }) {
       return { ...now, camera: { kind: "numbers", ...entered } };
     });
   return (
-    <Card field="camera" title="Camera" chosen={chosenCamera(camera, cameraSource)} accept=".json,.yaml,.yml,.txt">
+    <Card field="camera" title="Camera" chosen={chosenCamera(camera, cameraSource)} accept={acceptOf("camera")}>
       <div class="camera-numbers">
         {intrinsics.map((name) => (
           <label key={name} class="field-inline">

@@ -1,24 +1,22 @@
 /** The objects of a draft: each mask with its mesh. Meshes are paired anew by selecting or dragging. */
 import { useMemo } from "preact/hooks";
+import { meshResources } from "sim3align/input/formats";
 import { maskThumbnail, meshThumbnail } from "../draw/thumbnails.js";
 import { baseName } from "../load/files.js";
 import type { Inputs, MeshSource, ObjectFiles } from "../load/inputs.js";
-import { maskExtensions } from "../load/masks.js";
+import { photoExtensions } from "../load/photo.js";
 import { withoutObject } from "../load/problems.js";
 import { colourOf, type ReadObject } from "../load/read-scene.js";
 import { type Draft, draftInputs } from "../state/draft.js";
 import { Check, Choices } from "../ui/controls.js";
 import { Picture } from "../ui/picture.js";
-import { FieldFiles } from "./cards.js";
+import { acceptOf, FieldFiles } from "./cards.js";
 import { change } from "./draft.js";
 import { MarkButton } from "./marking.js";
 import { Problems, problemsFor } from "./problem-list.js";
-import { meshExtensions, resourceExtensions } from "./roles.js";
 
 /** Width and height of a thumbnail in pixels. */
 const SIZE = 112;
-
-const endings = (extensions: readonly string[]) => extensions.map((one) => `.${one}`).join();
 
 const emptyObject: ReadObject = { mask: null, mesh: null, glb: null, truth: null };
 
@@ -31,14 +29,20 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
         <h3 id="pairs-title">Objects: mask and mesh</h3>
         <span class="field-inline">
           <span>Masks</span>
-          <FieldFiles field="mask" title="Masks" accept={endings(maskExtensions)} isWrong={isWrong("mask")} multiple />
+          <FieldFiles
+            field="mask"
+            title="Masks"
+            accept={acceptOf("mask", photoExtensions)}
+            isWrong={isWrong("mask")}
+            multiple
+          />
         </span>
         <span class="field-inline">
           <span>Meshes</span>
           <FieldFiles
             field="mesh"
             title="Meshes"
-            accept={endings([...meshExtensions, ...resourceExtensions])}
+            accept={acceptOf("mesh", meshResources)}
             isWrong={isWrong("mesh")}
             multiple
           />

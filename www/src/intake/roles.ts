@@ -1,14 +1,13 @@
 /** The role of each file of a drop: by its name, and where the name says nothing, by how the file begins. */
 import { type Part, partOf } from "sim3align/case-names";
+import { extensionsOf, meshResources } from "sim3align/input/formats";
 import { baseName, extension, type NamedFile } from "../load/files.js";
 import type { Role, Typed } from "../load/inputs.js";
 import { isBlackAndWhite } from "../load/label-masks.js";
 import { photoExtensions } from "../load/photo.js";
 
-export const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
-export const resourceExtensions = ["bin", "mtl"];
-/** Files of depth models. */
-const depthExtensions = ["npz", "exr", "tif", "tiff", "pfm"];
+/** Files that hold nothing but depth. */
+const depthExtensions = extensionsOf("depth").filter((ending) => !extensionsOf("mask").includes(ending));
 
 /** Depth files that other programs also use for photos, which no browser shows. */
 const renderExtensions = ["exr", "tif", "tiff"];
@@ -50,8 +49,8 @@ const roleOfPart: Partial<Record<Part, Role>> = { depth: "depth", mask: "mask", 
 
 async function roleOf(file: NamedFile): Promise<Role> {
   const ending = extension(file.path);
-  if (meshExtensions.includes(ending)) return "mesh";
-  if (resourceExtensions.includes(ending)) return "resource";
+  if (extensionsOf("mesh").includes(ending)) return "mesh";
+  if (meshResources.includes(ending)) return "resource";
   const name = baseName(file.path).toLowerCase();
   if (ending === "json" || ending === "yaml" || ending === "yml") return roleOfJson(file, await headOf(file, 1 << 22));
   const part = partOf(name);

@@ -1,4 +1,5 @@
 /** Divides the files of a drop into scenes: one depth map each, with the files that belong to it. */
+import { ofDepthCamera } from "sim3align/case-names";
 import { naturally } from "sim3align/values/order";
 import { baseName, folderOf, type NamedFile, stem } from "../load/files.js";
 import {
@@ -105,9 +106,7 @@ async function sceneFrom(files: readonly Typed[], id: string | null): Promise<In
   const of = (role: Role) => files.filter((one) => one.role === role).map(({ file }) => file);
   const [[depth = null], photos] = [of("depth"), of("photo")];
   const photo = photos.find(isNamedPhoto) ?? photos[0] ?? null;
-  // Beside the intrinsics of the depth camera may be those of the colour camera.
-  const cameras = of("camera");
-  const camera = cameras.find(({ path }) => /depth/i.test(baseName(path))) ?? cameras[0];
+  const [camera] = ofDepthCamera(of("camera"), ({ path }) => baseName(path));
   const meshes = byPath(of("mesh")).map((file) => ({ file, siblings: files.map((one) => one.file) }));
   const masks = await masksOf(files, depth, photo);
   const truths = byPath(of("truth"));

@@ -16,9 +16,6 @@ export interface ReadMask {
   reading?: string;
 }
 
-/** The endings of files that may be masks. */
-export const maskExtensions = ["png", "npy", "json", ...photoExtensions];
-
 const plainMask = once(async (file: NamedFile): Promise<ReadMask> => {
   const ending = extension(file.path);
   if (photoExtensions.includes(ending) && !ending.startsWith("jp"))

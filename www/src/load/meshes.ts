@@ -1,5 +1,7 @@
 /** Reads mesh files, each once, with the files that they refer to. */
+import type { MeshFormat } from "sim3align";
 import { externalResources, type MeshFromFile } from "sim3align/formats";
+import { refersToFiles } from "sim3align/input/formats";
 import { extension } from "./files.js";
 import type { MeshSource } from "./inputs.js";
 import { once } from "./once.js";
@@ -21,9 +23,7 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
   if ((file.size ?? 0) > LARGE_BYTES) await (await import("./mesh-header.js")).checkMeshSize(file);
   const bytes = await file.bytes();
   const ending = extension(file.path);
-  if (ending !== "gltf" && ending !== "obj") {
-    return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
-  }
+  if (!refersToFiles(file.path)) return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
   const resources: Record<string, Uint8Array> = {};
   const addResources = async (file: Uint8Array) => {
     const { shape, colors } = await externalResources(file);
@@ -37,7 +37,7 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
     }
   };
   await addResources(bytes);
-  return { mesh: await readMesh(bytes, { format: ending, resources }), glb: null };
+  return { mesh: await readMesh(bytes, { format: ending as MeshFormat, resources }), glb: null };
 }
 
 /** A name in a mesh file, which may be a URI. */

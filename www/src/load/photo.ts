@@ -1,4 +1,5 @@
 /** Reads photos. */
+import { extensionsOf } from "sim3align/input/formats";
 import type { NamedFile } from "./files.js";
 
 /** A photo with its own size, and its pixels at that of the depth map. */
@@ -15,8 +16,11 @@ interface Size {
   height: number;
 }
 
-/** Images that only the browser decodes. */
-export const photoExtensions = ["jpg", "jpeg", "webp", "avif", "heic", "heif"];
+/** Images that are photos, or masks, but no depth maps; some only the browser decodes. */
+export const photoExtensions = [
+  ...extensionsOf("photo").filter((ending) => ending !== "png"),
+  ...["avif", "heic", "heif"],
+];
 
 /** The longest side of a photo that is shown without a depth map, pixels. */
 const MAX_SIDE = 1280;

@@ -1,5 +1,6 @@
 /** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
+import { formatsText } from "sim3align/input/formats";
 import { isHelpOpen } from "../state/help.js";
 import { type Theme, theme } from "../state/theme.js";
 import { Choices } from "../ui/controls.js";
@@ -54,9 +55,9 @@ export function HelpDialog() {
         with it.
       </p>
       <p>
-        Drop a folder, a zip archive or single files anywhere on the page: a depth map (PNG, NPY, NPZ, EXR, TIFF or
-        PFM), <code>mask.png</code>, <code>mesh.glb</code>, and optionally a photo and <code>camera.json</code>. Without
-        a camera, its focal length is that of the depth file or of the photo, or estimated. Relative depth gives sizes
+        Drop a folder, a zip archive or single files anywhere on the page: a depth map ({formatsText("depth")}),{" "}
+        <code>mask.png</code>, <code>mesh.glb</code>, and optionally a photo and <code>camera.json</code>. Without a
+        camera, its focal length is that of the depth file or of the photo, or estimated. Relative depth gives sizes
         without a unit, until you enter a known one. For several objects, use matching names: <code>mask-cup.png</code>{" "}
         goes with <code>mesh-cup.glb</code>. Everything is computed in this browser; nothing is uploaded.
       </p>

@@ -1,15 +1,7 @@
 /** What the depth map and the camera of a scene were taken to be, in plain words. */
-import type { DepthKind } from "sim3align";
+import { depthKinds } from "sim3align/input/formats";
 import type { Scene } from "../state/scene.js";
 import { percent, significant } from "../ui/format.js";
-
-export const kindTitles: { readonly [K in DepthKind]: string } = {
-  metric: "Distances",
-  "ray-distance": "Distances along the rays",
-  "scale-invariant": "Distances, scale unknown",
-  "affine-invariant": "Relative depth, far is large",
-  "affine-invariant-disparity": "Disparity, near is large",
-};
 
 /** Where a camera comes from that was not given. */
 export const cameraTitle = (source: string): string =>
@@ -33,7 +25,7 @@ export function inputRows({
   const shifted = kind.startsWith("affine") && calibration !== null;
   const unit = isMetric ? "in metres by a known size" : "no unit: sizes are relative to one another";
   const depth = [
-    ...(kind === "metric" ? [`Unit: ${depthUnit}`] : [kindTitles[kind], unit]),
+    ...(kind === "metric" ? [`Unit: ${depthUnit}`] : [depthKinds[kind].title, unit]),
     ...(shifted
       ? [`shift ${significant(shift, 3)}; the distance is known to${within(uncertainty.shift) || " ± 0 %"}`]
       : []),

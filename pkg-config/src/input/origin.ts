@@ -2,7 +2,9 @@
  * Poses of meshes whose coordinates are far from zero, such as those of a map. The core aligns such a mesh relative to an
  * origin o in it; callers pass and receive poses of the mesh in its file: s·R·(p − o) + t = s·R·p + (t − s·R·o).
  */
-import { isRecord } from "./kinds.js";
+import { rotationOfUnit } from "../conventions/rotation.js";
+import { isRecord } from "../values/kinds.js";
+import type { Quaternion } from "../values/values.js";
 
 /** x, y, z of the origin in the mesh file. */
 export type Origin = readonly number[];
@@ -50,16 +52,8 @@ function movedMatrix(matrix: readonly number[], origin: Origin, sign: 1 | -1): n
 function columnsOf(scale: unknown, rotation: unknown): number[] | undefined {
   if (typeof scale !== "number" || !Array.isArray(rotation)) return undefined;
   const flat = rotation.flat() as number[];
-  const rows = flat.length === 4 ? rowsOf(flat) : flat;
+  const length = Math.hypot(...flat);
+  const rows = flat.length === 4 ? rotationOfUnit(flat.map((q) => q / length) as Quaternion) : flat;
   if (rows.length !== 9) return undefined;
   return Array.from({ length: 16 }, (_, i) => (i % 4 < 3 && i < 12 ? scale * Number(rows[3 * (i % 4) + (i >> 2)]) : 0));
-}
-
-function rowsOf([x = 0, y = 0, z = 0, w = 1]: readonly number[]): number[] {
-  const s = 2 / (x * x + y * y + z * z + w * w);
-  return [
-    ...[1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
-    ...[s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
-    ...[s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
-  ];
 }
