@@ -162,15 +162,10 @@ fn a_tree_of_many_triangles_finds_what_trees_of_its_parts_find() {
         let expected = nearest.map(|found| found.distance_squared).fold(f32::INFINITY, f32::min);
         assert_eq!(tree.nearest(query).unwrap().distance_squared, expected, "query {q}");
         // Whatever triangle a search begins with.
-        let near = |_| Some(random_index(q, COUNT));
-        tree.nearest_of_each_from(
-            1,
-            |_| query,
-            near,
-            |_, found| {
-                assert_eq!(found.unwrap().distance_squared, expected, "query {q}");
-            },
-        );
+        let from = |_| (query, Some(random_index(q, COUNT)));
+        tree.nearest_of_each(1, &from, &mut |_, found| {
+            assert_eq!(found.unwrap().distance_squared, expected, "query {q}");
+        });
     }
 }
 
