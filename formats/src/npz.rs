@@ -218,8 +218,8 @@ impl<'a> Archive<'a> {
     fn camera(&mut self) -> Result<FileCamera> {
         let intrinsics = match self.find(&INTRINSICS) {
             None => None,
-            // 3 × 3, also as part of a projection of 3 × 4 or 4 × 4.
-            Some(entry) if let &[rows @ 3..=4, columns @ 3..=4] = entry.header.squeezed(2) => {
+            // 3 × 3, also as nine numbers, or as part of a projection of 3 × 4 or 4 × 4.
+            Some(entry) if let Some([rows, columns]) = matrix_sides(entry.header.squeezed(1)) => {
                 let data = self.read(&entry)?;
                 let mut numbers = [0.0; 9];
                 let values = NpyArray::read("depth", &data)?;
@@ -248,6 +248,15 @@ impl<'a> Archive<'a> {
         let Some(entry) = self.find(names).filter(|entry| entry.header.count() == 1) else { return Ok(None) };
         let data = self.read(&entry)?;
         Ok(Some(NpyArray::read("depth", &data)?.value(0)))
+    }
+}
+
+/// Rows and columns of a matrix with intrinsics.
+fn matrix_sides(shape: &[usize]) -> Option<[usize; 2]> {
+    match *shape {
+        [rows @ 3..=4, columns @ 3..=4] => Some([rows, columns]),
+        [9] => Some([3, 3]),
+        _ => None,
     }
 }
 

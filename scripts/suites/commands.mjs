@@ -6,6 +6,7 @@ import { runChecks } from "../lib/step.mjs";
 /** The scripts, with the arguments that make them small. @type {readonly (readonly string[])[]} */
 const smallest = [
   ["record", "--quick", "--check"],
+  ["record", "--quick", "--doubts"],
   ["bench", "--smallest"],
   ["fit", "--cases", "36", "--test-cases", "12"],
   ["speed", "--quick"],

@@ -19,9 +19,13 @@ const WHOLE_IMAGE: f64 = 0.99;
 /// Share of the border's pixels beyond which a mask is probably that of the background.
 const WHOLE_BORDER: f64 = 0.8;
 
-/// Size of an object and its distance, in metres, beyond which an assumed unit is doubtful.
-const LARGE_M: f64 = 0.6;
+/// Size of an object in metres beyond which an assumed unit is doubtful: of depth in whole millimetres, which come of integers whose
+/// unit is a guess, and of other depth. Of 48 real objects, up to 0.3 and 0.96; of generated chairs, up to 1.43.
+const LARGE_M: [f64; 2] = [0.6, 1.5];
+/// The same of its distance.
 const NEAR_M: f64 = 0.15;
+/// Difference from a whole number of millimetres that rounding explains.
+const ROUNDING_MM: f32 = 0.01;
 
 /// The distance of pixels inside the mask from those outside that are compared, relative to the width of the object: edges of
 /// depth are a few pixels off or wide.
@@ -59,6 +63,7 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let readings = depths.len();
     if readings > 0 {
+        let large = LARGE_M[usize::from(!depths.iter().all(is_whole))];
         let median = median(depths.into_iter()).unwrap_or_default();
         if median > IMPLAUSIBLE_DEPTH_M {
             warnings.push(Warning {
@@ -72,7 +77,7 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
         let pixels = observation.bounds().map(|[first, last]| (last - first) as f64);
         let camera = observation.camera();
         let size = f64::from(median) * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt();
-        let is_plausible = size < LARGE_M && f64::from(median) > NEAR_M;
+        let is_plausible = size < large && f64::from(median) > NEAR_M;
         if !is_plausible && (IMPLAUSIBLY_NEAR_M..IMPLAUSIBLE_DEPTH_M).contains(&median) {
             warnings.push(Warning {
                 code: WarningCode::SizeDoubtful,
@@ -143,13 +148,22 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     warnings
 }
 
-/// Whether depths are those of a map that was normalised: some, but few, are at 0, and the largest is at the end of the range.
+/// Whether depths are those of a map that was normalised: some, but few, are at 0, and the largest is at the end of the range. A
+/// sensor's map may lack many readings; then, fractions of a millimetre up to exactly 1 at few pixels are no lengths.
 fn looks_normalised(depth: &[f32]) -> bool {
+    let few = |is: &dyn Fn(f32) -> bool| {
+        let count = depth.iter().filter(|z| is(**z)).count();
+        count > 0 && count as f64 <= FEW_ZEROS * depth.len() as f64
+    };
     // Depths are not negative: their bits are in the same order, and compared several at once.
-    let (zeros, most) = (depth.iter().map(|z| z.to_bits()))
-        .fold((0_u32, 0_u32), |(zeros, most), z| (zeros + u32::from(z == 0), most.max(z)));
-    let has_few = zeros > 0 && f64::from(zeros) <= FEW_ZEROS * depth.len() as f64;
-    has_few && FULL_RANGE_M.contains(&f32::from_bits(most))
+    let most = f32::from_bits(depth.iter().fold(0, |most, z| most.max(z.to_bits())));
+    FULL_RANGE_M.contains(&most)
+        && (few(&|z| z <= 0.0) || (most == FULL_RANGE_M[0] && few(&|z| z == most) && !depth.iter().all(is_whole)))
+}
+
+/// Whether a depth is a whole number of millimetres, up to rounding to 32 bits.
+fn is_whole(z: &f32) -> bool {
+    (1000.0 * z - (1000.0 * z).round()).abs() < ROUNDING_MM
 }
 
 /// The share of the steps of the depth out of the mask that go towards the camera; `None` if there are few steps.

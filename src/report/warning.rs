@@ -30,6 +30,8 @@ pub enum WarningCode {
     MaskCoversImage,
     /// The mask covers most of the image's border: it is probably that of the background.
     MaskLooksInverted,
+    /// The mask is a map of labels, all of which are read as the object, and the pose is in doubt. The package looks at it.
+    MaskHasLabels,
     /// The mask touches the image border: part of the object is outside the view.
     MaskTouchesBorder,
     /// Less than half of the mask has a depth reading.

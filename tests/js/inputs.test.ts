@@ -5,6 +5,7 @@ import { type AlignInput, type CameraFileInput, createAligner, type Evaluation, 
 import { codesOf } from "../support/errors.js";
 import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
 import { input, mesh, truth, view } from "../support/scene.js";
+import { deflated, zip } from "../support/zip.js";
 
 const { width, height, depth, mask, camera } = view;
 const aligner = await createAligner();
@@ -112,6 +113,11 @@ test("camera: a vertical field of view, and lens distortion, which is warned of"
   const { warnings, ...found } = await evaluated(fileOf(distorted));
   assert.deepEqual([codesOf(warnings), found.metrics], [["CAMERA_NOT_PINHOLE"], reference.metrics]);
   assert.match(warnings[0]?.message ?? "", /distortion/);
+});
+
+test("camera: nine numbers in an .npz file", async () => {
+  const file = zip([deflated("depth.npy", depthFile), deflated("cam_K.npy", npy(Float32Array.from(K), 1, 9))]);
+  assert.deepEqual((await evaluated({ camera: undefined, depth: file })).metrics, reference.metrics);
 });
 
 test("mesh: triangles without indices, null for indices", async () => {
@@ -237,10 +243,27 @@ test("a mesh at the coordinates of a map has the pose of its file", async () => 
 test("intrinsics that seem to be those of another image are named", async () => {
   const { fx, fy, cx, cy } = camera;
   const twice = { fx: 2 * fx, fy: 2 * fy, cx: 2 * cx + 0.5, cy: 2 * cy + 0.5 };
+  // The photo has other proportions than the depth map.
+  const stretched = { fx: 1.8 * fx, fy: 1.4 * fy, cx: 1.8 * cx + 0.4, cy: 1.4 * cy + 0.2 };
   const of = (cameraFile: object) =>
     aligner.align({ ...plain, camera: undefined, cameraFile } as AlignInput, { quality: "fast" });
-  assert.ok(codesOf((await of(twice)).warnings).includes("CAMERA_DOUBTFUL"));
+  for (const other of [twice, stretched]) {
+    assert.ok(codesOf((await of(other)).warnings).includes("CAMERA_DOUBTFUL"));
+  }
   const stated = await of({ ...twice, width: 2 * width, height: 2 * height });
   const known = await of({ fx, fy, cx, cy });
   assert.deepEqual([stated.matrix, codesOf(known.warnings).includes("CAMERA_DOUBTFUL")], [known.matrix, false]);
+});
+
+test("a mask with the labels of several objects is named where the pose is in doubt", async () => {
+  const of = async (background: number) => {
+    const side = (i: number) => (i % width < width / 2 ? 1 : 2);
+    const labels = Uint8Array.from(mask, (pixel, i) => (pixel === 0 ? background * (side(i) - 1) : side(i)));
+    return aligner.align({ ...plain, mask: npy(labels, height, width) } as AlignInput, { quality: "fast" });
+  };
+  const [parts, objects] = [await of(0), await of(3)];
+  assert.ok(parts.confidence > 0.5 && parts.maskReading?.endsWith("labels"), `${parts.confidence}`);
+  assert.ok(objects.confidence < 0.5, `${objects.confidence}`);
+  const isNamed = [parts, objects].map(({ warnings }) => codesOf(warnings).includes("MASK_HAS_LABELS"));
+  assert.deepEqual(isNamed, [false, true]);
 });

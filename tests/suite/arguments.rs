@@ -310,8 +310,15 @@ fn doubtful_depth_and_masks_are_warned_of() {
     // Depth from 0, of a single pixel, to 1; the same in integers of 16 bits that are taken for millimetres.
     let nearest = whole.depth().data().iter().copied().fold(f32::INFINITY, f32::min);
     let normalised = |i: usize, z: f32| if i == 0 { 0.0 } else { 0.05 + 0.95 * (z - nearest) / (0.9 - nearest) };
+    // The same of a sensor that lacks readings; a single pixel has the largest value.
+    let lacking = |i: usize, z: f32| match i {
+        1 => 1.0,
+        _ if i % 50 == 0 => 0.0,
+        _ => 0.9 * normalised(i, z),
+    };
     let integers = |i: usize, z: f32| (f64::from((normalised(i, z) * 65535.0).round()) * 0.001) as f32;
-    let cases: [(&str, Vec<WarningCode>, &[WarningCode]); 12] = [
+    const LARGER: f32 = 5.0;
+    let cases: [(&str, Vec<WarningCode>, &[WarningCode]); 15] = [
         ("metres", hidden(0, metres), &[]),
         ("disparity", hidden(0, disparity), &[WarningCode::DepthLooksInverted]),
         ("hidden by half", hidden(WIDTH / 2, metres), &[]),
@@ -319,9 +326,12 @@ fn doubtful_depth_and_masks_are_warned_of() {
         ("disparity at the bottom of a box", hidden(WIDTH, disparity), &[]),
         ("normalised", seen(&normalised), &[WarningCode::DepthLooksNormalised]),
         ("normalised integers", seen(&integers), &[WarningCode::DepthLooksNormalised]),
-        ("a sensor that lacks readings", seen(&|i, z| if i % 50 == 0 { 0.0 } else { normalised(i, z) }), &[]),
+        ("normalised, of a sensor that lacks readings", seen(&lacking), &[WarningCode::DepthLooksNormalised]),
+        ("a sensor that lacks readings", seen(&|i, z| (1000.0 * lacking(i, z)).round() / 1000.0), &[]),
         ("a map that ends elsewhere", seen(&|i, z| 1.1 * normalised(i, z)), &[]),
         ("centimetres", seen(&|_, z| 100.0 * z), &[WarningCode::SizeDoubtful]),
+        ("metres of something large", seen(&|_, z| LARGER * z), &[]),
+        ("whole millimetres of it", seen(&|_, z| (1000.0 * LARGER * z).round() / 1000.0), &[WarningCode::SizeDoubtful]),
         ("millimetres", seen(&|_, z| 1000.0 * z), &[WarningCode::DepthLooksLikeMillimetres]),
         ("thousandths", seen(&|_, z| 0.001 * z), &[WarningCode::DepthLooksTooSmall]),
     ];

@@ -2,10 +2,8 @@
 import type { Alignment, Warning } from "../generated/types.js";
 import type { CoreInput } from "../input/core-input.js";
 import type { CoreMesh } from "../input/prepared-mesh.js";
+import { DOUBT } from "../types/results.js";
 import type { JobContext } from "./context.js";
-
-/** Confidence below which a pose is in doubt. */
-const DOUBT = 0.5;
 
 /**
  * How much better the score of the mirror image is, where this explains the doubt. Of 48 real objects, most of which are nearly

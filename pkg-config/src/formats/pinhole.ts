@@ -48,19 +48,23 @@ export function resizedPinhole({ fx, fy, cx, cy }: Pinhole, from: ImageSize, to:
 /** Distance of a principal point from the centre, in image sizes, from which it is that of a crop or of another image. */
 const OFF_CENTRE = 0.15;
 
-/** Difference of the coordinates of a principal point, in image sizes, that is on the diagonal of the image. */
+/** Difference of the coordinates of a principal point, in image sizes and relative to the focal lengths, that one scale explains. */
 const ON_DIAGONAL = 0.02;
 
 /**
  * Why intrinsics may be those of an image of another size: the principal point is outside the image, or on the diagonal and
  * off the centre. That of a crop may be outside, too. `undefined` without such a doubt.
  */
-export function doubtOfSize({ cx, cy }: Pinhole, { width, height }: ImageSize): string | undefined {
+export function doubtOfSize({ fx, fy, cx, cy }: Pinhole, { width, height }: ImageSize): string | undefined {
   const [x, y] = [(cx + 0.5) / width, (cy + 0.5) / height];
   const isOutside = [x, y].some((place) => place < 0 || place > 1);
-  const isScaled = Math.abs(x - y) < ON_DIAGONAL && Math.abs(x - 0.5) > OFF_CENTRE;
+  // Another ratio of the sides stretches the focal lengths as well.
+  const isScaled =
+    Math.abs(x - (y * fx) / fy) < ON_DIAGONAL && Math.max(Math.abs(x - 0.5), Math.abs(y - 0.5)) > OFF_CENTRE;
   if (!isOutside && !isScaled) return undefined;
-  const place = isOutside ? "outside the image" : `${Math.round(100 * x)} % of the way across and down the image`;
+  const place = isOutside
+    ? "outside the image"
+    : `${Math.round(100 * x)} % of the way across and ${Math.round(100 * y)} % down the image`;
   return `The principal point (${Math.round(cx)}, ${Math.round(cy)}) is ${place} of ${width} × ${height} pixels: the intrinsics seem to be those of an image of another size. Write the width and height of that image into the camera file, and they are scaled; for a crop, write the size of the crop.`;
 }
 
