@@ -144,7 +144,7 @@ export async function readMesh(
     decodeImage?: DecodeImage | undefined;
   } = {},
 ): Promise<MeshFromFile> {
-  const given = optionsOf(options, ["format", "resources", "colors"]);
+  const given = optionsOf(options, ["format", "resources", "colors", "decodeImage"]);
   const bytes = await requiredBytes("file", file);
   return decodeMesh("file", bytes, given, fileReaders);
 }

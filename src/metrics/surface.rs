@@ -58,8 +58,8 @@ pub fn surface_agreement(
     let queries: Vec<u32> = measured.iter().filter(|index| is_close(**index)).chain(thinned).copied().collect();
 
     let mesh_from_camera = camera_from_mesh.inverse();
-    let mut consistency = Mean::default();
-    let [mut distances, mut fitting] = [[Mean::default(); 2]; 2];
+    // Of the close and of the other points.
+    let [mut distances, mut fitting, mut consistency] = [[Mean::default(); 2]; 3];
     // The query is in the mesh frame, where distances are 1/s of those in the camera frame.
     let query = |i: usize| {
         let (index, point) = (queries[i], points[queries[i] as usize]);
@@ -75,14 +75,15 @@ pub fn surface_agreement(
         let normal = normals.get(index).copied().unwrap_or_default();
         let facet = camera_from_mesh.rotation * vector3(facet_normal(mesh, nearest.triangle));
         if normal != Vec3::ZERO && facet.norm_squared() > 0.0 {
-            consistency.add(facet.dot(&vector3(normal)).abs().min(1.0));
+            consistency[is_far].add(facet.dot(&vector3(normal)).abs().min(1.0));
         }
     });
     let estimated = Mean::of(estimates.iter().copied().filter(|d| d.is_finite())).value().unwrap_or(0.0);
     let of_both = |means: [Mean; 2], estimated: f64| {
         let parts = [(close, means[0].value().map(|mean| mean + estimated)), (far, means[1].value())];
-        let sum: f64 = parts.iter().map(|(count, mean)| *count as f64 * mean.unwrap_or(0.0)).sum();
-        parts.iter().any(|(_, mean)| mean.is_some()).then(|| sum / points.len() as f64)
+        let known = || parts.iter().filter_map(|(count, mean)| Some((*count as f64, (*mean)?)));
+        let weight: f64 = known().map(|(count, _)| count).sum();
+        (weight > 0.0).then(|| known().map(|(count, mean)| count * mean).sum::<f64>() / weight)
     };
     let mut back = Mean::default();
     let mut last = 0;
@@ -99,7 +100,7 @@ pub fn surface_agreement(
         points_to_surface: of_both(distances, estimated),
         surface_to_points: back.value(),
         fitness: of_both(fitting, 0.0),
-        normal_consistency: consistency.value(),
+        normal_consistency: of_both(consistency, 0.0),
     }
 }
 

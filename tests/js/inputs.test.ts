@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type AlignInput, type CameraFileInput, createAligner, type Evaluation, type MeshArrays } from "sim3align";
+import { readMesh } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
 import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -208,6 +209,35 @@ test("a mesh with a texture that can't be read is aligned by its shape, with a w
     assert.match(warnings[0]?.message ?? "", /WebP.*gltf-transform/);
   }
   assert.deepEqual((await aligner.evaluate({ ...input, mesh: webp }, truth)).warnings, []);
+});
+
+test("a texture as KTX2 is decoded by the caller's decoder", async () => {
+  const parts = gltfJson(mesh);
+  const [primitive] = parts.meshes[0]?.primitives ?? [];
+  const ktx2 = [0xab, 0x4b, 0x54, 0x58, 0x20, 0x32, 0x30, 0xbb, 0x0d, 0x0a, 0x1a, 0x0a];
+  const file = glbOf(
+    {
+      ...parts,
+      extensionsUsed: ["KHR_texture_basisu"],
+      meshes: [{ primitives: [{ ...primitive, attributes: { POSITION: 0, TEXCOORD_0: 2 }, material: 0 }] }],
+      accessors: [...parts.accessors, { bufferView: 0, componentType: 5126, count: vertices, type: "VEC2" }],
+      materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
+      textures: [{ extensions: { KHR_texture_basisu: { source: 0 } } }],
+      images: [{ uri: `data:image/ktx2;base64,${Buffer.from(ktx2).toString("base64")}` }],
+    },
+    gltfBuffer(mesh),
+  );
+  const seen: number[][] = [];
+  const read = await readMesh(file, {
+    decodeImage: (bytes) => {
+      seen.push([...bytes]);
+      return { data: Uint8Array.of(200, 30, 60), width: 1, height: 1 };
+    },
+  });
+  assert.deepEqual([seen, read.warnings ?? []], [[ktx2], []]);
+  assert.deepEqual([...(read.samples?.colors.subarray(0, 3) ?? [])], [200, 30, 60]);
+  const undecoded = await readMesh(file);
+  assert.match(undecoded.warnings?.[0] ?? "", /ktxdecompress/);
 });
 
 test("a mesh at the coordinates of a map has the pose of its file", async () => {

@@ -90,6 +90,8 @@ struct TextureJson {
 struct TextureSources {
     #[serde(rename = "EXT_texture_webp")]
     webp: Option<TextureSource>,
+    #[serde(rename = "KHR_texture_basisu")]
+    ktx2: Option<TextureSource>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -98,9 +100,13 @@ struct TextureSource {
 }
 
 impl TextureJson {
-    /// The image, of a format that can be read.
+    /// The image, of a format that can be read, if there is one.
     fn image(&self) -> Option<usize> {
-        self.source.or_else(|| Some(self.extensions.as_ref()?.webp.as_ref()?.source))
+        let further = || {
+            let TextureSources { webp, ktx2 } = self.extensions.as_ref()?;
+            Some(webp.as_ref().or(ktx2.as_ref())?.source)
+        };
+        self.source.or_else(further)
     }
 }
 
