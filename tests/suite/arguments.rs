@@ -313,7 +313,7 @@ fn doubtful_depth_and_masks_are_warned_of() {
     // The same of a sensor that lacks readings; a single pixel has the largest value.
     let lacking = |i: usize, z: f32| match i {
         1 => 1.0,
-        _ if i % 50 == 0 => 0.0,
+        _ if i.is_multiple_of(50) => 0.0,
         _ => 0.9 * normalised(i, z),
     };
     let integers = |i: usize, z: f32| (f64::from((normalised(i, z) * 65535.0).round()) * 0.001) as f32;

@@ -184,7 +184,7 @@ fn a_mesh_whose_colors_are_broken_is_read_without_them() {
         ("half a PNG", upright(&png[..png.len() / 2], TEXTURED), CorruptFile),
         ("WebP", upright(b"RIFF\0\0\0\0WEBPVP8 ", TEXTURED), UnsupportedFormat),
         ("a huge PNG", upright(&huge, TEXTURED), FileTooLarge),
-        ("Basis", with(basis, r#"{"bufferView":3}"#), UnsupportedFormat),
+        ("KTX2", upright(b"\xabKTX 20\xbb\r\n\x1a\n", &material(basis, r#"{"bufferView":3}"#)), UnsupportedFormat),
         ("no such view", with(r#"{"source":0}"#, r#"{"bufferView":9}"#), CorruptFile),
         ("no such image", with(r#"{"source":7}"#, r#"{"bufferView":3}"#), CorruptFile),
         ("a file beside", with(r#"{"source":0}"#, r#"{"uri":"a.png"}"#), InvalidArgument),
