@@ -1,4 +1,4 @@
-/** What documents and comments say of file formats, names and kinds of depth: written from the tables of the package. */
+/** Writes the lists of file formats, file names and depth kinds in documents and comments from the package's tables. */
 import { readFileSync, writeFileSync } from "node:fs";
 import { filesBelow } from "./cache.mjs";
 import { at, repository } from "./paths.mjs";
@@ -12,7 +12,8 @@ const files = () => [
 /** The tables, from their source: the package need not be built. */
 async function tables() {
   const { build } = await import("esbuild");
-  const contents = 'export * from "./case-names.js"; export * from "./input/formats.js";';
+  const contents =
+    'export * from "./case-names.js"; export * from "./input/formats.js"; export * from "./input/depth-kinds.js";';
   const stdin = { contents, resolveDir: at("pkg-config", "src") };
   const { outputFiles } = await build({ stdin, bundle: true, write: false, format: "esm" });
   return import(`data:text/javascript,${encodeURIComponent(outputFiles[0]?.text ?? "")}`);
@@ -77,9 +78,11 @@ export async function writeTables() {
   for (const { path, now } of await outdated()) writeFileSync(path, now);
 }
 
-/** @throws if a document or a comment says something else than the tables */
+/** @throws if a document or a comment disagrees with the tables */
 export async function checkTables() {
   const paths = (await outdated()).map(({ path }) => path.slice(repository.length + 1));
   if (paths.length > 0)
-    throw new Error(`${paths.join(", ")} disagree with pkg-config/src/input/formats.ts. Remedy: npm run update.`);
+    throw new Error(
+      `${paths.join(", ")} disagree with pkg-config/src/input/formats.ts or depth-kinds.ts. Remedy: npm run update.`,
+    );
 }

@@ -1,6 +1,6 @@
 /** The help texts of the commands: layouts of folders, frames and units, outputs, and examples. */
 import { namesText } from "../case-names.js";
-import { defaultUnits, depthKinds } from "../input/formats.js";
+import { defaultUnits, depthKinds } from "../input/depth-kinds.js";
 import { csvHeadings } from "./result-files.js";
 
 /** The names of a part, in lines that are indented by two. */

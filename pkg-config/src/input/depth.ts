@@ -26,7 +26,8 @@ export interface ReadDepth extends SizedArray<DepthArray> {
   unit: string;
 }
 
-const depthForms = `a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a file: ${formatsText("depth")}`;
+const depthForms = () =>
+  `a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a file: ${formatsText("depth")}`;
 
 /** The image size in the input, if given. */
 export interface StatedSize {
@@ -50,16 +51,16 @@ export async function readDepth(
   if (isRecord(depth) && "data" in depth) {
     const { data } = depth;
     const values = mayHaveBytes && isBytes(data) ? { ...depth, data: Float32Array.from(data) } : depth;
-    return ofArray(sized("depth", values, depthForms, isDepthArray, size));
+    return ofArray(sized("depth", values, depthForms(), isDepthArray, size));
   }
   const bytes = await fileBytes("depth", depth);
-  if (bytes === null) throw wrongKind("depth", depth, depthForms, "Float32Array");
+  if (bytes === null) throw wrongKind("depth", depth, depthForms(), "Float32Array");
   if (bytes === depth && bytes.length === (size.width ?? 0) * (size.height ?? 0) && bytes.length > 0) {
     if (mayHaveBytes) return ofArray({ data: Float32Array.from(bytes), ...required(size) });
     const found = `a Uint8Array of ${size.width} × ${size.height} values`;
     const remedy =
       'Pass the depth map itself: 256 levels are a visualisation of it. If a relative model drew it, near is bright: pass depthKind "affine-invariant-disparity".';
-    throw failure("EIGHT_BIT_DEPTH", "depth", found, depthForms, remedy);
+    throw failure("EIGHT_BIT_DEPTH", "depth", found, depthForms(), remedy);
   }
   const file = await decodeDepth("depth", bytes, reading, readers, (argument) => argument.replace(/^options\./, ""));
   checkStatedSize("depth", file, size);

@@ -9,7 +9,8 @@ import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isB
 import type { SizedArray } from "./depth.js";
 import { formatsText } from "./formats.js";
 
-const kinds = `a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a file: ${formatsText("mask")}`;
+const kinds = () =>
+  `a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a file: ${formatsText("mask")}`;
 
 /** A mask for the core. */
 export interface ReadMask extends SizedArray<Bytes> {
@@ -40,9 +41,9 @@ export async function readMask(mask: unknown, pixels: number, formats: LoadForma
     checkChannels("mask", mask, pixels);
     return bare(mask);
   }
-  if (isKind(mask, "ImageData")) throw invalidArgument("mask", mask, kinds, "Pass one channel of its data.");
+  if (isKind(mask, "ImageData")) throw invalidArgument("mask", mask, kinds(), "Pass one channel of its data.");
   const bytes = await fileBytes("mask", mask);
-  if (bytes === null) throw wrongKind("mask", mask, kinds, "Uint8Array");
+  if (bytes === null) throw wrongKind("mask", mask, kinds(), "Uint8Array");
   const isImage = beginsLikeImage(bytes);
   if (!isImage && (bytes.length === pixels || (mask === bytes && !beginsLikeJson(bytes)))) {
     checkChannels("mask", bytes, pixels);

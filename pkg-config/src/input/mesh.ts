@@ -40,7 +40,8 @@ export async function decodeMesh(
   return callReader(readers.formats, argument, bytes, (module) => module.readMesh(bytes, read), rename);
 }
 
-const kinds = `{ positions, indices? }, or the bytes of a file: ${formatsText("mesh")} (also as { bytes, format?, resources? })`;
+const kinds = () =>
+  `{ positions, indices? }, or the bytes of a file: ${formatsText("mesh")} (also as { bytes, format?, resources? })`;
 
 /** A mesh for the core, and why it has no colours. */
 export interface MeshAndWarnings {
@@ -59,7 +60,7 @@ export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: 
   }
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes("mesh", file.bytes);
-  if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh to align.");
+  if (bytes === null) throw invalidArgument("mesh", mesh, kinds(), "Pass the mesh to align.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = { ...withoutUndefined({ format, resources }), colors: withColors };
   const read = await decodeMesh("mesh", bytes, options, readers, ofMesh);

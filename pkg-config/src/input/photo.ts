@@ -11,7 +11,8 @@ import { formatsText } from "./formats.js";
 import type { PixelArray } from "./types.js";
 import { type ImageReaders, isWebp } from "./webp.js";
 
-const kinds = `a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a file: ${formatsText("photo")}`;
+const kinds = () =>
+  `a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a file: ${formatsText("photo")}`;
 
 /** A photo for the core. */
 export interface ReadPhoto {
@@ -33,7 +34,7 @@ export async function readPhoto(image: unknown, size: StatedSize, readers: Image
   }
   if (isTypedArray<Uint8ClampedArray>(image, "Uint8ClampedArray")) return { image: pixels("", image, size) };
   const bytes = await fileBytes("image", image);
-  if (bytes === null) throw wrongKind("image", image, kinds, "Uint8Array");
+  if (bytes === null) throw wrongKind("image", image, kinds(), "Uint8Array");
   if (bytes === image && !beginsLikeImage(bytes) && channelsOf(bytes, size) !== undefined)
     return { image: pixels("", bytes, size) };
   const photo = await decodePhoto(bytes, readers);

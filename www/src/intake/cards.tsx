@@ -1,7 +1,8 @@
 /** The cards of the view: depth map, photo, camera. */
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
-import { depthKindNames, depthKinds, extensionsOf, type FileKind } from "sim3align/input/formats";
+import { depthKinds } from "sim3align/input/depth-kinds";
+import { depthKindNames, extensionsOf, type FileKind } from "sim3align/input/formats";
 import { depthRange } from "../draw/colours.js";
 import { baseName } from "../load/files.js";
 import type { CameraSource, Field } from "../load/inputs.js";

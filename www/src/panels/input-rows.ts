@@ -1,5 +1,5 @@
 /** What the depth map and the camera of a scene were taken to be, in plain words. */
-import { depthKinds } from "sim3align/input/formats";
+import { depthKinds } from "sim3align/input/depth-kinds";
 import type { Scene } from "../state/scene.js";
 import { percent, significant } from "../ui/format.js";
 
