@@ -4,7 +4,7 @@ import { createHash } from "node:crypto";
 import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { bundleScripts, bundleTypes } from "./bundle.mjs";
-import { once } from "./cache.mjs";
+import { cached, digest, once } from "./cache.mjs";
 import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
 import { NOTICE } from "./notices.mjs";
@@ -20,19 +20,36 @@ export const buildPackage = once(async () => {
   const version = packageVersion();
   await buildWasm();
   await step("package", async (say) => {
-    for (const folder of [compiledDir, packageDir]) rmSync(folder, { recursive: true, force: true });
-    const [node, tsc] = nodeProgram("typescript", "tsc");
-    await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
-    copyFiles();
-    await bundleScripts();
-    await bundleInline();
-    await bundleReportPage();
-    await bundleElement();
-    await bundleTypes();
-    await writeBuildInfo(version);
-    say(`pkg/ holds sim3align ${version}`);
+    const info = await buildInfo(version);
+    // A package that is up to date stays as it is: others may be reading it.
+    const outputs = [join(compiledDir, "package.json"), infoFile];
+    const isNew = await cached(at("target", "package.stamp"), digest(sources(), [info]), outputs, () => write(info));
+    say(`pkg/ holds sim3align ${version}${isNew ? "" : ", up to date"}`);
   });
 });
+
+/** The last file of the package that is written. */
+const infoFile = join(packageDir, "build-info.json");
+
+/** What the package is made of, beside the facts of its build. */
+const sources = () => [
+  ...[skinDir, at("www"), at("scripts", "lib"), at("package-lock.json"), at("tsconfig.base.json")],
+  ...documents.map((name) => at(name)),
+];
+
+/** Writes the package. @param {string} info see {@link buildInfo} */
+async function write(info) {
+  for (const folder of [compiledDir, packageDir]) rmSync(folder, { recursive: true, force: true });
+  const [node, tsc] = nodeProgram("typescript", "tsc");
+  await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
+  copyFiles();
+  await bundleScripts();
+  await bundleInline();
+  await bundleReportPage();
+  await bundleElement();
+  await bundleTypes();
+  writeFileSync(infoFile, info);
+}
 
 /**
  * The version, which package.json and Cargo.toml have to agree on.
@@ -49,11 +66,14 @@ export function packageVersion() {
   return version;
 }
 
+/** Files of the repository that the package carries. */
+const documents = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICE];
+
 function copyFiles() {
   mkdirSync(packageDir);
   for (const folder of [compiledDir, packageDir])
     copyFileSync(join(skinDir, "package.json"), join(folder, "package.json"));
-  for (const name of ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICE]) {
+  for (const name of documents) {
     if (!existsSync(at(name))) throw new Error(`${name} is missing. Remedy: restore it; the package carries it.`);
     copyFileSync(at(name), join(packageDir, name));
   }
@@ -64,10 +84,10 @@ function copyFiles() {
 }
 
 /**
- * Says what the package was made from and with. It holds no date: the same sources give the same bytes.
+ * What the package is made from and with, as JSON. It holds no date: the same sources give the same bytes.
  * @param {string} version
  */
-async function writeBuildInfo(version) {
+async function buildInfo(version) {
   const commit = await attempt("git", ["rev-parse", "HEAD"]);
   const changes = await attempt("git", ["status", "--porcelain"]);
   const typescript = JSON.parse(readFileSync(at("node_modules", "typescript", "package.json"), "utf8")).version;
@@ -89,5 +109,5 @@ async function writeBuildInfo(version) {
     },
     modules: Object.fromEntries(modules),
   };
-  writeFileSync(join(packageDir, "build-info.json"), `${JSON.stringify(info, null, 2)}\n`);
+  return `${JSON.stringify(info, null, 2)}\n`;
 }
