@@ -143,7 +143,7 @@ impl DepthMap {
 /// is set.
 pub fn bounds_of<T>(pixels: &[T], width: usize, is_set: impl Fn(&T) -> bool) -> [[usize; 2]; 2] {
     let mut bounds = [[usize::MAX, 0]; 2];
-    for (v, row) in pixels.chunks_exact(width).enumerate() {
+    for (v, row) in pixels.chunks_exact(width.max(1)).enumerate() {
         // Without a branch per pixel: most rows are empty.
         if !row.iter().fold(false, |any, pixel| any | is_set(pixel)) {
             continue;

@@ -107,7 +107,7 @@ pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn
 pub fn check_shape(mesh: &Mesh) -> Result<()> {
     check_triangles(mesh.triangles().len())?;
     // Unused vertices only make it larger, and the mesh thinner.
-    let diagonal = diagonal_of(mesh);
+    let diagonal = mesh.diagonal();
     let thickness = |moments: &SurfaceMoments, diagonal: f64| {
         moments.principal_axes().values.map(|variance| variance.max(0.0).sqrt() / diagonal)
     };
@@ -209,12 +209,6 @@ fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// The diagonal of the bounding box.
-fn diagonal_of(mesh: &Mesh) -> f64 {
-    let Bounds { min, max } = Bounds::of(mesh.positions()).unwrap_or(Bounds::NOTHING);
-    (max.as_dvec3() - min.as_dvec3()).length()
-}
-
 fn is_usual(diagonal: f64) -> bool {
     (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal)
 }
@@ -222,7 +216,8 @@ fn is_usual(diagonal: f64) -> bool {
 /// Checks the diagonal of the bounding box; unused vertices are ignored.
 fn check_diagonal(mesh: &Mesh) -> Result<f64> {
     let used = mesh.without_unused_vertices();
-    let diagonal = diagonal_of(used.as_ref().unwrap_or(mesh));
+    let Bounds { min, max } = Bounds::of(used.as_ref().unwrap_or(mesh).positions()).unwrap_or(Bounds::NOTHING);
+    let diagonal = (max.as_dvec3() - min.as_dvec3()).length();
     if is_usual(diagonal) {
         return Ok(diagonal);
     }

@@ -19,8 +19,8 @@ const WHOLE_IMAGE: f64 = 0.99;
 /// Share of the border's pixels beyond which a mask is probably that of the background.
 const WHOLE_BORDER: f64 = 0.8;
 
-/// Size of an object in metres beyond which an assumed unit is doubtful: of depth in whole millimetres, which come of integers whose
-/// unit is a guess, and of other depth. Of 48 real objects, up to 0.3 and 0.96; of generated chairs, up to 1.43.
+/// Size of an object, metres, beyond which an assumed unit is doubtful: for depth in whole millimetres, which was probably stored as
+/// integers of an unstated unit, and for other depth. Real objects (48) have up to 0.3 and 0.96, generated chairs up to 1.43.
 const LARGE_M: [f64; 2] = [0.6, 1.5];
 /// The same of its distance.
 const NEAR_M: f64 = 0.15;
@@ -148,8 +148,8 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     warnings
 }
 
-/// Whether depths are those of a map that was normalised: some, but few, are at 0, and the largest is at the end of the range. A
-/// sensor's map may lack many readings; then, fractions of a millimetre up to exactly 1 at few pixels are no lengths.
+/// Whether a depth map was normalised to the range from 0: its maximum is the end of the range, and few pixels are 0. If many are 0,
+/// as where a sensor has no readings, few pixels are exactly 1, and not all values are whole millimetres.
 fn looks_normalised(depth: &[f32]) -> bool {
     let few = |is: &dyn Fn(f32) -> bool| {
         let count = depth.iter().filter(|z| is(**z)).count();
@@ -161,7 +161,7 @@ fn looks_normalised(depth: &[f32]) -> bool {
         && (few(&|z| z <= 0.0) || (most == FULL_RANGE_M[0] && few(&|z| z == most) && !depth.iter().all(is_whole)))
 }
 
-/// Whether a depth is a whole number of millimetres, up to rounding to 32 bits.
+/// Whether a depth is a whole number of millimetres within the rounding of f32.
 fn is_whole(z: &f32) -> bool {
     (1000.0 * z - (1000.0 * z).round()).abs() < ROUNDING_MM
 }

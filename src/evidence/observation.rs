@@ -145,7 +145,9 @@ impl Observation {
     /// The indices of the pixels of the mask, row-major.
     pub fn pixels(&self) -> impl Iterator<Item = usize> {
         let (mask, width, [[left, right], [top, bottom]]) = (self.mask.data(), self.mask.width(), self.bounds);
-        (top..=bottom).flat_map(move |v| v * width + left..=v * width + right).filter(|i| mask[*i] != 0)
+        (top..=bottom)
+            .flat_map(move |v| v * width + left..=v * width + right)
+            .filter(|i| mask.get(*i).is_some_and(|m| *m != 0))
     }
 
     /// Index and depth of each reading inside the mask, row-major.

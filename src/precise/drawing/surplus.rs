@@ -159,6 +159,7 @@ fn clusters(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<u
         }
     };
     mesh.positions().iter().zip(&parts.of_vertex).for_each(|(position, part)| occupy(*position, *part));
+    // Other triangles are in the cells around their first corner.
     let is_long = |triangle: &[u32; 3]| {
         let [a, b, c] = mesh.corners(*triangle);
         (b - a).length_squared().max((c - a).length_squared()) > cell * cell

@@ -18,6 +18,12 @@ import { Problems, problemsFor } from "./problem-list.js";
 /** Width and height of a thumbnail in pixels. */
 const SIZE = 112;
 
+/** The files of objects, with the other extensions that are accepted. */
+const files = [
+  { field: "mask", title: "Masks", beside: photoExtensions },
+  { field: "mesh", title: "Meshes", beside: meshResources },
+] as const;
+
 const emptyObject: ReadObject = { mask: null, mesh: null, glb: null, truth: null };
 
 export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
@@ -27,26 +33,18 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
     <section class="pairs" aria-labelledby="pairs-title">
       <div class="card-head">
         <h3 id="pairs-title">Objects: mask and mesh</h3>
-        <span class="field-inline">
-          <span>Masks</span>
-          <FieldFiles
-            field="mask"
-            title="Masks"
-            accept={acceptOf("mask", photoExtensions)}
-            isWrong={isWrong("mask")}
-            multiple
-          />
-        </span>
-        <span class="field-inline">
-          <span>Meshes</span>
-          <FieldFiles
-            field="mesh"
-            title="Meshes"
-            accept={acceptOf("mesh", meshResources)}
-            isWrong={isWrong("mesh")}
-            multiple
-          />
-        </span>
+        {files.map(({ field, title, beside }) => (
+          <span class="field-inline" key={field}>
+            <span>{title}</span>
+            <FieldFiles
+              field={field}
+              title={title}
+              accept={acceptOf(field, beside)}
+              isWrong={isWrong(field)}
+              multiple
+            />
+          </span>
+        ))}
       </div>
       <div data-field="mask" data-wrong={isWrong("mask")}>
         <Problems field="mask" general />
