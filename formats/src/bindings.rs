@@ -146,8 +146,8 @@ pub fn depth_image(depth: &DepthImage) -> JsValue {
     object(&properties)
 }
 
-/// `{ positions, indices, origin?, samples?, warnings }`.
-pub fn mesh_arrays(ColoredMesh { mesh, colors, origin, problem }: &ColoredMesh) -> JsValue {
+/// `{ positions, indices, origin?, copies?, samples?, warnings }`.
+pub fn mesh_arrays(ColoredMesh { mesh, colors, flipped, copies, origin, problem }: &ColoredMesh) -> JsValue {
     let warnings = problem.iter().map(|problem| JsValue::from(without_colors(problem)));
     let mut properties = vec![
         ("positions", flat(mesh.positions()).into()),
@@ -158,16 +158,21 @@ pub fn mesh_arrays(ColoredMesh { mesh, colors, origin, problem }: &ColoredMesh) 
         let numbers: Array = origin.to_array().into_iter().map(JsValue::from).collect();
         properties.push(("origin", numbers.into()));
     }
+    if *copies > 0 {
+        properties.push(("copies", (*copies as u32).into()));
+    }
     if let Some(colors) = colors {
-        let samples = colors.samples();
-        properties.push((
-            "samples",
-            object(&[
-                ("positions", flat(&samples.points).into()),
-                ("normals", flat(&samples.normals).into()),
-                ("colors", Uint8Array::from(colors.colors().as_flattened()).into()),
-            ]),
-        ));
+        let cloud = colors.samples();
+        let bytes = |colors: &[Rgb]| Uint8Array::from(colors.as_flattened()).into();
+        let mut samples = vec![
+            ("positions", flat(&cloud.points).into()),
+            ("normals", flat(&cloud.normals).into()),
+            ("colors", bytes(colors.colors())),
+        ];
+        if !flipped.is_empty() {
+            samples.push(("flippedColors", bytes(flipped)));
+        }
+        properties.push(("samples", object(&samples)));
     }
     object(&properties)
 }

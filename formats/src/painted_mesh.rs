@@ -57,16 +57,19 @@ impl Material {
 impl PaintedMesh {
     /// The mesh with its colours. `materials` are those that the parts refer to; other parts are white.
     pub fn colored(self, materials: Result<Vec<Material>>) -> ColoredMesh {
-        let Self { mesh, paint, origin } = self;
-        match materials.map(|materials| paint.surface_colors(&mesh, &materials)) {
-            Ok(colors) => ColoredMesh { mesh, colors, origin, problem: None },
-            Err(problem) => ColoredMesh { mesh, colors: None, origin, problem: Some(problem) },
+        match materials {
+            Ok(materials) => {
+                let read = self.paint.surface_colors(&self.mesh, &materials);
+                let (colors, flipped) = read.map_or((None, Vec::new()), |(colors, flipped)| (Some(colors), flipped));
+                ColoredMesh { colors, flipped, ..self.plain(None) }
+            }
+            Err(problem) => self.plain(Some(problem)),
         }
     }
 
     /// The mesh without colours.
     pub fn plain(self, problem: Option<Error>) -> ColoredMesh {
-        ColoredMesh { mesh: self.mesh, colors: None, origin: self.origin, problem }
+        ColoredMesh { mesh: self.mesh, colors: None, flipped: Vec::new(), copies: 0, origin: self.origin, problem }
     }
 }
 
@@ -79,8 +82,9 @@ impl Paint {
         used
     }
 
-    /// The colours of the mesh's surface; `None` if nothing gives it any, or if it has no area.
-    fn surface_colors(&self, mesh: &Mesh, materials: &[Material]) -> Option<SurfaceColors> {
+    /// The colours of the mesh's surface, and the same with the textures upside down, if it has any; `None` if nothing gives it
+    /// colours, or if it has no area.
+    fn surface_colors(&self, mesh: &Mesh, materials: &[Material]) -> Option<(SurfaceColors, Vec<Rgb>)> {
         let white = Material::default();
         let parts: Vec<(usize, &Material)> = (self.parts.iter())
             .map(|&(first, index)| (first, index.and_then(|index| materials.get(index)).unwrap_or(&white)))
@@ -88,17 +92,22 @@ impl Paint {
         if self.vertex_colors.is_empty() && !parts.iter().any(|(_, material)| material.is_colored()) {
             return None;
         }
+        let is_textured = parts.iter().any(|(_, material)| material.texture.is_some());
         let spacing = surface_area(mesh) / COLOR_SAMPLES as f64;
-        SurfaceColors::sample(mesh, &mut |sample| {
+        let mut flipped = Vec::new();
+        let colors = SurfaceColors::sample(mesh, &mut |sample| {
             let part = parts.partition_point(|&(first, _)| first <= sample.triangle).checked_sub(1);
             let material = part.and_then(|part| parts.get(part)).map_or(&white, |(_, material)| material);
-            self.color(mesh, material, sample, spacing)
-        })
-        .ok()
+            if is_textured {
+                flipped.push(self.color(mesh, material, sample, spacing, true));
+            }
+            self.color(mesh, material, sample, spacing, false)
+        });
+        Some((colors.ok()?, flipped))
     }
 
     /// The colour at a point, with the texture averaged over `spacing`, an area of the surface.
-    fn color(&self, mesh: &Mesh, material: &Material, sample: &SurfaceSample, spacing: f64) -> Rgb {
+    fn color(&self, mesh: &Mesh, material: &Material, sample: &SurfaceSample, spacing: f64, is_flipped: bool) -> Rgb {
         let corners = mesh.triangles().get(sample.triangle).copied().unwrap_or_default();
         let of_vertex = |i: u32| self.vertex_colors.get(i as usize).copied().unwrap_or(WHITE);
         let vertices = interpolated(corners.map(of_vertex), sample.weights);
@@ -109,7 +118,8 @@ impl Paint {
             let at = |axis: usize| a[axis] + (b[axis] - a[axis]) * second + (c[axis] - a[axis]) * third;
             let in_texture = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs() / 2.0;
             let area = in_texture / triangle_area(mesh, sample.triangle) * spacing;
-            texture.color([at(0), at(1)], area, material.wrap)
+            let v = if is_flipped { 1.0 - at(1) } else { at(1) };
+            texture.color([at(0), v], area, material.wrap)
         });
         match (vertices == WHITE, material.factor == [1.0; 3]) {
             (true, true) => texture,

@@ -50,6 +50,8 @@ export interface MeshFromFile {
   indices: Uint32Array;
   /** The colours of the surface, from vertices, materials and textures, if the file has any that can be read. */
   samples?: ColorSamples;
+  /** How many copies of one mesh a glTF file places, if it has no other mesh; all of them are read as one object. */
+  copies?: number;
   /** Why the colours cannot be read; empty if they can, or if there are none. */
   warnings: string[];
 }

@@ -25,12 +25,13 @@ const doubts = [
     "MESH_LOOKS_MIRRORED",
   ],
   ...["MESH_DOUBTFUL", "DEPTH_LOOKS_INVERTED", "DEPTH_LOOKS_NORMALISED", "DEPTH_LOOKS_LIKE_MILLIMETRES"],
-  "DEPTH_LOOKS_TOO_SMALL",
+  ...["DEPTH_LOOKS_TOO_SMALL", "MESH_HOLDS_COPIES", "TEXTURE_LOOKS_FLIPPED"],
 ];
 /** The generated sets, each with its share of the inputs, and the number of inputs of a case. */
 const sets = [
-  { set: "general", part: 0.4, objects: 1 },
-  { set: "sensors", part: 0.3, objects: 1 },
+  { set: "general", part: 0.3, objects: 1 },
+  { set: "sensors", part: 0.2, objects: 1 },
+  { set: "colors", part: 0.2, objects: 1 },
   { set: "clutter", part: 0.3, objects: 2 },
 ];
 /** The largest share of false alarms of a doubt. */
@@ -104,12 +105,12 @@ async function inputsIn(places, most) {
   const inputs = [];
   for (const folder of foldersOf(places, (path) => isScene(path) || isCase(path))) {
     const { input, truth, truths } = isScene(folder) ? await readSceneFolder(folder) : await readCaseFolder(folder);
-    const { objects = [{ ...input, truth }], depth: file, cameraFile: from } = input;
+    const { objects = [{ ...input, truth }], depth: file, cameraFile: from, image } = input;
     for (const [k, { name = "", mask: of, mesh: shape }] of objects.entries()) {
-      const seen = { depth: file, cameraFile: from, mask: of, mesh: shape };
+      const seen = { depth: file, cameraFile: from, mask: of, mesh: shape, image };
       const { depth, depthScale = 1, camera, width, height, mask, mesh } = (await resolveInput(seen, fileReaders)).core;
       const metres = Float32Array.from(depth, (/** @type {number} */ z) => z * depthScale);
-      const clean = { depth: metres, width, height, mask, mesh, cameraFile: camera };
+      const clean = { depth: metres, width, height, mask, mesh, cameraFile: camera, image };
       inputs.push({ name: join(basename(folder), name), input: clean, truth: truths?.[k] ?? truth });
     }
     if (inputs.length >= most) break;

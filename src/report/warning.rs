@@ -46,6 +46,10 @@ pub enum WarningCode {
     MeshDoubtful,
     /// The pose is in doubt, and the mirror image of the mesh fits far better. `align` of the package looks at it.
     MeshLooksMirrored,
+    /// The mesh file places several copies of one mesh, all of which are read as one object. The package's mesh reader warns of it.
+    MeshHoldsCopies,
+    /// The photo contradicts the textures of the mesh, and agrees with them upside down. `align` of the package looks at it.
+    TextureLooksFlipped,
     /// Parts of the mesh are not of the object, and do not count: floating ones, inner shells, a ground plate.
     MeshPartsLeftOut,
     /// A view contradicts the others and does not count (`alignViews`).

@@ -1,7 +1,7 @@
 //! glTF: hierarchies, every kind of accessor, and files that mean harm.
 
 use sim3align::error::Result;
-use sim3align_formats::mesh::{MeshReadOptions, external_resources, read_mesh};
+use sim3align_formats::mesh::{MeshReadOptions, external_resources, read_colored_mesh, read_mesh};
 
 use crate::fixtures::{corners, fixture, floats, glb, read};
 use crate::prelude::*;
@@ -277,7 +277,9 @@ fn instances_are_copies_with_transforms_of_their_own() {
         part(24, "VEC4"),
         part(56, "VEC3")
     );
-    let mesh = read(glb(&json, &bytes)).unwrap();
+    let file = glb(&json, &bytes);
+    assert_eq!(read_colored_mesh(&file, &MeshReadOptions::default()).unwrap().copies, 2);
+    let mesh = read(file).unwrap();
     let bounds = Bounds::of(mesh.positions()).unwrap();
     assert_eq!(mesh.triangles().len(), 2);
     assert_eq!([bounds.min.to_array(), bounds.max.to_array()], [[7.0, -3.0, 0.0], [11.0, 1.0, 5.0]]);

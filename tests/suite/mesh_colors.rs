@@ -133,6 +133,13 @@ fn a_texture_is_seen_where_its_coordinates_say() {
     }
 }
 
+#[wasm_bindgen_test]
+fn colours_with_the_textures_upside_down_are_read_too() {
+    let read = read(&upright(&blocks_png(), TEXTURED));
+    let flipped = SurfaceColors::new(read.colors.unwrap().samples().clone(), read.flipped).unwrap();
+    check(&flipped, 1, |p| block_at([p.x, p.y].map(f64::from), [10_497; 2]));
+}
+
 /// A square with texture coordinates x, 1 − y: the image upright.
 fn upright(png: &[u8], material: &str) -> Vec<u8> {
     let uv: Vec<f32> = CORNERS.iter().flat_map(|&[x, y, _]| [x, 1.0 - y]).collect();

@@ -1,5 +1,7 @@
 //! Flattens the node hierarchy.
 
+use std::collections::BTreeMap;
+
 use ::gltf::json;
 use ::gltf::json::mesh::{Mode, Semantic};
 use ::gltf::json::validation::Checked;
@@ -25,6 +27,8 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
     };
     let mut builder = MeshBuilder::default();
     let mut skipped = 0;
+    // How often each mesh is placed.
+    let mut copies_of = BTreeMap::<usize, usize>::new();
     let (order, scene_from_node) = placed(document)?;
     for index in order {
         let (Some(node), Some(Some(transform))) = (document.nodes.get(index), scene_from_node.get(index)) else {
@@ -56,6 +60,7 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
             None if skin.is_some() => vec![DMat4::IDENTITY],
             None => vec![*transform],
         };
+        *copies_of.entry(mesh_index).or_default() += copies.len();
         for copy in copies {
             // Instances of a mesh without triangles are not bounded by the limit on vertices.
             reader.spend(mesh.primitives.len())?;
@@ -81,9 +86,19 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
         ));
     }
     let painted = builder.finish()?;
-    let Some(materials) = materials.filter(|_| problem.is_none()) else { return Ok(painted.plain(problem)) };
-    let loaded = materials.load(&painted.paint.used_materials(), reader);
-    Ok(painted.colored(loaded))
+    // One mesh is an object, several are its parts.
+    let copies = match copies_of.into_values().collect::<Vec<_>>()[..] {
+        [count] if count > 1 => count,
+        _ => 0,
+    };
+    let read = match materials.filter(|_| problem.is_none()) {
+        Some(materials) => {
+            let loaded = materials.load(&painted.paint.used_materials(), reader);
+            painted.colored(loaded)
+        }
+        None => painted.plain(problem),
+    };
+    Ok(ColoredMesh { copies, ..read })
 }
 
 /// The nodes of the scene, from the roots on, and scene_from_node of each; `None` for nodes outside the scene.

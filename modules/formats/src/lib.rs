@@ -40,6 +40,8 @@ export interface MeshArrays {
    * such as those of a map; otherwise missing.
    */
   origin?: [number, number, number];
+  /** How many copies of one mesh the file places, if it has no other; otherwise missing. */
+  copies?: number;
   /** Three vertex indices per triangle. */
   indices: Uint32Array;
   /** The colours of the surface, if the file has any. */
@@ -56,6 +58,8 @@ export interface ColorSamples {
   normals: Float32Array;
   /** Red, green and blue per point, sRGB-encoded. */
   colors: Uint8Array;
+  /** The same if the textures were stored upside down; missing without textures. */
+  flippedColors?: Uint8Array;
 }
 
 /** The files that a mesh file refers to, by the names in it. */

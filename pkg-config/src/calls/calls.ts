@@ -31,7 +31,7 @@ import { isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
-import { comparedWithMirror } from "./mirror.js";
+import { lookedAtAgain } from "./second-look.js";
 
 /** Two clouds and, for `estimateSim3`, the correspondences between their points. */
 type Clouds = NonNullable<Registration["input"]>;
@@ -91,7 +91,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     module: "core",
     run: (job, context) =>
       aligned(job, context, job.options, async (input, context, options) =>
-        comparedWithMirror(await context.search("align", input, options), input, options, context),
+        lookedAtAgain(await context.search("align", input, options), input, options, context),
       ),
   },
   alignPaper: {

@@ -93,7 +93,8 @@ function arrays({ positions, indices, ...more }: Record<string, unknown>, withCo
   // Checked in any case: whether colours are wrong must not depend on the photo.
   const colors = colorsOf(more, positions.length / 3);
   const origin = Array.isArray(more.origin) ? { origin: more.origin as number[] } : {};
-  const found = { positions, ...origin, ...(withColors ? colors : {}) };
+  const copies = typeof more.copies === "number" ? { copies: more.copies } : {};
+  const found = { positions, ...origin, ...copies, ...(withColors ? colors : {}) };
   if (indices === undefined || indices === null) return found;
   if (isTypedArray<Uint32Array | Uint16Array>(indices, "Uint32Array", "Uint16Array")) return { ...found, indices };
   const expected = "a Uint32Array or a Uint16Array, three indices per triangle";
@@ -121,19 +122,22 @@ function colorsOf(
 /** The samples of the `readMesh` of `sim3align/formats`. */
 function samplesOf(samples: unknown): ColorSamples {
   const expected = "{ positions, normals, colors } of a mesh that was read from a file";
-  const { positions, normals, colors } = part("mesh.samples", samples, expected);
+  const { positions, normals, colors, flippedColors = colors } = part("mesh.samples", samples, expected);
   for (const [name, array] of Object.entries({ positions, normals })) {
     if (!isTypedArray<Float32Array>(array, "Float32Array")) {
       throw wrongKind(`mesh.samples.${name}`, array, "a Float32Array, x, y, z per point", "Float32Array");
     }
   }
-  if (!isTypedArray<Uint8Array>(colors, "Uint8Array")) {
-    throw wrongKind("mesh.samples.colors", colors, "a Uint8Array, RGB per point", "Uint8Array");
+  for (const [name, array] of Object.entries({ colors, flippedColors })) {
+    if (!isTypedArray<Uint8Array>(array, "Uint8Array")) {
+      throw wrongKind(`mesh.samples.${name}`, array, "a Uint8Array, RGB per point", "Uint8Array");
+    }
   }
-  const [count, ...others] = [colors, positions, normals].map((array) => (array as Uint8Array).length);
+  const arrays = { colors, positions, normals, flippedColors } as ColorSamples & { flippedColors: Uint8Array };
+  const [count, ...others] = Object.values(arrays).map(({ length }) => length);
   if ((count as number) % 3 !== 0 || others.some((other) => other !== count)) {
-    const found = `${count} colour values for ${others.join(" and ")} coordinates`;
+    const found = `${count} colour values for ${others.slice(0, 2).join(" and ")} coordinates`;
     throw failure("WRONG_LENGTH", "mesh.samples", found, "three of each per point", "Pass what readMesh() returned.");
   }
-  return { positions, normals, colors } as ColorSamples;
+  return flippedColors === colors ? (samples as ColorSamples) : arrays;
 }

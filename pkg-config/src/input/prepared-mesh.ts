@@ -12,6 +12,8 @@ export interface ColorSamples {
   normals: Float32Array;
   /** Red, green and blue per point, sRGB-encoded. */
   colors: Uint8Array;
+  /** The same if the textures were stored upside down, with which `align` compares a photo that contradicts `colors`. */
+  flippedColors?: Uint8Array | undefined;
 }
 
 /** A mesh for the core. */
@@ -24,6 +26,8 @@ export interface CoreMesh {
   samples?: ColorSamples;
   /** What a reader has subtracted from the coordinates of the file; see `origin.ts`. */
   origin?: readonly number[];
+  /** How many copies of one mesh the file places. */
+  copies?: number;
   /** The id under which the core caches the mesh. If it is cached, the arrays are not read. */
   id?: number;
 }

@@ -1,4 +1,5 @@
 /** Converts the inputs of calls to the typed arrays and numbers of the core. */
+import type { Warning } from "../generated/types.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
@@ -98,12 +99,18 @@ async function frameOf(
   return { core: withoutUndefined(masked) as CoreFrame, notes: { ...notes, ...maskNotes } };
 }
 
+const holdsCopies = (copies: number): Warning => ({
+  code: "MESH_HOLDS_COPIES",
+  message: `The mesh file places ${copies} copies of one mesh, and all of them are read as one object. If the mask shows one of them, pass a file that holds one.`,
+});
+
 /** Notes with those on the mesh; its colours matter only where there is a photo to compare them with. */
 export const withMesh = (
   { core, notes }: { core: Pick<CoreFrame, "image">; notes: InputNotes },
   { mesh, warnings }: MeshAndWarnings,
 ): InputNotes => ({
   ...notes,
+  warnings: [...notes.warnings, ...(mesh.copies === undefined ? [] : [holdsCopies(mesh.copies)])],
   ...(core.image === undefined ? {} : { colors: warnings }),
   ...withoutUndefined({ origin: mesh.origin }),
 });

@@ -1,0 +1,81 @@
+/** A second look at what exporters often get wrong, where the answer is in doubt: the mesh mirrored, its textures upside down. */
+import type { Alignment, Warning } from "../generated/types.js";
+import type { CoreInput } from "../input/core-input.js";
+import type { CoreMesh } from "../input/prepared-mesh.js";
+import { DOUBT } from "../types/results.js";
+import type { JobContext } from "./context.js";
+
+/**
+ * How much better the score of the mirror image is, where this explains the doubt. Of 48 real objects, most of which are nearly
+ * their own mirror images, it is up to 0.05 better; of a mesh that was mirrored, 0.66.
+ */
+const BETTER_SHAPE = 0.2;
+
+/**
+ * The agreement of the colours with the photo below which the textures are in doubt; and that of textures that explain it better,
+ * and by how much they must. Of 15 real objects, none agrees better if its textures are turned upside down; of those that were
+ * upside down, the eleven with a print by 0.27 to 0.70.
+ */
+const DOUBTFUL_COLORS = 0.45;
+const GOOD_COLORS = 0.3;
+const BETTER_COLORS = 0.25;
+
+const mirrorImage: Warning = {
+  code: "MESH_LOOKS_MIRRORED",
+  message:
+    "The mirror image of the mesh fits the image far better: the mesh seems to be mirrored, as by an exporter that exchanges two axes. Negate one coordinate of all its vertices and turn its triangles round, or export it again.",
+};
+
+const flippedTexture: Warning = {
+  code: "TEXTURE_LOOKS_FLIPPED",
+  message:
+    "The photo agrees far better with the textures of the mesh upside down: the second texture coordinate seems to run the other way, as by an exporter that mixes up the origins of images. Replace v by 1 − v, or export the mesh again.",
+};
+
+/** The alignment, with a warning where it is in doubt and the mesh is not if it is read in another way. */
+export async function lookedAtAgain(
+  found: Alignment,
+  input: CoreInput,
+  options: object,
+  context: JobContext,
+): Promise<Alignment> {
+  const { id: _, samples, ...shape } = input.mesh;
+  const searched = (mesh: CoreMesh, more: object): Promise<Alignment | undefined> => {
+    const core = { ...input, mesh };
+    return context
+      .quiet()
+      .search("align", core, { ...options, ...more, metrics: false })
+      .catch(() => undefined);
+  };
+  const warnings = [...found.warnings];
+  if (found.confidence < DOUBT) {
+    const other = await searched(mirrorOf(shape), { initial: undefined });
+    const score = found.diagnostics.score + BETTER_SHAPE;
+    if (other !== undefined && other.confidence > DOUBT && other.diagnostics.score > score) warnings.push(mirrorImage);
+  }
+  const agreement = agreementOf(found) ?? DOUBTFUL_COLORS;
+  if (samples?.flippedColors !== undefined && agreement < DOUBTFUL_COLORS) {
+    // The shape is the same: the pose is near.
+    const { scale, rotation, translation } = found;
+    const near = { search: "local", initial: { scale, rotation, translation } };
+    const other = await searched({ ...shape, samples: { ...samples, colors: samples.flippedColors } }, near);
+    const turned = (other && agreementOf(other)) ?? agreement;
+    if (turned > Math.max(GOOD_COLORS, agreement + BETTER_COLORS)) warnings.push(flippedTexture);
+  }
+  return { ...found, warnings };
+}
+
+/** How well the colours agree with the photo; `undefined` if they were not compared. */
+const agreementOf = ({ diagnostics: { color } }: Alignment): number | undefined =>
+  color === undefined || color.verdict === "hidden" ? undefined : color.agreement;
+
+/** The mesh with −x, by its shape alone. */
+function mirrorOf({ positions, indices }: CoreMesh): CoreMesh {
+  const moved = positions.map((x, i) => (i % 3 === 0 ? -x : x));
+  const corners = indices ?? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i);
+  // The other two corners of a triangle change places, so that it still faces outward.
+  return {
+    positions: moved,
+    indices: corners.map((_, i) => corners[i + (i % 3 === 1 ? 1 : i % 3 === 2 ? -1 : 0)] ?? 0),
+  };
+}

@@ -1,0 +1,54 @@
+/** Meshes that exporters have mirrored, or whose textures are upside down, are named; right ones are not. */
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { type AlignInput, createAligner } from "sim3align";
+import { codesOf } from "../support/errors.js";
+import { glbOf, gltfBuffer, gltfJson } from "../support/files.js";
+import { printedBox } from "../support/printed-box.js";
+import { input, mesh } from "../support/scene.js";
+
+const aligner = await createAligner();
+const codes = async (of: AlignInput) => codesOf((await aligner.align(of, { quality: "fast" })).warnings);
+
+test("a mesh that is mirrored is named", async () => {
+  const positions = mesh.positions.map((x, i) => (i % 3 === 0 ? -x : x));
+  const indices = mesh.indices.map((_, i, all) => all[i + ([0, 1, -1][i % 3] ?? 0)] ?? 0);
+  for (const [shape, isNamed] of [
+    [mesh, false],
+    [{ positions, indices }, true],
+  ] as const) {
+    assert.equal((await codes({ ...input, mesh: shape })).includes("MESH_LOOKS_MIRRORED"), isNamed);
+  }
+});
+
+test("textures that are upside down are named if the photo agrees with them turned", async () => {
+  const { mesh: box, frameAt } = printedBox();
+  const { frame, image } = frameAt(35);
+  const { positions, indices, colors: right } = box;
+  const normals = positions.map((_, i) => {
+    const sides = [...positions.subarray(i - (i % 3), i - (i % 3) + 3)].map((x, k) => x / ([0.9, 0.6, 0.35][k] ?? 1));
+    return Math.abs(sides[i % 3] ?? 0) > 0.999 ? Math.sign(sides[i % 3] ?? 0) : 0;
+  });
+  const wrong = Uint8Array.from(right).reverse();
+  const of = (colors: Uint8Array, flippedColors: Uint8Array) => {
+    const samples = { positions, normals, colors, flippedColors };
+    return codes({ ...frame, image, mesh: { positions, indices, samples } });
+  };
+  const found = [await of(right, wrong), await of(wrong, right), await of(wrong, wrong)];
+  assert.deepEqual(
+    found.map((each) => each.includes("TEXTURE_LOOKS_FLIPPED")),
+    [false, true, false],
+  );
+});
+
+test("a file that places copies of its only mesh is named", async () => {
+  const json = (count: number) => {
+    const nodes = Array.from({ length: count }, (_, k) => ({ mesh: 0, translation: [3 * k, 0, 0] }));
+    return { ...gltfJson(mesh), nodes, scenes: [{ nodes: nodes.map((_, k) => k) }] };
+  };
+  const of = (count: number) => codes({ ...input, mesh: glbOf(json(count), gltfBuffer(mesh)) });
+  assert.deepEqual(
+    [await of(1), await of(2)].map((each) => each.includes("MESH_HOLDS_COPIES")),
+    [false, true],
+  );
+});
