@@ -107,6 +107,7 @@ impl Paint {
     }
 
     /// The colour at a point, with the texture averaged over `spacing`, an area of the surface.
+    #[inline(never)]
     fn color(&self, mesh: &Mesh, material: &Material, sample: &SurfaceSample, spacing: f64, is_flipped: bool) -> Rgb {
         let corners = mesh.triangles().get(sample.triangle).copied().unwrap_or_default();
         let of_vertex = |i: u32| self.vertex_colors.get(i as usize).copied().unwrap_or(WHITE);

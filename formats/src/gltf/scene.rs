@@ -1,7 +1,5 @@
 //! Flattens the node hierarchy.
 
-use std::collections::BTreeMap;
-
 use ::gltf::json;
 use ::gltf::json::mesh::{Mode, Semantic};
 use ::gltf::json::validation::Checked;
@@ -28,7 +26,7 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
     let mut builder = MeshBuilder::default();
     let mut skipped = 0;
     // How often each mesh is placed.
-    let mut copies_of = BTreeMap::<usize, usize>::new();
+    let mut copies_of = vec![0; document.meshes.len()];
     let (order, scene_from_node) = placed(document)?;
     for index in order {
         let (Some(node), Some(Some(transform))) = (document.nodes.get(index), scene_from_node.get(index)) else {
@@ -60,7 +58,7 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
             None if skin.is_some() => vec![DMat4::IDENTITY],
             None => vec![*transform],
         };
-        *copies_of.entry(mesh_index).or_default() += copies.len();
+        copies_of[mesh_index] += copies.len();
         for copy in copies {
             // Instances of a mesh without triangles are not bounded by the limit on vertices.
             reader.spend(mesh.primitives.len())?;
@@ -87,7 +85,8 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
     }
     let painted = builder.finish()?;
     // One mesh is an object, several are its parts.
-    let copies = match copies_of.into_values().collect::<Vec<_>>()[..] {
+    copies_of.retain(|count| *count > 0);
+    let copies = match copies_of[..] {
         [count] if count > 1 => count,
         _ => 0,
     };

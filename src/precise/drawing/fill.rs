@@ -75,14 +75,14 @@ struct Setup {
 }
 
 /// Renders four triangles, in order, until more than `most` cells are visited, and returns about the number of cells visited,
-/// and the number of triangles that are filled. `id` is the first one's. Takes slices of one length instead of the canvas, so that
+/// and the number of triangles that are filled. `ids` are those that cells get. Takes slices of one length instead of the canvas, so that
 /// addresses and length stay in registers.
 #[inline(always)]
 pub fn fill(
     inverse_depth: &mut [f32],
     drawn: &mut [u32],
     size: [usize; 2],
-    id: u32,
+    ids: [u32; LANES],
     vertices: &[Vertex],
     triangles: [[u32; 3]; LANES],
     most: usize,
@@ -137,7 +137,7 @@ pub fn fill(
     while left != 0 && visited <= most {
         let lane = left.trailing_zeros() as usize & (LANES - 1);
         left &= left - 1;
-        let id = id + lane as u32;
+        let id = ids[lane];
         if large >> lane & 1 == 1 {
             visited += fill_large(inverse_depth, drawn, size[0], id, &corners, [[u0, u1], [v0, v1]], lane);
         } else {

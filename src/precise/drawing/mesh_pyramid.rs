@@ -6,6 +6,7 @@ use std::rc::Rc;
 use glam::Vec3;
 
 use super::equivalence::Equivalence;
+use super::facing::draw_one_side;
 use super::pose::MeshFrame;
 use super::render::Model;
 use super::turns::Turns;
@@ -49,7 +50,8 @@ impl MeshPyramid {
         for grid in (0..FINE).rev() {
             meshes[grid] = decimate(&meshes[grid + 1], grids[grid].triangles);
         }
-        let models = meshes.each_ref().map(Model::new);
+        let mut models = meshes.each_ref().map(Model::new);
+        draw_one_side(&fine, &mut models);
         let surface = SurfaceMoments::of(&fine);
         let turns = Turns::new(&surface);
         Some(Self {

@@ -6,6 +6,7 @@
 
 pub mod counts;
 pub mod equivalence;
+pub mod facing;
 mod fill;
 pub mod ground_plate;
 pub(super) mod lanes;

@@ -24,6 +24,9 @@ const MAX_LAYERS: usize = 32;
 /// Maximum coordinate of a vertex, in steps; larger ones are clamped.
 const FARTHEST: f32 = 1_000_000.0;
 
+/// Planes on whose upper side every point is.
+const SEEN: [f32x4; 4] = [f32x4::ZERO, f32x4::ZERO, f32x4::ZERO, f32x4::new([-1.0; LANES])];
+
 /// A mesh prepared for rendering.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -37,6 +40,8 @@ pub struct Model {
     lanes: Vec<[f32x4; 3]>,
     /// The normals, with a fourth number.
     pub(in crate::precise) facets: Vec<f32x4>,
+    /// The planes of the triangles, n·x > d on the side from which they are drawn, four at a time: n by axis, and d.
+    planes: Vec<[f32x4; 4]>,
 }
 
 impl Model {
@@ -55,8 +60,28 @@ impl Model {
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
             facets: normals.iter().map(|n| f32x4::new([n.x, n.y, n.z, 0.0])).collect(),
+            planes: vec![SEEN; normals.len().div_ceil(LANES)],
             normals,
             lanes: mesh.positions().chunks(LANES).map(in_lanes).collect(),
+        }
+    }
+
+    /// Draws triangles from now on from both sides.
+    pub fn draw_both_sides(&mut self) {
+        self.planes.fill(SEEN);
+    }
+
+    /// Draws triangles from now on only from where their corners run counterclockwise, or with −1 as `sign` clockwise.
+    pub fn draw_one_side(&mut self, sign: f32) {
+        for (k, planes) in self.planes.iter_mut().enumerate() {
+            let plane = |lane: usize| {
+                let triangle = self.triangles.get(LANES * k + lane)?;
+                let normal = *self.normals.get(LANES * k + lane)? * sign;
+                Some([normal.x, normal.y, normal.z, normal.dot(self.positions[triangle[0] as usize])])
+            };
+            // Those that fill the last lanes are seen from nowhere.
+            let four = [0, 1, 2, 3].map(|lane| f32x4::new(plane(lane).unwrap_or([0.0, 0.0, 0.0, 1.0])));
+            *planes = f32x4::transpose(four);
         }
     }
 }
@@ -81,6 +106,8 @@ pub struct Canvas {
     /// Columns and rows of the box around the projected vertices: all other cells are empty.
     pub drawn: [Range<usize>; 2],
     vertices: Vec<Vertex>,
+    /// The triangles that are seen from the side from which they are drawn.
+    seen: Vec<u32>,
 }
 
 impl Canvas {
@@ -100,18 +127,16 @@ impl Canvas {
         self.inverse_depth.resize(grid.mask.len(), 0.0);
         self.triangle.resize(grid.mask.len(), 0);
         self.project(model, stretch, grid);
+        self.see(model, stretch);
         let most = MAX_LAYERS * self.inverse_depth.len();
         let (mut visited, mut filled) = (0, 0);
         let (inverse_depth, size) = (self.inverse_depth.as_mut_slice(), [grid.width, grid.height]);
         let drawn = &mut self.triangle[..inverse_depth.len()];
-        for (id, four) in (0..).step_by(LANES).zip(model.triangles.chunks(LANES)) {
+        for ids in self.seen.chunks(LANES) {
+            let ids: [u32; LANES] = core::array::from_fn(|lane| ids.get(lane).copied().unwrap_or(u32::MAX));
             // Triangles without area are not drawn.
-            let triangles = four.first_chunk().copied().unwrap_or_else(|| {
-                let mut last = [[0; 3]; LANES];
-                last.iter_mut().zip(four).for_each(|(last, triangle)| *last = *triangle);
-                last
-            });
-            let of_four = fill(inverse_depth, drawn, size, id, &self.vertices, triangles, most - visited);
+            let triangles = ids.map(|id| model.triangles.get(id as usize).copied().unwrap_or_default());
+            let of_four = fill(inverse_depth, drawn, size, ids, &self.vertices, triangles, most - visited);
             (visited, filled) = (visited + of_four.0, filled + of_four.1);
             if visited > most {
                 break;
@@ -120,18 +145,35 @@ impl Canvas {
         counts::add(|| counts::Counts {
             renders: 1,
             vertices: model.positions.len() as u64,
-            triangles: model.triangles.len() as u64,
+            triangles: self.seen.len() as u64,
             filled: filled.into(),
             visited: visited as u64,
             cells: grid.mask.len() as u64,
         });
-        self.work += (grid.mask.len() + visited + model.positions.len() + model.triangles.len()) as u64;
+        self.work += (grid.mask.len() + visited + model.positions.len() + self.seen.len()) as u64;
     }
 
     /// The rows in which cells may be drawn, and the indices of these cells.
     pub fn rows(&self, grid: &CropGrid) -> impl Iterator<Item = (usize, Range<usize>)> + use<> {
         let ([columns, rows], width) = (self.drawn.clone(), grid.width);
         rows.map(move |v| (v, v * width + columns.start..v * width + columns.end))
+    }
+
+    /// Finds the triangles that are seen from the side from which they are drawn.
+    fn see(&mut self, model: &Model, stretch: &Mat3) {
+        let camera = stretch.inverse() * (self.rotation.transpose() * -self.translation / self.scale);
+        let [x, y, z] = camera.to_array().map(f32x4::splat);
+        self.seen.resize(LANES * model.planes.len(), 0);
+        let mut count = 0;
+        for (id, plane) in (0..).step_by(LANES).zip(&model.planes) {
+            let is_seen = (plane[0] * x + plane[1] * y + plane[2] * z).simd_gt(plane[3]).to_bitmask();
+            for lane in 0..LANES as u32 {
+                self.seen[count] = id + lane;
+                count += (is_seen >> lane & 1) as usize;
+            }
+        }
+        // Without planes of their own, those that fill the last lanes are seen.
+        self.seen.truncate(count.min(model.triangles.len()));
     }
 
     /// Transforms the vertices to the camera frame and projects them onto the grid.

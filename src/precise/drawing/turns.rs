@@ -58,8 +58,6 @@ impl Turns {
 
 /// The rotations of a dihedral group about `axis`: rolls, and as many after a half turn about `across`. The first is none.
 pub fn dihedral(axis: DVec3, across: DVec3, rolls: usize) -> impl Iterator<Item = DQuat> {
-    let flips = [DQuat::IDENTITY, DQuat::from_axis_angle(across, PI)];
-    flips.into_iter().flat_map(move |flip| {
-        (0..rolls).map(move |k| DQuat::from_axis_angle(axis, TAU * k as f64 / rolls as f64) * flip)
-    })
+    let flips = [DQuat::IDENTITY, exp(across * PI)];
+    flips.into_iter().flat_map(move |flip| (0..rolls).map(move |k| exp(axis * (TAU * k as f64 / rolls as f64)) * flip))
 }

@@ -21,7 +21,7 @@ const COMPLETE: f32 = 0.3;
 const OUTSIDE_M: f32 = 1e-6;
 
 /// Evidence on `width` × `height` cells, row-major.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct CropGrid {
     /// Width in cells.
     pub width: usize,
@@ -56,6 +56,12 @@ pub struct CropGrid {
 }
 
 impl CropGrid {
+    /// A square grid without evidence, seen by a camera whose axis is its centre.
+    pub fn blank(side: usize, focal: f64) -> Self {
+        let center = [0.5 * (side as f64 - 1.0); 2];
+        Self { width: side, height: side, focal, center, mask: vec![false; side * side], ..Self::default() }
+    }
+
     /// The observation at a resolution at which the mask has about `cells` cells.
     pub fn new(observation: &CleanObservation, cells: usize) -> Self {
         let camera = observation.camera;
