@@ -1,0 +1,383 @@
+/** glTF files whose geometry is compressed: rewritten without the compression, by the caller's decoders. */
+import { binaryChunk, readGlb } from "../conventions/glb-file.js";
+import { describe, failure, isExhausted, messageOf, outOfMemory, Sim3AlignError } from "../values/error.js";
+import { isBuffer, isRecord, isTypedArray } from "../values/kinds.js";
+import { stringsIn } from "../values/values.js";
+import type { DracoDecoderModule, MeshoptDecoder } from "./mesh-decoders.js";
+
+type Json = Record<string, unknown>;
+
+const meshoptNames = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+const dracoName = "KHR_draco_mesh_compression";
+
+/** Maximum number of bytes of all decoded data, as of all buffers of a file in the reader. */
+const MAX_BYTES = 2 ** 30;
+
+/** meshopt describes 256 elements of zeros with a quarter of a byte for each of their bytes; nothing is shorter. */
+const MAX_MESHOPT_RATIO = 1024;
+
+/** The strides that the modes and filters of meshopt can have. */
+const meshoptModes: Record<string, (stride: number) => boolean> = {
+  ATTRIBUTES: (stride) => stride % 4 === 0 && stride <= 256,
+  TRIANGLES: (stride) => stride === 2 || stride === 4,
+  INDICES: (stride) => stride === 2 || stride === 4,
+};
+const meshoptFilters: typeof meshoptModes = {
+  OCTAHEDRAL: (stride) => stride === 4 || stride === 8,
+  QUATERNION: (stride) => stride === 8,
+  EXPONENTIAL: (stride) => stride % 4 === 0,
+  COLOR: (stride) => stride === 4 || stride === 8,
+};
+
+/** The attributes that the reader reads: others stay compressed. */
+const attributesRead = /^(POSITION|(TEXCOORD|COLOR|JOINTS|WEIGHTS)_\d+)$/;
+const componentsOf: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
+
+/** A file in the form in which the reader takes it. */
+export interface DecodedGltf {
+  bytes: Uint8Array;
+  format?: "gltf";
+  resources: Record<string, unknown>;
+}
+
+/**
+ * Decodes the geometry of a glTF file, also of a binary one. A damaged container is returned as it is: the reader names what
+ * is wrong with it.
+ * @param argument the name of the file, in errors
+ * @param decoders those that the caller has: what is compressed otherwise stays as it is
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE`, `FILE_TOO_LARGE`, and `INVALID_ARGUMENT` for a decoder that cannot run
+ */
+export async function decodedGltf(
+  argument: string,
+  bytes: Uint8Array,
+  resources: Readonly<Record<string, unknown>>,
+  decoders: { meshoptDecoder?: MeshoptDecoder | undefined; dracoDecoder?: DracoDecoderModule | undefined },
+): Promise<DecodedGltf> {
+  const container = split(bytes);
+  if (container === undefined) return { bytes, resources };
+  const gltf = new CompressedGltf(argument, container, resources);
+  const { meshoptDecoder, dracoDecoder } = decoders;
+  if (meshoptDecoder) gltf.decodeMeshopt(await startedMeshopt(meshoptDecoder));
+  if (dracoDecoder) gltf.decodeDraco(checkedDraco(dracoDecoder));
+  return gltf.finish();
+}
+
+interface Container {
+  json: Json;
+  binary?: Uint8Array | undefined;
+}
+
+function split(bytes: Uint8Array): Container | undefined {
+  try {
+    if (bytes[0] === 0x67) {
+      const { json, chunks } = readGlb(bytes);
+      return { json, binary: chunks[0]?.[0] === binaryChunk ? chunks[0][1] : undefined };
+    }
+    const json: unknown = JSON.parse(new TextDecoder().decode(bytes));
+    return isRecord(json) ? { json } : undefined;
+  } catch {
+    return undefined;
+  }
+}
+
+async function startedMeshopt(decoder: MeshoptDecoder): Promise<MeshoptDecoder> {
+  const refused = (found: string, cause?: unknown) => {
+    const expected = "MeshoptDecoder of the npm package meshoptimizer, in a runtime that supports it";
+    return failure("INVALID_ARGUMENT", "options.meshoptDecoder", found, expected, "Pass the object itself.", cause);
+  };
+  let isSupported: boolean;
+  try {
+    isSupported = decoder.supported;
+    if (isSupported && typeof decoder.decodeGltfBuffer === "function") {
+      await decoder.ready;
+      return decoder;
+    }
+  } catch (cause) {
+    throw refused(`${describe(decoder)}, which cannot start: ${messageOf(cause)}`, cause);
+  }
+  throw refused(isSupported === false ? "a decoder that is not supported here" : describe(decoder));
+}
+
+function checkedDraco(module: DracoDecoderModule): DracoDecoderModule {
+  try {
+    const { Decoder, DecoderBuffer, Mesh, _malloc, _free, destroy } = module;
+    if ([Decoder, DecoderBuffer, Mesh, _malloc, _free, destroy].every((part) => typeof part === "function"))
+      return module;
+  } catch {
+    // It is not an object, or its properties throw.
+  }
+  const expected = "what createDecoderModule() of the npm package draco3d resolves to";
+  const remedy = "Await createDecoderModule(), and pass its result.";
+  throw failure("INVALID_ARGUMENT", "options.dracoDecoder", describe(module), expected, remedy);
+}
+
+/** The document of a file, whose geometry is decoded in place. */
+class CompressedGltf {
+  readonly #argument: string;
+  readonly #json: Json;
+  readonly #binary: Uint8Array | undefined;
+  readonly #resources: Record<string, unknown>;
+  readonly #files = new Map<string, Uint8Array>();
+  #added = 0;
+  #decodedBytes = 0;
+
+  constructor(argument: string, { json, binary }: Container, resources: Readonly<Record<string, unknown>>) {
+    this.#argument = argument;
+    this.#json = json;
+    this.#binary = binary;
+    this.#resources = { ...resources };
+  }
+
+  /** Decodes the buffer views of meshopt. */
+  decodeMeshopt(decoder: MeshoptDecoder): void {
+    for (const [i, view] of this.#list("bufferViews").entries()) {
+      const extensions = recordOf(recordOf(view).extensions);
+      const extension = meshoptNames.map((name) => extensions[name]).find(isRecord);
+      if (!isRecord(view) || extension === undefined) continue;
+      const bytes = this.#decodedView(decoder, extension, view, `buffer view ${i}`);
+      Object.assign(view, { buffer: this.#addBuffer(bytes), byteOffset: 0, byteLength: bytes.length, extensions: {} });
+    }
+    this.#removeExtensions(meshoptNames);
+  }
+
+  /** Decodes the primitives of Draco. */
+  decodeDraco(module: DracoDecoderModule): void {
+    // Several parts may be one and the same, with different materials.
+    const parts = new Map<string, Json>();
+    for (const mesh of this.#list("meshes")) {
+      for (const primitive of listOf(recordOf(mesh).primitives)) {
+        const { [dracoName]: extension, ...extensions } = recordOf(recordOf(primitive).extensions);
+        if (!isRecord(primitive) || !isRecord(extension)) continue;
+        const { attributes, indices, mode } = primitive;
+        const key = JSON.stringify([extension, attributes, indices, mode]);
+        const part = parts.get(key) ?? this.#decodedPart(module, extension, primitive);
+        parts.set(key, part);
+        Object.assign(primitive, part, { extensions });
+      }
+    }
+    this.#removeExtensions([dracoName]);
+  }
+
+  /** The file as JSON, with all its buffers beside it. */
+  finish(): DecodedGltf {
+    const [first] = this.#list("buffers");
+    if (this.#binary !== undefined && isRecord(first) && first.uri === undefined) {
+      first.uri = this.#addResource(this.#binary);
+    }
+    const bytes = new TextEncoder().encode(JSON.stringify(this.#json));
+    return { bytes, format: "gltf", resources: this.#resources };
+  }
+
+  #decodedView(decoder: MeshoptDecoder, extension: Json, view: Json, what: string): Uint8Array {
+    const { mode, filter = "NONE" } = extension;
+    const [count, stride] = [whole(extension.count), whole(extension.byteStride)];
+    const isMode = typeof mode === "string" && Object.hasOwn(meshoptModes, mode) && meshoptModes[mode]?.(stride);
+    const isFilter = Object.hasOwn(meshoptFilters, String(filter)) && meshoptFilters[String(filter)]?.(stride);
+    const isWhole = mode !== "TRIANGLES" || count % 3 === 0;
+    if (!(stride > 0 && isMode && isWhole && (filter === "NONE" || (mode === "ATTRIBUTES" && isFilter)))) {
+      const found = `${what} as ${count} elements of ${stride} bytes, mode ${mode}, filter ${filter}`;
+      throw this.#corrupt(found, "a mode and a filter of meshopt, with counts and strides that they can have");
+    }
+    const size = count * stride;
+    if (!(whole(view.byteLength) <= size) || (view.byteStride !== undefined && view.byteStride !== stride)) {
+      const found = `${what} of ${view.byteLength} bytes, ${view.byteStride ?? stride} apart`;
+      throw this.#corrupt(found, `those of its compressed form: ${size}, ${stride} apart`);
+    }
+    const source = this.#bytesOf(extension, what);
+    if (!(size <= MAX_MESHOPT_RATIO * source.length)) {
+      throw this.#corrupt(`${what} of ${size} bytes in ${source.length}`, "as many as meshopt can compress so far");
+    }
+    this.#count(size);
+    return this.#decoded("meshoptDecoder", what, () => {
+      const target = new Uint8Array(size);
+      decoder.decodeGltfBuffer(target, count, stride, source, String(mode), String(filter));
+      return target;
+    });
+  }
+
+  /** Decodes a primitive; returns what changes in it. */
+  #decodedPart(module: DracoDecoderModule, extension: Json, primitive: Json): Json {
+    const { attributes, indices, mode = 4 } = primitive;
+    // The triangles of strips come as triangles.
+    if (mode !== 4 && mode !== 5) throw this.#corrupt(`primitives of mode ${mode} as Draco`, "modes 4 or 5, triangles");
+    const what = `Draco's buffer view ${String(extension.bufferView)}`;
+    const source = this.#bytesOf(this.#at("bufferViews", extension.bufferView), what);
+    return this.#decoded("dracoDecoder", what, () => {
+      const [decoder, buffer, mesh] = [new module.Decoder(), new module.DecoderBuffer(), new module.Mesh()];
+      try {
+        buffer.Init(new Int8Array(source.buffer, source.byteOffset, source.length), source.length);
+        const status = decoder.DecodeBufferToMesh(buffer, mesh);
+        if (!status.ok()) throw new Error(status.error_msg());
+        const [points, corners] = [mesh.num_points(), 3 * mesh.num_faces()];
+        const check = (name: string, count: unknown, expected: number) => {
+          if (count !== expected) throw this.#corrupt(`${name} of ${count} elements`, `${expected}, as in ${what}`);
+        };
+        const add = (accessor: Json, size: number, fill: (pointer: number) => unknown): number => {
+          this.#count(size);
+          const data = this.#addBuffer(copied(module, size, fill));
+          const bufferView = this.#push("bufferViews", { buffer: data, byteLength: size });
+          return this.#push("accessors", { ...accessor, bufferView, byteOffset: 0 });
+        };
+        if (indices !== undefined && mode === 4) check("indices", this.#at("accessors", indices).count, corners);
+        const changed = { ...recordOf(attributes) };
+        for (const [name, id] of Object.entries(recordOf(extension.attributes))) {
+          if (!attributesRead.test(name)) continue;
+          const accessor = this.#at("accessors", changed[name]);
+          const attribute = decoder.GetAttributeByUniqueId(mesh, whole(id));
+          const components = componentsOf[String(accessor.type)];
+          const [type, bytes] = dracoType(module, accessor.componentType);
+          // A null pointer of C++ is an object here.
+          const isThere = whole(id) >= 0 && (attribute as { ptr?: number }).ptr !== 0;
+          if (!isThere || bytes === 0 || attribute.num_components() !== components) {
+            const found = `${name} as ${accessor.type} of ${accessor.componentType}`;
+            throw this.#corrupt(found, `an attribute that ${what} has, of as many components`);
+          }
+          check(name, accessor.count, points);
+          const size = points * components * bytes;
+          changed[name] = add(accessor, size, (pointer) =>
+            decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, type, size, pointer),
+          );
+        }
+        const accessor = { componentType: 5125, type: "SCALAR", count: corners };
+        const triangles = add(accessor, 4 * corners, (pointer) =>
+          decoder.GetTrianglesUInt32Array(mesh, 4 * corners, pointer),
+        );
+        return { attributes: changed, indices: triangles, mode: 4 };
+      } finally {
+        for (const object of [mesh, buffer, decoder]) module.destroy(object);
+      }
+    });
+  }
+
+  /** Translates what a decoder throws. */
+  #decoded<T>(decoder: string, what: string, work: () => T): T {
+    try {
+      return work();
+    } catch (cause) {
+      if (cause instanceof Sim3AlignError) throw cause;
+      if (isExhausted(cause)) throw outOfMemory(cause);
+      throw this.#corrupt(`${what}, which ${decoder} cannot decode: ${messageOf(cause)}`, "complete data", cause);
+    }
+  }
+
+  /** The bytes of a buffer view, compressed or not. */
+  #bytesOf(view: Json, what: string): Uint8Array {
+    const bytes = this.#bufferAt(view.buffer);
+    const [start, length] = [whole(view.byteOffset ?? 0), whole(view.byteLength)];
+    if (start + length <= bytes.length) return bytes.subarray(start, start + length);
+    const found = `${what} at ${view.byteOffset ?? 0}, ${view.byteLength} bytes long`;
+    throw this.#corrupt(found, `a part of buffer ${view.buffer}, which has ${bytes.length} bytes`);
+  }
+
+  #bufferAt(index: unknown): Uint8Array {
+    const { uri } = this.#at("buffers", index);
+    if (index === 0 && uri === undefined && this.#binary !== undefined) return this.#binary;
+    if (typeof uri !== "string") throw this.#corrupt(`buffer ${index} without data`, "compressed data");
+    const bytes = this.#files.get(uri) ?? this.#fileAt(uri);
+    this.#files.set(uri, bytes);
+    return bytes;
+  }
+
+  #fileAt(uri: string): Uint8Array {
+    try {
+      const [, base64] = /^data:[^,]*;base64,(.*)$/s.exec(uri) ?? [];
+      if (base64 !== undefined) return Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0));
+      const file = this.#resources[uri] ?? this.#resources[decodeURIComponent(uri)];
+      if (isTypedArray<Uint8Array>(file, "Uint8Array")) return file;
+      if (isBuffer(file)) return new Uint8Array(file);
+    } catch {
+      // Broken base64, or a name with broken escapes.
+    }
+    const found = `no bytes for ${JSON.stringify(uri.slice(0, 80))}`;
+    const remedy = "Pass them in resources.";
+    throw failure("INVALID_ARGUMENT", "options.resources", found, "the bytes of every external file", remedy);
+  }
+
+  #addBuffer(bytes: Uint8Array): number {
+    return this.#push("buffers", { byteLength: bytes.length, uri: this.#addResource(bytes) });
+  }
+
+  /** Adds a file to the resources; returns its name. */
+  #addResource(bytes: Uint8Array): string {
+    const name = `sim3align:${this.#added++}`;
+    this.#resources[name] = bytes;
+    return name;
+  }
+
+  #push(name: string, item: Json): number {
+    const list = this.#list(name);
+    this.#json[name] = list;
+    return list.push(item) - 1;
+  }
+
+  /** Counts decoded bytes before they are there. */
+  #count(bytes: number): void {
+    this.#decodedBytes += bytes;
+    if (this.#decodedBytes <= MAX_BYTES) return;
+    const found = `${this.#decodedBytes} bytes of geometry`;
+    throw failure("FILE_TOO_LARGE", this.#argument, found, `at most ${MAX_BYTES}`, "Simplify the mesh.");
+  }
+
+  #at(list: string, index: unknown): Json {
+    const items = this.#list(list);
+    const item = items[whole(index)];
+    if (isRecord(item)) return item;
+    throw this.#corrupt(`no object ${String(index)} of ${list}`, `indices below ${items.length}`);
+  }
+
+  /** A list of the document. */
+  #list(name: string): unknown[] {
+    return listOf(this.#json[name]);
+  }
+
+  #removeExtensions(names: readonly string[]): void {
+    for (const list of ["extensionsUsed", "extensionsRequired"]) {
+      this.#json[list] = stringsIn(this.#json[list]).filter((name) => !names.includes(name));
+    }
+  }
+
+  #corrupt(found: string, expected: string, cause?: unknown): Sim3AlignError {
+    return failure("CORRUPT_FILE", this.#argument, found, expected, "Export the mesh again.", cause);
+  }
+}
+
+/** Bytes that a decoder writes to the memory of its module. */
+function copied(module: DracoDecoderModule, size: number, fill: (pointer: number) => unknown): Uint8Array {
+  const pointer = module._malloc(size);
+  if (pointer === 0) throw new Error("its memory is exhausted");
+  try {
+    if (fill(pointer) === false) throw new Error("it has less data than it says");
+    // Only now: the memory may have grown.
+    return new Uint8Array(module.HEAPF32.buffer, pointer, size).slice();
+  } finally {
+    module._free(pointer);
+  }
+}
+
+/** The type of components, and their bytes; 0 for a type that glTF does not have. */
+function dracoType(module: DracoDecoderModule, componentType: unknown): [type: number, bytes: number] {
+  switch (componentType) {
+    case 5120:
+      return [module.DT_INT8, 1];
+    case 5121:
+      return [module.DT_UINT8, 1];
+    case 5122:
+      return [module.DT_INT16, 2];
+    case 5123:
+      return [module.DT_UINT16, 2];
+    case 5125:
+      return [module.DT_UINT32, 4];
+    case 5126:
+      return [module.DT_FLOAT32, 4];
+    default:
+      return [0, 0];
+  }
+}
+
+/** A whole number of a document; NaN, with which no comparison holds, for anything else. */
+const whole = (value: unknown): number =>
+  Number.isSafeInteger(value) && (value as number) >= 0 ? (value as number) : Number.NaN;
+
+const recordOf = (value: unknown): Json => (isRecord(value) ? value : {});
+
+const listOf = (value: unknown): unknown[] => (Array.isArray(value) ? value : []);
