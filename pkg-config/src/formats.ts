@@ -168,8 +168,8 @@ export async function readMesh(
   const hasDecoder = meshoptDecoder || dracoDecoder;
   if (!hasDecoder || !/_meshopt_|_draco_/.test(gltfText(bytes))) return decodeMesh("file", bytes, given, fileReaders);
   const { decodedGltf } = await import("./formats/compressed-gltf.js");
-  const decoded = await decodedGltf("file", bytes, given.resources ?? {}, { meshoptDecoder, dracoDecoder });
-  return decodeMesh("file", decoded.bytes, { ...given, ...decoded }, fileReaders);
+  const { json, ...changes } = await decodedGltf(bytes, given.resources ?? {}, { meshoptDecoder, dracoDecoder });
+  return decodeMesh("file", json, { ...given, ...changes }, fileReaders);
 }
 
 /**

@@ -33,29 +33,27 @@ const meshoptFilters: typeof meshoptModes = {
 const attributesRead = /^(POSITION|(TEXCOORD|COLOR|JOINTS|WEIGHTS)_\d+)$/;
 const componentsOf: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 
-/** A file in the form in which the reader takes it. */
+/** A file as JSON, with all its buffers beside it. */
 export interface DecodedGltf {
-  bytes: Uint8Array;
+  json: Uint8Array;
   format?: "gltf";
-  resources: Record<string, unknown>;
+  resources: Readonly<Record<string, unknown>>;
 }
 
 /**
  * Decodes the geometry of a glTF file, also of a binary one. A damaged container is returned as it is: the reader names what
  * is wrong with it.
- * @param argument the name of the file, in errors
  * @param decoders those that the caller has: what is compressed otherwise stays as it is
  * @throws {@link Sim3AlignError} `CORRUPT_FILE`, `FILE_TOO_LARGE`, and `INVALID_ARGUMENT` for a decoder that cannot run
  */
 export async function decodedGltf(
-  argument: string,
   bytes: Uint8Array,
   resources: Readonly<Record<string, unknown>>,
   decoders: { meshoptDecoder?: MeshoptDecoder | undefined; dracoDecoder?: DracoDecoderModule | undefined },
 ): Promise<DecodedGltf> {
   const container = split(bytes);
-  if (container === undefined) return { bytes, resources };
-  const gltf = new CompressedGltf(argument, container, resources);
+  if (container === undefined) return { json: bytes, resources };
+  const gltf = new CompressedGltf(container, resources);
   const { meshoptDecoder, dracoDecoder } = decoders;
   if (meshoptDecoder) gltf.decodeMeshopt(await startedMeshopt(meshoptDecoder));
   if (dracoDecoder) gltf.decodeDraco(checkedDraco(dracoDecoder));
@@ -113,7 +111,6 @@ function checkedDraco(module: DracoDecoderModule): DracoDecoderModule {
 
 /** The document of a file, whose geometry is decoded in place. */
 class CompressedGltf {
-  readonly #argument: string;
   readonly #json: Json;
   readonly #binary: Uint8Array | undefined;
   readonly #resources: Record<string, unknown>;
@@ -121,8 +118,7 @@ class CompressedGltf {
   #added = 0;
   #decodedBytes = 0;
 
-  constructor(argument: string, { json, binary }: Container, resources: Readonly<Record<string, unknown>>) {
-    this.#argument = argument;
+  constructor({ json, binary }: Container, resources: Readonly<Record<string, unknown>>) {
     this.#json = json;
     this.#binary = binary;
     this.#resources = { ...resources };
@@ -158,14 +154,13 @@ class CompressedGltf {
     this.#removeExtensions([dracoName]);
   }
 
-  /** The file as JSON, with all its buffers beside it. */
   finish(): DecodedGltf {
     const [first] = this.#list("buffers");
     if (this.#binary !== undefined && isRecord(first) && first.uri === undefined) {
       first.uri = this.#addResource(this.#binary);
     }
-    const bytes = new TextEncoder().encode(JSON.stringify(this.#json));
-    return { bytes, format: "gltf", resources: this.#resources };
+    const json = new TextEncoder().encode(JSON.stringify(this.#json));
+    return { json, format: "gltf", resources: this.#resources };
   }
 
   #decodedView(decoder: MeshoptDecoder, extension: Json, view: Json, what: string): Uint8Array {
@@ -176,16 +171,16 @@ class CompressedGltf {
     const isWhole = mode !== "TRIANGLES" || count % 3 === 0;
     if (!(stride > 0 && isMode && isWhole && (filter === "NONE" || (mode === "ATTRIBUTES" && isFilter)))) {
       const found = `${what} as ${count} elements of ${stride} bytes, mode ${mode}, filter ${filter}`;
-      throw this.#corrupt(found, "a mode and a filter of meshopt, with counts and strides that they can have");
+      throw corrupt(found, "a mode and a filter of meshopt, with counts and strides that they can have");
     }
     const size = count * stride;
     if (!(whole(view.byteLength) <= size) || (view.byteStride !== undefined && view.byteStride !== stride)) {
       const found = `${what} of ${view.byteLength} bytes, ${view.byteStride ?? stride} apart`;
-      throw this.#corrupt(found, `those of its compressed form: ${size}, ${stride} apart`);
+      throw corrupt(found, `those of its compressed form: ${size}, ${stride} apart`);
     }
     const source = this.#bytesOf(extension, what);
     if (!(size <= MAX_MESHOPT_RATIO * source.length)) {
-      throw this.#corrupt(`${what} of ${size} bytes in ${source.length}`, "as many as meshopt can compress so far");
+      throw corrupt(`${what} of ${size} bytes in ${source.length}`, "as many as meshopt can compress so far");
     }
     this.#count(size);
     return this.#decoded("meshoptDecoder", what, () => {
@@ -199,7 +194,7 @@ class CompressedGltf {
   #decodedPart(module: DracoDecoderModule, extension: Json, primitive: Json): Json {
     const { attributes, indices, mode = 4 } = primitive;
     // The triangles of strips come as triangles.
-    if (mode !== 4 && mode !== 5) throw this.#corrupt(`primitives of mode ${mode} as Draco`, "modes 4 or 5, triangles");
+    if (mode !== 4 && mode !== 5) throw corrupt(`primitives of mode ${mode} as Draco`, "modes 4 or 5, triangles");
     const what = `Draco's buffer view ${String(extension.bufferView)}`;
     const source = this.#bytesOf(this.#at("bufferViews", extension.bufferView), what);
     return this.#decoded("dracoDecoder", what, () => {
@@ -210,7 +205,7 @@ class CompressedGltf {
         if (!status.ok()) throw new Error(status.error_msg());
         const [points, corners] = [mesh.num_points(), 3 * mesh.num_faces()];
         const check = (name: string, count: unknown, expected: number) => {
-          if (count !== expected) throw this.#corrupt(`${name} of ${count} elements`, `${expected}, as in ${what}`);
+          if (count !== expected) throw corrupt(`${name} of ${count} elements`, `${expected}, as in ${what}`);
         };
         const add = (accessor: Json, size: number, fill: (pointer: number) => unknown): number => {
           this.#count(size);
@@ -230,7 +225,7 @@ class CompressedGltf {
           const isThere = whole(id) >= 0 && (attribute as { ptr?: number }).ptr !== 0;
           if (!isThere || bytes === 0 || attribute.num_components() !== components) {
             const found = `${name} as ${accessor.type} of ${accessor.componentType}`;
-            throw this.#corrupt(found, `an attribute that ${what} has, of as many components`);
+            throw corrupt(found, `an attribute that ${what} has, of as many components`);
           }
           check(name, accessor.count, points);
           const size = points * components * bytes;
@@ -256,7 +251,7 @@ class CompressedGltf {
     } catch (cause) {
       if (cause instanceof Sim3AlignError) throw cause;
       if (isExhausted(cause)) throw outOfMemory(cause);
-      throw this.#corrupt(`${what}, which ${decoder} cannot decode: ${messageOf(cause)}`, "complete data", cause);
+      throw corrupt(`${what}, which ${decoder} cannot decode: ${messageOf(cause)}`, "complete data", cause);
     }
   }
 
@@ -266,13 +261,13 @@ class CompressedGltf {
     const [start, length] = [whole(view.byteOffset ?? 0), whole(view.byteLength)];
     if (start + length <= bytes.length) return bytes.subarray(start, start + length);
     const found = `${what} at ${view.byteOffset ?? 0}, ${view.byteLength} bytes long`;
-    throw this.#corrupt(found, `a part of buffer ${view.buffer}, which has ${bytes.length} bytes`);
+    throw corrupt(found, `a part of buffer ${view.buffer}, which has ${bytes.length} bytes`);
   }
 
   #bufferAt(index: unknown): Uint8Array {
     const { uri } = this.#at("buffers", index);
     if (index === 0 && uri === undefined && this.#binary !== undefined) return this.#binary;
-    if (typeof uri !== "string") throw this.#corrupt(`buffer ${index} without data`, "compressed data");
+    if (typeof uri !== "string") throw corrupt(`buffer ${index} without data`, "compressed data");
     const bytes = this.#files.get(uri) ?? this.#fileAt(uri);
     this.#files.set(uri, bytes);
     return bytes;
@@ -315,14 +310,14 @@ class CompressedGltf {
     this.#decodedBytes += bytes;
     if (this.#decodedBytes <= MAX_BYTES) return;
     const found = `${this.#decodedBytes} bytes of geometry`;
-    throw failure("FILE_TOO_LARGE", this.#argument, found, `at most ${MAX_BYTES}`, "Simplify the mesh.");
+    throw failure("FILE_TOO_LARGE", "mesh", found, `at most ${MAX_BYTES}`, "Simplify the mesh.");
   }
 
   #at(list: string, index: unknown): Json {
     const items = this.#list(list);
     const item = items[whole(index)];
     if (isRecord(item)) return item;
-    throw this.#corrupt(`no object ${String(index)} of ${list}`, `indices below ${items.length}`);
+    throw corrupt(`no object ${String(index)} of ${list}`, `indices below ${items.length}`);
   }
 
   /** A list of the document. */
@@ -334,10 +329,6 @@ class CompressedGltf {
     for (const list of ["extensionsUsed", "extensionsRequired"]) {
       this.#json[list] = stringsIn(this.#json[list]).filter((name) => !names.includes(name));
     }
-  }
-
-  #corrupt(found: string, expected: string, cause?: unknown): Sim3AlignError {
-    return failure("CORRUPT_FILE", this.#argument, found, expected, "Export the mesh again.", cause);
   }
 }
 
@@ -373,6 +364,10 @@ function dracoType(module: DracoDecoderModule, componentType: unknown): [type: n
       return [0, 0];
   }
 }
+
+/** Errors name the mesh, as those of the reader. */
+const corrupt = (found: string, expected: string, cause?: unknown) =>
+  failure("CORRUPT_FILE", "mesh", found, expected, "Export the mesh again.", cause);
 
 /** A whole number of a document; NaN, with which no comparison holds, for anything else. */
 const whole = (value: unknown): number =>
