@@ -32,8 +32,7 @@ import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type { WasmSource } from "./types/platform.js";
 import { plainArgument } from "./values/border.js";
 import { isRecord } from "./values/kinds.js";
-import { withLive } from "./values/live.js";
-import { knownOptions, optionsOf, withoutUndefined } from "./values/values.js";
+import { optionsOf } from "./values/values.js";
 
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
@@ -158,18 +157,16 @@ export async function readMesh(
     dracoDecoder?: DracoDecoderModule | undefined;
   } = {},
 ): Promise<MeshFromFile> {
-  const names = ["format", "resources", "colors", "decodeImage", "meshoptDecoder", "dracoDecoder"] as const;
-  // Decoders are alive, and must not be copied.
-  const { meshoptDecoder, dracoDecoder, ...plain } = withLive("options", "an object with options", () => ({
-    ...knownOptions(options, names),
-  }));
-  const given = withoutUndefined(plainArgument("options", plain));
+  const { meshoptDecoder, dracoDecoder, ...given } = optionsOf(options, [
+    ...(["format", "resources", "colors", "decodeImage", "meshoptDecoder", "dracoDecoder"] as const),
+  ]);
   const bytes = await requiredBytes("file", file);
-  const hasDecoder = meshoptDecoder || dracoDecoder;
-  if (!hasDecoder || !/_meshopt_|_draco_/.test(gltfText(bytes))) return decodeMesh("file", bytes, given, fileReaders);
-  const { decodedGltf } = await import("./formats/compressed-gltf.js");
-  const { json, ...changes } = await decodedGltf(bytes, given.resources ?? {}, { meshoptDecoder, dracoDecoder });
-  return decodeMesh("file", json, { ...given, ...changes }, fileReaders);
+  if (!(meshoptDecoder || dracoDecoder) || !/_meshopt_|_draco_/.test(gltfText(bytes))) {
+    return decodeMesh("file", bytes, given, fileReaders);
+  }
+  const { geometryDecoder } = await import("./formats/compressed-gltf.js");
+  const decode = await geometryDecoder(meshoptDecoder, dracoDecoder);
+  return decodeMesh("file", bytes, given, fileReaders, undefined, decode);
 }
 
 /**

@@ -1,9 +1,9 @@
 /** glTF files whose geometry is compressed: rewritten without the compression, by the caller's decoders. */
-import { binaryChunk, readGlb } from "../conventions/glb-file.js";
-import { describe, failure, isExhausted, messageOf, outOfMemory, Sim3AlignError } from "../values/error.js";
-import { isBuffer, isRecord, isTypedArray } from "../values/kinds.js";
-import { stringsIn } from "../values/values.js";
-import type { DracoDecoderModule, MeshoptDecoder } from "./mesh-decoders.js";
+import type { ErrorParts } from "../values/error.js";
+import type { DecodeGeometry, DracoDecoderModule, MeshoptDecoder } from "./mesh-decoders.js";
+
+// This file throws what the modules throw, plain objects, and imports nothing: bundlers would put what it shares with the
+// readers into a file of its own, which everybody loads.
 
 type Json = Record<string, unknown>;
 
@@ -33,31 +33,55 @@ const meshoptFilters: typeof meshoptModes = {
 const attributesRead = /^(POSITION|(TEXCOORD|COLOR|JOINTS|WEIGHTS)_\d+)$/;
 const componentsOf: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 
-/** A file as JSON, with all its buffers beside it. */
-export interface DecodedGltf {
-  json: Uint8Array;
-  format?: "gltf";
-  resources: Readonly<Record<string, unknown>>;
+/**
+ * A function that decodes the geometry of glTF files, also of binary ones. It returns a damaged container as it is: the reader
+ * names what is wrong with it. What is compressed for a decoder that is not there stays as it is.
+ */
+export async function geometryDecoder(
+  meshoptDecoder: MeshoptDecoder | undefined,
+  dracoDecoder: DracoDecoderModule | undefined,
+): Promise<DecodeGeometry> {
+  const problem = await problemOf(meshoptDecoder, dracoDecoder);
+  return (bytes, options) => {
+    if (problem !== undefined) throw problem;
+    const container = split(bytes);
+    if (container === undefined) return [bytes, options];
+    const gltf = new CompressedGltf(container, options.resources ?? {});
+    if (meshoptDecoder) gltf.decodeMeshopt(meshoptDecoder);
+    if (dracoDecoder) gltf.decodeDraco(dracoDecoder);
+    return [gltf.text(), { ...options, format: "gltf", resources: gltf.resources }];
+  };
 }
 
-/**
- * Decodes the geometry of a glTF file, also of a binary one. A damaged container is returned as it is: the reader names what
- * is wrong with it.
- * @param decoders those that the caller has: what is compressed otherwise stays as it is
- * @throws {@link Sim3AlignError} `CORRUPT_FILE`, `FILE_TOO_LARGE`, and `INVALID_ARGUMENT` for a decoder that cannot run
- */
-export async function decodedGltf(
-  bytes: Uint8Array,
-  resources: Readonly<Record<string, unknown>>,
-  decoders: { meshoptDecoder?: MeshoptDecoder | undefined; dracoDecoder?: DracoDecoderModule | undefined },
-): Promise<DecodedGltf> {
-  const container = split(bytes);
-  if (container === undefined) return { json: bytes, resources };
-  const gltf = new CompressedGltf(container, resources);
-  const { meshoptDecoder, dracoDecoder } = decoders;
-  if (meshoptDecoder) gltf.decodeMeshopt(await startedMeshopt(meshoptDecoder));
-  if (dracoDecoder) gltf.decodeDraco(checkedDraco(dracoDecoder));
-  return gltf.finish();
+/** Why one of the decoders cannot be used. */
+async function problemOf(
+  meshopt: MeshoptDecoder | undefined,
+  draco: DracoDecoderModule | undefined,
+): Promise<ErrorParts | undefined> {
+  const refused = (argument: string, found: string, expected: string): ErrorParts => {
+    return { code: "INVALID_ARGUMENT", argument, found, expected, remedy: "Pass the object of the library." };
+  };
+  try {
+    if (meshopt) {
+      const isDecoder = meshopt.supported && typeof meshopt.decodeGltfBuffer === "function";
+      if (!isDecoder) throw new Error("it is no decoder, or not supported here");
+      await meshopt.ready;
+    }
+  } catch (cause) {
+    const expected = "MeshoptDecoder of the npm package meshoptimizer";
+    return refused("options.meshoptDecoder", `a decoder that cannot start: ${textOf(cause)}`, expected);
+  }
+  try {
+    if (draco) {
+      const { Decoder, DecoderBuffer, Mesh, _malloc, _free, destroy } = draco;
+      const parts = [Decoder, DecoderBuffer, Mesh, _malloc, _free, destroy];
+      if (!parts.every((part) => typeof part === "function")) throw new Error("it is no module with a decoder");
+    }
+  } catch (cause) {
+    const expected = "the module that createDecoderModule() of the npm package draco3d returns, awaited";
+    return refused("options.dracoDecoder", `a decoder that cannot start: ${textOf(cause)}`, expected);
+  }
+  return undefined;
 }
 
 interface Container {
@@ -67,61 +91,33 @@ interface Container {
 
 function split(bytes: Uint8Array): Container | undefined {
   try {
-    if (bytes[0] === 0x67) {
-      const { json, chunks } = readGlb(bytes);
-      return { json, binary: chunks[0]?.[0] === binaryChunk ? chunks[0][1] : undefined };
-    }
-    const json: unknown = JSON.parse(new TextDecoder().decode(bytes));
-    return isRecord(json) ? { json } : undefined;
+    const text = (part: Uint8Array) => JSON.parse(new TextDecoder().decode(part));
+    if (bytes[0] !== 0x67) return { json: recordOf(text(bytes)) };
+    const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+    // The header has 12 bytes, that of a chunk 8.
+    const end = 20 + view.getUint32(12, true);
+    const hasBinary = end + 8 <= bytes.length && view.getUint32(end + 4, true) === 0x004e4942;
+    const binary = hasBinary ? bytes.subarray(end + 8, end + 8 + view.getUint32(end, true)) : undefined;
+    return { json: recordOf(text(bytes.subarray(20, end))), binary };
   } catch {
     return undefined;
   }
-}
-
-async function startedMeshopt(decoder: MeshoptDecoder): Promise<MeshoptDecoder> {
-  const refused = (found: string, cause?: unknown) => {
-    const expected = "MeshoptDecoder of the npm package meshoptimizer, in a runtime that supports it";
-    return failure("INVALID_ARGUMENT", "options.meshoptDecoder", found, expected, "Pass the object itself.", cause);
-  };
-  let isSupported: boolean;
-  try {
-    isSupported = decoder.supported;
-    if (isSupported && typeof decoder.decodeGltfBuffer === "function") {
-      await decoder.ready;
-      return decoder;
-    }
-  } catch (cause) {
-    throw refused(`${describe(decoder)}, which cannot start: ${messageOf(cause)}`, cause);
-  }
-  throw refused(isSupported === false ? "a decoder that is not supported here" : describe(decoder));
-}
-
-function checkedDraco(module: DracoDecoderModule): DracoDecoderModule {
-  try {
-    const { Decoder, DecoderBuffer, Mesh, _malloc, _free, destroy } = module;
-    if ([Decoder, DecoderBuffer, Mesh, _malloc, _free, destroy].every((part) => typeof part === "function"))
-      return module;
-  } catch {
-    // It is not an object, or its properties throw.
-  }
-  const expected = "what createDecoderModule() of the npm package draco3d resolves to";
-  const remedy = "Await createDecoderModule(), and pass its result.";
-  throw failure("INVALID_ARGUMENT", "options.dracoDecoder", describe(module), expected, remedy);
 }
 
 /** The document of a file, whose geometry is decoded in place. */
 class CompressedGltf {
   readonly #json: Json;
   readonly #binary: Uint8Array | undefined;
-  readonly #resources: Record<string, unknown>;
+  /** The files of the caller, and what has been decoded. */
+  readonly resources: Record<string, Uint8Array | ArrayBuffer>;
   readonly #files = new Map<string, Uint8Array>();
   #added = 0;
   #decodedBytes = 0;
 
-  constructor({ json, binary }: Container, resources: Readonly<Record<string, unknown>>) {
+  constructor({ json, binary }: Container, resources: Readonly<Record<string, Uint8Array | ArrayBuffer>>) {
     this.#json = json;
     this.#binary = binary;
-    this.#resources = { ...resources };
+    this.resources = { ...resources };
   }
 
   /** Decodes the buffer views of meshopt. */
@@ -154,13 +150,13 @@ class CompressedGltf {
     this.#removeExtensions([dracoName]);
   }
 
-  finish(): DecodedGltf {
+  /** The document as a `.gltf`. */
+  text(): Uint8Array {
     const [first] = this.#list("buffers");
     if (this.#binary !== undefined && isRecord(first) && first.uri === undefined) {
       first.uri = this.#addResource(this.#binary);
     }
-    const json = new TextEncoder().encode(JSON.stringify(this.#json));
-    return { json, format: "gltf", resources: this.#resources };
+    return new TextEncoder().encode(JSON.stringify(this.#json));
   }
 
   #decodedView(decoder: MeshoptDecoder, extension: Json, view: Json, what: string): Uint8Array {
@@ -168,9 +164,9 @@ class CompressedGltf {
     const [count, stride] = [whole(extension.count), whole(extension.byteStride)];
     const isMode = typeof mode === "string" && Object.hasOwn(meshoptModes, mode) && meshoptModes[mode]?.(stride);
     const isFilter = Object.hasOwn(meshoptFilters, String(filter)) && meshoptFilters[String(filter)]?.(stride);
-    const isWhole = mode !== "TRIANGLES" || count % 3 === 0;
+    const isWhole = count >= 0 && (mode !== "TRIANGLES" || count % 3 === 0);
     if (!(stride > 0 && isMode && isWhole && (filter === "NONE" || (mode === "ATTRIBUTES" && isFilter)))) {
-      const found = `${what} as ${count} elements of ${stride} bytes, mode ${mode}, filter ${filter}`;
+      const found = `${what} as ${extension.count} elements of ${extension.byteStride} bytes, mode ${mode}, filter ${filter}`;
       throw corrupt(found, "a mode and a filter of meshopt, with counts and strides that they can have");
     }
     const size = count * stride;
@@ -249,9 +245,9 @@ class CompressedGltf {
     try {
       return work();
     } catch (cause) {
-      if (cause instanceof Sim3AlignError) throw cause;
-      if (isExhausted(cause)) throw outOfMemory(cause);
-      throw corrupt(`${what}, which ${decoder} cannot decode: ${messageOf(cause)}`, "complete data", cause);
+      // Ours, or that of an engine whose memory is exhausted.
+      if (isRecord(cause) && ("remedy" in cause || /array buffer allocation/i.test(String(cause.message)))) throw cause;
+      throw corrupt(`${what}, which ${decoder} cannot decode: ${textOf(cause)}`, "complete data");
     }
   }
 
@@ -277,15 +273,15 @@ class CompressedGltf {
     try {
       const [, base64] = /^data:[^,]*;base64,(.*)$/s.exec(uri) ?? [];
       if (base64 !== undefined) return Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0));
-      const file = this.#resources[uri] ?? this.#resources[decodeURIComponent(uri)];
-      if (isTypedArray<Uint8Array>(file, "Uint8Array")) return file;
-      if (isBuffer(file)) return new Uint8Array(file);
+      const file = this.resources[uri] ?? this.resources[decodeURIComponent(uri)];
+      if (ArrayBuffer.isView(file)) return new Uint8Array(file.buffer, file.byteOffset, file.byteLength);
+      if (file !== undefined && "byteLength" in file) return new Uint8Array(file);
     } catch {
-      // Broken base64, or a name with broken escapes.
+      // Broken base64, a name with broken escapes, or something else than bytes.
     }
     const found = `no bytes for ${JSON.stringify(uri.slice(0, 80))}`;
-    const remedy = "Pass them in resources.";
-    throw failure("INVALID_ARGUMENT", "options.resources", found, "the bytes of every external file", remedy);
+    const [argument, expected] = ["options.resources", "the bytes of every external file"];
+    throw { code: "INVALID_ARGUMENT", argument, found, expected, remedy: "Pass them in resources." } as ErrorParts;
   }
 
   #addBuffer(bytes: Uint8Array): number {
@@ -295,7 +291,7 @@ class CompressedGltf {
   /** Adds a file to the resources; returns its name. */
   #addResource(bytes: Uint8Array): string {
     const name = `sim3align:${this.#added++}`;
-    this.#resources[name] = bytes;
+    this.resources[name] = bytes;
     return name;
   }
 
@@ -310,14 +306,18 @@ class CompressedGltf {
     this.#decodedBytes += bytes;
     if (this.#decodedBytes <= MAX_BYTES) return;
     const found = `${this.#decodedBytes} bytes of geometry`;
-    throw failure("FILE_TOO_LARGE", "mesh", found, `at most ${MAX_BYTES}`, "Simplify the mesh.");
+    const [expected, remedy] = [`at most ${MAX_BYTES}`, "Simplify the mesh."];
+    throw { code: "FILE_TOO_LARGE", argument: "mesh", found, expected, remedy } as ErrorParts;
   }
 
   #at(list: string, index: unknown): Json {
     const items = this.#list(list);
     const item = items[whole(index)];
     if (isRecord(item)) return item;
-    throw corrupt(`no object ${String(index)} of ${list}`, `indices below ${items.length}`);
+    throw corrupt(
+      `no object ${JSON.stringify(index) ?? "without a number"} of ${list}`,
+      `indices below ${items.length}`,
+    );
   }
 
   /** A list of the document. */
@@ -327,7 +327,7 @@ class CompressedGltf {
 
   #removeExtensions(names: readonly string[]): void {
     for (const list of ["extensionsUsed", "extensionsRequired"]) {
-      this.#json[list] = stringsIn(this.#json[list]).filter((name) => !names.includes(name));
+      this.#json[list] = this.#list(list).filter((name) => !names.includes(String(name)));
     }
   }
 }
@@ -366,12 +366,25 @@ function dracoType(module: DracoDecoderModule, componentType: unknown): [type: n
 }
 
 /** Errors name the mesh, as those of the reader. */
-const corrupt = (found: string, expected: string, cause?: unknown) =>
-  failure("CORRUPT_FILE", "mesh", found, expected, "Export the mesh again.", cause);
+const corrupt = (found: string, expected: string): ErrorParts => {
+  return { code: "CORRUPT_FILE", argument: "mesh", found, expected, remedy: "Export the mesh again." };
+};
+
+/** The text of anything that was thrown. */
+function textOf(thrown: unknown): string {
+  try {
+    return String(thrown);
+  } catch {
+    return "something without a text";
+  }
+}
 
 /** A whole number of a document; NaN, with which no comparison holds, for anything else. */
 const whole = (value: unknown): number =>
   Number.isSafeInteger(value) && (value as number) >= 0 ? (value as number) : Number.NaN;
+
+const isRecord = (value: unknown): value is Json =>
+  typeof value === "object" && value !== null && !Array.isArray(value);
 
 const recordOf = (value: unknown): Json => (isRecord(value) ? value : {});
 

@@ -1,4 +1,8 @@
 /** Decoders of compressed geometry, which callers bring: the objects of their libraries fit as they are. */
+import type { ReadMeshOptions } from "../wasm/formats.js";
+
+/** Rewrites a mesh file, and the options of its reader, without the compression of its geometry. */
+export type DecodeGeometry = (bytes: Uint8Array, options: ReadMeshOptions) => [Uint8Array, ReadMeshOptions];
 
 /** Decodes meshopt: the `MeshoptDecoder` of the npm package `meshoptimizer`, and of three.js. */
 export interface MeshoptDecoder {
@@ -52,6 +56,8 @@ export interface DracoBuffer {
 
 /** A mesh of a {@link DracoDecoderModule}. */
 export interface DracoMesh {
+  readonly ptr: number;
+  num_attributes(): number;
   num_points(): number;
   num_faces(): number;
 }
