@@ -50,7 +50,7 @@ export function meshoptGltf(mesh: Mesh, extension: string, isQuantised: boolean)
   const { json, buffer } = documentOf(mesh, extension, parts);
   json.bufferViews = views.map(({ bytes, ...form }, i) => ({
     buffer: 1,
-    byteOffset: 0,
+    byteOffset: i * positions.length,
     byteLength: bytes.length,
     ...(form.mode === "ATTRIBUTES" ? { byteStride: stride } : {}),
     extensions: {
@@ -58,7 +58,10 @@ export function meshoptGltf(mesh: Mesh, extension: string, isQuantised: boolean)
     },
   }));
   // A buffer without data, of the uncompressed size.
-  json.buffers.push({ byteLength: positions.length, extensions: { [extension]: { fallback: true } } } as never);
+  json.buffers.push({
+    byteLength: positions.length + mesh.indices.byteLength,
+    extensions: { [extension]: { fallback: true } },
+  } as never);
   if (isQuantised) {
     json.nodes = [{ mesh: 0, scale: [largest, largest, largest] } as never];
     Object.assign(json.accessors[0] ?? {}, { componentType: 5122, normalized: true, min: undefined, max: undefined });
