@@ -98,6 +98,7 @@ const liesOfMeshopt: readonly Lie[] = [
   ["another mode", ({ form }) => Object.assign(form, { mode: "TRIANGLES" }), /mode TRIANGLES/],
   ["an unknown filter", ({ form }) => Object.assign(form, { filter: "BLUR" }), /filter BLUR/],
   ["a filter of another stride", ({ form }) => Object.assign(form, { filter: "OCTAHEDRAL" }), /filter OCTAHEDRAL/],
+  ["objects without a text", ({ form }) => Object.assign(form, { mode: { toString: 1 } }), /cannot be rewritten/],
   ["a missing buffer", ({ form }) => Object.assign(form, { buffer: 7 }), /no object 7 of buffers/],
   ["the buffer without data", ({ form }) => Object.assign(form, { buffer: 1 }), /buffer 1 without data/],
   ["bytes outside the buffer", ({ form }) => Object.assign(form, { byteOffset: 1e6 }), /a part of buffer 0/],
@@ -156,6 +157,26 @@ for (const [format, make, lies] of [
 test("decoders are usable after files that they refused", async () => {
   assertSame(await readMesh(glbFrom(exact()), decoders), 0);
   assertSame(await readMesh(glbFrom(ofDraco()), decoders), 4 / 2 ** 16);
+});
+
+test("many parts of the same data are refused", async () => {
+  const [file, draco] = [exact(), ofDraco()];
+  file.buffer = new Uint8Array(2 ** 21);
+  file.json.buffers[0] = { byteLength: 2 ** 21 };
+  const form = { buffer: 0, byteLength: 2 ** 21, byteStride: 4, count: 0, mode: "ATTRIBUTES" };
+  const view = { buffer: 1, byteLength: 0, extensions: { EXT_meshopt_compression: form } };
+  file.json.bufferViews = Array.from({ length: 600 }, () => view as never);
+  // A decoder that would look at each.
+  const silent = { ...MeshoptDecoder, decodeGltfBuffer: () => {} };
+  await rejectsWith(() => readMesh(glbFrom(file), { meshoptDecoder: silent }), "CORRUPT_FILE mesh", /overlap/);
+  const compressed = { bufferView: 0, attributes: {} };
+  draco.json.bufferViews[0] = { buffer: 0, byteOffset: 0, byteLength: draco.buffer.length };
+  const primitives = Array.from({ length: 20_000 }, (_, i) => ({
+    attributes: { _N: i },
+    extensions: { KHR_draco_mesh_compression: compressed },
+  }));
+  draco.json.meshes = [{ primitives: primitives as never }];
+  await rejectsWith(() => readMesh(glbFrom(draco), decoders), "CORRUPT_FILE mesh", /overlap/);
 });
 
 test("more than a gibibyte is refused before it is allocated", async () => {

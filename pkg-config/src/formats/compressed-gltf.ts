@@ -31,6 +31,17 @@ const meshoptFilters: typeof meshoptModes = {
 
 /** The attributes that the reader reads: others stay compressed. */
 const attributesRead = /^(POSITION|(TEXCOORD|COLOR|JOINTS|WEIGHTS)_\d+)$/;
+/** The names of component types in Draco, and their bytes. */
+const dracoTypes = new Map<unknown, readonly [name: DracoType, bytes: number]>([
+  [5120, ["DT_INT8", 1]],
+  [5121, ["DT_UINT8", 1]],
+  [5122, ["DT_INT16", 2]],
+  [5123, ["DT_UINT16", 2]],
+  [5125, ["DT_UINT32", 4]],
+  [5126, ["DT_FLOAT32", 4]],
+]);
+type DracoType = Extract<keyof DracoDecoderModule, `DT_${string}`>;
+
 const componentsOf: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 
 /**
@@ -47,9 +58,12 @@ export async function geometryDecoder(
     const container = split(bytes);
     if (container === undefined) return [bytes, options];
     const gltf = new CompressedGltf(container, options.resources ?? {});
-    if (meshoptDecoder) gltf.decodeMeshopt(meshoptDecoder);
-    if (dracoDecoder) gltf.decodeDraco(dracoDecoder);
-    return [gltf.text(), { ...options, format: "gltf", resources: gltf.resources }];
+    // Objects of JSON may lack a conversion to text or be too deep for one.
+    return corruptIfThrown("glTF", "cannot be rewritten", () => {
+      if (meshoptDecoder) gltf.decodeMeshopt(meshoptDecoder);
+      if (dracoDecoder) gltf.decodeDraco(dracoDecoder);
+      return [gltf.text(), { ...options, format: "gltf", resources: gltf.resources }];
+    });
   };
 }
 
@@ -110,9 +124,12 @@ class CompressedGltf {
   readonly #binary: Uint8Array | undefined;
   /** The files of the caller, and what has been decoded. */
   readonly resources: Record<string, Uint8Array | ArrayBuffer>;
-  readonly #files = new Map<string, Uint8Array>();
+  readonly #files = new Map<unknown, Uint8Array>();
   #added = 0;
-  #decodedBytes = 0;
+  #bytes = 0;
+  /** The bytes of the buffers so far, and of the compressed parts of them. */
+  #available = 0;
+  #used = 0;
 
   constructor({ json, binary }: Container, resources: Readonly<Record<string, Uint8Array | ArrayBuffer>>) {
     this.#json = json;
@@ -179,7 +196,7 @@ class CompressedGltf {
       throw corrupt(`${what} of ${size} bytes in ${source.length}`, "as many as meshopt can compress so far");
     }
     this.#count(size);
-    return this.#decoded("meshoptDecoder", what, () => {
+    return corruptIfThrown(what, "meshoptDecoder cannot decode", () => {
       const target = new Uint8Array(size);
       decoder.decodeGltfBuffer(target, count, stride, source, String(mode), String(filter));
       return target;
@@ -193,13 +210,14 @@ class CompressedGltf {
     if (mode !== 4 && mode !== 5) throw corrupt(`primitives of mode ${mode} as Draco`, "modes 4 or 5, triangles");
     const what = `Draco's buffer view ${String(extension.bufferView)}`;
     const source = this.#bytesOf(this.#at("bufferViews", extension.bufferView), what);
-    return this.#decoded("dracoDecoder", what, () => {
+    return corruptIfThrown(what, "dracoDecoder cannot decode", () => {
       const [decoder, buffer, mesh] = [new module.Decoder(), new module.DecoderBuffer(), new module.Mesh()];
       try {
         buffer.Init(new Int8Array(source.buffer, source.byteOffset, source.length), source.length);
         const status = decoder.DecodeBufferToMesh(buffer, mesh);
         if (!status.ok()) throw new Error(status.error_msg());
         const [points, corners] = [mesh.num_points(), 3 * mesh.num_faces()];
+        this.#count(4 * points);
         const check = (name: string, count: unknown, expected: number) => {
           if (count !== expected) throw corrupt(`${name} of ${count} elements`, `${expected}, as in ${what}`);
         };
@@ -216,17 +234,17 @@ class CompressedGltf {
           const accessor = this.#at("accessors", changed[name]);
           const attribute = decoder.GetAttributeByUniqueId(mesh, whole(id));
           const components = componentsOf[String(accessor.type)];
-          const [type, bytes] = dracoType(module, accessor.componentType);
+          const [type, bytes] = dracoTypes.get(accessor.componentType) ?? [];
           // A null pointer of C++ is an object here.
           const isThere = whole(id) >= 0 && (attribute as { ptr?: number }).ptr !== 0;
-          if (!isThere || bytes === 0 || attribute.num_components() !== components) {
+          if (!isThere || type === undefined || bytes === undefined || attribute.num_components() !== components) {
             const found = `${name} as ${accessor.type} of ${accessor.componentType}`;
             throw corrupt(found, `an attribute that ${what} has, of as many components`);
           }
           check(name, accessor.count, points);
           const size = points * components * bytes;
           changed[name] = add(accessor, size, (pointer) =>
-            decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, type, size, pointer),
+            decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, module[type], size, pointer),
           );
         }
         const accessor = { componentType: 5125, type: "SCALAR", count: corners };
@@ -240,32 +258,29 @@ class CompressedGltf {
     });
   }
 
-  /** Translates what a decoder throws. */
-  #decoded<T>(decoder: string, what: string, work: () => T): T {
-    try {
-      return work();
-    } catch (cause) {
-      // Ours, or that of an engine whose memory is exhausted.
-      if (isRecord(cause) && ("remedy" in cause || /array buffer allocation/i.test(String(cause.message)))) throw cause;
-      throw corrupt(`${what}, which ${decoder} cannot decode: ${textOf(cause)}`, "complete data");
-    }
-  }
-
   /** The bytes of a buffer view, compressed or not. */
   #bytesOf(view: Json, what: string): Uint8Array {
     const bytes = this.#bufferAt(view.buffer);
     const [start, length] = [whole(view.byteOffset ?? 0), whole(view.byteLength)];
-    if (start + length <= bytes.length) return bytes.subarray(start, start + length);
+    if (start + length <= bytes.length) {
+      this.#used += length;
+      // Or a small file could make the decoder work for hours.
+      if (this.#used <= 2 * this.#available) return bytes.subarray(start, start + length);
+      throw corrupt(`${this.#used} compressed bytes in buffers of ${this.#available}`, "parts that do not overlap");
+    }
     const found = `${what} at ${view.byteOffset ?? 0}, ${view.byteLength} bytes long`;
     throw corrupt(found, `a part of buffer ${view.buffer}, which has ${bytes.length} bytes`);
   }
 
   #bufferAt(index: unknown): Uint8Array {
     const { uri } = this.#at("buffers", index);
-    if (index === 0 && uri === undefined && this.#binary !== undefined) return this.#binary;
-    if (typeof uri !== "string") throw corrupt(`buffer ${index} without data`, "compressed data");
-    const bytes = this.#files.get(uri) ?? this.#fileAt(uri);
+    const own = index === 0 && uri === undefined ? this.#binary : undefined;
+    if (own === undefined && typeof uri !== "string") throw corrupt(`buffer ${index} without data`, "compressed data");
+    const known = this.#files.get(uri);
+    if (known !== undefined) return known;
+    const bytes = own ?? this.#fileAt(uri as string);
     this.#files.set(uri, bytes);
+    this.#available += bytes.length;
     return bytes;
   }
 
@@ -303,9 +318,9 @@ class CompressedGltf {
 
   /** Counts decoded bytes before they are there. */
   #count(bytes: number): void {
-    this.#decodedBytes += bytes;
-    if (this.#decodedBytes <= MAX_BYTES) return;
-    const found = `${this.#decodedBytes} bytes of geometry`;
+    this.#bytes += bytes;
+    if (this.#bytes <= MAX_BYTES) return;
+    const found = `${this.#bytes} bytes of geometry`;
     const [expected, remedy] = [`at most ${MAX_BYTES}`, "Simplify the mesh."];
     throw { code: "FILE_TOO_LARGE", argument: "mesh", found, expected, remedy } as ErrorParts;
   }
@@ -345,30 +360,21 @@ function copied(module: DracoDecoderModule, size: number, fill: (pointer: number
   }
 }
 
-/** The type of components, and their bytes; 0 for a type that glTF does not have. */
-function dracoType(module: DracoDecoderModule, componentType: unknown): [type: number, bytes: number] {
-  switch (componentType) {
-    case 5120:
-      return [module.DT_INT8, 1];
-    case 5121:
-      return [module.DT_UINT8, 1];
-    case 5122:
-      return [module.DT_INT16, 2];
-    case 5123:
-      return [module.DT_UINT16, 2];
-    case 5125:
-      return [module.DT_UINT32, 4];
-    case 5126:
-      return [module.DT_FLOAT32, 4];
-    default:
-      return [0, 0];
-  }
-}
-
 /** Errors name the mesh, as those of the reader. */
 const corrupt = (found: string, expected: string): ErrorParts => {
   return { code: "CORRUPT_FILE", argument: "mesh", found, expected, remedy: "Export the mesh again." };
 };
+
+/** Translates what decoders and engines throw, but for our own errors and for exhausted memory. */
+function corruptIfThrown<T>(what: string, problem: string, work: () => T): T {
+  try {
+    return work();
+  } catch (cause) {
+    const { message, remedy } = recordOf(cause);
+    if (remedy !== undefined || /array buffer allocation/i.test(textOf(message))) throw cause;
+    throw corrupt(`${what}, which ${problem}: ${textOf(cause)}`, "complete data");
+  }
+}
 
 /** The text of anything that was thrown. */
 function textOf(thrown: unknown): string {

@@ -54,7 +54,7 @@ export interface DracoBuffer {
   Init(data: Int8Array, bytes: number): void;
 }
 
-/** A mesh of a {@link DracoDecoderModule}. */
+/** A mesh of a {@link DracoDecoderModule}, with what its published types demand of one. */
 export interface DracoMesh {
   readonly ptr: number;
   num_attributes(): number;
