@@ -41,9 +41,11 @@ export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.j
 export type {
   DracoAttribute,
   DracoBuffer,
+  DracoClass,
   DracoDecoder,
   DracoDecoderModule,
   DracoMesh,
+  DracoStatus,
   MeshoptDecoder,
 } from "./formats/mesh-decoders.js";
 export type { DepthImage, ReadDepthOptions } from "./input/types.js";

@@ -183,12 +183,12 @@ class CompressedGltf {
     const isFilter = Object.hasOwn(meshoptFilters, String(filter)) && meshoptFilters[String(filter)]?.(stride);
     const isWhole = count >= 0 && (mode !== "TRIANGLES" || count % 3 === 0);
     if (!(stride > 0 && isMode && isWhole && (filter === "NONE" || (mode === "ATTRIBUTES" && isFilter)))) {
-      const found = `${what} as ${extension.count} elements of ${extension.byteStride} bytes, mode ${mode}, filter ${filter}`;
+      const found = `${what} as ${json(extension)}`;
       throw corrupt(found, "a mode and a filter of meshopt, with counts and strides that they can have");
     }
     const size = count * stride;
     if (!(whole(view.byteLength) <= size) || (view.byteStride !== undefined && view.byteStride !== stride)) {
-      const found = `${what} of ${view.byteLength} bytes, ${view.byteStride ?? stride} apart`;
+      const found = `${what} of ${json(view.byteLength)} bytes, ${json(view.byteStride ?? stride)} apart`;
       throw corrupt(found, `those of its compressed form: ${size}, ${stride} apart`);
     }
     const source = this.#bytesOf(extension, what);
@@ -207,8 +207,8 @@ class CompressedGltf {
   #decodedPart(module: DracoDecoderModule, extension: Json, primitive: Json): Json {
     const { attributes, indices, mode = 4 } = primitive;
     // The triangles of strips come as triangles.
-    if (mode !== 4 && mode !== 5) throw corrupt(`primitives of mode ${mode} as Draco`, "modes 4 or 5, triangles");
-    const what = `Draco's buffer view ${String(extension.bufferView)}`;
+    if (mode !== 4 && mode !== 5) throw corrupt(`primitives of mode ${json(mode)} as Draco`, "modes 4 or 5, triangles");
+    const what = `Draco's buffer view ${json(extension.bufferView)}`;
     const source = this.#bytesOf(this.#at("bufferViews", extension.bufferView), what);
     return corruptIfThrown(what, "dracoDecoder cannot decode", () => {
       const [decoder, buffer, mesh] = [new module.Decoder(), new module.DecoderBuffer(), new module.Mesh()];
@@ -219,7 +219,7 @@ class CompressedGltf {
         const [points, corners] = [mesh.num_points(), 3 * mesh.num_faces()];
         this.#count(4 * points);
         const check = (name: string, count: unknown, expected: number) => {
-          if (count !== expected) throw corrupt(`${name} of ${count} elements`, `${expected}, as in ${what}`);
+          if (count !== expected) throw corrupt(`${name} of ${json(count)} elements`, `${expected}, as in ${what}`);
         };
         const add = (accessor: Json, size: number, fill: (pointer: number) => unknown): number => {
           this.#count(size);
@@ -238,7 +238,7 @@ class CompressedGltf {
           // A null pointer of C++ is an object here.
           const isThere = whole(id) >= 0 && (attribute as { ptr?: number }).ptr !== 0;
           if (!isThere || type === undefined || bytes === undefined || attribute.num_components() !== components) {
-            const found = `${name} as ${accessor.type} of ${accessor.componentType}`;
+            const found = `${name} as ${json(accessor.type)} of ${json(accessor.componentType)}`;
             throw corrupt(found, `an attribute that ${what} has, of as many components`);
           }
           check(name, accessor.count, points);
@@ -268,14 +268,15 @@ class CompressedGltf {
       if (this.#used <= 2 * this.#available) return bytes.subarray(start, start + length);
       throw corrupt(`${this.#used} compressed bytes in buffers of ${this.#available}`, "parts that do not overlap");
     }
-    const found = `${what} at ${view.byteOffset ?? 0}, ${view.byteLength} bytes long`;
-    throw corrupt(found, `a part of buffer ${view.buffer}, which has ${bytes.length} bytes`);
+    const found = `${what} at ${json(view.byteOffset ?? 0)}, ${json(view.byteLength)} bytes long`;
+    throw corrupt(found, `a part of buffer ${json(view.buffer)}, which has ${bytes.length} bytes`);
   }
 
   #bufferAt(index: unknown): Uint8Array {
     const { uri } = this.#at("buffers", index);
     const own = index === 0 && uri === undefined ? this.#binary : undefined;
-    if (own === undefined && typeof uri !== "string") throw corrupt(`buffer ${index} without data`, "compressed data");
+    if (own === undefined && typeof uri !== "string")
+      throw corrupt(`buffer ${json(index)} without data`, "compressed data");
     const known = this.#files.get(uri);
     if (known !== undefined) return known;
     const bytes = own ?? this.#fileAt(uri as string);
@@ -294,7 +295,7 @@ class CompressedGltf {
     } catch {
       // Broken base64, a name with broken escapes, or something else than bytes.
     }
-    const found = `no bytes for ${JSON.stringify(uri.slice(0, 80))}`;
+    const found = `no bytes for ${json(uri)}`;
     const [argument, expected] = ["options.resources", "the bytes of every external file"];
     throw { code: "INVALID_ARGUMENT", argument, found, expected, remedy: "Pass them in resources." } as ErrorParts;
   }
@@ -329,10 +330,7 @@ class CompressedGltf {
     const items = this.#list(list);
     const item = items[whole(index)];
     if (isRecord(item)) return item;
-    throw corrupt(
-      `no object ${JSON.stringify(index) ?? "without a number"} of ${list}`,
-      `indices below ${items.length}`,
-    );
+    throw corrupt(`no object ${json(index)} of ${list}`, `indices below ${items.length}`);
   }
 
   /** A list of the document. */
@@ -364,6 +362,9 @@ function copied(module: DracoDecoderModule, size: number, fill: (pointer: number
 const corrupt = (found: string, expected: string): ErrorParts => {
   return { code: "CORRUPT_FILE", argument: "mesh", found, expected, remedy: "Export the mesh again." };
 };
+
+/** A part of a document, for errors. */
+const json = (value: unknown): string => JSON.stringify(value)?.slice(0, 160) ?? "nothing";
 
 /** Translates what decoders and engines throw, but for our own errors and for exhausted memory. */
 function corruptIfThrown<T>(what: string, problem: string, work: () => T): T {
