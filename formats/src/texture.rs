@@ -151,6 +151,6 @@ pub(crate) fn unsupported_texture(found: &str) -> Error {
         "mesh",
         found.to_owned(),
         "a base colour texture as PNG, JPEG or WebP",
-        "Convert the textures, those of glTF with glTF-Transform: npx @gltf-transform/cli png --formats '*' in.glb out.glb (KTX2: ktxdecompress in.glb out.glb). Or pass decodeImage to readMesh().",
+        "Convert the textures, those of glTF with glTF-Transform: npx @gltf-transform/cli png --formats '*' in.glb out.glb (KTX2, with the program ktx: ktxdecompress in.glb out.glb). Or pass decodeImage to readMesh().",
     )
 }

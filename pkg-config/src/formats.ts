@@ -9,6 +9,7 @@ import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./form
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { Exif } from "./formats/exif-focal.js";
 import type { JsonFile } from "./formats/json.js";
+import type { DracoDecoderModule, MeshoptDecoder } from "./formats/mesh-decoders.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
@@ -23,7 +24,7 @@ import type {
   PixelArray,
   ReadDepthOptions,
 } from "./input/types.js";
-import type { DecodeImage } from "./input/webp.js";
+import { type DecodeImage, gltfText } from "./input/webp.js";
 import type { Formats } from "./modules/exports.js";
 import { fileReaders, formatsModule } from "./modules/readers.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -37,6 +38,16 @@ export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
 export type { CameraFile, ReadCameraOptions } from "./formats/camera-file.js";
 export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
+export type {
+  DracoAttribute,
+  DracoBuffer,
+  DracoClass,
+  DracoDecoder,
+  DracoDecoderModule,
+  DracoMesh,
+  DracoStatus,
+  MeshoptDecoder,
+} from "./formats/mesh-decoders.js";
 export type { DepthImage, ReadDepthOptions } from "./input/types.js";
 export type { DecodeImage } from "./input/webp.js";
 export type { SceneCase } from "./scene/scene-files.js";
@@ -135,7 +146,9 @@ export async function readExif(file: EncodedBytes): Promise<Exif> {
  * @param options.resources the files that the mesh file refers to, by name: see {@link externalResources}
  * @param options.colors whether to read the colours, `true` by default
  * @param options.decodeImage decodes textures that are neither PNG, JPEG nor WebP, such as KTX2, to RGB pixels
- * @throws {@link Sim3AlignError} for any other file
+ * @param options.meshoptDecoder decodes geometry compressed with meshopt: `MeshoptDecoder` of the npm package `meshoptimizer`
+ * @param options.dracoDecoder decodes geometry compressed with Draco: `await createDecoderModule()` of the npm package `draco3d`
+ * @throws {@link Sim3AlignError} for any other file, and `COMPRESSED_MESH` for compressed geometry without its decoder
  */
 export async function readMesh(
   file: EncodedBytes,
@@ -144,11 +157,20 @@ export async function readMesh(
     resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
     colors?: boolean | undefined;
     decodeImage?: DecodeImage | undefined;
+    meshoptDecoder?: MeshoptDecoder | undefined;
+    dracoDecoder?: DracoDecoderModule | undefined;
   } = {},
 ): Promise<MeshFromFile> {
-  const given = optionsOf(options, ["format", "resources", "colors", "decodeImage"]);
+  const { meshoptDecoder, dracoDecoder, ...given } = optionsOf(options, [
+    ...(["format", "resources", "colors", "decodeImage", "meshoptDecoder", "dracoDecoder"] as const),
+  ]);
   const bytes = await requiredBytes("file", file);
-  return decodeMesh("file", bytes, given, fileReaders);
+  if (!(meshoptDecoder || dracoDecoder) || !/_meshopt_|_draco_/.test(gltfText(bytes))) {
+    return decodeMesh("file", bytes, given, fileReaders);
+  }
+  const { geometryDecoder } = await import("./formats/compressed-gltf.js");
+  const decode = await geometryDecoder(meshoptDecoder, dracoDecoder);
+  return decodeMesh("file", bytes, given, fileReaders, undefined, decode);
 }
 
 /**

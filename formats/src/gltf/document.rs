@@ -126,11 +126,17 @@ impl Document {
 }
 
 fn compressed(extension: &str) -> Error {
+    let (command, decoder) = match extension {
+        DRACO => ("@gltf-transform/cli copy in.glb out.glb", "dracoDecoder"),
+        "EXT_meshopt_compression" => ("@gltf-transform/cli copy in.glb out.glb", "meshoptDecoder"),
+        // glTF-Transform 4 has no decoder of it.
+        _ => ("gltfpack -noq -i in.glb -o out.glb", "meshoptDecoder"),
+    };
     Error::new(
         ErrorCode::CompressedMesh,
         "mesh",
         format!("geometry compressed with {extension}"),
         "uncompressed or quantised geometry",
-        "Decompress it with glTF-Transform: npx @gltf-transform/cli copy in.glb out.glb.",
+        format!("Decompress it: npx {command}. Or pass {decoder} to readMesh()."),
     )
 }

@@ -1,5 +1,6 @@
 /** Meshes from arrays or mesh files. */
 
+import type { DecodeGeometry } from "../formats/mesh-decoders.js";
 import { holdsGaussians } from "../formats/splat-files.js";
 import type { FileReaders } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
@@ -21,6 +22,7 @@ export type MeshReaders = Pick<FileReaders, "formats" | "splats" | "webp">;
  * @param argument the name of the bytes, in errors
  * @param options of the formats module, which checks them
  * @param rename of the arguments in errors of the reader
+ * @param decode changes what the reader gets
  */
 export async function decodeMesh(
   argument: string,
@@ -28,6 +30,7 @@ export async function decodeMesh(
   options: object,
   readers: MeshReaders,
   rename?: (argument: string) => string,
+  decode: DecodeGeometry = (...file) => file,
 ): Promise<MeshArrays> {
   const { format, colors } = options as { format?: unknown; colors?: unknown };
   if (holdsGaussians(bytes, format)) {
@@ -37,7 +40,7 @@ export async function decodeMesh(
   const { resources, decodeImage } = options as { resources?: unknown; decodeImage?: DecodeImage };
   const decoder = colors === false ? undefined : await imageDecoder(bytes, resources, decodeImage, readers);
   const read = { ...options, ...withoutUndefined({ decodeImage: decoder }) } as ReadMeshOptions;
-  return callReader(readers.formats, argument, bytes, (module) => module.readMesh(bytes, read), rename);
+  return callReader(readers.formats, argument, bytes, (module) => module.readMesh(...decode(bytes, read)), rename);
 }
 
 const kinds = () =>

@@ -29,13 +29,16 @@ export async function imageDecoder(
   return (image) => (isWebp(image) ? module.call((decoder) => decoder.decodeWebp(image, true)) : own?.(image));
 }
 
-/** Whether a glTF, also a binary one, names WebP as the format of an image. */
-function mentionsWebp(bytes: Uint8Array): boolean {
+/** Whether a glTF names WebP as the format of an image. */
+const mentionsWebp = (bytes: Uint8Array) => /image\/webp|EXT_texture_webp|\.webp"/i.test(gltfText(bytes));
+
+/** The JSON of a glTF, also of a binary one, as text for a search; empty for other files. */
+export function gltfText(bytes: Uint8Array): string {
   const beginning = latin(bytes.subarray(0, 64)).trimStart();
-  if (!/^(glTF|\{)/.test(beginning)) return false;
+  if (!/^(glTF|\{)/.test(beginning)) return "";
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   // The JSON of a binary file is its first chunk.
   const json =
     beginning.startsWith("glTF") && bytes.length >= 20 ? bytes.subarray(20, 20 + view.getUint32(12, true)) : bytes;
-  return /image\/webp|EXT_texture_webp|\.webp"/i.test(latin(json));
+  return latin(json);
 }

@@ -65,7 +65,13 @@ function copyOf(argument: string, value: unknown, levels: number, copies: Map<ob
       return value;
     }
     const isImage = isKind(value, "ImageData") && argument.endsWith(".image");
-    if (isBranded(value, "PreparedMesh") || !(Array.isArray(value) || isRecord(value) || isImage)) return value;
+    // Decoders are alive: their memory moves.
+    if (
+      isBranded(value, "PreparedMesh") ||
+      argument.endsWith("Decoder") ||
+      !(Array.isArray(value) || isRecord(value) || isImage)
+    )
+      return value;
     copies.set(value, undefined);
     const inner = (name: string, item: unknown) => copyOf(`${argument}${name}`, item, levels - 1, copies);
     const copy = Array.isArray(value)
