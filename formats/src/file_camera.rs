@@ -1,7 +1,6 @@
 //! The camera that a depth model writes beside its depth.
 
-use core::f64::consts::PI;
-
+use sim3align_geometry::angle::sin_cos;
 use sim3align_geometry::error::{Error, Result};
 use sim3align_geometry::pinhole::Pinhole;
 
@@ -40,7 +39,10 @@ impl FileCamera {
             ([focal; 2], centre)
         } else {
             let focal = |axis: usize| {
-                self.fields_of_view[axis].map(|degrees| 0.5 * size[axis] / libm::tan(0.5 * degrees * PI / 180.0))
+                self.fields_of_view[axis].map(|degrees| {
+                    let (sin, cos) = sin_cos(0.5 * degrees.to_radians());
+                    0.5 * size[axis] * cos / sin
+                })
             };
             match [focal(0), focal(1)] {
                 [None, None] => return Ok(None),

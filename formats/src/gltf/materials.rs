@@ -12,6 +12,7 @@ use crate::guard::{corrupt, missing};
 use crate::painted_mesh::Material;
 use crate::resources::at_uri;
 use crate::texture::{TextureLoader, Wrap, unsupported_texture};
+use sim3align_geometry::angle::sin_cos;
 use sim3align_geometry::error::Result;
 
 const CLAMP_TO_EDGE: u32 = 33_071;
@@ -201,7 +202,8 @@ impl TextureInfo {
     pub fn transform_coordinates(&self, coordinates: &mut [[f32; 2]]) {
         let Some(transform) = self.transform() else { return };
         let ([dx, dy], [sx, sy]) = (transform.offset.unwrap_or_default(), transform.scale.unwrap_or([1.0; 2]));
-        let (sin, cos) = (libm::sinf(transform.rotation), libm::cosf(transform.rotation));
+        let (sin, cos) = sin_cos(transform.rotation.into());
+        let (sin, cos) = (sin as f32, cos as f32);
         for [u, v] in coordinates {
             let (x, y) = (*u * sx, *v * sy);
             (*u, *v) = (cos * x + sin * y + dx, cos * y - sin * x + dy);
