@@ -85,10 +85,10 @@ pub fn alignments_have_these_bits() {
         ("by shape", 0x9c7a_3c49_a52b_2c32, of(Ok(solve(&AlignOptions::default())))),
         ("noise and an occluder", 0xe321_c820_af1a_f5f9, of(align(&noisy(), &body(), &quick(), &mut Silent))),
         ("a pose, bounds and up", 0x1c06_c718_c4e2_4fcd, of(Ok(solve(&given)))),
-        ("a large image", 0x963c_f3e6_1928_5883, of(align(&large, &body(), &quick(), &mut Silent))),
+        ("a large image", 0x15bf_788f_3e81_baa6, of(align(&large, &body(), &quick(), &mut Silent))),
         ("a doubtful pose", 0x6214_b925_c9f5_82c6, of(align(&seen, &carton(), &quick(), &mut Silent))),
-        ("an inner shell", 0x6b2a_6eb7_e7da_63b6, of(align(&seen, &hollow, &quick(), &mut Silent))),
-        ("proportions", 0xb530_256c_cf95_ca4a, of(Ok(solve(&stretched)))),
+        ("an inner shell", 0xd78a_3f01_7c33_f932, of(align(&seen, &hollow, &quick(), &mut Silent))),
+        ("proportions", 0x7c52_407f_eac2_31b0, of(Ok(solve(&stretched)))),
         ("a symmetric mesh", 0x3beb_2e56_4cde_83a1, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
         ("colour", 0xfeda_d360_8325_09af, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
         ("paper", 0x87ef_adba_2f1e_ca57, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
@@ -159,10 +159,10 @@ pub fn scenes_views_and_videos_have_these_bits() {
     check(&[
         ("alignScene", 0x555d_ded0_36f6_1b48, of(align_scene(&scene::scene_of(&scene, &[], true), &mut Silent))),
         ("alignViews", 0x4d0f_8511_9db6_a689, of(views(seen, &PreparedMesh::borrowed(&body())))),
-        ("alignViews, proportions", 0xa36f_a858_9243_18a3, of(align_views(around, &wide, &stretched, &mut Silent))),
+        ("alignViews, proportions", 0x510d_da03_6558_e5a4, of(align_views(around, &wide, &stretched, &mut Silent))),
         ("alignViews, unknown cameras and colour", 0x4cb2_ce1d_888c_8363, of(views(printed, &printed_mesh()))),
         ("track", 0xcabe_99da_bbf9_fcba, of(frames.collect::<Result<Vec<_>>>())),
-        ("calibration", 0xbe93_0b21_07bb_6d40, of(calibrations.into_iter().collect::<Result<Vec<_>>>())),
+        ("calibration", 0xfe4b_9b23_b207_4a72, of(calibrations.into_iter().collect::<Result<Vec<_>>>())),
     ]);
 }
 
