@@ -61,7 +61,7 @@ export interface TrackedFrame extends Core.TrackedFrame, InputInfo {
 }
 
 /** The result of `evaluate`. */
-export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit" | "maskReading" | "imageReading"> {
+export interface Evaluation extends Core.Evaluation, Omit<InputInfo, "depthCalibration"> {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -82,7 +82,7 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
 /** What the files of an input say, for its result. */
-export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource" | "maskReading" | "imageReading"> {
+export interface InputNotes extends Omit<InputInfo, "depthCalibration"> {
   /** What was subtracted from the coordinates of the mesh file. */
   origin?: readonly number[];
   /** Of the view. */
