@@ -1,12 +1,12 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { fileOf, isNoInput, namesOf, type Part, partOf } from "./case-names.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import { requiredBytes } from "./input/bytes.js";
 import { refersToFiles } from "./input/formats.js";
-import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./input/types.js";
 import type { LoadFormats } from "./modules/readers.js";
+import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
+import { numbersIn, parsedJson, shown } from "./values/json.js";
 import { isRecord } from "./values/kinds.js";
 import { naturally } from "./values/order.js";
 import { record, withoutUndefined } from "./values/values.js";

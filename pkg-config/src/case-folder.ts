@@ -14,8 +14,8 @@ import {
 } from "./case-files.js";
 import { partOf } from "./case-names.js";
 import { refersToFiles } from "./input/formats.js";
-import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
 import { formatsModule } from "./modules/readers.js";
+import type { AlignInput, CameraInput, MeshFile } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
 import { naturally } from "./values/order.js";
 import { withoutUndefined } from "./values/values.js";

@@ -3,41 +3,42 @@
  * aligner. `Aligner.align` accepts single files directly; use their readers to inspect their content.
  * @packageDocumentation
  */
+
+import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./camera/camera-file.js";
+import type { Exif } from "./camera/exif-focal.js";
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./formats/camera-file.js";
-import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
-import type { Exif } from "./formats/exif-focal.js";
-import type { JsonFile } from "./formats/json.js";
-import type { DracoDecoderModule, MeshoptDecoder } from "./formats/mesh-decoders.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
+import { fromCocoRle, readRleFile } from "./input/coco-rle.js";
 import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
+import type { DracoDecoderModule, MeshoptDecoder } from "./input/mesh-decoders.js";
 import { decodeExif, decodePhoto } from "./input/photo.js";
-import type { ColorSamples } from "./input/prepared-mesh.js";
+import { type DecodeImage, gltfText } from "./input/webp.js";
+import type { Formats } from "./modules/exports.js";
+import { fileReaders, formatsModule } from "./modules/readers.js";
+import { sam3dFrom } from "./scene/sam3d-files.js";
+import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type {
   CameraFileInput,
   CocoRle,
   DepthImage,
   EncodedBytes,
   MeshFormat,
-  PixelArray,
   ReadDepthOptions,
-} from "./input/types.js";
-import { type DecodeImage, gltfText } from "./input/webp.js";
-import type { Formats } from "./modules/exports.js";
-import { fileReaders, formatsModule } from "./modules/readers.js";
-import { sam3dFrom } from "./scene/sam3d-files.js";
-import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
+} from "./types/inputs.js";
 import type { WasmSource } from "./types/platform.js";
 import { plainArgument } from "./values/border.js";
+import type { JsonFile } from "./values/json.js";
 import { isRecord } from "./values/kinds.js";
+import type { PixelArray } from "./values/pixels.js";
+import type { ColorSamples } from "./values/prepared-mesh.js";
 import { optionsOf } from "./values/values.js";
 
+export type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
+export { type Exif, type ExifFocal, focalFromExif } from "./camera/exif-focal.js";
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
-export type { CameraFile, ReadCameraOptions } from "./formats/camera-file.js";
-export { type Exif, type ExifFocal, focalFromExif } from "./formats/exif-focal.js";
 export type {
   DracoAttribute,
   DracoBuffer,
@@ -47,10 +48,10 @@ export type {
   DracoMesh,
   DracoStatus,
   MeshoptDecoder,
-} from "./formats/mesh-decoders.js";
-export type { DepthImage, ReadDepthOptions } from "./input/types.js";
+} from "./input/mesh-decoders.js";
 export type { DecodeImage } from "./input/webp.js";
 export type { SceneCase } from "./scene/scene-files.js";
+export type { DepthImage, ReadDepthOptions } from "./types/inputs.js";
 export { Sim3AlignError } from "./values/error.js";
 
 /** A mesh from a file, in the unit and axes of the file. */
@@ -168,7 +169,7 @@ export async function readMesh(
   if (!(meshoptDecoder || dracoDecoder) || !/_meshopt_|_draco_/.test(gltfText(bytes))) {
     return decodeMesh("file", bytes, given, fileReaders);
   }
-  const { geometryDecoder } = await import("./formats/compressed-gltf.js");
+  const { geometryDecoder } = await import("./input/compressed-gltf.js");
   const decode = await geometryDecoder(meshoptDecoder, dracoDecoder);
   return decodeMesh("file", bytes, given, fileReaders, undefined, decode);
 }

@@ -58,8 +58,8 @@ export type {
   WorldFrame,
   WorldUncertainty,
 } from "./generated/types.js";
-export { type ColorSamples, PreparedMesh } from "./input/prepared-mesh.js";
 export type { Sim3, Sim3Like } from "./input/sim3.js";
+export type { WasmModules } from "./modules/modules.js";
 export type {
   AlignInput,
   CameraFileInput,
@@ -79,24 +79,10 @@ export type {
   MeshInput,
   PhotoInput,
   PinholeCamera,
-  PixelArray,
   UnknownCamera,
   ViewInput,
   ViewsInput,
-} from "./input/types.js";
-export type { WasmModules } from "./modules/modules.js";
-export type {
-  LabelMap,
-  Plane,
-  SceneAlignment,
-  SceneFailure,
-  SceneInput,
-  SceneMetrics,
-  SceneObjectInput,
-  SceneOptions,
-  SceneResult,
-  Support,
-} from "./scene/types.js";
+} from "./types/inputs.js";
 export type {
   AlignAllOptions,
   AlignOptions,
@@ -128,4 +114,18 @@ export type {
   ViewAlignment,
   ViewsAlignment,
 } from "./types/results.js";
+export type {
+  LabelMap,
+  Plane,
+  SceneAlignment,
+  SceneFailure,
+  SceneInput,
+  SceneMetrics,
+  SceneObjectInput,
+  SceneOptions,
+  SceneResult,
+  Support,
+} from "./types/scene.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./values/error.js";
+export type { PixelArray } from "./values/pixels.js";
+export { type ColorSamples, PreparedMesh } from "./values/prepared-mesh.js";

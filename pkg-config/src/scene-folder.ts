@@ -8,7 +8,7 @@ import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
-import type { SceneInput, SceneObjectInput } from "./scene/types.js";
+import type { SceneInput, SceneObjectInput } from "./types/scene.js";
 import { oncePerKey, withoutUndefined } from "./values/values.js";
 
 /** A scene on disk. */

@@ -3,7 +3,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { filesBelow } from "./cache.mjs";
 import { at, repository } from "./paths.mjs";
 
-const types = at("pkg-config", "src", "input", "types.ts");
+const types = at("pkg-config", "src", "types", "inputs.ts");
 const files = () => [
   ...[at("README.md"), types, at("pkg-config", "src", "formats.ts")],
   ...filesBelow([at("docs", "guides")]).filter((path) => path.endsWith(".md")),

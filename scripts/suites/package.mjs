@@ -101,7 +101,10 @@ function moduleChecks() {
     ),
     ["the modules export different functions", () => checkSeparation(modules.map(({ file }) => file))],
     ["the modules hold no path of the machine that built them", () => checkPaths(modules.map(({ file }) => file))],
-    ["the modules have no instruction that browsers lack, or whose result differs", () => checkFeatures(modules)],
+    [
+      "the modules have no instruction that browsers lack, or whose result differs, and the core has SIMD",
+      () => checkFeatures(modules),
+    ],
   ];
 }
 
@@ -168,15 +171,23 @@ function checkPaths(files) {
 
 /** The instructions that the modules may have: those of the oldest browsers that are supported. Relaxed SIMD is not among them. */
 const features = ["bulk-memory", "bulk-memory-opt", "multivalue", "mutable-globals", "nontrapping-float-to-int"];
-const allowed = [...features, "reference-types", "sign-ext", "simd"].map((feature) => `--enable-${feature}`);
+const baseline = [...features, "reference-types", "sign-ext"].map((feature) => `--enable-${feature}`);
+
+/** The module whose speed depends on SIMD: it must have such instructions. */
+const vectorised = "core";
 
 /** @param {readonly { name: string, file: string }[]} modules */
 async function checkFeatures(modules) {
   const [node, wasmOpt] = nodeProgram("binaryen", "wasm-opt");
   for (const { name, file } of modules) {
     // Without `-o` nothing is written: the module is read and validated.
-    const { output, reason } = await attempt(node, [wasmOpt, file, "--mvp-features", ...allowed]);
-    if (reason)
-      throw new Error(`The ${name} module: ${output || reason}\nRemedy: see \`simd\` in scripts/lib/wasm.mjs.`);
+    const validate = (/** @type {string[]} */ more) =>
+      attempt(node, [wasmOpt, file, "--mvp-features", ...baseline, ...more]);
+    const { output, reason } = await validate(["--enable-simd"]);
+    const isScalar = !reason && name === vectorised && (await validate([])).reason === "";
+    if (reason || isScalar) {
+      const found = isScalar ? "no SIMD instruction" : output || reason;
+      throw new Error(`The ${name} module: ${found}\nRemedy: see \`simd\` in scripts/lib/wasm.mjs.`);
+    }
   }
 }

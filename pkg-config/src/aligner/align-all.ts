@@ -1,7 +1,7 @@
 /** Aligns many inputs with bounded memory, and yields each result when it is ready. */
 
 import { checkSignals, onAbort } from "../concurrency/on-abort.js";
-import type { AlignInput } from "../input/types.js";
+import type { AlignInput } from "../types/inputs.js";
 import type { SignalLike } from "../types/platform.js";
 import type { AlignAllResult } from "../types/results.js";
 import { invalidArgument, type Sim3AlignError } from "../values/error.js";

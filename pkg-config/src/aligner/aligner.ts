@@ -7,16 +7,14 @@ import { checkedListener, ProgressListener } from "../calls/progress.js";
 import { checkSignals, reasonOf } from "../concurrency/on-abort.js";
 import { Queue } from "../concurrency/queue.js";
 import type { Preset } from "../generated/types.js";
-import { nextMeshId, PreparedMesh, withArrays } from "../input/prepared-mesh.js";
 import { coreSim3, type Sim3Like } from "../input/sim3.js";
-import type { AlignInput, MeshInput, ViewsInput } from "../input/types.js";
 import type { Core, ModuleName } from "../modules/exports.js";
 import { type LoadedModule, type Modules, modulesBy } from "../modules/module.js";
 import { checkedModules, wasmModules } from "../modules/modules.js";
 import { WorkerPool } from "../pool/pool.js";
 import { workerFactory } from "../pool/port.js";
 import { alignScene } from "../scene/align-scene.js";
-import type { SceneInput, SceneOptions, SceneResult } from "../scene/types.js";
+import type { AlignInput, MeshInput, ViewsInput } from "../types/inputs.js";
 import type {
   AlignAllOptions,
   CallOptions,
@@ -29,9 +27,11 @@ import type {
   ViewsOptions,
 } from "../types/options.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "../types/results.js";
+import type { SceneInput, SceneOptions, SceneResult } from "../types/scene.js";
 import { checkAttached, plainArgument } from "../values/border.js";
 import { disposed, failure, internalError, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
+import { nextMeshId, PreparedMesh, withArrays } from "../values/prepared-mesh.js";
 import { copied } from "../values/transfer.js";
 import { withoutUndefined } from "../values/values.js";
 import { alignAll } from "./align-all.js";

@@ -7,7 +7,7 @@ import { ProgressListener } from "../calls/progress.js";
 import { checkSignals, onAbort } from "../concurrency/on-abort.js";
 import type { CorrectedFrame } from "../generated/types.js";
 import { coreSim3, type Sim3Like } from "../input/sim3.js";
-import type { FrameInput, MeshInput } from "../input/types.js";
+import type { FrameInput, MeshInput } from "../types/inputs.js";
 import type { CallOptions } from "../types/options.js";
 import type { SignalLike } from "../types/platform.js";
 import type { TrackedFrame } from "../types/results.js";

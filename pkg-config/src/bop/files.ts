@@ -1,10 +1,10 @@
 /** Files that methods exchange with BOP: 2D detections, and the results of the leaderboard. */
 import { type Matrix3, rotationOf } from "../conventions/rotation.js";
 import { sim3Of } from "../conventions/similarity.js";
-import { isNumber } from "../formats/json.js";
 import type { Sim3 } from "../generated/types.js";
-import type { CocoRle } from "../input/types.js";
+import type { CocoRle } from "../types/inputs.js";
 import { failure } from "../values/error.js";
+import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { type BopPlace, imageKey, METRES_PER_UNIT } from "./dataset.js";
 

@@ -2,9 +2,9 @@
 import { fileNotFound } from "../case-files.js";
 import { fromBop } from "../conventions/bop.js";
 import type { BopErrors } from "../generated/types.js";
-import type { CoreFrame } from "../input/core-input.js";
 import { readMesh } from "../input/mesh.js";
 import { resolveFrame } from "../input/resolve.js";
+import type { CoreFrame } from "../modules/core-input.js";
 import { registrationModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
 import { oncePerKey } from "../values/values.js";

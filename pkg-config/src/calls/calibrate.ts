@@ -1,8 +1,8 @@
 /** Views whose depth or focal length is not fully known: they are calibrated before their objects are aligned. */
 
 import { intrinsics } from "../input/camera.js";
-import type { CoreFrame } from "../input/core-input.js";
 import { isAffineInvariant } from "../input/formats.js";
+import type { CoreFrame } from "../modules/core-input.js";
 import type { Calibrated } from "../modules/exports.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";

@@ -1,11 +1,9 @@
 /** The calls as data, so that the same code runs them on the calling thread or in a worker. */
 
 import type { CorrectedFrame } from "../generated/types.js";
-import type { CoreInput, CoreView } from "../input/core-input.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
-import { fromOrigin, toOrigin } from "../input/origin.js";
 import { resolveFrame, resolveInput, resolveViews, withMesh } from "../input/resolve.js";
-import type { AlignInput, FrameInput, MeshInput, ViewsInput } from "../input/types.js";
+import type { CoreInput, CoreView } from "../modules/core-input.js";
 import type {
   Calibrated,
   CalibrationObject,
@@ -16,6 +14,7 @@ import type {
   PlacedInput,
 } from "../modules/exports.js";
 import type { ModuleTable } from "../modules/module.js";
+import type { AlignInput, FrameInput, MeshInput, ViewsInput } from "../types/inputs.js";
 import type {
   AlignResult,
   Evaluation,
@@ -25,12 +24,13 @@ import type {
   ViewAlignment,
   ViewsAlignment,
 } from "../types/results.js";
-import { sourcesOf, withNotes } from "../types/results.js";
 import { failure, isOfInput } from "../values/error.js";
 import { isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
+import { sourcesOf, withNotes } from "./notes.js";
+import { fromOrigin, toOrigin } from "./origin.js";
 import { lookedAtAgain } from "./second-look.js";
 
 /** Two clouds and, for `estimateSim3`, the correspondences between their points. */

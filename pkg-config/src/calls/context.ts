@@ -1,8 +1,7 @@
 /** A job while it runs: its modules, its listener, and how it shares its thread. */
 
 import type { Alignment, ViewsAlignment } from "../generated/types.js";
-import type { CoreInput, CoreViews } from "../input/core-input.js";
-import type { CoreMesh } from "../input/prepared-mesh.js";
+import type { CoreInput, CoreViews } from "../modules/core-input.js";
 import type {
   CoreHelpers,
   CoreListener,
@@ -15,6 +14,7 @@ import type {
 } from "../modules/exports.js";
 import type { LoadedModule, Modules } from "../modules/module.js";
 import { withoutInput } from "../values/error.js";
+import type { CoreMesh } from "../values/prepared-mesh.js";
 
 /** The searches, with which other threads may help. */
 interface Searches {

@@ -1,9 +1,9 @@
 /** A second look at what exporters often get wrong, where the answer is in doubt: the mesh mirrored, its textures upside down. */
 import type { Alignment, Warning } from "../generated/types.js";
-import type { CoreInput } from "../input/core-input.js";
-import type { CoreMesh } from "../input/prepared-mesh.js";
-import { DOUBT } from "../types/results.js";
+import type { CoreInput } from "../modules/core-input.js";
+import type { CoreMesh } from "../values/prepared-mesh.js";
 import type { JobContext } from "./context.js";
+import { DOUBT } from "./notes.js";
 
 /**
  * How much better the score of the mirror image is, where this explains the doubt. Of 48 real objects, most of which are nearly

@@ -1,11 +1,11 @@
 /** The JSON entry of a case: the model of a result for files, tables, pictures and reports. */
 
 import { join } from "node:path";
+import { isAssumed } from "../calls/notes.js";
 import { listed } from "../case-files.js";
 import type { FoundFiles, FrameOnDisk } from "../case-folder.js";
 import type { AlignResult, InputInfo, PoseErrors, SceneResult, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
 import type { Message, Row } from "../report-page/row.js";
-import { isAssumed } from "../types/results.js";
 import { describe, failure, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/values.js";

@@ -1,14 +1,13 @@
 /** Inputs and meshes in the lengths of a result; files of posed meshes, of scenes, and of scenes for simulators. */
 import { join } from "node:path";
+import { parseCameraFile } from "../camera/camera-file.js";
 import { correctDepth } from "../conventions/depth.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
 import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
 import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
-import { parseCameraFile } from "../formats/camera-file.js";
 import type { AlignInput, DepthCalibration, SceneInput, SceneResult, Stretch } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import { resolveView } from "../input/resolve.js";
-import type { MeshArrays, MeshInput } from "../input/types.js";
 import { fileReaders } from "../modules/readers.js";
 import { fixed } from "../report-page/row.js";
 import type { SceneOnDisk } from "../scene-folder.js";
@@ -17,6 +16,7 @@ import { type SimulatorObject, type SimulatorScene, simulatorScene } from "../si
 import { toUrdf } from "../simulators/urdf.js";
 import { toUsd } from "../simulators/usd.js";
 import type { Sim3Like } from "../types/argument-types.js";
+import type { MeshArrays, MeshInput } from "../types/inputs.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/values.js";
 import type { Flags } from "./flags.js";

@@ -1,7 +1,6 @@
 /** `sim3align scene`: aligns the objects of scenes. */
 import { join } from "node:path";
 import { read } from "../case-folder.js";
-import { parsedJson } from "../formats/json.js";
 import {
   type Aligner,
   type AlignInput,
@@ -13,6 +12,7 @@ import {
 } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
 import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
+import { parsedJson } from "../values/json.js";
 import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";

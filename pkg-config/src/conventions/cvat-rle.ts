@@ -1,11 +1,11 @@
 /** Masks in CVAT's format: run lengths along the rows of the bounding box of the mask. */
 
-import { filledRuns } from "../formats/coco-rle.js";
-import { type ImageSize, sizeOf } from "../formats/pixels.js";
-import type { PixelArray } from "../input/types.js";
+import { filledRuns } from "../input/coco-rle.js";
 import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
+import type { PixelArray } from "../values/pixels.js";
+import { type ImageSize, sizeOf } from "../values/pixels.js";
 import { flattened, whole } from "../values/values.js";
 
 /** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */

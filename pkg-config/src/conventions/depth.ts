@@ -1,10 +1,11 @@
 /** Depth in metres from the values of depth models. */
-import { pinholeOf } from "../formats/pinhole.js";
-import { pixelsOf, pointKinds } from "../formats/pixels.js";
-import { depthOfRays } from "../formats/ray-distance.js";
+import { pinholeOf } from "../camera/pinhole.js";
+import { depthOfRays } from "../camera/ray-distance.js";
 import type { DepthCalibration } from "../generated/types.js";
-import type { CameraInput, PixelArray } from "../input/types.js";
+import type { CameraInput } from "../types/inputs.js";
 import { plainArgument } from "../values/border.js";
+import type { PixelArray } from "../values/pixels.js";
+import { pixelsOf, pointKinds } from "../values/pixels.js";
 import { finite, positive, record } from "../values/values.js";
 
 /** See `src/calibrate/calibration.rs`. */

@@ -1,6 +1,7 @@
 /** Export of placed meshes, and placement of existing GLB files. */
-import type { MeshArrays } from "../input/types.js";
+
 import type { Sim3Like } from "../types/argument-types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { oneOf, optionsOf } from "../values/values.js";
 import { inFrame } from "./frames.js";
 import { readGlb, writeGlb } from "./glb-file.js";

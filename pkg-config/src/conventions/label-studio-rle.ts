@@ -1,8 +1,8 @@
 /** Brush masks in Label Studio's format: a bit stream of the flattened RGBA pixels. */
 
-import { type ImageSize, sizeOf } from "../formats/pixels.js";
-import type { PixelArray } from "../input/types.js";
 import { describe, failure } from "../values/error.js";
+import type { PixelArray } from "../values/pixels.js";
+import { type ImageSize, sizeOf } from "../values/pixels.js";
 import { flattened } from "../values/values.js";
 
 /**

@@ -1,6 +1,6 @@
 /** Validation of meshes in arrays. */
 
-import type { MeshArrays } from "../input/types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isTypedArray } from "../values/kinds.js";

@@ -1,9 +1,10 @@
 /** The output of MoGe: a point map, a mask of valid points, and normalised intrinsics. */
 
-import { pinholeOf } from "../formats/pinhole.js";
-import { checkCount, type ImageSize, pixelsOf, pointKinds, sizeOf } from "../formats/pixels.js";
-import type { PinholeCamera, PixelArray } from "../input/types.js";
+import { pinholeOf } from "../camera/pinhole.js";
+import type { PinholeCamera } from "../types/inputs.js";
 import { isTypedArray } from "../values/kinds.js";
+import type { PixelArray } from "../values/pixels.js";
+import { checkCount, type ImageSize, pixelsOf, pointKinds, sizeOf } from "../values/pixels.js";
 import { finiteNumbers, flattened, record } from "../values/values.js";
 
 /** The output of MoGe, with tensors as arrays. */

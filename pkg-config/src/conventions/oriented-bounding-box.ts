@@ -1,7 +1,7 @@
 /** Bounding boxes of aligned objects, and thereby their dimensions. */
 
 import type { Sim3Like } from "../input/sim3.js";
-import type { MeshArrays } from "../input/types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values/values.js";
 import { type Mesh, meshOf, triangleCount, vertexAt } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";

@@ -1,7 +1,7 @@
 /** Export of meshes as PLY files. */
 
 import type { Sim3Like } from "../input/sim3.js";
-import type { MeshArrays } from "../input/types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { meshOf, triangleCount } from "./mesh.js";
 import { applyToPoints } from "./similarity.js";
 

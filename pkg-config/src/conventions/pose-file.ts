@@ -1,8 +1,8 @@
 /** Pose files: `gt.json` of a case, an annotation, or a saved result. */
 
-import { isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { Sim3 } from "../input/sim3.js";
 import { failure } from "../values/error.js";
+import { isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { fromBop } from "./bop.js";
 import { sim3Of, similarityOf } from "./similarity.js";

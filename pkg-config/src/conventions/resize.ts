@@ -1,6 +1,10 @@
 /** Resizes and crops images together with their intrinsics. */
 
-import { pinholeOf, resizedPinhole } from "../formats/pinhole.js";
+import { pinholeOf, resizedPinhole } from "../camera/pinhole.js";
+import type { CameraInput, PinholeCamera } from "../types/inputs.js";
+import { plainArgument } from "../values/border.js";
+import { describe, failure } from "../values/error.js";
+import type { PixelArray } from "../values/pixels.js";
 import {
   type DepthPixels,
   depthKinds,
@@ -11,10 +15,7 @@ import {
   pixelsOf,
   pointKinds,
   sizeOf,
-} from "../formats/pixels.js";
-import type { CameraInput, PinholeCamera, PixelArray } from "../input/types.js";
-import { plainArgument } from "../values/border.js";
-import { describe, failure } from "../values/error.js";
+} from "../values/pixels.js";
 import { optionsOf, record, whole } from "../values/values.js";
 
 /** A region of an image, in integer pixels. */

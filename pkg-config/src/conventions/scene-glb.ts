@@ -1,6 +1,7 @@
 /** Export of a whole scene as one GLB. */
-import type { MeshArrays } from "../input/types.js";
+
 import type { Sim3Like } from "../types/argument-types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { isRecord } from "../values/kinds.js";
 import { optionsOf, type Vector3 } from "../values/values.js";
 import { withChildren } from "./glb.js";

@@ -1,6 +1,6 @@
 /** Placement of 3D Gaussian splats. */
 
-import { isPly, isSplatFile, plyHeader, RECORD_BYTES, rotationIn } from "../formats/splat-files.js";
+import { isPly, isSplatFile, plyHeader, RECORD_BYTES, rotationIn } from "../input/splat-files.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import { failure } from "../values/error.js";
 import { optionsOf, type Vector3 } from "../values/values.js";

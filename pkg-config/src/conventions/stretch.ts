@@ -1,6 +1,6 @@
 /** Meshes in the proportions that an alignment found. */
 
-import type { MeshArrays } from "../input/types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { failure } from "../values/error.js";
 import { finiteNumbers, record, type Vector3 } from "../values/values.js";
 import { underNode } from "./glb.js";

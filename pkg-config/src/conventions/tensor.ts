@@ -1,11 +1,11 @@
 /** Masks and depth maps from tensors of transformers.js. */
 
-import { checkCount } from "../formats/pixels.js";
-import type { PixelArray } from "../input/types.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isKind, isRecord, isTypedArray, typedArrayKind } from "../values/kinds.js";
 import { withLive } from "../values/live.js";
+import type { PixelArray } from "../values/pixels.js";
+import { checkCount } from "../values/pixels.js";
 import { flattened, record, whole, wrongKind } from "../values/values.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */

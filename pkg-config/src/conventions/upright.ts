@@ -1,8 +1,8 @@
 /** Objects in upright frames of their own. */
 
 import type { Sim3 } from "../generated/types.js";
-import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../types/argument-types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { oneOf, optionsOf, record, type Vector3 } from "../values/values.js";
 import { underNode } from "./glb.js";
 import { type Mesh, mappedMesh, meshOf } from "./mesh.js";

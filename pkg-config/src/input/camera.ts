@@ -1,11 +1,11 @@
 /** The camera of an input: intrinsics or a camera file. */
 
-import { depthScaleIn, parseCameraFile, scaledCamera } from "../formats/camera-file.js";
-import { doubtOfSize, type Pinhole, pinholeOf } from "../formats/pinhole.js";
-import type { ImageSize } from "../formats/pixels.js";
+import { depthScaleIn, parseCameraFile, scaledCamera } from "../camera/camera-file.js";
+import { doubtOfSize, type Pinhole, pinholeOf } from "../camera/pinhole.js";
 import type { Warning } from "../generated/types.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
+import type { ImageSize } from "../values/pixels.js";
 import { stringsIn } from "../values/values.js";
 import { fileBytes } from "./bytes.js";
 import { checkSides } from "./depth.js";

@@ -1,6 +1,7 @@
 /** Converts colours to what the core takes: sRGB-encoded red, green and blue, a byte each. */
-import { nearest } from "../formats/pixels.js";
-import type { PixelArray } from "./types.js";
+
+import type { Photo } from "../modules/core-input.js";
+import { nearest } from "../values/pixels.js";
 
 /** Arrays of colours: whole numbers from 0 to 255, or floats from 0 to 1. */
 export type ColorArray = Uint8Array | Uint8ClampedArray | Float32Array;
@@ -48,9 +49,6 @@ function encoded(light: number): number {
   }
   return low;
 }
-
-/** Pixels of a photo: sRGB-encoded red, green and blue, row-major. */
-export type Photo = PixelArray<Uint8Array>;
 
 /** A photo for the core, averaged to a smaller one if it is large, as the readers of files do. */
 export function photoOf(data: ColorArray, channels: number, width: number, height: number): Photo {

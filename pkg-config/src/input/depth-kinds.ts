@@ -1,5 +1,5 @@
 /** What documents and user interfaces say of the kinds of depth. */
-import type { DepthKind } from "./types.js";
+import type { DepthKind } from "../types/inputs.js";
 
 /** A kind of depth. */
 interface KindOfDepth {

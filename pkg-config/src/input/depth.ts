@@ -1,13 +1,13 @@
 /** Converts depth maps and point maps to arrays with their size. */
 
-import type { Pinhole } from "../formats/pinhole.js";
+import type { Pinhole } from "../camera/pinhole.js";
 import type { FileReaders } from "../modules/readers.js";
+import type { DepthImage, ReadDepthOptions } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/values.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
 import { formatsText, isAffineInvariant } from "./formats.js";
-import type { DepthImage, ReadDepthOptions } from "./types.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {

@@ -3,7 +3,7 @@
  * files take them from here; `npm run update` writes them into the guides and the documentation of types. Readers load this
  * file: what only documents and user interfaces say is in `depth-kinds.ts`.
  */
-import type { DepthKind, MeshFormat } from "./types.js";
+import type { DepthKind, MeshFormat } from "../types/inputs.js";
 
 /** Formats by name, each with its extensions. */
 type FormatList = Readonly<Record<string, readonly string[]>>;

@@ -1,8 +1,8 @@
 /** Cameras whose intrinsics were not given. */
-import { type Exif, type ExifFocal, focalFrom } from "../formats/exif-focal.js";
-import type { Pinhole } from "../formats/pinhole.js";
-import type { ImageSize } from "../formats/pixels.js";
+import { type Exif, type ExifFocal, focalFrom } from "../camera/exif-focal.js";
+import type { Pinhole } from "../camera/pinhole.js";
 import type { Warning } from "../generated/types.js";
+import type { ImageSize } from "../values/pixels.js";
 
 /**
  * The focal length of an image of which nothing is known, relative to its longer side, and the standard deviation of its

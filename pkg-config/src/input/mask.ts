@@ -1,11 +1,11 @@
 /** Converts masks to bytes with their size. */
 
-import { decodedRle, isPolygons, polygons, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isKind, isRecord, isTypedArray } from "../values/kinds.js";
 import { wrongKind } from "../values/values.js";
 import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isBytes } from "./bytes.js";
+import { decodedRle, isPolygons, polygons, readRleFile } from "./coco-rle.js";
 import type { SizedArray } from "./depth.js";
 import { formatsText } from "./formats.js";
 

@@ -1,17 +1,17 @@
 /** Meshes from arrays or mesh files. */
 
-import type { DecodeGeometry } from "../formats/mesh-decoders.js";
-import { holdsGaussians } from "../formats/splat-files.js";
 import type { FileReaders } from "../modules/readers.js";
+import type { MeshFile } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
+import type { ColorSamples, CoreMesh } from "../values/prepared-mesh.js";
 import { oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/values.js";
 import type { MeshArrays, ReadMeshOptions } from "../wasm/formats.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
 import { formatsText } from "./formats.js";
-import type { ColorSamples, CoreMesh } from "./prepared-mesh.js";
-import type { MeshFile } from "./types.js";
+import type { DecodeGeometry } from "./mesh-decoders.js";
+import { holdsGaussians } from "./splat-files.js";
 import { type DecodeImage, imageDecoder } from "./webp.js";
 
 /** The readers of mesh files. */

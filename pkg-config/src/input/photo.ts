@@ -1,14 +1,15 @@
 /** The photo of an input. */
 
-import type { Exif } from "../formats/exif-focal.js";
+import type { Exif } from "../camera/exif-focal.js";
+import type { Photo } from "../modules/core-input.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
+import type { PixelArray } from "../values/pixels.js";
 import { wrongKind } from "../values/values.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
-import { type Photo, photoOf } from "./colors.js";
+import { photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";
 import { formatsText } from "./formats.js";
-import type { PixelArray } from "./types.js";
 import { type ImageReaders, isWebp } from "./webp.js";
 
 const kinds = () =>

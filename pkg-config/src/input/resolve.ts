@@ -1,11 +1,12 @@
 /** Converts the inputs of calls to the typed arrays and numbers of the core. */
+
 import type { Warning } from "../generated/types.js";
+import type { CoreFrame, CoreInput, CoreView, CoreViews } from "../modules/core-input.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { checkNames, part, withoutUndefined } from "../values/values.js";
-import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./core-input.js";
 import { readMask } from "./mask.js";
 import { type MeshAndWarnings, readCoreMesh } from "./mesh.js";
 import { coreSim3 } from "./sim3.js";

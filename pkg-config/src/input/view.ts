@@ -1,12 +1,12 @@
 /** Reads what a camera saw: the depth map or the point map, the photo and the camera. */
-import { depthOfRays } from "../formats/ray-distance.js";
+import { depthOfRays } from "../camera/ray-distance.js";
+import type { CoreInput, CoreView } from "../modules/core-input.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { oneOf, withoutUndefined } from "../values/values.js";
 import { cameraOf, type ResolvedCamera } from "./camera.js";
-import type { CoreInput, CoreView } from "./core-input.js";
 import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
 import { depthKindNames, isAffineInvariant } from "./formats.js";
 import { type ReadPhoto, readPhoto, readPhotoExif } from "./photo.js";

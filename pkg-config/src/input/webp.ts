@@ -1,6 +1,6 @@
 /** WebP images, which a module of their own decodes. */
 import type { FileReaders } from "../modules/readers.js";
-import type { PixelArray } from "./types.js";
+import type { PixelArray } from "../values/pixels.js";
 
 /** The readers of images. */
 export type ImageReaders = Pick<FileReaders, "formats" | "webp">;

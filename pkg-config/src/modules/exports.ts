@@ -1,5 +1,5 @@
 /** What the WebAssembly modules export. Their functions validate their arguments and throw errors with codes. */
-import type { Pinhole } from "../formats/pinhole.js";
+import type { Pinhole } from "../camera/pinhole.js";
 import type {
   Alignment,
   BopErrors,
@@ -14,11 +14,12 @@ import type {
   TrackedFrame,
   ViewsAlignment,
 } from "../generated/types.js";
-import type { CoreFrame, CoreInput, CoreView, CoreViews } from "../input/core-input.js";
-import type { CoreMesh } from "../input/prepared-mesh.js";
-import type { DepthImage, PixelArray } from "../input/types.js";
-import type { Support } from "../scene/types.js";
+import type { DepthImage } from "../types/inputs.js";
+import type { Support } from "../types/scene.js";
+import type { PixelArray } from "../values/pixels.js";
+import type { CoreMesh } from "../values/prepared-mesh.js";
 import type { MeshArrays } from "../wasm/formats.js";
+import type { CoreFrame, CoreInput, CoreView, CoreViews } from "./core-input.js";
 
 /** The modules of the aligner, by their names among the options. */
 export interface Exports {

@@ -1,13 +1,14 @@
 /** A shot: an observation and a mesh, decoded for pictures of a pose. */
+
+import type { Pinhole } from "../camera/pinhole.js";
 import { resizeMask } from "../conventions/resize.js";
-import type { Pinhole } from "../formats/pinhole.js";
-import type { MaskPixels } from "../formats/pixels.js";
-import type { Photo } from "../input/colors.js";
-import { type CoreMesh, nextMeshId } from "../input/prepared-mesh.js";
 import { resolveInput } from "../input/resolve.js";
-import type { AlignInput } from "../input/types.js";
+import type { Photo } from "../modules/core-input.js";
 import { coreModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
+import type { AlignInput } from "../types/inputs.js";
+import type { MaskPixels } from "../values/pixels.js";
+import { type CoreMesh, nextMeshId } from "../values/prepared-mesh.js";
 import type { View } from "./view.js";
 
 /** The decoded input of pictures. The core keeps its mesh until it is disposed. */

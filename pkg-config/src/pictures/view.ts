@@ -1,5 +1,5 @@
 /** Views: parts of an image, enlarged or reduced. */
-import type { Pinhole } from "../formats/pinhole.js";
+import type { Pinhole } from "../camera/pinhole.js";
 
 /** A rectangle in pixels of the depth map: its corner at the edge of a pixel, and its size. */
 interface Box {

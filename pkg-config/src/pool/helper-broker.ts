@@ -1,7 +1,7 @@
 /** Lends idle workers of a pool to long jobs of others. */
 import { type Job, moduleOf } from "../calls/calls.js";
 import type { Queue } from "../concurrency/queue.js";
-import type { CoreMesh } from "../input/prepared-mesh.js";
+import type { CoreMesh } from "../values/prepared-mesh.js";
 import { copied } from "../values/transfer.js";
 import type { Slot, WorkerSetup } from "./pool-worker.js";
 

@@ -4,11 +4,11 @@
  */
 import type { Job } from "../calls/calls.js";
 import type { Stage } from "../generated/types.js";
-import type { CoreMesh } from "../input/prepared-mesh.js";
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
 import type { ErrorParts } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
+import type { CoreMesh } from "../values/prepared-mesh.js";
 
 /** Help for the worker at the other end of a port with its job. */
 export interface HelpJob {

@@ -1,18 +1,18 @@
 /** Aligns the objects of a scene, on this thread or in workers. */
 import { inCalibration, isRaw } from "../calls/calibrate.js";
 import { type Call, type Engine, signalsOf } from "../calls/engine.js";
+import { withNotes } from "../calls/notes.js";
 import { ProgressListener } from "../calls/progress.js";
 import { checkSignals, onAnyAbort } from "../concurrency/on-abort.js";
-import { withArrays } from "../input/prepared-mesh.js";
 import { coreSim3, type Sim3 } from "../input/sim3.js";
 import type { Arrangement, Calibrated, Placed } from "../modules/exports.js";
 import type { Modules } from "../modules/module.js";
 import type { Progress } from "../types/options.js";
-import { withNotes } from "../types/results.js";
+import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "../types/scene.js";
 import { isOfInput, Sim3AlignError } from "../values/error.js";
+import { withArrays } from "../values/prepared-mesh.js";
 import { withoutUndefined } from "../values/values.js";
 import { othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
-import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
 
 type PlacedOrError = Placed | Sim3AlignError;
 

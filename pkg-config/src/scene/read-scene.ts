@@ -1,15 +1,15 @@
 /** Reads a scene: the view once, and a mask per object. */
 
-import { nearest } from "../formats/pixels.js";
-import type { CoreView } from "../input/core-input.js";
 import { readMask } from "../input/mask.js";
 import { resolveView } from "../input/resolve.js";
+import type { CoreView } from "../modules/core-input.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
+import type { SceneInput, SceneObjectInput } from "../types/scene.js";
 import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
+import { nearest } from "../values/pixels.js";
 import { checkNames, part, withoutUndefined } from "../values/values.js";
-import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */
 export interface ReadScene {

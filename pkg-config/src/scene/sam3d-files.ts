@@ -2,12 +2,12 @@
 import type { CaseFiles, ReadCaseOptions } from "../case-files.js";
 import { isNoInput, namesOf, partOf } from "../case-names.js";
 import { fromSam3d } from "../conventions/sam3d.js";
-import { parsedJson } from "../formats/json.js";
-import { holdsGaussians } from "../formats/splat-files.js";
 import { requiredBytes } from "../input/bytes.js";
-import type { DepthKind } from "../input/types.js";
+import { holdsGaussians } from "../input/splat-files.js";
 import type { LoadFormats } from "../modules/readers.js";
+import type { DepthKind } from "../types/inputs.js";
 import { failure, renamed, Sim3AlignError } from "../values/error.js";
+import { parsedJson } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { naturally } from "../values/order.js";
 import { flattened } from "../values/values.js";

@@ -2,9 +2,9 @@
 import { type CaseFiles, fileNotFound, filesOf, meshFile, type ReadCaseOptions } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import type { LoadFormats } from "../modules/readers.js";
+import type { SceneInput, SceneObjectInput } from "../types/scene.js";
 import { naturally } from "../values/order.js";
 import { withoutUndefined } from "../values/values.js";
-import type { SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose files have been read, but not decoded. */
 export interface SceneCase {

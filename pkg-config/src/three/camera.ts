@@ -1,11 +1,11 @@
 /** three.js cameras that match a pinhole camera. */
 
-import { pinholeOf } from "../formats/pinhole.js";
-import { type ImageSize, sizeOf } from "../formats/pixels.js";
-import type { CameraInput } from "../input/types.js";
+import { pinholeOf } from "../camera/pinhole.js";
+import type { CameraInput } from "../types/inputs.js";
 import { plainArgument } from "../values/border.js";
 import { failure } from "../values/error.js";
 import { withLive } from "../values/live.js";
+import { type ImageSize, sizeOf } from "../values/pixels.js";
 import { positive, record } from "../values/values.js";
 import type { PerspectiveCameraLike } from "./types.js";
 

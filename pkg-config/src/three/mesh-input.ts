@@ -1,7 +1,7 @@
 /** Meshes from three.js objects. */
 
 import { cofactors, determinant, type Matrix3, matrixOf as matrix3Of, turned } from "../conventions/rotation.js";
-import type { MeshArrays } from "../input/types.js";
+import type { MeshArrays } from "../types/inputs.js";
 import { describe, failure } from "../values/error.js";
 import { withLive } from "../values/live.js";
 import { finiteNumbers, oneOf, optionsOf, whole } from "../values/values.js";

@@ -1,6 +1,7 @@
 /** The pixels of three.js textures. */
 import { isBytes } from "../input/bytes.js";
-import { averaged, linear, type Photo } from "../input/colors.js";
+import { averaged, linear } from "../input/colors.js";
+import type { Photo } from "../modules/core-input.js";
 import { type Fields, isObject } from "./types.js";
 
 /** A texture: its colours by texture coordinates. */

@@ -4,9 +4,8 @@
  */
 
 import type * as Core from "../generated/types.js";
-import { fromOrigin } from "../input/origin.js";
-import type { AlignInput, FrameInput, ViewsInput } from "../input/types.js";
 import type { Sim3AlignError } from "../values/error.js";
+import type { AlignInput, FrameInput, ViewsInput } from "./inputs.js";
 
 /** How the depth map and the camera of a view were read. */
 export interface InputInfo {
@@ -62,7 +61,7 @@ export interface TrackedFrame extends Core.TrackedFrame, InputInfo {
 }
 
 /** The result of `evaluate`. */
-export interface Evaluation extends Core.Evaluation, Pick<InputInfo, "depthUnit" | "maskReading" | "imageReading"> {
+export interface Evaluation extends Core.Evaluation, Omit<InputInfo, "depthCalibration"> {
   /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
@@ -83,41 +82,11 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
 /** What the files of an input say, for its result. */
-export interface InputNotes extends Pick<InputInfo, "depthUnit" | "cameraSource" | "maskReading" | "imageReading"> {
+export interface InputNotes extends Omit<InputInfo, "depthCalibration"> {
   /** What was subtracted from the coordinates of the mesh file. */
   origin?: readonly number[];
   /** Of the view. */
   warnings: readonly Core.Warning[];
   /** Why the colours of the mesh file are not read. */
   colors: readonly string[];
-}
-
-/** How the files of a view were read. */
-export const sourcesOf = ({ warnings: _, colors: __, origin: ___, ...sources }: InputNotes) => sources;
-
-/** Whether nothing states the unit of the depth. */
-export const isAssumed = ({ depthUnit }: Pick<InputInfo, "depthUnit">): boolean =>
-  depthUnit?.endsWith("assumed)") === true;
-
-/** Confidence below which a pose is in doubt. */
-export const DOUBT = 0.5;
-
-/** Labels may be parts of an object: a pose that is not in doubt shows that they are. */
-const labels: Core.Warning = {
-  code: "MASK_HAS_LABELS",
-  message:
-    "The mask has several labels, and all of them were read as one object. Pass a mask of the object's label alone, or the whole map as labels of alignScene.",
-};
-
-/** A result with what its files say; their warnings before those of the core. */
-export function withNotes<T extends { warnings: Core.Warning[]; confidence?: number | null }>(
-  result: T,
-  notes: InputNotes,
-): T {
-  const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
-  // Of a unit that is stated, no size is doubtful.
-  const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || isAssumed(notes));
-  const hasLabels = notes.maskReading?.endsWith(": labels") === true && (result.confidence ?? 0) < DOUBT;
-  const warnings = [...notes.warnings, ...(hasLabels ? [labels] : []), ...ofColors, ...ofCore];
-  return { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };
 }

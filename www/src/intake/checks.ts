@@ -1,5 +1,5 @@
 /** What is missing, contradictory or implausible in the inputs of a scene. */
-import { doubtOfSize } from "sim3align/formats/pinhole";
+import { doubtOfSize } from "sim3align/camera/pinhole";
 import { depthRange } from "../draw/colours.js";
 import { baseName, folderOf } from "../load/files.js";
 import type { Inputs } from "../load/inputs.js";

@@ -1,8 +1,8 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
+import { depthOfRays } from "sim3align/camera/ray-distance";
 import type { ImageSize } from "sim3align/conventions";
 import { type DepthImage, type ReadDepthOptions, readCamera, readExif } from "sim3align/formats";
-import { depthOfRays } from "sim3align/formats/ray-distance";
 import { foundCamera } from "sim3align/input/lens";
 import { corrected, provisional, type RawView } from "../state/calibration.js";
 import type { Scene } from "../state/scene.js";

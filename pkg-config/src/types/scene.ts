@@ -1,10 +1,11 @@
 /** The input and the result of `alignScene`. */
 
 import type * as Core from "../generated/types.js";
-import type { DepthView, MaskInput, MeshInput, PixelArray } from "../input/types.js";
-import type { AlignOptions, Progress } from "../types/options.js";
-import type { Alignment, InputInfo } from "../types/results.js";
 import type { Sim3AlignError } from "../values/error.js";
+import type { PixelArray } from "../values/pixels.js";
+import type { DepthView, MaskInput, MeshInput } from "./inputs.js";
+import type { AlignOptions, Progress } from "./options.js";
+import type { Alignment, InputInfo } from "./results.js";
 
 /** A plane n·x + d = 0 in the OpenCV camera frame, metres; n points to the side of the objects. */
 export interface Plane {

@@ -1,12 +1,13 @@
 /** COCO's run-length encoding of masks: column-major runs, starting with background. */
 
-import type { CocoRle, PixelArray } from "../input/types.js";
+import type { CocoRle } from "../types/inputs.js";
 import { plainArgument } from "../values/border.js";
 import { describe, failure, type Sim3AlignError } from "../values/error.js";
+import { type JsonFile, numbersIn, parsedJson } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
+import type { PixelArray } from "../values/pixels.js";
+import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "../values/pixels.js";
 import { finiteNumbers, flattened, optionsOf, part, whole } from "../values/values.js";
-import { type JsonFile, numbersIn, parsedJson } from "./json.js";
-import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 
 /**
  * Encodes a mask in COCO's run-length encoding, like pycocotools.

@@ -1,8 +1,8 @@
 /** Meshes that are read, validated and decimated once for many calls. */
-import { brand } from "../values/brand.js";
-import { failure } from "../values/error.js";
-import { isRecord } from "../values/kinds.js";
-import { copied } from "../values/transfer.js";
+import { brand } from "./brand.js";
+import { failure } from "./error.js";
+import { isRecord } from "./kinds.js";
+import { copied } from "./transfer.js";
 
 /** Colours of a surface, at points spread evenly over it. */
 export interface ColorSamples {

@@ -1,6 +1,6 @@
 /** Parsing of JSON files, and of numbers in them. */
-import { failure } from "../values/error.js";
-import { isKind, isRecord } from "../values/kinds.js";
+import { failure } from "./error.js";
+import { isKind, isRecord } from "./kinds.js";
 
 /** A JSON file: its bytes, its text, or its parsed content. */
 export type JsonFile = Uint8Array | string | object;

@@ -1,10 +1,18 @@
 /** Images: pixels and their size. */
 
-import type { PixelArray } from "../input/types.js";
-import { checkAttached } from "../values/border.js";
-import { failure } from "../values/error.js";
-import { isTypedArray } from "../values/kinds.js";
-import { record, whole, wrongKind } from "../values/values.js";
+import { checkAttached } from "./border.js";
+import { failure } from "./error.js";
+import { isTypedArray } from "./kinds.js";
+import { record, whole, wrongKind } from "./values.js";
+
+/** Pixels and their size: `data` has width × height values, row-major from the top left. */
+export interface PixelArray<T> {
+  data: T;
+  /** Width in pixels. */
+  width: number;
+  /** Height in pixels. */
+  height: number;
+}
 
 /** The size of an image in pixels. */
 export interface ImageSize {

@@ -1,5 +1,5 @@
 /** Camera files that are no JSON: numbers, named values, COLMAP's cameras.txt and OpenCV's YAML. */
-import { isNumber } from "./json.js";
+import { isNumber } from "../values/json.js";
 
 const numeral = "[-+]?(?:\\d+\\.?\\d*|\\.\\d+)(?:e[-+]?\\d+)?";
 

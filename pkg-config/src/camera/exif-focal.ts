@@ -1,6 +1,7 @@
 /** The focal length of a photo in pixels, from its EXIF data. */
+
+import type { ImageSize } from "../values/pixels.js";
 import { finite, positive, record, withoutUndefined } from "../values/values.js";
-import type { ImageSize } from "./pixels.js";
 
 /** What the EXIF data of a photo say of its camera; what they do not state is missing. */
 export interface Exif {

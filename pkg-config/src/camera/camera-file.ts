@@ -1,12 +1,12 @@
 /** Camera files of data sets, drivers and apps. */
 
-import type { PinholeCamera } from "../input/types.js";
+import type { PinholeCamera } from "../types/inputs.js";
 import { describe, failure, invalidArgument } from "../values/error.js";
+import { isNumber, type JsonFile, keysText, parsedJson } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
+import type { ImageSize } from "../values/pixels.js";
 import { cameraText } from "./camera-text.js";
-import { isNumber, type JsonFile, keysText, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole, resizedPinhole } from "./pinhole.js";
-import type { ImageSize } from "./pixels.js";
 
 /** The content of a camera file. */
 export interface CameraFile extends PinholeCamera {

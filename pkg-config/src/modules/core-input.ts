@@ -1,8 +1,11 @@
 /** The input of the core. */
-import type { Pinhole } from "../formats/pinhole.js";
-import type { Photo } from "./colors.js";
-import type { CoreMesh } from "./prepared-mesh.js";
-import type { DepthKind } from "./types.js";
+import type { Pinhole } from "../camera/pinhole.js";
+import type { DepthKind } from "../types/inputs.js";
+import type { PixelArray } from "../values/pixels.js";
+import type { CoreMesh } from "../values/prepared-mesh.js";
+
+/** Pixels of a photo: sRGB-encoded red, green and blue, row-major. */
+export type Photo = PixelArray<Uint8Array>;
 
 /** The input of the core, which checks lengths and values. */
 export interface CoreInput {

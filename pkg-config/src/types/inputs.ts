@@ -1,7 +1,9 @@
 /** The inputs of the calls, and what depth files hold. */
-import type { BlobLike } from "../types/platform.js";
-import type { ColorSamples, PreparedMesh } from "./prepared-mesh.js";
-import type { Sim3Like } from "./sim3.js";
+
+import type { PixelArray } from "../values/pixels.js";
+import type { ColorSamples, PreparedMesh } from "../values/prepared-mesh.js";
+import type { Sim3Like } from "./argument-types.js";
+import type { BlobLike } from "./platform.js";
 
 /**
  * What the values of a depth map are:
@@ -21,15 +23,6 @@ export type DepthKind =
 
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
-
-/** Pixels and their size: `data` has width × height values, row-major from the top left. */
-export interface PixelArray<T> {
-  data: T;
-  /** Width in pixels. */
-  width: number;
-  /** Height in pixels. */
-  height: number;
-}
 
 /**
  * A depth map: z-depth (along the optical axis, not along the ray), row-major. 0, negative, NaN and infinite values are

@@ -1,0 +1,34 @@
+/** The notes of an input: what its files say, for the result. */
+import type { Warning } from "../generated/types.js";
+import type { InputInfo, InputNotes } from "../types/results.js";
+import { fromOrigin } from "./origin.js";
+
+/** How the files of a view were read. */
+export const sourcesOf = ({ warnings: _, colors: __, origin: ___, ...sources }: InputNotes) => sources;
+
+/** Whether nothing states the unit of the depth. */
+export const isAssumed = ({ depthUnit }: Pick<InputInfo, "depthUnit">): boolean =>
+  depthUnit?.endsWith("assumed)") === true;
+
+/** Confidence below which a pose is in doubt. */
+export const DOUBT = 0.5;
+
+/** Labels may be parts of an object: a pose that is not in doubt shows that they are. */
+const labels: Warning = {
+  code: "MASK_HAS_LABELS",
+  message:
+    "The mask has several labels, and all of them were read as one object. Pass a mask of the object's label alone, or the whole map as labels of alignScene.",
+};
+
+/** A result with what its files say; their warnings before those of the core. */
+export function withNotes<T extends { warnings: Warning[]; confidence?: number | null }>(
+  result: T,
+  notes: InputNotes,
+): T {
+  const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
+  // Of a unit that is stated, no size is doubtful.
+  const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || isAssumed(notes));
+  const hasLabels = notes.maskReading?.endsWith(": labels") === true && (result.confidence ?? 0) < DOUBT;
+  const warnings = [...notes.warnings, ...(hasLabels ? [labels] : []), ...ofColors, ...ofCore];
+  return { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };
+}
