@@ -29,9 +29,8 @@ import { isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/values.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
-import { sourcesOf, withNotes } from "./notes.js";
+import { DOUBT, sourcesOf, withNotes } from "./notes.js";
 import { fromOrigin, toOrigin } from "./origin.js";
-import { lookedAtAgain } from "./second-look.js";
 
 /** Two clouds and, for `estimateSim3`, the correspondences between their points. */
 type Clouds = NonNullable<Registration["input"]>;
@@ -90,9 +89,12 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   align: {
     module: "core",
     run: (job, context) =>
-      aligned(job, context, job.options, async (input, context, options) =>
-        lookedAtAgain(await context.search("align", input, options), input, options, context),
-      ),
+      aligned(job, context, job.options, async (input, context, options) => {
+        const found = await context.search("align", input, options);
+        if (found.confidence >= DOUBT && (found.diagnostics.color?.agreement ?? 1) >= DOUBT) return found;
+        const { lookedAtAgain } = await import("./second-look.js");
+        return lookedAtAgain(found, input, options, context);
+      }),
   },
   alignPaper: {
     module: "registration",
