@@ -6,6 +6,7 @@ mod align;
 mod arguments;
 mod calibrate;
 mod color;
+mod facing;
 mod fingerprints;
 mod fixtures;
 mod geometry;

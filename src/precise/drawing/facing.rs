@@ -17,8 +17,8 @@ const WIDTH: usize = 48;
 const DISTANCE: f64 = 4.0;
 /// Difference of depth, in diagonals, from which on a cell shows another part of the mesh; and the largest share of such cells, where
 /// decimation has folded a closed surface.
-const OTHER: f32 = 0.03;
-const FOLDED: f64 = 0.02;
+const OTHER: f32 = 0.01;
+const FOLDED: f64 = 0.005;
 
 /// Lets the models of a mesh draw one side of its triangles, if no other is seen: not of a sheet or a bowl without thickness.
 pub fn draw_one_side(mesh: &Mesh, models: &mut [Model; GRIDS]) {
