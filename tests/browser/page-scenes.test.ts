@@ -25,21 +25,21 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   await opened.isNow("hand");
   await page.click("#accept");
   const moved = await page.textContent("#centre");
-  await page.click("#next-scene");
+  await page.click("#next");
   await opened.shows("IMG_003");
   assert.deepEqual(
     (await states(page)).map((text) => text.replace(/^IMG_00\d /, "")),
     ["✓ accepted", "✓ accepted", "aligned", "to do"],
   );
   assert.deepEqual(await opened.violations(), []);
-  type Result = Record<string, { accepted: boolean; sizeM: number[]; source: string }>;
+  type Result = Record<string, { decision: string | null; sizeM: number[]; source: string }>;
   const { name, bytes } = await opened.saved("JSON of all scenes");
   assert.equal(name, "scenes.json");
   const all = JSON.parse(`${bytes}`) as Record<string, Result | null>;
   assert.deepEqual(Object.keys(all), ["IMG_001", "IMG_002", "IMG_003", "IMG_004"]);
   assert.equal(all.IMG_004, null);
   const [first, second] = [Object.values(all.IMG_001 ?? {})[0], Object.values(all.IMG_002 ?? {})[0]];
-  assert.deepEqual([first?.accepted, second?.accepted, second?.source], [true, true, "hand"]);
+  assert.deepEqual([first?.decision, second?.decision, second?.source], ["accepted", "corrected", "hand"]);
   assert.equal((100 * (first?.sizeM[0] ?? 0)).toFixed(1), size?.toFixed(1));
 
   await opened.kept();
