@@ -45,7 +45,7 @@ export function fix({ gizmo }: Workspace, { currentTarget }: Event): void {
  * Goes on to what needs a person: a later object of the scene, or another scene. Without any, to what is open, and then to
  * whatever follows.
  */
-export function next(workspace: Workspace): void {
+export function next(workspace: Workspace): unknown {
   const { fileActions, objects, select, selected } = workspace;
   const object = selected.peek();
   if (object === null) return;

@@ -48,10 +48,13 @@ let lastOrder = 0;
 /** What is to be kept of the scene that is shown, once it has been unchanged for a while. */
 let pending: { id: string; since: number; write(): void } | null = null;
 
+/** Reads all that is stored of an object. */
+const storedOf = (object: ObjectModel) => [object.name, stateOf(object)];
+
 /** What is done in the scene that is shown; reading it subscribes to every change. */
 function shownWork(): Scene | VideoWork | null {
   if (video.value !== null) return videoWork();
-  for (const object of scene.value?.objects ?? []) stateOf(object), object.name;
+  for (const object of scene.value?.objects ?? []) storedOf(object);
   return scene.value;
 }
 
