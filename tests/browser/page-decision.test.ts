@@ -115,3 +115,22 @@ test("what an object stands on is said, and the scene is saved as one GLB", "", 
       object,
     );
 });
+
+test(
+  "decided poses stay when all are aligned, and are saved with their comments",
+  "#sample=desk",
+  async (opened, page) => {
+    await page.click("#accept");
+    await page.keyboard.press("x");
+    await opened.says(/^Skipped/);
+    await page.click("#align-all");
+    await opened.says(/^Aligned in .* 2 decided, chosen or locked poses are left unchanged/);
+    await page.locator(".objects .select").first().click();
+    assert.equal(await page.textContent("#accept"), "✓ Accepted");
+    await opened.enter("#comment", "lid open");
+    const { _about, ...saved } = JSON.parse(`${(await opened.saved("JSON")).bytes}`) as Record<string, object>;
+    const decisions = Object.values(saved).map((one) => (one as { decision: string | null }).decision);
+    assert.deepEqual(decisions, ["accepted", "skipped", null]);
+    assert.equal((Object.values(saved)[0] as { comment: string }).comment, "lid open");
+  },
+);

@@ -113,7 +113,7 @@ test("an image of a BOP data set is a scene of its own", async (opened, page) =>
   await opened.sheet();
   await page.click("#intake-open");
   await opened.shows("000048 000001");
-  await page.click("#next-scene");
+  await page.click("#next");
   await opened.page.locator(".objects").waitFor(PATIENCE);
   assert.equal((await namesOf(opened)).length, 2);
 });

@@ -69,8 +69,8 @@ test("a project is saved and opened as one file, with every scene, decision and 
   const results = JSON.parse(strFromU8(unzipSync(bytes)["results.json"] as Uint8Array)) as Results;
   assert.deepEqual(Object.keys(results), ["Own files", "IMG_002--b"]);
   const [first, second] = Object.values(results).map(({ _about, ...objects }) => [_about, ...Object.values(objects)]);
-  assert.deepEqual([first?.[1]?.accepted, first?.[1]?.decidedBy, first?.[1]?.source], [true, "accepted", "hand"]);
-  assert.deepEqual([second?.[1]?.accepted, second?.[1]?.decidedBy], [false, "search"]);
+  assert.deepEqual([first?.[1]?.decision, first?.[1]?.source], ["corrected", "hand"]);
+  assert.deepEqual([second?.[1]?.decision, second?.[1]?.source], [null, "aligned"]);
   assert.deepEqual(second?.[1]?.files, { mask: "IMG_002--b/mask.png", mesh: "IMG_002--b/mesh.obj" });
   assert.match(second?.[0]?.depthUnit ?? "", /metres \(float values, assumed\)/);
 
@@ -92,8 +92,7 @@ test("a project is saved and opened as one file, with every scene, decision and 
 
 /** The entries of results that are looked at. */
 interface Entry {
-  accepted?: boolean;
-  decidedBy?: string;
+  decision?: string | null;
   source?: string;
   files?: object;
   depthUnit?: string;

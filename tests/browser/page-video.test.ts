@@ -82,3 +82,21 @@ test("frames of known cameras are aligned together, as views of an object that h
   // One pose in the world: the views differ exactly as their cameras do.
   assert.ok(Math.abs(last - first - step * (COUNT - 1)) < 0.0011, `from ${first} to ${last}, steps of ${step}`);
 });
+
+test("a video and what was accepted in it survive a reload, whatever the address names", async (opened, page) => {
+  await dropFolder(opened, frames(true));
+  await opened.says(/^Tracked/);
+  await goTo(opened, 2);
+  await page.click("#accept");
+  const centre = await page.textContent("#centre");
+  await opened.choose("#sample", "mug");
+  await opened.shows("Mug");
+  await opened.kept();
+  await page.reload();
+  await opened.shows("Mug");
+  await page.locator(".scenes button", { hasText: "toy" }).click();
+  await page.locator("#frame-name", { hasText: `3/${COUNT}` }).waitFor(PATIENCE);
+  assert.equal(await page.textContent("#centre"), centre);
+  assert.equal(await page.textContent("#accept"), "✓ Accepted");
+  assert.equal(await page.locator('.strip [data-state="tracking"]').count(), COUNT);
+});

@@ -59,10 +59,10 @@ export function App() {
           <aside class="side" aria-label="Scene">
             <Kept />
             <RunBar />
+            <ScenesPanel />
             <StartPanel />
             <ObjectsPanel />
             <ResultPanel />
-            <ScenesPanel />
             <ExportPanel />
             <InputPanel />
             <OptionsPanel />

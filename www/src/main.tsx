@@ -30,11 +30,12 @@ aligner().catch((error) => announce(String(error), "failed"));
 
 /** The scene that the address names. */
 const address = new URLSearchParams(location.search).get("case");
+const isNamed = named !== undefined || address !== null;
 
 /** A session takes precedence over the first sample, but not over what the address names. */
 async function restored(): Promise<boolean> {
-  if (!hasSession() || named !== undefined || address !== null) return false;
-  return (await import("./session/index.js")).restoreSession();
+  if (!hasSession() || isNamed) return false;
+  return (await import("./session/index.js")).restoreSession(true);
 }
 
 /** Opens the scene at an address, as if its files were dropped. */
@@ -65,7 +66,11 @@ async function start(): Promise<void> {
   }
   if (sample === undefined) announce("Choose input files.");
   isSettled.value = true;
-  (await import("./session/index.js")).keepSession();
+  const { keepSession, restoreSession } = await import("./session/index.js");
+  // The user's own scenes are listed, whatever the address names.
+  if (hasSession() && isNamed) await restoreSession(false);
+  keepSession();
+  (await import("./session/queue.js")).runAhead();
   // From here on, files can be dropped without a connection. Without one now, the first drop tries again.
   import("./intake/index.js").catch(() => {});
   storePage();

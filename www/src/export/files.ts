@@ -1,11 +1,12 @@
 /** Writers of results, in formats that other programs read. */
 import { exportGlb, exportPly, exportSceneGlb, placeGlb, toBop, toRowMajor } from "sim3align/conventions";
+import { videoWork } from "../run/video.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
-import { plain, sceneResult } from "./results.js";
+import { sceneResult, videoResult } from "./results.js";
 
-const { framePoses, support, video } = page;
+const { support } = page;
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
 export function matrixText({ pose }: ObjectModel, order: "column" | "row"): string {
@@ -14,17 +15,9 @@ export function matrixText({ pose }: ObjectModel, order: "column" | "row"): stri
   return `[${Array.from({ length: 4 }, (_, i) => numbers.slice(4 * i, 4 * i + 4).join(", ")).join(",\n ")}]`;
 }
 
-/** The poses of a video, by the names of its frames; as `sim3align track --json` writes them. */
-export function videoText(name: string): string {
-  const frames = (video.value?.frames ?? []).map((frame, i) => {
-    const pose = framePoses.value[i];
-    return [
-      frame.name,
-      pose == null ? null : { ...plain(pose.transform), confidence: pose.confidence, state: pose.state },
-    ];
-  });
-  return JSON.stringify({ [name]: { frames: Object.fromEntries(frames) } }, null, 2);
-}
+/** The poses of the video that is shown, by the name of its object. */
+export const videoText = (name: string): string =>
+  JSON.stringify({ [name]: videoResult(page.video.value?.frames ?? [], videoWork()) }, null, 2);
 
 /** The results of a scene. */
 export const jsonText = (scene: Scene): string => JSON.stringify(sceneResult(scene, page.inputs.peek()), null, 2);

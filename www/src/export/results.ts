@@ -1,9 +1,12 @@
 /** Results of scenes as plain data. */
 import type { Metrics, Sim3 } from "sim3align";
+import { toSim3 } from "sim3align/conventions";
 import type { Inputs, MaskSource } from "../load/inputs.js";
+import type { VideoWork } from "../session/pack.js";
 import { isMetric } from "../state/calibration.js";
-import type { ObjectModel } from "../state/object-model.js";
+import type { ObjectModel, Verdict } from "../state/object-model.js";
 import { page } from "../state/page.js";
+import type { PoseSource } from "../state/pose.js";
 import { type Scene, unitOf } from "../state/scene.js";
 
 const { options } = page;
@@ -22,12 +25,9 @@ export function keyOf(scene: Scene, object: ObjectModel): string {
   return namesakes.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
 }
 
-/** Who has decided on the pose: a person who has accepted or set it, or the search. */
-function decidedBy({ isAccepted, pose }: ObjectModel): "accepted" | "hand" | "search" | null {
-  const { source } = pose.value;
-  if (source === "start") return null;
-  return isAccepted.value ? "accepted" : source === "hand" || source === "alternative" ? "hand" : "search";
-}
+/** What a person has decided: an accepted pose that is not as the search has found it is a corrected one. */
+export const decisionOf = (verdict: Verdict | null, source: PoseSource): Verdict | "corrected" | null =>
+  verdict === "accepted" && source !== "aligned" && source !== "tracked" ? "corrected" : verdict;
 
 const nameOf = ({ file, label, annotation }: MaskSource) => ({
   ...{ mask: file.path },
@@ -42,14 +42,14 @@ const filesOf = (given: Inputs["objects"][number] | undefined) => ({
 });
 
 function jsonEntry(object: ObjectModel, unit: number | null, given: Inputs["objects"][number] | undefined) {
-  const { pose, box, confidence, isAccepted, precise, metrics } = object;
+  const { pose, box, comment, confidence, verdict, precise, metrics } = object;
   const { transform, source } = pose.value;
   const sides = [...box.value.sizeM];
   return {
     ...plain(transform),
     source,
-    accepted: isAccepted.value,
-    decidedBy: decidedBy(object),
+    decision: decisionOf(verdict.value, source),
+    comment: comment.value,
     files: filesOf(given),
     // As multiples of the longest side of the first object where the unit is unknown.
     ...(unit === null ? { sizeM: sides } : { relativeSize: sides.map((side) => side / unit) }),
@@ -71,6 +71,20 @@ export function sceneResult(scene: Scene, inputs: Inputs): SceneResult {
   const unit = unitOf(scene);
   const entries = scene.objects.map((object, i) => [keyOf(scene, object), jsonEntry(object, unit, inputs.objects[i])]);
   return { ...Object.fromEntries(entries), _about: about(scene, inputs) };
+}
+
+/** The poses of a video by the names of its frames, as `sim3align track --json` writes them, with what was decided. */
+export function videoResult(frames: readonly Inputs[], { framePoses, frameWorks }: VideoWork): SceneResult {
+  const entries = frames.map(({ name }, i) => {
+    const [pose, work] = [framePoses[i] ?? null, frameWorks[i] ?? null];
+    const { source = "tracked", comment = "", verdict = null } = work ?? {};
+    // A pose that was set but not accepted is no result yet.
+    const held = verdict === "accepted" && work !== null ? toSim3(work.matrix) : pose?.transform;
+    if (held === undefined) return [name, null];
+    const { confidence = null, state = "lost" } = pose ?? {};
+    return [name, { ...plain(held), confidence, state, decision: decisionOf(verdict, source), comment }];
+  });
+  return { frames: Object.fromEntries(entries) };
 }
 
 function about(scene: Scene, { depth, depthScale, name }: Inputs) {

@@ -6,16 +6,17 @@ import { type Inputs, noInputs, type Role, type Typed, withId } from "../load/in
 import { error, errorOf, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
+import { openVideo, trackAll } from "../run/video.js";
 import { isSession } from "../session/pack.js";
 import { openProject } from "../session/project.js";
-import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
+import { type Draft, draft, draftInputs, isReady, seenDoubts } from "../state/draft.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
 import { canReplace, replaced } from "./replace.js";
 import { rolesOf } from "./roles.js";
 import { fromSam3d } from "./sam3d.js";
 import { scenesOfTyped } from "./scenes.js";
-import { isVideo, videoOf } from "./video.js";
+import { asListed, isVideo } from "./video.js";
 
 const { announce, enlist, inputs, scene, show } = page;
 
@@ -145,14 +146,12 @@ export async function accept(): Promise<void> {
   if (opened === null) return;
   lastChange++;
   draft.value = null;
+  for (const { message } of open.problems) seenDoubts.add(message);
   if (open.isVideo) {
-    const opening = await videoOf(open.scenes);
+    const listed = asListed(open.scenes);
     // Tracking starts with the first frame, whichever is looked at.
-    const frame = opening.frames[0] as Inputs;
-    const first = sceneOf(frame, await readInputs(frame), true);
-    if (first === null) return announce("The first frame could not be read.", "failed");
-    const { openVideo, trackAll } = await import("../run/video.js");
-    openVideo(opening, first);
+    if (!(await openVideo(listed))) return announce("The first frame could not be read.", "failed");
+    enlist([listed]);
     await trackAll();
     return;
   }

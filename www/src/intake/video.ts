@@ -1,7 +1,7 @@
 /** Recognises the frames of a video among the scenes of a drop. */
 import type { Sim3 } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import type { Inputs } from "../load/inputs.js";
+import { type Inputs, noInputs, withId } from "../load/inputs.js";
 import type { Video } from "../state/video.js";
 import { titleOf } from "./pairing.js";
 
@@ -28,9 +28,18 @@ function asFrames(scenes: readonly Inputs[]): Inputs[] {
 
 const nameOf = (path: string) => titleOf(path) || "Object";
 
-/** The video of these frames. */
-export async function videoOf(scenes: readonly Inputs[]): Promise<Video> {
-  const frames = asFrames(scenes);
+/** The scene that stands for a video in lists: with the inputs of its first frame, and the name of the frames' folder. */
+export function asListed(scenes: readonly Inputs[]): Inputs {
+  const { id } = withId(noInputs);
+  const frames = asFrames(scenes.map((scene) => ({ ...scene, id })));
+  const [first] = frames as [Inputs, ...Inputs[]];
+  const folders = frames.map(({ depth }) => depth?.path.split("/") ?? []);
+  const shared = folders[0]?.filter((part, i, path) => i < path.length - 1 && folders.every((one) => one[i] === part));
+  return { ...first, name: shared?.at(-1) ?? first.objects[0]?.name ?? first.name, frames };
+}
+
+/** The video of frames. */
+export async function videoOf(frames: readonly Inputs[]): Promise<Video> {
   const cameras = await Promise.all(frames.map(cameraOf));
   const known = cameras.filter((camera) => camera !== null);
   return { frames, cameras: known.length === frames.length ? known : null };

@@ -89,6 +89,8 @@ export interface Inputs {
   resizeMasks: boolean;
   /** All files with their roles, also those that are not used. */
   files: readonly Typed[];
+  /** The frames of a video; the other inputs are those of the first one. */
+  frames?: readonly Inputs[];
 }
 
 export const noInputs: Inputs = {

@@ -1,15 +1,16 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
 import { alignAll } from "../run/align.js";
 import { draft } from "../state/draft.js";
-import type { Listed } from "../state/opened.js";
+import type { Listed, NextKind } from "../state/opened.js";
 import { page } from "../state/page.js";
-import { type Progress, progressIn } from "../state/progress.js";
+import { isFrameDoubtful, type Progress, progressIn } from "../state/progress.js";
+import type { FramePose } from "../state/video.js";
 import type { NamedFile } from "./files.js";
 import type { Inputs } from "./inputs.js";
 import { readInputs, sceneOf } from "./read-scene.js";
 import { type Sample, sampleInputs, samples } from "./samples.js";
 
-const { announce, inputs, isReading, list, objects, scene, show } = page;
+const { announce, inputs, isReading, list, objects, scene, show, video } = page;
 
 /** The number of the last call of `openSample`. The results of earlier calls are discarded. */
 let lastCall = 0;
@@ -58,9 +59,12 @@ async function attempt(work: () => Promise<unknown>): Promise<void> {
   }
 }
 
+/** A frame of a video with other files is a scene of its own. */
+const ownInputs = () => (video.peek() === null ? inputs.peek() : { ...inputs.peek(), id: "" });
+
 /** Makes the inputs of the scene that is shown a draft. */
 export async function editInputs(): Promise<void> {
-  if (draft.peek() === null) await attempt(async () => (await intake()).edit(inputs.peek()));
+  if (draft.peek() === null) await attempt(async () => (await intake()).edit(ownInputs()));
 }
 
 /** Opens a scene of the list, as it was left. */
@@ -76,31 +80,42 @@ export async function openListed({ id }: Inputs): Promise<void> {
 
 /** How far the work on a scene of the list is. */
 export function progressOf({ inputs: { id }, progress }: Listed): Progress | null {
-  return id !== inputs.value.id || scene.value === null ? progress : progressIn(objects.value);
+  return id !== inputs.value.id || scene.value === null || video.value !== null ? progress : progressIn(objects.value);
 }
 
-/** Whether an object of a scene is still to be accepted. */
-export const isOpen = (one: Listed): boolean => progressOf(one)?.state !== "accepted";
+/** Whether a scene is of this kind. One that was aligned in vain is in doubt, too. */
+export function isOfKind(one: Listed, kind: NextKind): boolean {
+  const { state = "to do" } = progressOf(one) ?? {};
+  if (kind === "doubtful")
+    return state === "unsure" || state === "check files" || (state === "to do" && one.progress !== null);
+  return kind === "any" || state !== "decided";
+}
 
-/** The next scene of the list that is open, after the one that is shown. */
-export function nextListed(): Inputs | null {
+/** The next scene of the list that is of this kind, after the one that is shown. */
+export function nextListed(kind: NextKind): Inputs | null {
   const all = list.value;
   const at = all.findIndex((one) => one.inputs.id === inputs.value.id);
-  return [...all.slice(at + 1), ...all.slice(0, Math.max(at, 0))].find(isOpen)?.inputs ?? null;
+  return [...all.slice(at + 1), ...all.slice(0, Math.max(at, 0))].find((one) => isOfKind(one, kind))?.inputs ?? null;
 }
 
-/** Opens it or, if all are done, the one that follows. */
-export async function openNext(): Promise<void> {
-  const all = list.peek();
-  const at = all.findIndex((one) => one.inputs.id === inputs.peek().id);
-  const next = nextListed() ?? all[(at + 1) % all.length]?.inputs;
-  if (next !== undefined) await openListed(next);
+/** Shows a later frame of the video that waits for a person or, without any, the next scene of this kind. */
+function openNext(kind: NextKind): boolean {
+  const { frameIndex, framePoses, frameWorks } = page;
+  const at = frameIndex.peek();
+  const isWaiting = (pose: FramePose | null, i: number) =>
+    i > at && isFrameDoubtful(pose, frameWorks.peek()[i]?.verdict ?? null);
+  const frame = framePoses.peek().findIndex(isWaiting);
+  if (frame >= 0) attempt(async () => (await import("../run/video.js")).showFrame(frame));
+  const next = frame < 0 ? nextListed(kind) : null;
+  if (next !== null) openListed(next);
+  return frame >= 0 || next !== null;
 }
 
 /** Shows the next scene of the list or, without any, the first sample. */
 export async function openAnother(): Promise<void> {
   const [first] = samples;
-  if (list.peek().length > 0) await openNext();
+  const next = nextListed("open") ?? nextListed("any");
+  if (next !== null) await openListed(next);
   else if (first !== undefined && (await openSample(first))) await alignAll(page);
 }
 

@@ -1,18 +1,35 @@
 /** The decision about a result: accept it, fix it, go on to the next one. */
-import type { ObjectModel } from "../state/object-model.js";
+import type { ObjectModel, Verdict } from "../state/object-model.js";
+import { isDoubtful, judged } from "../state/progress.js";
 import type { Workspace } from "../state/workspace.js";
+import { Menu } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
 
-/** Accepts the pose of the selected object, and selects the next one that is open. */
-export function accept(workspace: Workspace): void {
-  const { acceptPose, announce, select, selected } = workspace;
+const decided: { readonly [V in Verdict]: string } = {
+  accepted: "Accepted",
+  skipped: "Skipped",
+  impossible: "Impossible:",
+};
+
+/** Decides about the selected object, and selects the next one that is open. */
+export const decideOn = (verdict: Verdict) => (workspace: Workspace) => {
+  const { announce, decide, objects, select, selected } = workspace;
   const object = selected.peek();
-  if (object === null || !object.isPlaced) return;
-  if (!object.isAccepted.peek()) acceptPose(object);
-  const next = nextOpen(workspace, object);
-  announce(`Accepted ${object.name}.${next === null ? " All objects are accepted." : ""}`);
-  if (next !== null) select(next.id);
-}
+  if (object === null || (verdict === "accepted" && !object.isPlaced)) return;
+  if (object.verdict.peek() !== verdict) decide(object, verdict);
+  const others = objects.peek();
+  const isAll = others.every((one) => one.verdict.peek() !== null);
+  const all = isAll
+    ? ` All objects are ${others.every(({ isAccepted }) => isAccepted.peek()) ? "accepted" : "decided on"}.`
+    : "";
+  announce(`${decided[verdict]} ${object.name}.${all}`);
+  const next = [...after(others, object), ...others].find((one) => one.verdict.peek() === null);
+  if (next !== undefined) select(next.id);
+};
+
+export const accept = decideOn("accepted");
+
+const after = (objects: readonly ObjectModel[], object: ObjectModel) => objects.slice(objects.indexOf(object) + 1);
 
 /** Shows the handles and the controls of the selected object. */
 export function fix({ gizmo }: Workspace, { currentTarget }: Event): void {
@@ -24,28 +41,34 @@ export function fix({ gizmo }: Workspace, { currentTarget }: Event): void {
   panel?.querySelector<HTMLElement>(".handles button:enabled, #refine")?.focus();
 }
 
-/** Selects the next object that is not accepted yet, or else the next one; after the last one, opens the next scene. */
-export function next(workspace: Workspace): void {
-  const { fileActions, list, scene, select, selected } = workspace;
-  const objects = scene.peek()?.objects ?? [];
+/**
+ * Goes on to what needs a person: a later object of the scene, or another scene. Without any, to what is open, and then to
+ * whatever follows.
+ */
+export function next(workspace: Workspace): unknown {
+  const { fileActions, objects, select, selected } = workspace;
   const object = selected.peek();
   if (object === null) return;
-  const open = nextOpen(workspace, object);
-  if (open === null && list.peek().length > 1) fileActions.peek()?.next();
-  else select((open ?? objects[(objects.indexOf(object) + 1) % objects.length])?.id ?? null);
-}
-
-function nextOpen({ scene }: Workspace, object: ObjectModel): ObjectModel | null {
-  const objects = scene.peek()?.objects ?? [];
-  const from = objects.indexOf(object);
-  const after = [...objects.slice(from + 1), ...objects.slice(0, from)];
-  return after.find(({ isAccepted }) => !isAccepted.value) ?? null;
+  const all = objects.peek();
+  const rest = after(all, object);
+  const isDoubt = (one: ObjectModel) => isDoubtful(judged(one));
+  const isOpen = (one: ObjectModel) => one.verdict.peek() === null;
+  const files = fileActions.peek();
+  for (const isWanted of [isDoubt, isOpen]) {
+    const later = rest.find(isWanted);
+    if (later !== undefined) return select(later.id);
+    if (files?.next(isWanted === isDoubt ? "doubtful" : "open")) return;
+    const earlier = all.find((one) => one !== object && isWanted(one));
+    if (earlier !== undefined) return select(earlier.id);
+  }
+  if (rest[0] === undefined && files?.next("any")) return;
+  select((rest[0] ?? all[0])?.id ?? null);
 }
 
 export function Decision({ object }: { object: ObjectModel | null }) {
   const workspace = useWorkspace();
   const { list, scene } = workspace;
-  const isAccepted = object?.isAccepted.value === true;
+  const verdict = object?.verdict.value ?? null;
   const hasNext = (scene.value?.objects.length ?? 0) > 1 || list.value.length > 1;
   return (
     <fieldset class="decision" disabled={object === null}>
@@ -53,11 +76,11 @@ export function Decision({ object }: { object: ObjectModel | null }) {
       <button
         type="button"
         id="accept"
-        aria-pressed={isAccepted}
+        aria-pressed={verdict === "accepted"}
         aria-keyshortcuts="Enter"
         onClick={() => accept(workspace)}
       >
-        {isAccepted ? "✓ Accepted" : "Accept"}
+        {verdict === "accepted" ? "✓ Accepted" : "Accept"}
       </button>
       <button type="button" id="fix" onClick={(event) => fix(workspace, event)}>
         Fix
@@ -65,6 +88,30 @@ export function Decision({ object }: { object: ObjectModel | null }) {
       <button type="button" id="next" disabled={!hasNext} aria-keyshortcuts="N" onClick={() => next(workspace)}>
         Next
       </button>
+      <Menu title="⋯" isIcon label="More decisions">
+        {(["skipped", "impossible"] as const).map((one) => (
+          <button
+            key={one}
+            type="button"
+            id={one}
+            aria-pressed={verdict === one}
+            aria-keyshortcuts={one === "skipped" ? "X" : "I"}
+            onClick={() => decideOn(one)(workspace)}
+          >
+            {one === "skipped" ? "Skip" : "Impossible"}
+          </button>
+        ))}
+        <label class="field-inline">
+          <span>Comment</span>
+          <input
+            id="comment"
+            value={object?.comment.value ?? ""}
+            onChange={({ currentTarget }) => {
+              if (object !== null) object.comment.value = currentTarget.value;
+            }}
+          />
+        </label>
+      </Menu>
     </fieldset>
   );
 }

@@ -9,7 +9,7 @@ const { inputs, objects, scene, unit } = page;
 /** Forgets the scene. What a person has decided or set is not forgotten unasked. */
 async function forget(): Promise<void> {
   const { name } = inputs.peek();
-  const isWork = objects.peek().some(({ isAccepted, pose }) => isAccepted.peek() || pose.peek().source === "hand");
+  const isWork = objects.peek().some(({ verdict, pose }) => verdict.peek() !== null || pose.peek().source === "hand");
   if (isWork && !confirm(`Forget ${name}, with what you have set and accepted?`)) return;
   await (await import("../session/index.js")).forgetScene();
 }

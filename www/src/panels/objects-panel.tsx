@@ -109,9 +109,11 @@ function ObjectMenu({ object }: { object: ObjectModel }) {
   );
 }
 
+const marks = { accepted: "✓", skipped: "skipped", impossible: "✗" };
+
 function ObjectButton({ object }: { object: ObjectModel }) {
   const { renamed, select, selected, unit } = useWorkspace();
-  const { id, name, colour, run, isAccepted, isLocked, isShown } = object;
+  const { id, name, colour, run, verdict, isLocked, isShown } = object;
   const { confidence } = object;
   const rename = () => {
     renamed.value = object;
@@ -131,7 +133,9 @@ function ObjectButton({ object }: { object: ObjectModel }) {
       {!isShown.value && <Icon name="hidden" />}
       {isLocked.value && <Icon name="locked" />}
       <span class="state">{stateOf(run.value, object, unit.value)}</span>
-      <span class="confidence">{isAccepted.value ? "✓" : confidence === null ? "" : percent(confidence)}</span>
+      <span class="confidence">
+        {verdict.value !== null ? marks[verdict.value] : confidence === null ? "" : percent(confidence)}
+      </span>
     </button>
   );
 }

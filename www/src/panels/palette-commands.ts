@@ -128,7 +128,6 @@ const ofFiles: readonly Command[] = [
   press("Open a folder …", "folder"),
   press("Change or add files of the scene …", "edit-files"),
   press("Forget the scene", "forget"),
-  press("Next scene", "next-scene"),
   press("Open a copy of what another tab has open", "copy-others"),
   press("Take over what another tab has open", "take-over"),
 ];

@@ -16,7 +16,7 @@ export function Remedies({ object }: { object: ObjectModel | null }) {
   const workspace = useWorkspace();
   const { isRunning, options, setOption } = workspace;
   const isAsked = (object?.confidence ?? 1) < SURE;
-  if (object === null || !isAsked || object.isAccepted.value) return null;
+  if (object === null || !isAsked || object.verdict.value !== null) return null;
   const alternatives = object.precise?.alternatives.length ?? 0;
   const align = (change: () => void) => () => {
     change();

@@ -1,38 +1,53 @@
-/** The user's own scenes, if there are several, each with how far the work on it is. */
-import { isOpen, nextListed, openListed, openNext, progressOf } from "../load/open.js";
+/** The user's own scenes and videos, each with how far the work on it is. */
+import { signal } from "@preact/signals";
+import { isOfKind, openListed, progressOf } from "../load/open.js";
 import type { Listed } from "../state/opened.js";
 import { page } from "../state/page.js";
+import { Check } from "../ui/controls.js";
+import { percent } from "../ui/format.js";
 
 const { inputs, list } = page;
 
+const onlyDoubtful = signal(false);
+
 function textOf(one: Listed): string {
-  const { accepted, objects, state } = progressOf(one) ?? { accepted: 0, objects: 0, state: "to do" };
-  if (state === "accepted") return "✓ accepted";
-  return accepted === 0 ? state : `${state}, ${accepted} of ${objects} accepted`;
+  const { accepted, confidence, decided, objects, state } = progressOf(one) ?? { state: "to do" };
+  if (state === "decided") return accepted === objects ? "✓ accepted" : "✓ decided";
+  const sure = confidence == null ? state : `${state} ${percent(confidence)}`;
+  return decided ? `${sure}, ${decided} of ${objects} decided` : sure;
 }
 
 export function ScenesPanel() {
   const all = list.value;
-  if (all.length < 2) return null;
+  if (all.length === 0) return null;
+  const isShown = (one: Listed) => one.inputs.id === inputs.value.id;
+  const doubtful = all.filter((one) => isOfKind(one, "doubtful"));
+  const listed = onlyDoubtful.value ? all.filter((one) => isShown(one) || doubtful.includes(one)) : all;
   return (
     <section class="panel scenes-panel" aria-labelledby="scenes-title">
-      <h2 id="scenes-title">Scenes</h2>
+      <div class="panel-head">
+        <h2 id="scenes-title">Scenes</h2>
+        <span class="quiet">{all.filter((one) => isOfKind(one, "open")).length} left</span>
+        {(doubtful.length > 0 || onlyDoubtful.value) && (
+          <Check
+            id="only-doubtful"
+            title={`Only what needs you (${doubtful.length})`}
+            checked={onlyDoubtful.value}
+            onCheck={(checked) => {
+              onlyDoubtful.value = checked;
+            }}
+          />
+        )}
+      </div>
       <ul class="scenes" aria-labelledby="scenes-title">
-        {all.map((one) => (
+        {listed.map((one) => (
           <li key={one.inputs.id} data-state={progressOf(one)?.state ?? "to do"}>
-            <button
-              type="button"
-              aria-pressed={one.inputs.id === inputs.value.id}
-              onClick={() => openListed(one.inputs)}
-            >
+            <button type="button" aria-pressed={isShown(one)} onClick={() => openListed(one.inputs)}>
               <span class="listed">{one.inputs.name}</span> <span class="quiet">{textOf(one)}</span>
             </button>
           </li>
         ))}
       </ul>
-      <button type="button" id="next-scene" disabled={nextListed() === null} onClick={openNext}>
-        Next scene ({all.filter(isOpen).length} left)
-      </button>
     </section>
   );
 }

@@ -26,17 +26,24 @@ async function searchSelected(workspace: Workspace, search: "global" | "local"):
   await run(workspace, [object], (whole, signal) => alone(workspace, whole, object, search, signal));
 }
 
-/** Aligns every object of the scene, except those whose poses are locked. */
+/** Aligns every object of the scene, except those whose poses a person has decided on. The only one is meant, if it is not locked. */
 export async function alignAll(workspace: Workspace): Promise<void> {
   const whole = workspace.scene.peek();
-  const objects = whole?.objects.filter(({ isLocked }) => !isLocked.peek()) ?? [];
+  const isOne = whole?.objects.length === 1;
+  const objects = whole?.objects.filter(({ isHeld, isLocked }) => !(isOne ? isLocked.peek() : isHeld)) ?? [];
   const [only] = objects;
-  if (whole?.raw != null) await run(workspace, objects, (whole, signal) => together(workspace, whole, objects, signal));
-  else if (whole?.objects.length === 1 && only !== undefined) {
+  if (whole === null) return;
+  if (whole.raw !== null) await run(workspace, objects, (whole, signal) => together(workspace, whole, objects, signal));
+  else if (isOne && only !== undefined) {
     await run(workspace, objects, (whole, signal) => alone(workspace, whole, only, "global", signal));
   } else if (workspace.options.peek().preset === "paper")
     await run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
   else await run(workspace, objects, (whole, signal) => together(workspace, whole, objects, signal));
+  const held = whole.objects.length - objects.length;
+  const { text, kind } = workspace.status.peek();
+  if (held === 0 || kind === "failed") return;
+  const left = `${held} decided, chosen or locked ${held === 1 ? "pose is" : "poses are"} left unchanged`;
+  workspace.announce(only === undefined ? `${left}: align one by its menu.` : `${text} ${left}.`);
 }
 
 /** Aligns every object as if it were alone: sooner than together, and without the module that scenes need. */
@@ -63,6 +70,7 @@ export async function run(
   for (const { run } of objects) run.value = { state: "waiting" };
   announce(objects.length === 1 ? "Aligning …" : `Aligning ${objects.length} objects …`, "working");
   const started = performance.now();
+  const wasAccepted = objects.some(({ isAccepted }) => isAccepted.peek());
   try {
     await work(whole, abort.signal);
   } catch (error) {
@@ -74,7 +82,10 @@ export async function run(
     // Another scene may have taken its place, and be aligning already.
     if (controller.peek() === abort) {
       controller.value = null;
-      status.value = summary(objects, abort.signal.aborted, performance.now() - started);
+      const ms = performance.now() - started;
+      const back = wasAccepted ? " Undo brings the accepted pose back." : "";
+      const { text, kind } = summary(objects, abort.signal.aborted, ms);
+      status.value = { text: text + back, kind };
     }
   }
 }
@@ -132,12 +143,12 @@ async function together(
   signal: AbortSignal,
 ): Promise<void> {
   const { constraintsOf, recalibrate, record, sceneOptions, support } = workspace;
-  // Poses that are locked are in the present calibration.
+  // Poses that are held are in the present calibration.
   const calibrates = whole.raw !== null && objects.length === whole.objects.length;
   const inputs = whole.objects.map((object): SceneObjectInput => {
     const { mask, mesh } = object;
-    // A locked pose counts for the others.
-    const pose = object.isLocked.peek() ? object.pose.peek().transform : null;
+    // A pose that is held counts for the others.
+    const pose = objects.includes(object) || !object.isPlaced ? null : object.pose.peek().transform;
     const kept = pose === null ? {} : ({ search: "local", initial: pose, scale: pose.scale } as const);
     return { mask, mesh, ...constraintsOf(object), ...kept };
   });

@@ -64,7 +64,7 @@ export function setKnownSize(workspace: Workspace, object: ObjectModel, factor: 
       recalibrate(
         inCalibration(whole, { ...calibration, isMetric: true, scale: calibration.scale * factor }, whole.warnings),
       );
-      for (const one of whole.objects) if (one.isPlaced) one.pose.value = poseInUnit(one.pose.peek(), factor);
+      for (const one of whole.objects) if (one.isPlaced) one.rebase(poseInUnit(one.pose.peek(), factor));
       const plane = support.peek();
       if (plane !== null) support.value = { ...plane, d: plane.d * factor };
     }

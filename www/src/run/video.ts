@@ -2,8 +2,10 @@
 import { batch, computed, signal } from "@preact/signals";
 import type { Tracker, ViewInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
+import { videoOf } from "../intake/video.js";
 import type { Inputs } from "../load/inputs.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
+import { applyToObject, type PackedState, stateOf, type VideoWork } from "../session/pack.js";
 import { inCalibration } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
@@ -11,7 +13,19 @@ import type { Scene } from "../state/scene.js";
 import type { FramePose, Video } from "../state/video.js";
 import { aligner, givenViewOf } from "./aligner.js";
 
-const { announce, constraintsOf, frameIndex, framePoses, inputs, recalibrate, scene, sceneOptions, show, video } = page;
+const {
+  announce,
+  constraintsOf,
+  frameIndex,
+  framePoses,
+  frameWorks,
+  inputs,
+  recalibrate,
+  scene,
+  sceneOptions,
+  show,
+  video,
+} = page;
 
 const controller = signal<AbortController | null>(null);
 export const isTracking = computed(() => controller.value !== null);
@@ -19,14 +33,44 @@ export const isTracking = computed(() => controller.value !== null);
 /** The tracker of the last run, which corrections need. */
 let tracker: Tracker | null = null;
 
-/** Opens a video at its first frame, which has been read. */
-export function openVideo(opened: Video, first: Scene): void {
+/** Opens a video, as it was left. Returns false if the frame cannot be read. */
+export async function openVideo({ frames = [] }: Inputs, done: VideoWork = begun): Promise<boolean> {
+  const { frameIndex: index } = done;
+  const frame = frames[index];
+  const read = frame && (await readFrame(frame));
+  if (frame === undefined || read == null) return false;
+  const opened = await videoOf(frames);
   closeVideo();
-  video.value = opened;
-  framePoses.value = opened.frames.map(() => null);
-  frameIndex.value = 0;
-  show(first, opened.frames[0] as Inputs, false);
+  const ofFrames = <T>(of: readonly (T | null)[]) => opened.frames.map((_, i) => of[i] ?? null);
+  batch(() => {
+    video.value = opened;
+    framePoses.value = ofFrames(done.framePoses);
+    frameWorks.value = ofFrames(done.frameWorks);
+    put(index, frame, read);
+  });
+  return true;
 }
+
+const begun: VideoWork = { frameIndex: 0, framePoses: [], frameWorks: [] };
+
+/** What is done in the video, with what is done in the frame that is shown. */
+export const videoWork = (): VideoWork => ({
+  frameIndex: frameIndex.value,
+  framePoses: framePoses.value,
+  frameWorks: frameWorks.value.map((work, i) => (i === frameIndex.value ? workOf(scene.value?.objects[0]) : work)),
+});
+
+/** What a person has done with the object of a frame; null for a pose as it was tracked. */
+function workOf(object: ObjectModel | undefined): PackedState | null {
+  if (object === undefined) return null;
+  const { comment, pose, verdict } = object;
+  const isUntouched =
+    ["start", "tracked"].includes(pose.value.source) && verdict.value === null && comment.value === "";
+  return isUntouched ? null : stateOf(object);
+}
+
+/** Whether a decision holds the pose of a frame. */
+const isHeld = (index: number) => frameWorks.peek()[index]?.verdict != null;
 
 /** Forgets the video, for another scene. */
 function closeVideo(): void {
@@ -35,6 +79,7 @@ function closeVideo(): void {
   tracker = null;
   video.value = null;
   framePoses.value = [];
+  frameWorks.value = [];
 }
 
 export function stopTracking(): void {
@@ -64,13 +109,17 @@ async function readFrame(frame: Inputs, begun = readInputs(frame)): Promise<Scen
 
 function put(index: number, frame: Inputs, opened: Scene): void {
   const [object] = opened.objects;
-  const before = scene.peek()?.objects[0];
-  const pose = framePoses.peek()[index];
+  // Of another scene or video, nothing is carried on.
+  const before = inputs.peek().id === frame.id ? scene.peek()?.objects[0] : undefined;
   if (object !== undefined && before !== undefined) object.knownScale.value = before.knownScale.peek();
   batch(() => {
+    if (before !== undefined && index !== frameIndex.peek()) frameWorks.value = videoWork().frameWorks;
+    const [pose, work] = [framePoses.peek()[index], frameWorks.peek()[index]];
     frameIndex.value = index;
     show(opened, frame, false);
-    if (object !== undefined && pose != null) showPose(object, pose);
+    if (object === undefined) return;
+    if (pose != null) showPose(object, pose);
+    if (work != null) applyToObject(work, object);
   });
 }
 
@@ -87,6 +136,7 @@ async function run(work: (opened: Video, first: ObjectModel, signal: AbortSignal
   if (opened === null || first === undefined || isTracking.peek()) return;
   const abort = new AbortController();
   controller.value = abort;
+  frameWorks.value = videoWork().frameWorks;
   try {
     await work(opened, first, abort.signal);
   } catch (error) {
@@ -131,7 +181,10 @@ export const trackAll = () =>
       if (video.peek() !== opened) return;
       const { confidence, depthCalibration: calibration = null, state } = found;
       const pose: FramePose = { transform: toSim3(found), confidence, state, isCorrected: false, calibration };
-      framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
+      if (!isHeld(index)) {
+        framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
+        frameWorks.value = frameWorks.peek().map((other, i) => (i === index ? null : other));
+      }
       put(index, frame, read);
     }
     const lost = framePoses.peek().filter((pose) => pose?.state === "lost").length;
@@ -155,13 +208,15 @@ export const alignFrames = () =>
     const settings = { ...sceneOptions(), ...scaleOf(first), signal };
     const found = await (await aligner()).alignViews({ mesh: first.mesh, views }, settings);
     if (video.peek() !== opened) return;
-    framePoses.value = found.views.map((view): FramePose => {
+    framePoses.value = found.views.map((view, i): FramePose | null => {
+      if (isHeld(i)) return framePoses.peek()[i] ?? null;
       const { confidence, depthCalibration: calibration = null } = view;
       const state = confidence >= 0.5 ? "tracking" : "uncertain";
       return { transform: toSim3(view), confidence, state, isCorrected: false, calibration };
     });
+    frameWorks.value = frameWorks.peek().map((work, i) => (isHeld(i) ? work : null));
     const [shown, pose] = [scene.peek()?.objects[0], framePoses.peek()[frameIndex.peek()]];
-    if (shown !== undefined && pose != null) showPose(shown, pose);
+    if (shown !== undefined && pose != null && !isHeld(frameIndex.peek())) showPose(shown, pose);
     announce(`Aligned ${views.length} views together, ${Math.round(100 * found.confidence)} %.`);
   });
 
@@ -169,15 +224,16 @@ export const alignFrames = () =>
 export async function correctFrame(): Promise<void> {
   const object = scene.peek()?.objects[0];
   const index = frameIndex.peek();
-  if (tracker === null || object === undefined || framePoses.peek()[index] == null) return;
+  if (object === undefined || framePoses.peek()[index] == null) return;
   const { transform } = object.pose.peek();
   try {
-    const changed = await tracker.correct(transform, index);
+    // The tracker of a video that was restored is gone.
+    const changed = (await tracker?.correct(transform, index)) ?? [{ ...transform, frame: index }];
     const poses: (FramePose | null)[] = [...framePoses.peek()];
     for (const found of changed) {
       const before = poses[found.frame];
-      if (before == null) continue;
       const isOwn = found.frame === index;
+      if (before == null || (isHeld(found.frame) && !isOwn)) continue;
       poses[found.frame] = {
         ...before,
         transform: toSim3(found),
@@ -188,8 +244,12 @@ export async function correctFrame(): Promise<void> {
       };
     }
     framePoses.value = poses;
-    object.pose.value = { transform, source: "tracked" };
-    announce(`Corrected ${changed.length} frames.`);
+    object.rebase({ transform, source: "tracked" });
+    announce(
+      tracker === null
+        ? "Corrected this frame. Track again to carry it to the others."
+        : `Corrected ${changed.length} frames.`,
+    );
   } catch (error) {
     fail(error);
   }

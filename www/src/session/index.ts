@@ -1,25 +1,40 @@
 /**
- * The session: the user's own scenes, kept in the browser while they work. A scene is kept by its id, and belongs to one tab.
+ * The session: the user's own scenes and videos, kept in the browser while they work. Each is kept by its id, and belongs to
+ * one tab. A video counts as a scene.
  */
 import { batch, effect, untracked } from "@preact/signals";
-import { sceneResult } from "../export/results.js";
+import { type SceneResult, sceneResult, videoResult } from "../export/results.js";
 import type { NamedFile } from "../load/files.js";
 import type { Inputs } from "../load/inputs.js";
 import { openAnother } from "../load/open.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
+import { openVideo, videoWork } from "../run/video.js";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Options } from "../state/options.js";
 import { page } from "../state/page.js";
-import { type Progress, progressIn, progressOf } from "../state/progress.js";
+import type { Progress } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
 import { hasSession } from "../state/session-flag.js";
 import { disown, onTakenOver, own } from "./owner.js";
-import { applyState, judged, type Packed, packed, unpacked } from "./pack.js";
+import {
+  applyState,
+  type Packed,
+  packed,
+  progressOfPacked,
+  stateOf,
+  unpacked,
+  type VideoWork,
+  videoWorkOf,
+} from "./pack.js";
 import { claimWork, forgetWork, storedFiles, storedWorks, storeWork, type Work } from "./store.js";
 
-const { announce, enlist, inputs, list, notKept, options, othersScenes, scene, show } = page;
+const { announce, enlist, inputs, list, notKept, options, othersScenes, scene, show, video } = page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
+/** Changes that go on, as while a video is tracked, are stored after this time. */
+const LONGEST_MS = 2000;
 
 /** What was done with the scenes of this tab, by their ids. */
 const works = new Map<string, Work>();
@@ -31,34 +46,41 @@ const unstored = new Set<string>();
 const running = new Map<string, Promise<void>>();
 let lastOrder = 0;
 /** What is to be kept of the scene that is shown, once it has been unchanged for a while. */
-let pending: { id: string; write(): void } | null = null;
+let pending: { id: string; since: number; write(): void } | null = null;
 
-/** What was done with a scene of this tab. */
-export const workOf = (id: string): Work | undefined => works.get(id);
+/** Reads all that is stored of an object. */
+const storedOf = (object: ObjectModel) => [object.name, stateOf(object)];
 
-/** Stores the scene that is shown, every change of it, and those that are still to be opened. Samples and videos are not stored. */
+/** What is done in the scene that is shown; reading it subscribes to every change. */
+function shownWork(): Scene | VideoWork | null {
+  if (video.value !== null) return videoWork();
+  for (const object of scene.value?.objects ?? []) storedOf(object);
+  return scene.value;
+}
+
+/** Stores the scene that is shown, every change of it, and those that are still to be opened. Samples are not stored. */
 export function keepSession(): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
-    const [whole, from] = [scene.value, inputs.value];
+    const [done, { id }, settings] = [shownWork(), inputs.value, options.value];
     clearTimeout(timer);
     // The changes of a scene that is left are not lost.
-    if (pending !== null && pending.id !== from.id) untracked(pending.write);
+    if (pending !== null && pending.id !== id) untracked(pending.write);
+    const since = pending?.id === id ? pending.since : performance.now();
     pending = null;
-    if (whole === null || from.id === "") return;
-    // Reading the signals of the objects subscribes to them.
-    packed(from, whole, options.value);
+    const from = listed(id);
+    if (done === null || from === undefined) return;
     const write = () => {
       pending = null;
-      keep(from, whole);
+      keep(from, done, settings);
     };
-    unstored.add(from.id);
-    pending = { id: from.id, write };
-    timer = setTimeout(write, DEBOUNCE_MS);
+    unstored.add(id);
+    pending = { id, since, write };
+    timer = setTimeout(write, Math.min(DEBOUNCE_MS, since + LONGEST_MS - performance.now()));
   });
   effect(() => {
     const waiting = list.value.filter(({ inputs: { id } }) => !works.has(id) && id !== inputs.peek().id);
-    for (const { inputs: from } of waiting) untracked(() => keep(from, null));
+    for (const { inputs: from } of waiting) untracked(() => keep(from, null, options.peek()));
   });
   addEventListener("beforeunload", (event) => {
     if (unstored.size > 0) event.preventDefault();
@@ -67,18 +89,32 @@ export function keepSession(): void {
 }
 
 /** Keeps what was done with a scene; null if it was not opened yet. */
-function keep(from: Inputs, whole: Scene | null): void {
+export function keep(from: Inputs, done: Scene | VideoWork | null, settings: Options, isShown = done !== null): void {
   const { id } = from;
-  const { session, files } = packed(from, whole, options.peek());
+  const { session, files } = packed(from, done, settings);
   const before = works.get(id);
   const work: Work = {
-    ...{ id, session, order: before?.order ?? nextOrder() },
-    result: whole === null ? null : sceneResult(whole, from),
-    shownAt: whole === null ? 0 : Date.now(),
+    ...{ id, session, order: before?.order ?? nextOrder(), result: done && resultOf(from, done) },
+    shownAt: isShown ? Date.now() : (before?.shownAt ?? 0),
   };
   works.set(id, work);
-  if (whole !== null) setProgress(id, progressIn(whole.objects));
+  if (done !== null) setProgress(id, progressOfPacked(session));
   store(work, files);
+}
+
+const resultOf = (from: Inputs, done: Scene | VideoWork): SceneResult =>
+  "objects" in done ? sceneResult(done, from) : videoResult(from.frames ?? [], done);
+
+/** A scene as it is now: what was done with it and its files, as they are stored. */
+export function workNow(from: Inputs): { work: Omit<Work, "id" | "order">; files: NamedFile[] } {
+  const isShown = from.id === inputs.peek().id;
+  const done = isShown ? untracked(shownWork) : null;
+  const { session, files } = packed(from, done, options.peek());
+  const before = works.get(from.id);
+  const { result = null, shownAt = 0 } = before ?? {};
+  return done === null
+    ? { work: { session: before?.session ?? session, result, shownAt }, files }
+    : { work: { session, result: resultOf(from, done), shownAt: Date.now() }, files };
 }
 
 function nextOrder(): number {
@@ -86,7 +122,7 @@ function nextOrder(): number {
   return lastOrder;
 }
 
-function setProgress(id: string, progress: Progress): void {
+export function setProgress(id: string, progress: Progress | null): void {
   list.value = list.peek().map((one) => (one.inputs.id === id ? { ...one, progress } : one));
 }
 
@@ -120,8 +156,11 @@ async function attempt(work: Work, files: readonly NamedFile[]): Promise<void> {
   }
 }
 
-/** Lists the scenes that the browser has kept, except those of other tabs, and shows the last one. Returns whether there is one. */
-export async function restoreSession(): Promise<boolean> {
+/**
+ * Lists the scenes that the browser has kept, except those of other tabs, and shows the last one unless the address names
+ * another one. Returns whether one is shown.
+ */
+export async function restoreSession(shows: boolean): Promise<boolean> {
   try {
     const found: Work[] = [];
     for (const work of await storedWorks()) {
@@ -129,7 +168,7 @@ export async function restoreSession(): Promise<boolean> {
       else othersScenes.value = [...othersScenes.peek(), { id: work.id, name: work.session.name }];
     }
     for (const work of found) await adopt(work);
-    return await openLast(found);
+    return shows && (await openLast(found));
   } catch (cause) {
     notKept.value = `What the browser has kept could not be opened (${(cause as Error).message}).`;
     return false;
@@ -162,8 +201,7 @@ function enter(work: Work, files: readonly NamedFile[]): boolean {
   if (from === null) return false;
   works.set(work.id, work);
   enlist([from]);
-  const states = work.session.objects.map(({ state }) => state);
-  if (states.some((state) => state !== null)) setProgress(work.id, progressOf(states.map(judged)));
+  setProgress(work.id, progressOfPacked(work.session));
   return true;
 }
 
@@ -179,9 +217,10 @@ export async function openLast(among: readonly Work[]): Promise<boolean> {
 /** Shows a scene of the list as it was left. Returns false if it was not opened yet. */
 export async function reopen(from: Inputs): Promise<boolean> {
   const work = works.get(from.id);
-  if (work === undefined || work.shownAt === 0 || !(await open(work.session, from))) return false;
+  if (work === undefined || work.result === null || !(await open(work.session, from))) return false;
   // It was left before it was aligned.
-  if (scene.peek()?.objects.every(({ isPlaced }) => !isPlaced) === true) await alignAll(page);
+  const isBegun = ({ isPlaced, isHeld }: ObjectModel) => isPlaced || isHeld;
+  if (video.peek() === null && scene.peek()?.objects.some(isBegun) === false) await alignAll(page);
   return true;
 }
 
@@ -222,6 +261,11 @@ async function leave(id: string): Promise<void> {
 }
 
 async function open(session: Packed, named: Inputs): Promise<boolean> {
+  if (named.frames !== undefined) {
+    const isOpen = await openVideo(named, videoWorkOf(session));
+    if (isOpen) announce(`Restored ${named.name}.`);
+    return isOpen;
+  }
   // Objects may have other names than their files.
   const objects = named.objects.map((one, i) => ({ ...one, name: session.objects[i]?.name ?? one.name }));
   const from = { ...named, objects };
@@ -232,6 +276,7 @@ async function open(session: Packed, named: Inputs): Promise<boolean> {
     show(opened, from);
     applyState(session, page);
   });
-  announce(`Restored ${from.name}.`);
+  // Nobody has seen one that was aligned in the background.
+  announce(works.get(from.id)?.shownAt === 0 ? `Aligned ${from.name} in the background.` : `Restored ${from.name}.`);
   return true;
 }

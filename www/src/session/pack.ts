@@ -5,10 +5,12 @@ import { baseName, type NamedFile } from "../load/files.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, Role, TruthSource } from "../load/inputs.js";
 import type { AnyAlignment } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
-import type { ObjectModel } from "../state/object-model.js";
+import type { ObjectModel, Verdict } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
 import { isResult, type PoseSource } from "../state/pose.js";
+import { type Judged, type Progress, progressOf, progressOfFrames } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
+import type { FramePose } from "../state/video.js";
 import type { Workspace } from "../state/workspace.js";
 
 /** The version of the format. Other versions are not read. */
@@ -35,41 +37,87 @@ export interface PackedState {
   matrix: readonly number[];
   source: PoseSource;
   alternative?: number | undefined;
-  isAccepted: boolean;
+  verdict?: Verdict | null;
+  /** In place of the verdict, as 1.0.0-rc.1 has stored it. */
+  isAccepted?: boolean;
+  comment?: string;
   isShown: boolean;
   isLocked: boolean;
   knownScale: number | null;
   alignment: AnyAlignment | null;
 }
 
-/** A session without its files. */
-export interface Packed {
-  version: number;
+/** A frame of a video: its tracked pose, and what a person has done in it. */
+interface PackedFrame extends PackedInputs {
+  tracked: (Omit<FramePose, "transform"> & { matrix: readonly number[] }) | null;
+  work: PackedState | null;
+}
+
+/** The inputs of a scene. */
+interface PackedInputs {
   name: string;
   depth: Ref | null;
   depthScale: number | null;
   depthKind: DepthKind | null;
-  /** In whose depth the poses are. */
-  calibration: DepthCalibration | null;
   photo: Ref | null;
   camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref } | null;
   imageId: string | null;
   resizeMasks: boolean;
   objects: PackedObject[];
   roles: { file: Ref; role: Role }[];
-  options: Options;
 }
 
-/** The session of a scene, and its files in the order of their indices. */
-export function packed(inputs: Inputs, scene: Scene | null, options: Options): { session: Packed; files: NamedFile[] } {
-  const files: NamedFile[] = [];
+/** A session without its files. */
+export interface Packed extends PackedInputs {
+  version: number;
+  /** In whose depth the poses are. */
+  calibration: DepthCalibration | null;
+  options: Options;
+  /** Those of a video, and the index of the one that was shown last. */
+  frames?: PackedFrame[];
+  frameIndex?: number;
+}
+
+/** What is done in a video. */
+export interface VideoWork {
+  frameIndex: number;
+  framePoses: readonly (FramePose | null)[];
+  frameWorks: readonly (PackedState | null)[];
+}
+
+/** The session of a scene or a video, and its files in the order of their indices. */
+export function packed(
+  inputs: Inputs,
+  done: Scene | VideoWork | null,
+  options: Options,
+): { session: Packed; files: NamedFile[] } {
+  const files = new Map<NamedFile, Ref>();
+  const scene = done !== null && "objects" in done ? done : null;
+  const work = done !== null && "framePoses" in done ? done : null;
+  const session: Packed = {
+    ...packedInputs(inputs, scene, files),
+    ...{ version: VERSION, calibration: scene?.calibration ?? null, options },
+  };
+  if (inputs.frames !== undefined) {
+    session.frameIndex = work?.frameIndex ?? 0;
+    session.frames = inputs.frames.map((frame, i) => {
+      const { transform, ...rest } = work?.framePoses[i] ?? {};
+      const tracked = transform && ({ ...rest, matrix: [...transform.matrix] } as PackedFrame["tracked"]);
+      return { ...packedInputs(frame, null, files), tracked: tracked ?? null, work: work?.frameWorks[i] ?? null };
+    });
+  }
+  return { session, files: [...files.keys()] };
+}
+
+/** Inputs by the indices of their files, to which those of theirs are added. */
+function packedInputs(inputs: Inputs, scene: Scene | null, files: Map<NamedFile, Ref>): PackedInputs {
   const ref = (file: NamedFile): Ref => {
-    const known = files.indexOf(file);
-    return known >= 0 ? known : files.push(file) - 1;
+    const known = files.get(file) ?? files.size;
+    files.set(file, known);
+    return known;
   };
   const optional = (file: NamedFile | null): Ref | null => (file === null ? null : ref(file));
   const { camera, depthScale, depthKind, imageId, name, resizeMasks } = inputs;
-  const calibration = scene?.calibration ?? null;
   const objects = inputs.objects.map(({ name, mask, mesh, truth, initial }, i): PackedObject => {
     for (const sibling of mesh?.siblings ?? []) if (isResource(sibling.path)) ref(sibling);
     const object = scene?.objects[i];
@@ -82,70 +130,102 @@ export function packed(inputs: Inputs, scene: Scene | null, options: Options): {
       state: object === undefined ? null : stateOf(object),
     };
   });
-  const session: Packed = {
-    ...{
-      version: VERSION,
-      name,
-      depthScale,
-      depthKind,
-      calibration,
-      imageId,
-      resizeMasks,
-      objects,
-      roles: [],
-      options,
-    },
+  return {
+    ...{ name, depthScale, depthKind, imageId, resizeMasks, objects },
     depth: optional(inputs.depth),
     photo: optional(inputs.photo),
     camera: camera?.kind === "file" ? { ...camera, file: ref(camera.file) } : camera,
+    roles: inputs.files.flatMap(({ file, role }) =>
+      // The cameras of a video are where these files say.
+      role === "pose" || files.has(file) ? [{ file: ref(file), role }] : [],
+    ),
   };
-  session.roles = inputs.files.flatMap(({ file, role }) => (files.includes(file) ? [{ file: ref(file), role }] : []));
-  return { session, files };
 }
 
 /** Files that meshes refer to. */
 const isResource = (path: string) => /\.(bin|mtl|png|jpe?g|webp)$/i.test(baseName(path));
 
 /** What was done with an object. */
-export function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, alignment }: ObjectModel): PackedState {
+export function stateOf(object: ObjectModel): PackedState {
+  const { alignment, comment, isLocked, isShown, knownScale, pose, verdict } = object;
   const { transform, source, alternative } = pose.value;
   return {
     ...{ matrix: [...transform.matrix], source, alternative },
-    ...{ isAccepted: isAccepted.value, isShown: isShown.value, isLocked: isLocked.value },
+    ...{ verdict: verdict.value, comment: comment.value, isShown: isShown.value, isLocked: isLocked.value },
     ...{ knownScale: knownScale.value, alignment: alignment.value },
   };
 }
 
-/** What counts of an object for the progress of its scene. */
-export function judged(state: PackedState | null) {
-  const { source = "start", isAccepted = false, alignment = null } = state ?? {};
-  const confidence = isResult(source) && alignment !== null && "confidence" in alignment ? alignment.confidence : null;
-  return { isPlaced: source !== "start", isAccepted, confidence };
+const verdictOf = (state: PackedState | null): Verdict | null =>
+  state?.verdict ?? (state?.isAccepted === true ? "accepted" : null);
+
+/** How far the work of a session is; null if it has not begun. */
+export function progressOfPacked({ frames, objects }: Packed): Progress | null {
+  if (frames !== undefined) {
+    const verdicts = frames.map(({ work }) => verdictOf(work));
+    return progressOfFrames(frames.map(framePose), verdicts);
+  }
+  if (objects.every(({ state }) => state === null)) return null;
+  return progressOf(
+    objects.map(({ state }): Judged => {
+      const { source = "start", alignment = null } = state ?? {};
+      const found = isResult(source) && alignment !== null && "confidence" in alignment ? alignment.confidence : null;
+      return { isPlaced: source !== "start", verdict: verdictOf(state), confidence: found };
+    }),
+  );
 }
+
+function framePose({ tracked }: PackedFrame): FramePose | null {
+  if (tracked === null) return null;
+  const { matrix, ...pose } = tracked;
+  return { ...pose, transform: toSim3(matrix) };
+}
+
+/** What was done in the video of a session. */
+export const videoWorkOf = ({ frames = [], frameIndex = 0 }: Packed): VideoWork => ({
+  ...{ frameIndex, framePoses: frames.map(framePose), frameWorks: frames.map(({ work }) => work) },
+});
 
 /** The inputs of a session; null for one of another version. */
 export function unpacked(session: Packed, files: readonly NamedFile[], id = ""): Inputs | null {
   if (session.version !== VERSION) return null;
+  const meshes = new Map<Ref, MeshSource>();
+  const inputs = unpackedInputs(session, files, id, meshes);
+  return session.frames === undefined
+    ? inputs
+    : { ...inputs, frames: session.frames.map((frame) => unpackedInputs(frame, files, id, meshes)) };
+}
+
+/** Objects with the same mesh file share what refers to it, in all frames of a video. */
+function unpackedInputs(
+  packed: PackedInputs,
+  files: readonly NamedFile[],
+  id: string,
+  meshes: Map<Ref, MeshSource>,
+): Inputs {
   const at = (ref: Ref): NamedFile => files[ref] as NamedFile;
   const optional = (ref: Ref | null) => (ref === null ? null : at(ref));
-  const { camera, depthScale, depthKind = null, imageId, name, resizeMasks } = session;
-  const meshes = new Map<Ref, MeshSource>();
-  for (const { mesh } of session.objects) if (mesh !== null) meshes.set(mesh, { file: at(mesh), siblings: files });
+  const { camera, depthScale, depthKind = null, imageId, name, resizeMasks } = packed;
+  const meshOf = (ref: Ref): MeshSource => {
+    const mesh = meshes.get(ref) ?? { file: at(ref), siblings: files };
+    meshes.set(ref, mesh);
+    return mesh;
+  };
+  const objects = packed.objects.map(({ name, mask, mesh, truth, initial }) => ({
+    name,
+    mask: mask && { ...mask, file: at(mask.file) },
+    mesh: mesh === null ? null : meshOf(mesh),
+    truth: truth && { ...truth, file: at(truth.file) },
+    ...(initial !== undefined && { initial: at(initial) }),
+    isSure: true,
+  }));
   return {
-    ...{ id, name, sample: null, depthScale, depthKind, imageId, resizeMasks },
-    depth: optional(session.depth),
-    photo: optional(session.photo),
+    ...{ id, name, sample: null, depthScale, depthKind, imageId, resizeMasks, objects },
+    depth: optional(packed.depth),
+    photo: optional(packed.photo),
     camera: camera?.kind === "file" ? { ...camera, file: at(camera.file) } : camera,
-    objects: session.objects.map(({ name, mask, mesh, truth, initial }) => ({
-      name,
-      mask: mask && { ...mask, file: at(mask.file) },
-      mesh: mesh === null ? null : (meshes.get(mesh) ?? null),
-      truth: truth && { ...truth, file: at(truth.file) },
-      ...(initial !== undefined && { initial: at(initial) }),
-      isSure: true,
-    })),
-    meshes: [...meshes.values()],
-    files: session.roles.map(({ file, role }) => ({ file: at(file), role })),
+    meshes: [...new Set(objects.flatMap(({ mesh }) => mesh ?? []))],
+    files: packed.roles.map(({ file, role }) => ({ file: at(file), role })),
   };
 }
 
@@ -165,16 +245,23 @@ export function applyState({ objects, options: chosen, calibration }: SessionSta
   if (calibration) recalibrate(inCalibration(whole, calibration));
   whole.objects.forEach((object, i) => {
     const state = objects[i]?.state;
-    if (state == null) return;
-    const { matrix, source, alternative, alignment } = state;
-    object.run.value = { state: alignment === null ? "idle" : "done" };
-    const pose = { transform: toSim3(matrix), source, alignment, ...(alternative !== undefined && { alternative }) };
-    object.pose.value = pose;
-    object.accepted.value = state.isAccepted ? pose : null;
-    object.isShown.value = state.isShown;
-    object.isLocked.value = state.isLocked;
-    object.knownScale.value = state.knownScale;
+    if (state != null) applyToObject(state, object);
   });
+}
+
+/** Gives an object the pose, the decision and the settings that were stored. */
+export function applyToObject(state: PackedState, object: ObjectModel): void {
+  const { matrix, source, alternative, alignment, comment = "" } = state;
+  const verdict = verdictOf(state);
+  const pose = { transform: toSim3(matrix), source, alignment, ...(alternative !== undefined && { alternative }) };
+  object.run.value = { state: alignment === null ? "idle" : "done" };
+  // The pose of an object that was not aligned is the one before any alignment, in the present calibration.
+  if (source !== "start") object.pose.value = pose;
+  object.decision.value = verdict === null ? null : { verdict, pose: object.pose.peek() };
+  object.comment.value = comment;
+  object.isShown.value = state.isShown;
+  object.isLocked.value = state.isLocked;
+  object.knownScale.value = state.knownScale;
 }
 
 /** Whether a file of an archive is a session. */

@@ -74,15 +74,10 @@ export async function claimWork(id: string): Promise<void> {
  */
 export async function storeWork(work: Work, files: readonly NamedFile[] | null): Promise<boolean> {
   const { id } = work;
-
-  const read =
-    files &&
-    (await Promise.all(
-      files.map(async ({ path, bytes }): Promise<StoredFile> => {
-        const content = (await bytes()) as Uint8Array<ArrayBuffer>;
-        return { path, content: new Blob([content]) };
-      }),
-    ));
+  const read: StoredFile[] | null = files && [];
+  // One after the other: those of a video together may be more than this thread can hold.
+  for (const { path, bytes } of files ?? [])
+    read?.push({ path, content: new Blob([(await bytes()) as Uint8Array<ArrayBuffer>]) });
   const [owner] = await transact("readwrite", (works, contents, owners) => {
     const found = owners.get(id);
     found.addEventListener("success", () => {

@@ -23,6 +23,9 @@ export interface Draft {
 
 export const draft = signal<Draft | null>(null);
 
+/** The doubts that a person has seen and left as they are: the other scenes of a drop mostly have the same ones. */
+export const seenDoubts = new Set<string>();
+
 /** The inputs that the draft is about. */
 export const draftInputs = ({ scenes, index }: Draft): Inputs => scenes[index] as Inputs;
 

@@ -4,7 +4,7 @@
  */
 import { batch, computed, type Signal, signal } from "@preact/signals";
 import type { Support } from "sim3align";
-import type { ObjectModel } from "./object-model.js";
+import type { Decision, ObjectModel, Verdict } from "./object-model.js";
 import { type Nudge, nudged, type Pose } from "./pose.js";
 import type { Scene, SceneState } from "./scene.js";
 
@@ -17,12 +17,12 @@ interface Snapshot {
 
 interface Settled {
   pose: Pose;
-  accepted: Pose | null;
+  decision: Decision | null;
   knownScale: number | null;
 }
 
-const settled = ({ pose, accepted, knownScale }: ObjectModel): Settled => ({
-  ...{ pose: pose.peek(), accepted: accepted.peek(), knownScale: knownScale.peek() },
+const settled = ({ pose, decision, knownScale }: ObjectModel): Settled => ({
+  ...{ pose: pose.peek(), decision: decision.peek(), knownScale: knownScale.peek() },
 });
 
 interface Step {
@@ -74,10 +74,10 @@ export function historyState({ objects, recalibrate, scene, select, support }: S
     return { transform, source: "hand", alignment: object.alignment.peek() };
   }
 
-  /** Accepts the present pose of an object. */
-  const acceptPose = (object: ObjectModel) =>
+  /** Decides about the present pose of an object, as a step that can be undone. */
+  const decide = (object: ObjectModel, verdict: Verdict) =>
     record(object, () => {
-      object.accepted.value = object.pose.peek();
+      object.decision.value = { verdict, pose: object.pose.peek() };
     });
 
   /** Changes the pose of an object by hand, as a step of its own or as a part of the last one. */
@@ -100,9 +100,9 @@ export function historyState({ objects, recalibrate, scene, select, support }: S
       select(step.object.id);
       if (whole !== null && whole !== scene.peek()) recalibrate(whole);
       support.value = plane;
-      for (const [object, { pose, accepted, knownScale }] of states) {
+      for (const [object, { pose, decision, knownScale }] of states) {
         object.pose.value = pose;
-        object.accepted.value = accepted;
+        object.decision.value = decision;
         object.knownScale.value = knownScale;
       }
     });
@@ -117,5 +117,5 @@ export function historyState({ objects, recalibrate, scene, select, support }: S
     redoSteps.value = [];
   });
 
-  return { canUndo, canRedo, record, place, acceptPose, byHand, nudge, undo, redo };
+  return { canUndo, canRedo, record, place, decide, byHand, nudge, undo, redo };
 }

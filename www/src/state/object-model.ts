@@ -14,6 +14,15 @@ export type Run =
   | { readonly state: "cancelled" }
   | { readonly state: "failed"; readonly error: Sim3AlignError | Error };
 
+/** What a person has decided about an object: its pose is right, or there is to be none. */
+export type Verdict = "accepted" | "skipped" | "impossible";
+
+export interface Decision {
+  readonly verdict: Verdict;
+  /** The pose at that time. */
+  readonly pose: Pose;
+}
+
 /** The inputs of an object. */
 export interface ObjectParts {
   id: string;
@@ -54,10 +63,15 @@ export class ObjectModel implements Readonly<ObjectParts> {
   readonly isShown = signal(true);
   /** Whether alignments of the whole scene, and handles, leave the pose unchanged. */
   readonly isLocked = signal(false);
-  /** The pose that a person has accepted. */
-  readonly accepted = signal<Pose | null>(null);
-  /** Whether that is the present one: another pose has to be accepted anew. */
-  readonly isAccepted = computed(() => this.accepted.value === this.pose.value);
+  readonly decision = signal<Decision | null>(null);
+  /** The decision that counts: another pose has to be accepted anew. */
+  readonly verdict = computed<Verdict | null>(() => {
+    const { verdict, pose } = this.decision.value ?? {};
+    return verdict === undefined || (verdict === "accepted" && pose !== this.pose.value) ? null : verdict;
+  });
+  readonly isAccepted = computed(() => this.verdict.value === "accepted");
+  /** What a person notes beside the decision. */
+  readonly comment = signal("");
   /** The known scale in metres per mesh unit, which every alignment keeps; null if it is free. */
   readonly knownScale = signal<number | null>(null);
   readonly run = signal<Run>({ state: "idle" });
@@ -94,6 +108,19 @@ export class ObjectModel implements Readonly<ObjectParts> {
   /** Makes the present scale the known one, or no scale. */
   lockScale(isLocked: boolean): void {
     this.knownScale.value = isLocked ? this.pose.peek().transform.scale : null;
+  }
+
+  /** Whether alignments of the whole scene leave the pose as it is, because a person has decided on it. */
+  get isHeld(): boolean {
+    return this.isLocked.value || this.verdict.value !== null || this.pose.value.source === "alternative";
+  }
+
+  /** Writes the pose in another unit. If it was accepted, it still is. */
+  rebase(pose: Pose): void {
+    const { isAccepted } = this;
+    const wasAccepted = isAccepted.peek();
+    this.pose.value = pose;
+    if (wasAccepted) this.decision.value = { verdict: "accepted", pose };
   }
 
   /** Whether the object has a pose other than the start pose. */

@@ -7,12 +7,15 @@ import type { Progress } from "./progress.js";
 import type { Scene, SceneState } from "./scene.js";
 import type { StatusState } from "./status.js";
 
+/** What is looked for: what needs a person, what is not decided on, or anything. */
+export type NextKind = "doubtful" | "open" | "any";
+
 /** What the page does with files; an embedded scene has none of it. */
 export interface FileActions {
   /** Changes the files of the scene. */
   edit(): void;
-  /** Opens the next scene of the list. */
-  next(): void;
+  /** Shows the next frame or scene of this kind. Returns whether there is one. */
+  next(kind: NextKind): boolean;
 }
 
 /** One of the user's own scenes. */

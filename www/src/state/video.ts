@@ -2,6 +2,7 @@
 import { signal } from "@preact/signals";
 import type { DepthCalibration, Sim3, TrackState } from "sim3align";
 import type { Inputs } from "../load/inputs.js";
+import type { PackedState } from "../session/pack.js";
 
 /** The pose of a frame. */
 export interface FramePose {
@@ -31,5 +32,8 @@ export function videoState() {
   /** The poses of the frames, as far as they were tracked. */
   const framePoses = signal<readonly (FramePose | null)[]>([]);
 
-  return { video, frameIndex, framePoses };
+  /** What a person has done in the frames that were left: poses that are not the tracked ones, decisions and comments. */
+  const frameWorks = signal<readonly (PackedState | null)[]>([]);
+
+  return { video, frameIndex, framePoses, frameWorks };
 }

@@ -1,6 +1,6 @@
 /** The commands with keys, of the page and of an embedded element. The palette and the help list them. */
 
-import { accept, next } from "../panels/decision.js";
+import { accept, decideOn, next } from "../panels/decision.js";
 import { alignAll, alignSelected, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
 import type { Workspace } from "../state/workspace.js";
@@ -86,7 +86,9 @@ export const commands: readonly Command[] = [
     act: accept,
     isOffered: isNever,
   },
-  { key: "n", title: "N", about: "Next object or scene", act: next },
+  { key: "x", changes: true, title: "X", about: "Skip the object", act: decideOn("skipped") },
+  { key: "i", changes: true, title: "I", about: "Mark the object as impossible", act: decideOn("impossible") },
+  { key: "n", title: "N", about: "Next that needs a person", act: next },
   { key: "k", title: "K", about: "Previous object", act: selectNeighbour(-1) },
   { key: "j", title: "J", about: "Next object", act: selectNeighbour(1) },
   { key: "c", title: "C", about: "Camera view", act: lookFrom("camera") },
