@@ -13,7 +13,7 @@ import { kilobytes, sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
 import { install, packed } from "./installed.mjs";
 
 /** Limits in bytes; the tarball holds the WebAssembly twice, the second time in `inline.js`. */
-const limits = { tarball: 3_850_000, pageScript: 113_500, elementScript: 82_000 };
+const limits = { tarball: 3_850_000, pageScript: 114_500, elementScript: 82_500 };
 
 /** How users' compilers find declarations. */
 const resolutions = { node16: { module: "node16" }, bundler: { module: "esnext", moduleResolution: "bundler" } };
