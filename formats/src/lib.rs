@@ -21,6 +21,7 @@ mod jpeg;
 pub mod mask;
 pub mod mesh;
 mod mesh_builder;
+mod mesh_format;
 mod mtl;
 mod npy;
 mod npz;

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::color::linear;
-use crate::mesh::MeshReadOptions;
+use crate::mesh_format::MeshReadOptions;
 use crate::painted_mesh::Material;
 use crate::resources::external;
 use crate::text::{lines, number, words};

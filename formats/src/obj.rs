@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
-use crate::mesh::MeshReadOptions;
 use crate::mesh_builder::MeshBuilder;
+use crate::mesh_format::MeshReadOptions;
 use crate::mtl::MaterialLibrary;
 use crate::resources::{Resources, distinct, external};
 use crate::text::{lines, number, parsed, quoted, words};

@@ -3,7 +3,6 @@
 use ::gltf::json;
 use serde::Deserialize;
 
-use crate::gltf::instancing::{INSTANCING, Instances};
 use crate::guard::{corrupt, too_large, unsupported};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
@@ -12,6 +11,7 @@ const MAX_JSON_OBJECTS: usize = 1 << 20;
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 
+const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// Supported required extensions: they are applied, or do not affect the shape.
@@ -66,6 +66,22 @@ pub(super) struct SkinJson {
 pub(super) struct Scene {
     #[serde(default)]
     pub nodes: Vec<usize>,
+}
+
+/// The instances of a node.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Instances {
+    pub(super) attributes: InstanceAttributes,
+}
+
+/// Accessors with an element per instance.
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "UPPERCASE")]
+pub(super) struct InstanceAttributes {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
 }
 
 impl Document {

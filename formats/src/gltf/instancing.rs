@@ -1,30 +1,11 @@
 //! `EXT_mesh_gpu_instancing`: several copies of a node's mesh, each with a transform of its own.
 
 use glam::{DMat4, DQuat, DVec3, Vec3};
-use serde::Deserialize;
 
 use crate::gltf::accessor::AccessorReader;
-use crate::gltf::scene::unit;
+use crate::gltf::document::Instances;
 use crate::guard::corrupt;
 use sim3align_geometry::error::Result;
-
-pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
-
-/// The instances of a node.
-#[derive(Default, Deserialize)]
-#[serde(default)]
-pub(super) struct Instances {
-    attributes: Attributes,
-}
-
-/// Accessors with an element per instance.
-#[derive(Default, Deserialize)]
-#[serde(default, rename_all = "UPPERCASE")]
-struct Attributes {
-    translation: Option<usize>,
-    rotation: Option<usize>,
-    scale: Option<usize>,
-}
 
 impl Instances {
     /// The transforms of the copies of the node's mesh, each node_from_instance.
@@ -50,4 +31,10 @@ impl Instances {
         };
         Ok((0..count).map(transform).collect())
     }
+}
+
+/// A quaternion x, y, z, w of length 1. Some exporters write zeros for the identity.
+pub(super) fn unit(xyzw: [f64; 4]) -> DQuat {
+    let rotation = DQuat::from_array(xyzw);
+    if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
 }

@@ -17,7 +17,7 @@ use self::container::Container;
 use self::document::Document;
 use self::materials::Materials;
 use crate::colored_mesh::{ColoredMesh, Content};
-use crate::mesh::MeshReadOptions;
+use crate::mesh_format::MeshReadOptions;
 use crate::resources::{ExternalResources, distinct};
 use sim3align_geometry::error::Result;
 

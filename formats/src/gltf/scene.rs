@@ -3,11 +3,12 @@
 use ::gltf::json;
 use ::gltf::json::mesh::{Mode, Semantic};
 use ::gltf::json::validation::Checked;
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DVec3};
 
 use crate::colored_mesh::ColoredMesh;
 use crate::gltf::accessor::AccessorReader;
 use crate::gltf::document::{Document, Node};
+use crate::gltf::instancing::unit;
 use crate::gltf::materials::Materials;
 use crate::gltf::skin::Skin;
 use crate::guard::{corrupt, missing};
@@ -144,12 +145,6 @@ fn parent_from_node(node: &Node) -> Result<DMat4> {
     let scale = DVec3::from_array(numbers(&node.scale, [1.0; 3])?);
     let translation = DVec3::from_array(numbers(&node.translation, [0.0; 3])?);
     Ok(DMat4::from_scale_rotation_translation(scale, rotation, translation))
-}
-
-/// A quaternion x, y, z, w of length 1. Some exporters write zeros for the identity.
-pub(super) fn unit(xyzw: [f64; 4]) -> DQuat {
-    let rotation = DQuat::from_array(xyzw);
-    if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
 }
 
 /// The numbers of a property, or its default.
