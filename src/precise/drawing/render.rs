@@ -24,9 +24,6 @@ const MAX_LAYERS: usize = 32;
 /// Maximum coordinate of a vertex, in steps; larger ones are clamped.
 const FARTHEST: f32 = 1_000_000.0;
 
-/// Planes on whose upper side every point is.
-const SEEN: [f32x4; 4] = [f32x4::ZERO, f32x4::ZERO, f32x4::ZERO, f32x4::new([-1.0; LANES])];
-
 /// A mesh prepared for rendering.
 #[derive(Debug, Clone)]
 pub struct Model {
@@ -40,7 +37,8 @@ pub struct Model {
     lanes: Vec<[f32x4; 3]>,
     /// The normals, with a fourth number.
     pub(in crate::precise) facets: Vec<f32x4>,
-    /// The planes of the triangles, n·x > d on the side from which they are drawn, four at a time: n by axis, and d.
+    /// The planes of the triangles, n·x > d on the side from which they are drawn, four at a time: n by axis, and d. Empty if both
+    /// sides are drawn.
     planes: Vec<[f32x4; 4]>,
 }
 
@@ -60,7 +58,7 @@ impl Model {
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
             facets: normals.iter().map(|n| f32x4::new([n.x, n.y, n.z, 0.0])).collect(),
-            planes: vec![SEEN; normals.len().div_ceil(LANES)],
+            planes: Vec::new(),
             normals,
             lanes: mesh.positions().chunks(LANES).map(in_lanes).collect(),
         }
@@ -68,21 +66,22 @@ impl Model {
 
     /// Draws triangles from now on from both sides.
     pub fn draw_both_sides(&mut self) {
-        self.planes.fill(SEEN);
+        self.planes.clear();
     }
 
     /// Draws triangles from now on only from where their corners run counterclockwise, or with −1 as `sign` clockwise.
     pub fn draw_one_side(&mut self, sign: f32) {
-        for (k, planes) in self.planes.iter_mut().enumerate() {
-            let plane = |lane: usize| {
-                let triangle = self.triangles.get(LANES * k + lane)?;
-                let normal = *self.normals.get(LANES * k + lane)? * sign;
-                Some([normal.x, normal.y, normal.z, normal.dot(self.positions[triangle[0] as usize])])
-            };
-            // Those that fill the last lanes are seen from nowhere.
-            let four = [0, 1, 2, 3].map(|lane| f32x4::new(plane(lane).unwrap_or([0.0, 0.0, 0.0, 1.0])));
-            *planes = f32x4::transpose(four);
-        }
+        let plane = |i: usize| {
+            let normal = *self.normals.get(i)? * sign;
+            let corner = self.positions[self.triangles[i][0] as usize];
+            Some([normal.x, normal.y, normal.z, normal.dot(corner)])
+        };
+        // Those that fill the last lanes are seen from nowhere.
+        let four = |k: usize| {
+            let four = [0, 1, 2, 3].map(|lane| f32x4::new(plane(k + lane).unwrap_or([0.0, 0.0, 0.0, 1.0])));
+            f32x4::transpose(four)
+        };
+        self.planes = (0..self.triangles.len()).step_by(LANES).map(four).collect();
     }
 }
 
@@ -161,6 +160,11 @@ impl Canvas {
 
     /// Finds the triangles that are seen from the side from which they are drawn.
     fn see(&mut self, model: &Model, stretch: &Mat3) {
+        self.seen.clear();
+        if model.planes.is_empty() {
+            self.seen.extend(0..model.triangles.len() as u32);
+            return;
+        }
         let camera = stretch.inverse() * (self.rotation.transpose() * -self.translation / self.scale);
         let [x, y, z] = camera.to_array().map(f32x4::splat);
         self.seen.resize(LANES * model.planes.len(), 0);
@@ -172,8 +176,7 @@ impl Canvas {
                 count += (is_seen >> lane & 1) as usize;
             }
         }
-        // Without planes of their own, those that fill the last lanes are seen.
-        self.seen.truncate(count.min(model.triangles.len()));
+        self.seen.truncate(count);
     }
 
     /// Transforms the vertices to the camera frame and projects them onto the grid.
