@@ -10,7 +10,6 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 const MAX_JSON_OBJECTS: usize = 1 << 20;
 
 const DRACO: &str = "KHR_draco_mesh_compression";
-
 const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 

@@ -4,8 +4,7 @@ import { filledRuns } from "../input/coco-rle.js";
 import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
-import type { PixelArray } from "../values/pixels.js";
-import { type ImageSize, sizeOf } from "../values/pixels.js";
+import { type ImageSize, type PixelArray, sizeOf } from "../values/pixels.js";
 import { flattened, whole } from "../values/values.js";
 
 /** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */

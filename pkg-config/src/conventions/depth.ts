@@ -4,8 +4,7 @@ import { depthOfRays } from "../camera/ray-distance.js";
 import type { DepthCalibration } from "../generated/types.js";
 import type { CameraInput } from "../types/inputs.js";
 import { plainArgument } from "../values/border.js";
-import type { PixelArray } from "../values/pixels.js";
-import { pixelsOf, pointKinds } from "../values/pixels.js";
+import { type PixelArray, pixelsOf, pointKinds } from "../values/pixels.js";
 import { finite, positive, record } from "../values/values.js";
 
 /** See `src/calibrate/calibration.rs`. */

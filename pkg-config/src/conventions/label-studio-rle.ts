@@ -1,8 +1,7 @@
 /** Brush masks in Label Studio's format: a bit stream of the flattened RGBA pixels. */
 
 import { describe, failure } from "../values/error.js";
-import type { PixelArray } from "../values/pixels.js";
-import { type ImageSize, sizeOf } from "../values/pixels.js";
+import { type ImageSize, type PixelArray, sizeOf } from "../values/pixels.js";
 import { flattened } from "../values/values.js";
 
 /**

@@ -4,8 +4,7 @@ import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isKind, isRecord, isTypedArray, typedArrayKind } from "../values/kinds.js";
 import { withLive } from "../values/live.js";
-import type { PixelArray } from "../values/pixels.js";
-import { checkCount } from "../values/pixels.js";
+import { checkCount, type PixelArray } from "../values/pixels.js";
 import { flattened, record, whole, wrongKind } from "../values/values.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */

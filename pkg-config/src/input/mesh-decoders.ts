@@ -6,9 +6,9 @@ export type DecodeGeometry = (bytes: Uint8Array, options: ReadMeshOptions) => [U
 
 /** Decodes meshopt: the `MeshoptDecoder` of the npm package `meshoptimizer`, and of three.js. */
 export interface MeshoptDecoder {
-  /** When it can be used. */
+  /** Settles when the decoder is ready. */
   readonly ready: PromiseLike<unknown>;
-  /** Whether the runtime has what it needs. */
+  /** Whether the runtime supports it. */
   readonly supported: boolean;
   /** Decodes a buffer view of glTF into `target`, `count` elements of `size` bytes. */
   decodeGltfBuffer(
@@ -45,7 +45,7 @@ export interface DracoDecoderModule {
   readonly DT_FLOAT32: number;
   /** Allocates memory. */
   _malloc(bytes: number): number;
-  /** Frees it. */
+  /** Frees allocated memory. */
   _free(pointer: number): void;
   /** Frees an object of the classes. */
   destroy(object: object): void;
@@ -71,13 +71,13 @@ export interface DracoDecoder {
 
 /** Compressed bytes of a {@link DracoDecoderModule}. */
 export interface DracoBuffer {
-  /** Takes the bytes. */
+  /** Sets the compressed bytes. */
   Init(data: Int8Array, bytes: number): void;
 }
 
 /** A mesh of a {@link DracoDecoderModule}, with what its published types demand of one. */
 export interface DracoMesh {
-  /** Where it is in the memory. */
+  /** The address in the module's memory. */
   readonly ptr: number;
   /** The number of attributes. */
   num_attributes(): number;
@@ -99,10 +99,10 @@ export interface DracoClass<T> {
   new (): T;
 }
 
-/** Whether a {@link DracoDecoder} succeeded. */
+/** The outcome of a {@link DracoDecoder}. */
 export interface DracoStatus {
-  /** Whether it did. */
+  /** Whether decoding succeeded. */
   ok(): boolean;
-  /** Why not. */
+  /** The reason for a failure. */
   error_msg(): string;
 }

@@ -29,10 +29,12 @@ pub fn draw_one_side(mesh: &Mesh, models: &mut [Model; GRIDS]) {
     let both = images(&models[SIEVE]);
     models.iter_mut().for_each(|model| model.draw_one_side(sign));
     let one = images(&models[SIEVE]);
-    let is_drawn = |(a, _): &(f32, f32)| *a > 0.0;
-    let is_other = |(a, b): &(f32, f32)| is_drawn(&(*a, *b)) && (a - b).abs() > OTHER / DISTANCE as f32;
-    let cells = || both.iter().copied().zip(one.iter().copied());
-    if cells().filter(is_other).count() as f64 > FOLDED * cells().filter(is_drawn).count() as f64 {
+    let (mut others, mut drawn) = (0_usize, 0_usize);
+    for (a, b) in both.iter().zip(&one).filter(|(a, _)| **a > 0.0) {
+        others += usize::from((a - b).abs() > OTHER / DISTANCE as f32);
+        drawn += 1;
+    }
+    if others as f64 > FOLDED * drawn as f64 {
         models.iter_mut().for_each(Model::draw_both_sides);
     }
 }
