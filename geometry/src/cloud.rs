@@ -1,6 +1,7 @@
 //! Point clouds and axis-aligned bounding boxes.
 
 use glam::Vec3;
+use wide::f32x4;
 
 /// Points, optionally with unit normals, in any frame and unit.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -51,9 +52,14 @@ pub struct Bounds {
 
 impl Bounds {
     /// The smallest box around the points; `None` for no points.
+    #[inline(never)]
     pub fn of(points: &[Vec3]) -> Option<Self> {
-        let (&first, rest) = points.split_first()?;
-        Some(rest.iter().fold(Self { min: first, max: first }, |b, &p| b.union(Self { min: p, max: p })))
+        let lanes = |p: &Vec3| f32x4::new([p.x, p.y, p.z, 0.0]);
+        let first = lanes(points.first()?);
+        let widened = |(min, max): (f32x4, f32x4), p: &Vec3| (min.fast_min(lanes(p)), max.fast_max(lanes(p)));
+        let (min, max) = points.iter().fold((first, first), widened);
+        let [min, max] = [min, max].map(|corner| Vec3::from_slice(corner.as_array()));
+        Some(Self { min, max })
     }
 
     /// The empty box, the identity of [`Bounds::union`].

@@ -92,8 +92,9 @@ impl Clusters {
                 *entry
             })
             .collect::<Vec<u32>>();
+        let mut triangles = Vec::with_capacity(3 * count as usize);
         let clustered = mesh.triangles().iter().map(|t| t.map(|i| of_vertex[i as usize]));
-        let triangles = clustered.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        triangles.extend(clustered.filter(|[a, b, c]| a != b && b != c && c != a));
         Self { of_vertex, count: count as usize, triangles, cell }
     }
 

@@ -8,6 +8,7 @@ use glam::Vec3;
 use wide::f32x4;
 
 use super::cloud::Bounds;
+use super::counts;
 use super::kd_nodes::{Division, Node, Query};
 use super::order::{pack, select_smallest, value_of};
 use super::pauses::Pauses;
@@ -69,6 +70,7 @@ impl KdTree {
     }
 
     fn of(points: &[Vec3], Division { order, nodes, .. }: Division) -> Self {
+        counts::add(|| counts::Counts { sorted: points.len() as u64, ..Default::default() });
         let points: Vec<(Vec3, u32)> = order.into_iter().map(|i| (points[i as usize], i)).collect();
         let axis = |axis: usize| points.iter().map(|(p, _)| p[axis]).chain([0.0; LANES - 1]).collect();
         Self { axes: [axis(0), axis(1), axis(2)], points, nodes }
@@ -132,6 +134,7 @@ impl KdTree {
     }
 
     fn visit(&self, query: Vec3, collector: &mut impl Collector) {
+        counts::add(|| counts::Counts { queries: 1, ..Default::default() });
         self.descend(0, 0, self.points.len(), &Query::new(query), collector);
     }
 

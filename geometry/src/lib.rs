@@ -10,6 +10,7 @@ pub mod angle;
 pub mod clip;
 pub mod cloud;
 pub mod components;
+pub mod counts;
 pub mod curve;
 pub mod decimate;
 pub mod depth_kind;

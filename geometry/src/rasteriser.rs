@@ -8,6 +8,7 @@
 use glam::{DMat3, DVec3};
 
 use super::clip::{ClipVolume, GUARD_BAND_PX};
+use super::counts;
 use super::image::Window;
 use super::mesh::Mesh;
 use super::pinhole::Pinhole;
@@ -49,6 +50,8 @@ const MAX_COORDINATE: f64 = 1e60;
 pub struct Rasteriser {
     window: Window,
     vertices: Vec<Vertex>,
+    /// The vertices in camera space, apart, because most triangles do not reach the centre of a pixel.
+    cameras: Vec<DVec3>,
     /// 1/z during rendering, z afterwards.
     depth: Vec<f32>,
     triangles: Vec<u32>,
@@ -58,10 +61,9 @@ pub struct Rasteriser {
     is_farthest: bool,
 }
 
-/// A vertex in camera space and, if it can be projected without clipping, on the sub-pixel grid.
+/// A vertex on the sub-pixel grid, if it can be projected without clipping.
 #[derive(Debug, Clone, Copy)]
 struct Vertex {
-    camera: DVec3,
     fixed: [i32; 2],
     placement: Placement,
 }
@@ -207,25 +209,36 @@ impl Rasteriser {
         self.triangles.resize(pixels, NO_TRIANGLE);
         let volume = ClipVolume::new(camera, near);
         self.visited = 0;
+        let cameras = core::mem::take(&mut self.cameras);
         for (id, triangle) in (0..).zip(mesh.triangles()) {
             if self.visited > MAX_LAYERS * self.depth.len() {
                 break;
             }
             let corners = triangle.map(|i| self.vertices[i as usize]);
-            let points = corners.map(|v| v.camera);
+            let points = || triangle.map(|i| cameras[i as usize]);
             if corners.iter().all(|v| v.placement == Placement::Inside) {
-                let plane = || InverseDepth::of(points, &points, camera);
+                let plane = || {
+                    let points = points();
+                    InverseDepth::of(points, &points, camera)
+                };
                 self.fill(id, corners.map(|v| v.fixed), plane);
             } else if corners.iter().all(|v| v.placement != Placement::Nowhere) {
-                let (polygon, count) = volume.clip(points);
+                let (polygon, count) = volume.clip(points());
                 let polygon = &polygon[..count];
-                let plane = || InverseDepth::of(points, polygon, camera);
+                let plane = || InverseDepth::of(points(), polygon, camera);
                 for i in 2..count {
                     let fan = [polygon[0], polygon[i - 1], polygon[i]];
                     self.fill(id, fan.map(|p| fixed(project(p, camera))), plane);
                 }
             }
         }
+        self.cameras = cameras;
+        counts::add(|| counts::Counts {
+            vertices: self.vertices.len() as u64,
+            triangles: mesh.triangles().len() as u64,
+            visited: self.visited as u64,
+            ..Default::default()
+        });
         for z in &mut self.depth {
             *z = if *z == nothing { 0.0 } else { 1.0 / (order * *z) };
         }
@@ -237,23 +250,25 @@ impl Rasteriser {
         let linear = DMat3::from_cols_slice(linear.as_slice());
         let translation = DVec3::from_slice(camera_from_mesh.translation.as_slice());
         let mut farthest = 0.0f64;
+        self.cameras.clear();
+        self.cameras.extend(mesh.positions().iter().map(|p| linear * p.as_dvec3() + translation));
         self.vertices.clear();
-        self.vertices.extend(mesh.positions().iter().map(|p| {
-            let camera = linear * p.as_dvec3() + translation;
+        self.vertices.extend(self.cameras.iter().map(|camera| {
             let finite = camera.abs().max_element() <= MAX_COORDINATE && !camera.is_nan();
             if finite {
                 farthest = farthest.max(camera.z);
             }
             let placement = if finite { Placement::Outside } else { Placement::Nowhere };
-            Vertex { camera, fixed: [0; 2], placement }
+            Vertex { fixed: [0; 2], placement }
         }));
         // 1/z must fit into f32.
         (NEAR * farthest).max(1e-30)
     }
 
     fn project(&mut self, camera: &Pinhole, near: f64) {
-        for vertex in self.vertices.iter_mut().filter(|v| v.placement == Placement::Outside && v.camera.z >= near) {
-            let [u, v] = project(vertex.camera, camera);
+        let vertices = self.vertices.iter_mut().zip(&self.cameras);
+        for (vertex, place) in vertices.filter(|(v, p)| v.placement == Placement::Outside && p.z >= near) {
+            let [u, v] = project(*place, camera);
             if u.abs() <= GUARD_BAND_PX && v.abs() <= GUARD_BAND_PX {
                 vertex.fixed = fixed([u, v]);
                 vertex.placement = Placement::Inside;
@@ -286,10 +301,9 @@ impl Rasteriser {
         let edges = [Edge::new(a, b), Edge::new(b, c), Edge::new(c, a)];
         let corner = [u0 * SUBPIXEL, v0 * SUBPIXEL];
         let mut row = edges.map(|e| e.at(corner) - e.exclusive());
-        let plane = plane();
+        let mut known = None;
         for v in v0..=v1 {
             let start = (v as usize - first[1]) * size[0];
-            let w_row = plane.origin + plane.dv * v as f64;
             let (mut e, mut range) = (row, (u0, u1));
             if u1 - u0 >= WIDE {
                 // A long thin triangle fills little of its box.
@@ -304,6 +318,8 @@ impl Rasteriser {
                 if (e[0] | e[1] | e[2]) >= 0 {
                     let i = start + (u as usize - first[0]);
                     // In this order, NaN (from a plane seen edge-on) becomes the lower bound.
+                    let plane = known.get_or_insert_with(&plane);
+                    let w_row = plane.origin + plane.dv * v as f64;
                     let w = order * (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
                     if w > self.depth[i] {
                         self.depth[i] = w;

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 use wide::f32x4;
 
+use super::counts;
 use super::curve::along_curve;
 use super::mesh::Mesh;
 use super::order::{index_of, pack, select_smallest};
@@ -111,6 +112,7 @@ impl TriangleTree {
             let [a, b, c] = mesh.corners(triangle);
             [f32x4::new([a.x, a.y, a.z, 0.0]), f32x4::new([b.x, b.y, b.z, 0.0]), f32x4::new([c.x, c.y, c.z, 0.0])]
         };
+        counts::add(|| counts::Counts { sorted: mesh.triangles().len() as u64, ..Default::default() });
         let half = f32x4::splat(0.5);
         let mut centers = Vec::with_capacity(mesh.triangles().len());
         for &triangle in mesh.triangles() {
@@ -167,6 +169,7 @@ impl TriangleTree {
         if !query.is_finite() {
             return None;
         }
+        counts::add(|| counts::Counts { queries: 1, ..Default::default() });
         let best = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
         let lanes = [f32x4::splat(query.x), f32x4::splat(query.y), f32x4::splat(query.z)];
         let mut search = Search { query, lanes, best, hint };

@@ -5,7 +5,7 @@ pub mod bench;
 pub mod case;
 pub mod case_folder;
 pub mod clouds;
-pub mod cpu_time;
+pub mod cost;
 mod draws;
 mod effects;
 mod files;

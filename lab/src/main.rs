@@ -19,7 +19,7 @@ struct Program {
 enum Command {
     /// Aligns cases with a known truth, and prints tables
     Bench(bench::Arguments),
-    /// Aligns case folders, and prints CPU times and counts of renders as JSON
+    /// Aligns case folders, and prints CPU times and counts of work as JSON
     Profile(profile::Arguments),
     /// Writes pairs of clouds, and registers them
     #[command(subcommand)]

@@ -16,7 +16,7 @@ import { attempt } from "../lib/run.mjs";
  * @property {readonly [scale: number, rotationDeg: number, place: number | null] | null} errors
  * @property {number | null} [confidence]
  * @property {number | null} [ms]
- * @property {number | null} [renders]
+ * @property {Record<string, number> | null} [work] counts: `Counts` of `geometry/src/counts.rs`
  * @property {Metrics | null} [metrics]
  * @property {Metrics | null} [truthMetrics]
  * @property {boolean} [collapsed]

@@ -1,5 +1,5 @@
 /** The losses of a new record against an older one on the same cases: accuracy beyond chance, work, size. */
-import { mean, median } from "../bench/table.mjs";
+import { median } from "../bench/table.mjs";
 
 /** A loss counts if chance alone would show it in fewer than one of twenty comparisons… */
 const SIGNIFICANT = 0.05;
@@ -20,14 +20,14 @@ const kinds = /** @type {const} */ (["strict", "loose"]);
  * @property {boolean} strict
  * @property {boolean} loose
  * @property {readonly (number | null)[] | null} errors
- * @property {number | null} [work] renders of the search
  */
 /**
  * @typedef {object} QuickRecord
  * @property {string} version
  * @property {Readonly<Record<string, number>>} sizes bytes of the modules, gzipped
- * @property {readonly { set: string, lines: readonly Line[] }[]} sets
+ * @property {readonly { set: string, work: Work, lines: readonly Line[] }[]} sets
  */
+/** @typedef {Readonly<Record<string, Readonly<Record<string, number>>>>} Work sums of the counts, by row and name */
 /** @typedef {readonly (readonly [before: Line, after: Line])[]} Pairs */
 
 /**
@@ -40,8 +40,10 @@ export function losses(before, after) {
   const found = [];
   /** Pairs of each case of all sets, of as many rows as it has. @type {Pairs[number][][]} */
   const cases = [];
-  for (const { set, lines } of before.sets) {
-    const now = new Map(after.sets.find((other) => other.set === set)?.lines.map((line) => [key(line), line]));
+  for (const { set, work, lines } of before.sets) {
+    const other = after.sets.find((found) => found.set === set);
+    found.push(...grown(set, work, other?.work));
+    const now = new Map(other?.lines.map((line) => [key(line), line]));
     const pairs = lines.flatMap((line) => {
       const other = now.get(key(line));
       return other === undefined ? [] : [/** @type {const} */ ([line, other])];
@@ -94,12 +96,17 @@ function lossesOf(name, pairs) {
       found.push(`${name}: the error of ${error} grows by ${(100 * growth).toFixed(1)} % in the median${odds(chance)}`);
     }
   }
-  const [before, after] = [0, 1].map((i) => mean(pairs.map((pair) => pair[i]?.work ?? 0)));
-  if ((after ?? 0) > (before ?? 0) * (1 + WORK)) {
-    found.push(`${name}: ${before?.toFixed(0)} -> ${after?.toFixed(0)} renders a case`);
-  }
   return found;
 }
+
+/** @param {string} set @param {Work} before @param {Work | undefined} after @returns {string[]} */
+const grown = (set, before, after) =>
+  Object.entries(before).flatMap(([row, counts]) =>
+    Object.entries(counts).flatMap(([name, count]) => {
+      const ratio = (after?.[row]?.[name] ?? 0) / count;
+      return ratio > 1 + WORK ? [`${set}, ${row}: ${ratio.toFixed(2)} times as many ${name}`] : [];
+    }),
+  );
 
 /** 1 for a loss, -1 for a gain. @param {Pairs[number]} pair @param {typeof kinds[number]} kind */
 const changeOf = ([before, after], kind) => Number(before[kind]) - Number(after[kind]);

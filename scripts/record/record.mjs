@@ -64,7 +64,7 @@ export async function record({ quick = false, check, save, out, fresh = false, o
   const version = packageVersion();
   const modules = wasmModules.filter((module) => existsSync(wasmFile(module)));
   const measured = Object.fromEntries(modules.map((module) => [module.name, sizes(wasmFile(module)).gzip]));
-  const now = { version, sizes: measured, sets: found.map(({ set, results }) => ({ set, lines: linesOf(results) })) };
+  const now = { version, sizes: measured, sets: found.map(({ set, results }) => ({ set, work: workOf(results), lines: linesOf(results) })) };
   if (save && quick) {
     mkdirSync(at("docs", "record"), { recursive: true });
     writeFileSync(quickFile, `${JSON.stringify(now).replaceAll('},{"row"', '},\n{"row"')}\n`);
@@ -74,14 +74,26 @@ export async function record({ quick = false, check, save, out, fresh = false, o
   return check ? losses(JSON.parse(readFileSync(quickFile, "utf8")), now) : [];
 }
 
+/** The sums of the counts of work, by row. @param {readonly import("../bench/results.mjs").ResultRow[]} results */
+function workOf(results) {
+  /** @type {Record<string, Record<string, number>>} */
+  const sums = {};
+  for (const { row, work } of results) {
+    for (const [name, count] of Object.entries(work ?? {})) {
+      sums[row] ??= {};
+      sums[row][name] = (sums[row][name] ?? 0) + count;
+    }
+  }
+  return sums;
+}
+
 /**
  * Results as the quick record keeps them: without times, which differ from run to run, and with four digits.
  * @param {readonly import("../bench/results.mjs").ResultRow[]} results
  * @returns {import("./guard.mjs").Line[]}
  */
 const linesOf = (results) =>
-  results.map(({ row, name, strict, loose, errors, renders }) => ({
+  results.map(({ row, name, strict, loose, errors }) => ({
     ...{ row, case: name, strict: strict === true, loose: loose === true },
     errors: errors?.map((error) => (error === null ? null : rounded(error))) ?? null,
-    work: renders ?? null,
   }));

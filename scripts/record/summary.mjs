@@ -45,7 +45,7 @@ export const summaries = (set, results) =>
       medians: [0, 1, 2].map((i) => reduced(median, ({ errors }) => errors?.[i])),
       bins: binsOf(of),
       ms: reduced(median, ({ ms }) => ms),
-      work: reduced(mean, ({ renders }) => renders),
+      work: reduced(mean, ({ work }) => work?.renders),
       iou: reduced(mean, ({ metrics }) => metrics?.iou),
       truthIou: reduced(mean, ({ truthMetrics }) => truthMetrics?.iou),
     };

@@ -17,10 +17,12 @@ use crate::precise::drawing::prepared_mesh::PreparedMesh;
 thread_local! {
     /// The cached meshes, each with the id of the caller. There are few: a tree would be more code than data.
     static KEPT: RefCell<Vec<(u32, Rc<PreparedMesh<'static>>)>> = const { RefCell::new(Vec::new()) };
+    /// The mesh of the last call without an id.
+    static LAST: RefCell<Option<Rc<PreparedMesh<'static>>>> = const { RefCell::new(None) };
 }
 
 /// `{ positions, indices?, colors? | samples? }`; with `id`, the mesh is cached under this number, and the arrays are only read if it is
-/// not cached yet.
+/// not cached yet. Without, it is cached until the next one, which is the same if its contents are.
 #[inline(never)]
 pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     if !mesh.is_object() {
@@ -43,11 +45,19 @@ pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     let indices = indices.map(|indices| to_u32s(&indices, "mesh.indices")).transpose()?;
     let triangles = Mesh::from_flat(&positions, indices.as_deref())?;
     let colors = colors(mesh, &triangles)?;
+    let Some(id) = id else { return Ok(as_before(triangles, colors)) };
     let mesh = Rc::new(PreparedMesh::new(triangles).with_colors(colors));
-    if let Some(id) = id {
-        KEPT.with_borrow_mut(|kept| kept.push((id, mesh.clone())));
-    }
+    KEPT.with_borrow_mut(|kept| kept.push((id, mesh.clone())));
     Ok(mesh)
+}
+
+/// The mesh of the last call, if it was the same, otherwise a new one.
+fn as_before(mesh: Mesh, colors: Option<SurfaceColors>) -> Rc<PreparedMesh<'static>> {
+    LAST.with_borrow_mut(|last| {
+        // Two of them would take twice the memory.
+        last.take_if(|last| *last.whole() != mesh || last.all_colors() != colors.as_ref());
+        last.get_or_insert_with(|| Rc::new(PreparedMesh::new(mesh).with_colors(colors))).clone()
+    })
 }
 
 /// `colors`, sRGB-encoded red, green and blue per vertex, or `samples`, `{ positions, normals, colors }`, what the readers

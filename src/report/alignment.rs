@@ -20,7 +20,8 @@ pub struct Alignment {
     /// of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
     pub confidence: f64,
     /// Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the one
-    /// whose colours are those of the photo. `null` where the shape has no symmetry, or colour does not decide.
+    /// whose colours are those of the photo. `null` where no other turn is possible: the shape has no symmetry, its turns look
+    /// alike, or there are no colours to compare. Where no turn agrees with the photo, all are equally likely.
     pub turn_confidence: Option<f64>,
     /// Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
     /// are one, unless their colours differ.

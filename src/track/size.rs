@@ -3,13 +3,15 @@
 use glam::DQuat;
 
 use crate::geometry::rotations::angle_between;
-use crate::views::common_size::{SizeEvidence, mean};
+use crate::views::common_size::{DEPTH_ERROR, SizeEvidence, pooled};
 
 /// Angle between the directions from which frames count as different evidence, radians.
 const APART: f64 = 0.12;
 /// Number of frames, and standard deviation, relative, at which the size settles.
 const SETTLED: usize = 16;
 const SETTLED_SD: f64 = 0.0028;
+/// Largest change of the size from frame to frame, relative.
+const MAX_STEP: f64 = 0.008;
 
 /// The size so far.
 #[derive(Debug, Clone)]
@@ -17,12 +19,14 @@ pub struct Size {
     frames: Vec<(DQuat, SizeEvidence)>,
     known: Option<f64>,
     settled: Option<(f64, f64)>,
+    /// The logarithm of the scale of the last frame, which follows the evidence in small steps.
+    reached: Option<f64>,
 }
 
 impl Size {
     /// An unknown size, or a fixed one, as the logarithm of the scale.
     pub fn new(known: Option<f64>) -> Self {
-        Self { frames: Vec::new(), known, settled: None }
+        Self { frames: Vec::new(), known, settled: None, reached: None }
     }
 
     /// The logarithm of the scale and its standard deviation; `None` before the first evidence.
@@ -30,7 +34,19 @@ impl Size {
         if let Some(known) = self.known {
             return Some((known, 0.0));
         }
-        self.settled.or_else(|| mean(self.frames.iter().map(|(_, evidence)| *evidence)))
+        let (log_scale, sd) = self.evidence()?;
+        let reached = self.reached.unwrap_or(log_scale);
+        Some((reached, together(sd, log_scale - reached)))
+    }
+
+    /// The standard deviation with the errors that all frames share: those of the mesh and of the sensor; 0 before the first
+    /// evidence, or of a fixed size.
+    pub fn deviation(&self) -> f64 {
+        self.value().map_or(0.0, |(_, sd)| if self.known.is_some() { sd } else { together(sd, DEPTH_ERROR) })
+    }
+
+    fn evidence(&self) -> Option<(f64, f64)> {
+        self.settled.or_else(|| pooled(self.frames.iter().map(|(_, evidence)| *evidence)))
     }
 
     /// Whether later frames keep the size.
@@ -43,10 +59,18 @@ impl Size {
         !self.is_settled() && self.frames.iter().all(|(known, _)| angle_between(*known, rotation) > APART)
     }
 
+    /// Follows the evidence in the next frame.
+    pub fn advance(&mut self) {
+        if let Some((log_scale, _)) = self.evidence() {
+            let reached = self.reached.unwrap_or(log_scale);
+            self.reached = Some(reached + (log_scale - reached).clamp(-MAX_STEP, MAX_STEP));
+        }
+    }
+
     /// Adds the evidence of a frame.
     pub fn add(&mut self, rotation: DQuat, evidence: SizeEvidence) {
         self.frames.push((rotation, evidence));
-        let settled = mean(self.frames.iter().map(|(_, evidence)| *evidence));
+        let settled = pooled(self.frames.iter().map(|(_, evidence)| *evidence));
         if self.frames.len() >= SETTLED || settled.is_some_and(|(_, sd)| sd < SETTLED_SD) {
             self.settled = settled;
         }
@@ -55,7 +79,12 @@ impl Size {
     /// Begins again with the size of a correction.
     pub fn correct(&mut self, rotation: DQuat, evidence: SizeEvidence) {
         if self.known.is_none() {
-            (self.frames, self.settled) = (vec![(rotation, evidence)], None);
+            (self.frames, self.settled, self.reached) = (vec![(rotation, evidence)], None, None);
         }
     }
+}
+
+/// The standard deviation of two independent errors together.
+fn together(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
 }

@@ -333,6 +333,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
                 self.certain = Some(found.pose.rotation);
             }
             self.roll(frame, &evidence, &mut found);
+            self.size.advance();
             self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
         let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
@@ -361,7 +362,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             frame: self.history.frames() - 1,
             state: self.state,
             confidence,
-            scale_sd: self.size.value().map_or(0.0, |(_, sd)| sd),
+            scale_sd: self.size.deviation(),
             is_scale_settled: self.size.is_settled(),
             is_detected,
             score: f64::from(found.score.total),
@@ -411,7 +412,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             frame: self.history.frames() - 1,
             state: self.state,
             confidence: 0.0,
-            scale_sd: self.size.value().map_or(0.0, |(_, sd)| sd),
+            scale_sd: self.size.deviation(),
             is_scale_settled: self.size.is_settled(),
             is_detected: false,
             score: 0.0,

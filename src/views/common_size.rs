@@ -112,6 +112,27 @@ pub fn mean(evidence: impl Iterator<Item = SizeEvidence> + Clone) -> Option<(f64
     (weight > 0.0).then(|| (sum / weight, 1.0 / weight.sqrt()))
 }
 
+/// The mean of evidence from different sides, and its standard deviation, by random effects (DerSimonian and Laird, "Meta-analysis
+/// in clinical trials", 1986): sizes that differ by more than their deviations have errors that differ from side to side, such as
+/// those of wrong proportions of the mesh, and count more equally.
+pub fn pooled(evidence: impl Iterator<Item = SizeEvidence> + Clone) -> Option<(f64, f64)> {
+    let (center, _) = mean(evidence.clone())?;
+    let (mut count, mut weights, mut squares, mut spread) = (-1.0, 0.0, 0.0, 0.0);
+    for side in evidence.clone() {
+        let weight = side.weight();
+        count += 1.0;
+        weights += weight;
+        squares += weight * weight;
+        spread += weight * (side.log_scale - center) * (side.log_scale - center);
+    }
+    let between = (spread - count) / (weights - squares / weights);
+    if between > 0.0 {
+        mean(evidence.map(|side| side.with_error(between.sqrt())))
+    } else {
+        Some((center, 1.0 / weights.sqrt()))
+    }
+}
+
 /// The common size of views with alternative poses: the one at which the sum of the best scores is largest, where a view
 /// that fits no common size adds a constant. A `fixed` size needs no evidence. Returns the logarithm of the scale, its standard
 /// deviation, and for each view the index of its pose, `None` if it contradicts.
@@ -119,7 +140,7 @@ pub fn common_size(views: &[Vec<SizeEvidence>], fixed: Option<f64>) -> Option<(f
     let size = fixed.or_else(|| most_likely(views))?;
     let chosen: Vec<Option<usize>> = views.iter().map(|view| value(view, size).1).collect();
     let agreeing = views.iter().zip(&chosen).filter_map(|(view, chosen)| chosen.map(|i| view[i]));
-    let (size, sd) = fixed.map(|size| (size, 0.0)).or_else(|| mean(agreeing))?;
+    let (size, sd) = fixed.map(|size| (size, 0.0)).or_else(|| pooled(agreeing))?;
     Some((size, sd, chosen))
 }
 

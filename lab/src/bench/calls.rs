@@ -4,7 +4,7 @@ use super::imported::imported;
 use super::options::{Call, Row};
 use super::result::{ResultRow, by_name, codes, three};
 use crate::case::{Case, CaseFrame, CaseObject, MISFIT};
-use crate::cpu_time::CpuTimer;
+use crate::cost::Meter;
 use crate::effects::monocular::DepthModel;
 use crate::prelude::*;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
@@ -109,7 +109,7 @@ fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
             Err(error) => ResultRow { error: Some(error), ..result },
         });
     }
-    let timer = CpuTimer::start();
+    let meter = Meter::start();
     let outcome = match row.preset {
         Preset::Precise => {
             let request = Request::new(options_of(case, k, row))?;
@@ -122,10 +122,10 @@ fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
                 .map(|found| (result.clone().with_paper_alignment(&found), found.camera_from_mesh))
         }
     };
-    let ms = Some(timer.milliseconds());
+    let (ms, work) = meter.cost();
     Ok(match outcome {
-        Ok((result, pose)) => judged(ResultRow { ms, ..result }, object, frame, k, &similarity(&pose)?),
-        Err(error) => ResultRow { ms, ..result }.with_error(&error),
+        Ok((result, pose)) => judged(ResultRow { ms, work, ..result }, object, frame, k, &similarity(&pose)?),
+        Err(error) => ResultRow { ms, work, ..result }.with_error(&error),
     })
 }
 
@@ -137,7 +137,7 @@ fn modelled(case: &Case, k: usize, row: &Row, model: &DepthModel) -> Result<Resu
     let (mesh, options) = (object.prepared(row.color), options_of(case, k, row));
     let mask = frame.observation(k, false)?.mask().clone();
     let called = Object { mask: &mask, others: frame.others(k), mesh: &mesh, options: &options };
-    let timer = CpuTimer::start();
+    let meter = Meter::start();
     let Calibrated { depth, calibration, .. } = finished(calibrate(&view, &[called], &mut Silent, &Pauses::none()))?;
     let mut observation =
         Observation::new(depth, mask, calibration.camera)?.with_relief_deviation(calibration.uncertainty.relief());
@@ -145,7 +145,8 @@ fn modelled(case: &Case, k: usize, row: &Row, model: &DepthModel) -> Result<Resu
         observation = observation.with_photo(photo.clone())?;
     }
     let alignment = align_prepared(&observation, &mesh, Request::new(options.clone())?, &mut Silent)?;
-    let result = ResultRow { ms: Some(timer.milliseconds()), ..result };
+    let (ms, work) = meter.cost();
+    let result = ResultRow { ms, work, ..result };
     let pose = similarity(&alignment.camera_from_mesh)?;
     let result = result.with_alignment(&alignment);
     let Some(truth) = &frame.truths[k] else { return Ok(result) };
@@ -196,11 +197,12 @@ fn scene(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
         support: SupportChoice::Auto,
         snap: false,
     };
-    let timer = CpuTimer::start();
+    let meter = Meter::start();
     let aligned = align_scene(&scene, &mut Silent)?;
-    let ms = Some(timer.milliseconds() / case.objects.len() as f64);
+    let (ms, work) = meter.cost();
+    let ms = ms.map(|ms| ms / case.objects.len() as f64);
     let result = |(k, placed): (usize, Result<PlacedObject>)| {
-        let result = ResultRow { ms, ..blank(case, 0, k) };
+        let result = ResultRow { ms, work, ..blank(case, 0, k) };
         let placed = match placed {
             Ok(placed) => placed,
             Err(error) => return Ok(result.with_error(&error)),
@@ -223,9 +225,9 @@ fn views(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
     let AlignOptions { quality, seed, .. } = row.precise;
     let symmetry = object.symmetry.clone();
     let options = ViewsOptions { metrics: false, symmetry, quality, seed, ..ViewsOptions::default() };
-    let timer = CpuTimer::start();
+    let meter = Meter::start();
     let found = align_views(views, &object.prepared(row.color), &options, &mut Silent)?;
-    let ms = Some(timer.milliseconds());
+    let (ms, work) = meter.cost();
     let mut results = Vec::new();
     for (k, (view, frame)) in found.views.iter().zip(frames).enumerate() {
         // With known cameras, the pose in a wrong view follows from the wrong pose of its camera.
@@ -233,7 +235,7 @@ fn views(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
             continue;
         }
         let warnings = codes(&found.warnings);
-        let result = ResultRow { confidence: Some(view.confidence), ms, warnings, ..blank(case, k, 0) };
+        let result = ResultRow { confidence: Some(view.confidence), ms, work, warnings, ..blank(case, k, 0) };
         results.push(judged(result, object, frame, 0, &similarity(&view.camera_from_mesh)?));
     }
     Ok(results)
@@ -251,9 +253,10 @@ fn track(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
         if row.masks.is_some_and(|masks| k >= masks) {
             seen.mask = None;
         }
-        let timer = CpuTimer::start();
+        let meter = Meter::start();
         let found = tracker.next(&seen, &mut Silent);
-        let result = ResultRow { ms: Some(timer.milliseconds()), ..blank(case, k, 0) };
+        let (ms, work) = meter.cost();
+        let result = ResultRow { ms, work, ..blank(case, k, 0) };
         let found = match found {
             Ok(found) => found,
             Err(error) => {

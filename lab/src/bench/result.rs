@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::prelude::*;
+use sim3align::geometry::counts::Counts;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::report::{Alignment, Diagnostics, PaperAlignment, Warning};
@@ -46,8 +47,8 @@ pub struct ResultRow {
     pub turn_confidence: Option<f64>,
     /// CPU time of the call, which a busy machine changes little, milliseconds.
     pub ms: Option<f64>,
-    /// Images that the search drew.
-    pub renders: Option<usize>,
+    /// Counts of the work of the call.
+    pub work: Option<Counts>,
     /// Agreement of the pose with the image.
     pub metrics: Option<MetricsByName>,
     /// Agreement of the true pose with the image.
@@ -105,7 +106,6 @@ impl ResultRow {
         Self {
             confidence: Some(*confidence),
             turn_confidence: *turn_confidence,
-            renders: Some(diagnostics.counts.renders),
             features: Some(Features {
                 score: diagnostics.score,
                 terms: [terms.overlap, terms.depth, terms.outline],

@@ -3,17 +3,17 @@
 use serde_json::{Map, Value as Json, json};
 use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
-use sim3align::precise::drawing::counts::{self, Counts};
+use sim3align::geometry::counts::{self, Counts};
 use sim3align::progress::{Host, Stage};
 use sim3align_lab::bench::options::Row;
 use sim3align_lab::case_folder::read::read;
-use sim3align_lab::cpu_time::CpuTimer;
+use sim3align_lab::cost::Meter;
 use sim3align_lab::prelude::*;
 
 use super::{Failure, usage};
 
-/// Aligns each case folder, and prints JSON: { "<folder>": [result, …] }. Times are those of the CPU. `drawn` of a result
-/// has, by stage, the numbers of poses, vertices, triangles, filled triangles, visited cells and cells of the renders.
+/// Aligns each case folder, and prints JSON: { "<folder>": [result, …] }. Times are those of the CPU. `work` of a result
+/// has its counts by stage.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A quality of `align`; all other options have their defaults
@@ -26,41 +26,37 @@ pub struct Arguments {
     cases: Vec<String>,
 }
 
-/// A host whose clock is the CPU time, and that counts what each stage draws.
+/// A host whose clock is the CPU time, and that counts the work of each stage.
 struct Profiler {
-    timer: CpuTimer,
+    meter: Meter,
     running: Option<Stage>,
     before: Counts,
-    drawn: Vec<(Stage, Counts)>,
+    work: Vec<(Stage, Counts)>,
 }
 
 impl Profiler {
     fn start() -> Self {
-        Self { timer: CpuTimer::start(), running: None, before: counts::so_far(), drawn: Vec::new() }
+        Self { meter: Meter::start(), running: None, before: counts::so_far(), work: Vec::new() }
     }
 
     /// The counts by stage, as JSON.
-    fn drawn(&self) -> Json {
-        let of = |counts: &Counts| {
-            let Counts { renders, vertices, triangles, filled, visited, cells } = counts;
-            json!({ "poses": renders, "vertices": vertices, "triangles": triangles, "filled": filled, "visited": visited, "cells": cells })
-        };
-        self.drawn.iter().map(|(stage, counts)| (stage.as_str().to_owned(), of(counts))).collect::<Map<_, _>>().into()
+    fn work(&self) -> Json {
+        self.work.iter().map(|(stage, counts)| (stage.as_str().to_owned(), json!(counts))).collect::<Map<_, _>>().into()
     }
 }
 
 impl Host for Profiler {
     fn now_ms(&mut self) -> f64 {
-        self.timer.milliseconds()
+        self.meter.milliseconds()
     }
 
     fn progress(&mut self, stage: Stage, _fraction: f64) {
         let now = counts::so_far();
         let since = now.since(&core::mem::replace(&mut self.before, now));
         let ended = self.running.replace(stage).unwrap_or(stage);
-        match self.drawn.iter_mut().find(|(known, _)| *known == ended) {
+        match self.work.iter_mut().find(|(known, _)| *known == ended) {
             Some((_, sum)) => *sum = sum.and(&since),
-            None => self.drawn.push((ended, since)),
+            None => self.work.push((ended, since)),
         }
     }
 }
@@ -74,7 +70,7 @@ fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json
             let mut profiler = Profiler::start();
             let alignment = align_prepared(&observation, &mesh.prepared(true), request, &mut profiler)?;
             let mut result = serde_json::to_value(alignment).unwrap_or_default();
-            result["drawn"] = profiler.drawn();
+            result["work"] = profiler.work();
             Ok(result)
         })
         .collect()

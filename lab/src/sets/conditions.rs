@@ -166,6 +166,8 @@ pub const RAGGED_MASK: Class = Class { name: "ragged-mask", is_ragged: true, ..P
 /// Also the conditions of videos and of several views.
 pub const SPARSE_SENSOR: Class =
     Class { name: "sparse-sensor", depth: SENSOR, depth_fault: DepthFault::Sparse, ..PLAIN };
+/// Videos of a mesh that is stretched, bent and warped.
+pub const WARPED_IN_VIDEO: Class = Class { mesh_fault: MeshFault::Warped, ..SPARSE_SENSOR };
 /// A symmetric shape whose print alone determines its turn.
 const PRINTED: Class =
     Class { name: "printed", pool: Some(Pool::Symmetric), print: Some(PrintKind::Label), needs_color: true, ..PLAIN };

@@ -1,6 +1,6 @@
 //! Several images of one object on a table: cameras around it, and videos.
 
-use super::conditions::{Conditions, SPARSE_SENSOR, Tier};
+use super::conditions::{Class, Conditions, SPARSE_SENSOR, Tier, WARPED_IN_VIDEO};
 use super::images::{OBJECT_STREAM, SCENE_STREAM, SIZE, image, object};
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::effects::generator::{MESH_STREAM, generate};
@@ -47,7 +47,7 @@ struct Stage {
 }
 
 impl Stage {
-    fn draw(tier: Tier, random: &mut Random) -> Result<Self> {
+    fn draw(tier: Tier, class: &'static Class, random: &mut Random) -> Result<Self> {
         let placed = Placed::put_down(Object::draw(Pool::Desk, random)?, tier, random)?;
         let [width, height] = SIZE.map(|side| side as f64);
         let focal = between(random, 0.8, 1.1) * width;
@@ -62,7 +62,7 @@ impl Stage {
         }
         let others = if solid.is_empty() { Vec::new() } else { vec![solid.finish()?.0] };
         let world = World::new(vec![placed], others, 0.0, WALL_M);
-        Ok(Self { world, camera, distance, conditions: Conditions { tier, class: &SPARSE_SENSOR } })
+        Ok(Self { world, camera, distance, conditions: Conditions { tier, class } })
     }
 
     fn diagonal(&self) -> f64 {
@@ -118,7 +118,7 @@ impl Stage {
 /// Two to eight cameras around an object. A third of the cases has noisy camera poses, and a sixth (of those with three
 /// views and more) one wrong view.
 pub fn views(index: usize, seed: u64) -> Result<Option<Case>> {
-    let stage = Stage::draw(Tier::of(index), &mut Random::new(seed, OBJECT_STREAM))?;
+    let stage = Stage::draw(Tier::of(index), &SPARSE_SENSOR, &mut Random::new(seed, OBJECT_STREAM))?;
     let random = &mut Random::new(seed, SCENE_STREAM);
     let count = 2 + random.below(7);
     // Between neighbouring cameras.
@@ -181,11 +181,13 @@ impl Path {
     }
 }
 
-/// A video at 30 frames a second. Kinds of motion take turns.
+/// A video at 30 frames a second. Kinds of motion take turns, and after each turn the tiers; the mesh of hard ones has other
+/// proportions than the object.
 pub fn video(index: usize, seed: u64, frames: usize) -> Result<Option<Case>> {
     let motion = Motion::ALL[index % Motion::ALL.len()];
-    let tier = if (index / Motion::ALL.len()).is_multiple_of(2) { Tier::Easy } else { Tier::Medium };
-    let mut stage = Stage::draw(tier, &mut Random::new(seed, OBJECT_STREAM))?;
+    let tier = Tier::of(index / Motion::ALL.len());
+    let class = if tier == Tier::Hard { &WARPED_IN_VIDEO } else { &SPARSE_SENSOR };
+    let mut stage = Stage::draw(tier, class, &mut Random::new(seed, OBJECT_STREAM))?;
     let random = &mut Random::new(seed, SCENE_STREAM);
     let (heading, elevation) = (between(random, 0.0, 360.0), between(random, 25.0, 45.0));
     let turn = sign(random) * between(random, 20.0, 60.0);

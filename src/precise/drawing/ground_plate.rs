@@ -165,15 +165,17 @@ impl Level {
                     object += face.area;
                 }
             }
-            for direction in directions {
-                let [own, other] = [true, false].map(|side| interval(faces, is_plate, side, direction));
-                if !(own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)) {
-                    return None;
-                }
-            }
-            let height = top - interval(faces, is_plate, false, down)[0];
             let share = plate / (plate + object);
-            let is_ground = flat >= least && share <= 1.0 - OBJECT && height >= HEIGHT * longest;
+            if !(flat >= least && share <= 1.0 - OBJECT) {
+                return None;
+            }
+            let of_side = |side: bool, direction: DVec3| interval(faces, is_plate, side, direction);
+            let is_high = top - of_side(false, down)[0] >= HEIGHT * longest;
+            let is_larger = |direction: &DVec3| {
+                let [own, other] = [true, false].map(|side| of_side(side, *direction));
+                own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)
+            };
+            let is_ground = is_high && directions.iter().all(is_larger);
             let left_out = LeftOut { ground: share, ..LeftOut::default() };
             is_ground.then(|| Trimmed::split(mesh, left_out, &|triangle| is_plate[triangle])).flatten()
         })

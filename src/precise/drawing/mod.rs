@@ -4,7 +4,6 @@
 //! depth and triangle by cell, in a [`Canvas`](render::Canvas). A cell is filled if the ray through its centre meets a
 //! triangle; images have the same bits natively and in WebAssembly, with and without SIMD.
 
-pub mod counts;
 pub mod equivalence;
 pub mod facing;
 mod fill;

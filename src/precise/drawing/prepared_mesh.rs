@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::check_shape;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::precise::observation::resolution::{GRIDS, Grid};
+use crate::precise::observation::resolution::{FINE, GRIDS, Grid};
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
 /// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part
@@ -27,8 +27,16 @@ pub struct PreparedMesh<'a> {
     is_checked: Cell<bool>,
     /// By number of triangles, which depends on the quality.
     pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
-    /// The mesh without what looks like a ground plate, on first use.
-    without_plate: OnceCell<Option<Box<PreparedMesh<'static>>>>,
+    /// The mesh without what looks like a ground plate, on first use; `None` for one from which a plate is taken already.
+    plates: Option<OnceCell<Box<Plate>>>,
+}
+
+/// The mesh without what looks like a ground plate, if it has one, decided by the mesh with so many triangles; and the decisions by
+/// others.
+struct Plate {
+    triangles: usize,
+    rest: Option<PreparedMesh<'static>>,
+    next: OnceCell<Box<Plate>>,
 }
 
 impl PreparedMesh<'static> {
@@ -46,16 +54,12 @@ impl<'a> PreparedMesh<'a> {
 
     fn of(mesh: Cow<'a, Mesh>) -> Self {
         let whole = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
-        Self::with(whole, OnceCell::new(), OnceCell::new())
+        Self::with(whole, OnceCell::new(), Some(OnceCell::new()))
     }
 
-    fn with(
-        whole: Cow<'a, Mesh>,
-        trimmed: OnceCell<Option<Trimmed>>,
-        without_plate: OnceCell<Option<Box<PreparedMesh<'static>>>>,
-    ) -> Self {
+    fn with(whole: Cow<'a, Mesh>, trimmed: OnceCell<Option<Trimmed>>, plates: Option<OnceCell<Box<Plate>>>) -> Self {
         let (is_checked, pyramids, trimmed_colors) = (Cell::new(false), RefCell::default(), OnceCell::new());
-        Self { whole, trimmed, colors: None, trimmed_colors, is_checked, pyramids, without_plate }
+        Self { whole, trimmed, colors: None, trimmed_colors, is_checked, pyramids, plates }
     }
 
     /// The mesh with the colours of its surface, or without any.
@@ -70,6 +74,11 @@ impl<'a> PreparedMesh<'a> {
             Some(trimmed) => self.trimmed_colors.get_or_init(|| colors.clone().beside(&trimmed.surplus)),
             None => colors,
         })
+    }
+
+    /// The colours of all of the mesh, if they are known.
+    pub fn all_colors(&self) -> Option<&SurfaceColors> {
+        self.colors.as_ref()
     }
 
     fn trimmed(&self) -> Option<&Trimmed> {
@@ -91,19 +100,26 @@ impl<'a> PreparedMesh<'a> {
         self.trimmed().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
     }
 
-    /// The mesh without what looks like a ground plate; `None` if it has nothing of the kind. The first call decides, by the
-    /// mesh decimated for `grids`.
+    /// The mesh without what looks like a ground plate, as the mesh decimated for `grids` shows it; `None` if it has nothing of the
+    /// kind.
     pub fn without_plate(&self, grids: &[Grid; GRIDS]) -> Option<&PreparedMesh<'static>> {
-        let of = || {
+        let rest = || {
             let trimmed = without_plate(self.mesh(), &self.pyramid(grids)?.fine)?;
             let left_out = LeftOut { ground: trimmed.left_out.ground, ..self.left_out() };
             let whole = Cow::Owned(self.whole.as_ref().clone());
-            let trimmed = OnceCell::from(Some(Trimmed { left_out, ..trimmed }));
-            let rest = PreparedMesh::with(whole, trimmed, OnceCell::from(None));
+            let rest = PreparedMesh::with(whole, OnceCell::from(Some(Trimmed { left_out, ..trimmed })), None);
             // Without those of what is left out already.
-            Some(Box::new(rest.with_colors(self.colors().cloned())))
+            Some(rest.with_colors(self.colors().cloned()))
         };
-        self.without_plate.get_or_init(of).as_deref()
+        let triangles = grids[FINE].triangles;
+        let mut plates = self.plates.as_ref()?;
+        loop {
+            let plate = plates.get_or_init(|| Box::new(Plate { triangles, rest: rest(), next: OnceCell::new() }));
+            if plate.triangles == triangles {
+                return plate.rest.as_ref();
+            }
+            plates = &plate.next;
+        }
     }
 
     /// Whether every image of the mesh is compared with the same part of it. Helpers of a search, which have the mesh as it was

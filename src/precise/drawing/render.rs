@@ -9,10 +9,10 @@ use glam::{Mat3, Vec3};
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
-use super::counts;
 use super::fill::{Corners, STEPS, Vertex, fill};
 use super::lanes::LANES;
 use super::pose::CropPose;
+use crate::geometry::counts;
 use crate::geometry::mesh::Mesh;
 use crate::precise::observation::grid::CropGrid;
 
@@ -148,6 +148,7 @@ impl Canvas {
             filled: filled.into(),
             visited: visited as u64,
             cells: grid.mask.len() as u64,
+            ..Default::default()
         });
         self.work += (grid.mask.len() + visited + model.positions.len() + self.seen.len()) as u64;
     }

@@ -27,7 +27,7 @@ const HARMLESS_FLOATERS: f64 = 0.01;
 const HARMLESS_SHELLS: f64 = 0.03;
 /// Passes in which floaters are found: those far out make the cells of the first one large.
 const PASSES: usize = 3;
-/// Points spread over the surface, beside the corners of triangles larger than a cell, by which parts are neighbours.
+/// Points spread over triangles larger than a cell, by which parts are neighbours beside the vertices.
 const POINTS: usize = 16_384;
 /// Images in which a part that is not hidden is seen, their width, and the distance of their camera in diagonals.
 const VIEWS: usize = 48;
@@ -164,9 +164,12 @@ fn clusters(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<u
         let [a, b, c] = mesh.corners(*triangle);
         (b - a).length_squared().max((c - a).length_squared()) > cell * cell
     };
-    if mesh.triangles().iter().any(is_long) {
-        let part_of = |triangle: usize| parts.of_triangle(mesh.triangles()[triangle]) as u32;
-        each_surface_sample(mesh, POINTS, 0, &mut |sample| occupy(sample.point, part_of(sample.triangle))).ok()?;
+    let long: Vec<[u32; 3]> = mesh.triangles().iter().copied().filter(is_long).collect();
+    if !long.is_empty() {
+        let part_of = |triangle: usize| parts.of_triangle(long[triangle]) as u32;
+        let surface = mesh.of_triangles(&long);
+        // Those without area have no points.
+        each_surface_sample(&surface, POINTS, 0, &mut |sample| occupy(sample.point, part_of(sample.triangle))).ok();
     }
     let at = |[x, y, z]: [usize; 3]| part_in[(z * size[1] + y) * size[0] + x];
     for z in 0..size[2] {

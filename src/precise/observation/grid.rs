@@ -44,7 +44,7 @@ pub struct CropGrid {
     /// Number of cells with a depth of the object.
     pub depth_cells: usize,
     /// Normal of the object, towards the camera; zero if unknown.
-    pub normals: Vec<Vec3>,
+    pub normals: [Vec<f32>; 3],
     /// Depth of the scene, metres; 0 without a reading, almost 0 outside the image.
     pub scene: Vec<f32>,
     /// Fraction of the cells around the mask that have a reading, 0 to 1; see [`CropGrid::unknown_weight`].
@@ -85,7 +85,7 @@ impl CropGrid {
             mask_cells: 0,
             depth_cells: 0,
             depth: Vec::with_capacity(width * height),
-            normals: Vec::new(),
+            normals: Default::default(),
             scene: Vec::with_capacity(width * height),
             known: 0.0,
             outline: Vec::with_capacity(width * height),
@@ -165,12 +165,13 @@ impl CropGrid {
 
     /// Normals from planes fitted to 1/z, which is linear over the image of a plane.
     fn fit_normals(&mut self) {
-        self.normals = vec![Vec3::ZERO; self.depth.len()];
+        self.normals = [0, 1, 2].map(|_| vec![0.0; self.depth.len()]);
         for v in 1..self.height.saturating_sub(1) {
             for u in 1..self.width.saturating_sub(1) {
                 let i = v * self.width + u;
                 if self.depth[i] > 0.0 {
-                    self.normals[i] = self.normal(u, v).unwrap_or(Vec3::ZERO);
+                    let normal = self.normal(u, v).unwrap_or(Vec3::ZERO).to_array();
+                    self.normals.iter_mut().zip(normal).for_each(|(axis, x)| axis[i] = x);
                 }
             }
         }

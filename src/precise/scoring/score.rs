@@ -170,7 +170,7 @@ impl Scoring {
                     let error = (z - observed).abs() * per_depth;
                     depth_error = plus(depth_error, (error / (f32x4::ONE + error)) & has_depth);
                     depth_cells += count(has_depth);
-                    let seen = seen_normals(grid, i);
+                    let seen = grid.normals.each_ref().map(|axis| four(axis, i));
                     let has_normal = has_depth & seen[2].simd_ne(f32x4::ZERO);
                     let drawn = drawn_normals(canvas, model, i, has_normal);
                     let along = |axis: usize| {
@@ -232,16 +232,6 @@ impl Scoring {
         // space does not reduce, it would favour a mesh that is too large.
         Score { total: self.weights.factor(&score, grid) * self.weights.agreement(&score), ..score }
     }
-}
-
-/// The observed normals of four cells, by axis.
-#[inline(always)]
-fn seen_normals(grid: &CropGrid, i: usize) -> [f32x4; 3] {
-    let [a, b, c, d] = match grid.normals.get(i..).and_then(|normals| normals.first_chunk::<LANES>()) {
-        Some(four) => *four,
-        None => core::array::from_fn(|lane| grid.normals.get(i + lane).copied().unwrap_or_default()),
-    };
-    [f32x4::new([a.x, b.x, c.x, d.x]), f32x4::new([a.y, b.y, c.y, d.y]), f32x4::new([a.z, b.z, c.z, d.z])]
 }
 
 /// The normals of the triangles that are drawn in four cells, by axis, in the mesh frame, where they are wanted.

@@ -11,9 +11,8 @@ pub const SHAPE: f64 = 0.5;
 const MIN_GAIN: f64 = 0.02;
 /// Factor of the correlation in the logarithm of the odds of two poses.
 const ODDS: f64 = 15.0;
-/// Minimum certainty where no pose agrees: as likely as not, the colours of the mesh mean nothing, and the turns that its
-/// shape allows are all right.
-const UNMATCHED: f64 = 0.5;
+/// Minimum certainty of the pose where none agrees with the photo.
+pub const UNMATCHED: f64 = 0.5;
 
 /// The score of a pose by colour.
 #[derive(Debug, Clone, Copy)]
@@ -60,7 +59,7 @@ impl Choice {
     /// has grown since.
     pub fn certainty(&self, gain: f64, rivals: impl Iterator<Item = usize>) -> f64 {
         let odds: f64 = rivals.map(|rival| libm::exp(-ODDS * self.lead(rival, gain))).sum();
-        (1.0 / (1.0 + odds)).max(if self.is_used { 0.0 } else { UNMATCHED })
+        1.0 / (1.0 + odds)
     }
 
     /// By how much the agreement of a rival is below that of the chosen pose.

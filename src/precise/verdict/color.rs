@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::{DQuat, DVec3};
 
-use super::choice::{Choice, ColorScore, HIDDEN, SHAPE, best_roll};
+use super::choice::{Choice, ColorScore, HIDDEN, SHAPE, UNMATCHED, best_roll};
 use super::lookalikes::{Likeness, Lookalike, lookalikes};
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::{Photo, PhotoRegion};
@@ -62,8 +62,7 @@ pub struct Judgment {
     pub rivals: Vec<Rival>,
     /// Probability that the chosen pose is right up to the symmetry of the shape, given that it is one of those compared.
     pub certainty: f64,
-    /// Probability that it is the right one of the poses that this symmetry makes equivalent; `None` where colour does not
-    /// distinguish them.
+    /// Probability that it is the right one of the poses that this symmetry makes equivalent; `None` where these look alike.
     pub turn: Option<f64>,
     /// For the result.
     pub report: ColorReport,
@@ -202,12 +201,15 @@ impl Judgment {
         let (indices, rivals): (Vec<usize>, Vec<Rival>) = choice.rivals.iter().filter_map(rival).unzip();
         let certainty = |are_turns: bool| {
             let these = indices.iter().zip(&rivals).filter(|(_, rival)| rival.is_turn == are_turns);
-            choice.certainty(gain, these.map(|(k, _)| *k))
+            let known = choice.certainty(gain, these.map(|(k, _)| *k));
+            // Where no pose agrees, the colours of the mesh as likely as not mean nothing, and all turns are right; but which of
+            // them colour would choose is open.
+            if are_turns || choice.is_used { known } else { known.max(UNMATCHED) }
         };
         Self {
             chosen: is_other.then_some(end),
             certainty: certainty(false),
-            turn: (choice.is_used && rivals.iter().any(|rival| rival.is_turn)).then(|| certainty(true)),
+            turn: rivals.iter().any(|rival| rival.is_turn).then(|| certainty(true)),
             report: choice.report(gain),
             is_used: choice.is_used,
             rivals,

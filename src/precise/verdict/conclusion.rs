@@ -64,9 +64,7 @@ pub fn reliability(
     };
     let by_shape = confidence(best, &listed(NOISE, false), conditioning);
     let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
-    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour distinguishes them.
-    let shows_turns = color.is_some_and(|color| color.is_used);
-    let alternatives = listed(if confidence < SURE { UNSURE } else { NOISE }, shows_turns);
+    let alternatives = listed(if confidence < SURE { UNSURE } else { NOISE }, true);
     Ok(Reliability { by_shape, confidence, alternatives })
 }
 

@@ -1,20 +1,26 @@
-//! The cost of renders, counted with the feature `counts`: in the lab, never in a module.
+//! The work of a call, counted with the feature `counts`: in the lab, never in a module.
 
-/// Counts of renders.
+/// Counts of work.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "counts", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "counts", serde(default))]
 pub struct Counts {
-    /// Images: one per pose.
+    /// Images that the search drew: one per pose.
     pub renders: u64,
-    /// Vertices that were projected.
+    /// Vertices that were projected, by either rasteriser.
     pub vertices: u64,
-    /// Triangles whose corners were gathered.
+    /// Triangles whose corners were gathered, by either rasteriser.
     pub triangles: u64,
-    /// Triangles that were filled: not those whose box has no centre of a cell.
+    /// Triangles of the search that were filled: not those whose box has no centre of a cell.
     pub filled: u64,
-    /// Cells that were compared with a triangle, about.
+    /// Cells that were compared with a triangle, about, by either rasteriser.
     pub visited: u64,
-    /// Cells of the grids.
+    /// Cells of the search's grids.
     pub cells: u64,
+    /// Queries of the nearest points and triangles.
+    pub queries: u64,
+    /// Points and triangles of which trees were built.
+    pub sorted: u64,
 }
 
 #[cfg(feature = "counts")]
@@ -48,6 +54,8 @@ mod counted {
                 filled: of(self.filled, other.filled),
                 visited: of(self.visited, other.visited),
                 cells: of(self.cells, other.cells),
+                queries: of(self.queries, other.queries),
+                sorted: of(self.sorted, other.sorted),
             }
         }
     }
@@ -57,17 +65,16 @@ mod counted {
         ALL.get()
     }
 
-    pub(in crate::precise::drawing) fn add(of: impl FnOnce() -> Counts) {
+    /// Adds to the counts of this thread.
+    pub fn add(of: impl FnOnce() -> Counts) {
         ALL.set(ALL.get().and(&of()));
     }
 }
 
 #[cfg(feature = "counts")]
-pub(super) use counted::add;
-#[cfg(feature = "counts")]
-pub use counted::so_far;
+pub use counted::{add, so_far};
 
 /// Counts nothing.
 #[cfg(not(feature = "counts"))]
 #[inline(always)]
-pub(super) fn add(_: impl FnOnce() -> Counts) {}
+pub fn add(_: impl FnOnce() -> Counts) {}

@@ -1,23 +1,32 @@
-//! The CPU time of a thread, which on a busy machine is much less than the elapsed time.
+//! The cost of a call: the CPU time of its thread, which on a busy machine is much less than the elapsed time, and counts of
+//! its work, which are the same on every machine.
 
 use std::fs::File;
 use std::time::Instant;
+
+use sim3align::geometry::counts::{self, Counts};
 
 thread_local! {
     /// The CPU time of this thread, on Linux. It stays open: a call of a reader takes less time than opening it.
     static SCHEDSTAT: Option<File> = File::open("/proc/thread-self/schedstat").ok();
 }
 
-/// A stopwatch of this thread.
-pub struct CpuTimer {
+/// Measures the cost of what this thread does from now on.
+pub struct Meter {
+    before: Counts,
     began: Option<f64>,
     wall: Instant,
 }
 
-impl CpuTimer {
-    /// Starts the stopwatch.
+impl Meter {
+    /// A meter at zero.
     pub fn start() -> Self {
-        Self { began: cpu_seconds(), wall: Instant::now() }
+        Self { before: counts::so_far(), began: cpu_seconds(), wall: Instant::now() }
+    }
+
+    /// CPU time since the start, milliseconds, and the counts of the work.
+    pub fn cost(&self) -> (Option<f64>, Option<Counts>) {
+        (Some(self.milliseconds()), Some(counts::so_far().since(&self.before)))
     }
 
     /// CPU time since the start, or elapsed time if the system does not count CPU time.
