@@ -5,6 +5,7 @@ pub mod bench;
 pub mod case;
 pub mod case_folder;
 pub mod clouds;
+mod conditions;
 pub mod cpu_time;
 mod draws;
 mod effects;

@@ -1,8 +1,8 @@
 //! The colours that a generative model gives its mesh: those of the photo where it saw the object, invented elsewhere.
 
-use super::print::{Print, PrintKind, color, srgb};
+use crate::conditions::Conditions;
+use crate::objects::print::{Print, PrintKind, color, srgb};
 use crate::prelude::*;
-use crate::sets::conditions::Conditions;
 use crate::world::Placed;
 use sim3align::geometry::surface::sample_surface;
 use sim3align_geometry::surface_colors::Rgb;

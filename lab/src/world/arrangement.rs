@@ -2,11 +2,11 @@
 //! hang.
 
 use super::{Placed, Stance, World, center_of, things, unit};
+use crate::conditions::Tier;
 use crate::objects::mesh::{box_of, mapped, random_rotation, shifted, turned_axes};
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
-use crate::sets::conditions::Tier;
 
 /// Directions in which footprints are measured.
 const DIRECTIONS: usize = 64;
