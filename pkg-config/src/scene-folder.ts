@@ -45,7 +45,7 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
   }
 }
 
-/** Where the models of a scene of BOP are: beside the scene, or beside the folder of its split. */
+/** The folder of the models of a scene of BOP: beside the scene, or beside the folder of its split. */
 const modelPlaces = ["models", "../models", "../../models", "../../models_eval"];
 
 /** The folders that are read of a scene of BOP. */

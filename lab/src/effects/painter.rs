@@ -12,7 +12,7 @@ const BLUR_SAMPLES: usize = 3;
 /// Number of points whose mean colour is that of an unseen side.
 const MEAN_SAMPLES: usize = 2000;
 
-/// How a model colours the side it did not see.
+/// Colours of a model for the unseen side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Back {
     True,

@@ -23,7 +23,7 @@ interface Searches {
   alignViews: { module: "joint"; input: CoreViews; result: ViewsAlignment };
 }
 
-/** How a search begins, and help with it. */
+/** The functions of a module that run a search: on its thread, and on those of helpers. */
 interface Search<G, I, T> {
   begin(exports: G, input: I, options: object, listener?: CoreListener, helpers?: CoreHelpers): Task<T>;
   help(exports: G, input: I, options: object): Helper;
@@ -60,7 +60,7 @@ export interface SharedSearch<S extends keyof Searches = keyof Searches> {
   options: object;
 }
 
-/** How tasks share their thread. */
+/** Divides the thread between tasks. */
 export interface Scheduler {
   /** About how long each slice takes, milliseconds. */
   readonly sliceMs: number;

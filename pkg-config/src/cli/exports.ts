@@ -42,7 +42,7 @@ export interface ExportedMesh<M> {
   transform: Sim3Like;
 }
 
-/** How an object is exported. */
+/** Options of the export of an object. */
 export interface ExportedAs {
   /** The `proportions` of its result, if these were asked for. */
   proportions: Pick<Stretch, "matrix" | "stretch"> | undefined;

@@ -68,7 +68,7 @@ const defaultOf = ({ kind, default: value }: OptionRow) =>
 
 const unit = (name: string) => (name.endsWith("M") ? " <metres>" : name.endsWith("Deg") ? " <degrees>" : " <x>");
 
-/** What follows the flags of each kind of option, by the name of the option, and how it is parsed. */
+/** The value and the parser of the flags of each kind of option, by the name of the option. */
 const kinds: Readonly<
   Record<OptionRow["kind"], { value: (name: string) => string; parse?: (text: string, row: OptionRow) => unknown }>
 > = {

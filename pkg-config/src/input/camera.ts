@@ -27,7 +27,7 @@ export interface ResolvedCamera {
   camera: Pinhole | undefined;
   /** Standard deviation of the logarithm of the focal length, if it is a guess. */
   focalDeviation?: number | undefined;
-  /** Where the intrinsics come from, if they were not given. */
+  /** The source of the intrinsics, if they were not given. */
   source?: string;
   warnings: readonly Warning[];
 }

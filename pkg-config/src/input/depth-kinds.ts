@@ -1,4 +1,4 @@
-/** What documents and user interfaces say of the kinds of depth. */
+/** Descriptions of the kinds of depth for documents and user interfaces. */
 import type { DepthKind } from "../types/inputs.js";
 
 /** A kind of depth. */

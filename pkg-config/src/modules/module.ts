@@ -149,7 +149,7 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
 export class LoadedModule<G> {
   readonly #glue: G & Glue;
   readonly #module: CompiledModule;
-  /** What lives in the instance and is more than a copy: while there is any, its heap stays. */
+  /** The objects in the instance that are more than a copy: while there are any, its heap stays. */
   readonly #kept = new Set<unknown>();
   /** Whether the state of the instance is unknown. */
   #isSpent = false;

@@ -10,10 +10,10 @@ const SLICE_MS = 8;
 /** About how long a helper runs tasks until it sends their results, milliseconds. */
 const HELP_MS = 3;
 
-/** Numbers of the message that says that a helper is ready. */
+/** The numbers of a ready message of a helper. */
 const READY = 3;
 
-/** What has arrived. */
+/** The messages that have arrived. */
 class Inbox<T> {
   readonly #messages: T[] = [];
   #wake = () => {};
@@ -109,7 +109,7 @@ export class Helpers implements CoreHelpers, Scheduler {
   }
 }
 
-/** Helps another worker with its job, until it is told to stop. The first message is the search, the others its tasks. */
+/** Helps another worker with its job, until a stop message. The first message is the search, the others its tasks. */
 export class HelperSession {
   readonly #data: HelpJob["data"];
   readonly #inbox = new Inbox<SharedSearch | Float64Array | "stop">();

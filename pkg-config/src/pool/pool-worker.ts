@@ -9,10 +9,10 @@ import { type Port, portOf } from "./port.js";
 /** The worker terminated or trapped before it answered; the job may be retried. */
 export class WorkerLost extends Error {}
 
-/** What is needed to start a worker, and for what it runs. */
+/** Settings of starting and running a worker. */
 export interface WorkerSetup {
   create: CreateWorker;
-  /** Longest time until a worker says that it is ready, milliseconds. */
+  /** Longest time until the ready message of a worker, milliseconds. */
   startMs: number;
   compiled(name: ModuleName): Promise<CompiledModule>;
 }
@@ -30,7 +30,7 @@ interface Pending {
   report(message: Report): void;
 }
 
-/** What a job is sent with. */
+/** Parts of a message with a job. */
 export interface JobMessage extends Pick<Request, "job" | "wantsProgress" | "returnsData"> {
   transfer: Transferable[];
   /** The compiled modules that it needs. */
@@ -61,7 +61,7 @@ export class PoolWorker {
   readonly #modules = new Set<ModuleName>();
   /** By prepared mesh: the modules that have cached it, with the numbers of their instances. */
   readonly #meshes = new Map<number, Map<ModuleName, number>>();
-  /** Prepared meshes that it is told to free with its next job. */
+  /** Prepared meshes that it frees with its next job. */
   readonly #dropped = new Set<number>();
   #instances: Instances = {};
 

@@ -26,7 +26,7 @@ export interface ReadScene {
   notes: InputNotes;
 }
 
-/** What is known of an object, beside its mask and mesh. */
+/** Properties of an object beside its mask and mesh. */
 type KnownOfObject = Omit<SceneObjectInput, (typeof objectProperties)[number]>;
 
 /** An object whose mask has been read. */

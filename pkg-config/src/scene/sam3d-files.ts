@@ -30,7 +30,7 @@ const meshFormats = ["glb", "obj", "stl", "ply", "splat"];
 const kindWords =
   /^(objects?|obj|masks?|mesh|meshes|models?|glbs?|ply|gaussians?|gs|splats?|poses?|layouts?|metadata|outputs?|results?|reconstruction|sam3d|gt|truth)$/i;
 
-/** What the files of one object are. */
+/** The files of one object. */
 interface ObjectPaths {
   masks: string[];
   meshes: string[];
@@ -42,7 +42,7 @@ interface ObjectPaths {
 export interface MadeScene {
   /** The files of the scene folder. */
   files: CaseFiles;
-  /** What its depth is, unless something else is known: point maps of SAM 3D Objects have no unit. */
+  /** The kind of its depth, unless a file states another: point maps of SAM 3D Objects have no unit. */
   depthKind: DepthKind;
   /** The paths of the files that these were made of, by their names. */
   sources: Readonly<Record<string, string>>;

@@ -226,7 +226,7 @@ function cameraOf(given: unknown, { translation, rotation }: Similarity, liftM: 
   return { position: [x, y, z + liftM], rotation: quaternionOf(rotation), fovYDeg, width, height };
 }
 
-/** What an object rests on, for the module. */
+/** The support of an object, for the module. */
 function groundOf({ restsOn, transform }: SimulatorObject, count: number): "support" | number | null {
   const contact = isRecord(transform) ? (transform as Record<string, unknown>).contact : undefined;
   const on = restsOn === undefined ? (isRecord(contact) ? contact.restsOn : "support") : restsOn;

@@ -81,7 +81,7 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment: A; input?: AlignInput; error?: undefined }
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
-/** What the files of an input say, for its result. */
+/** Notes on the files of an input, for its result. */
 export interface InputNotes extends Omit<InputInfo, "depthCalibration"> {
   /** What was subtracted from the coordinates of the mesh file. */
   origin?: readonly number[];
