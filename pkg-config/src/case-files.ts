@@ -111,10 +111,10 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
   return { find, required, viewNames, read, optional, beside, unread };
 }
 
-/** Names that are listed. */
+/** Maximum number of names in a sentence. */
 const LISTED = 10;
 
-/** Names in a sentence; of many, the first ones. */
+/** Names in a sentence, the first ten of many. */
 export const listed = (names: readonly string[]): string =>
   names.length > LISTED ? `${names.slice(0, LISTED).join(", ")} and ${names.length - LISTED} more` : names.join(", ");
 

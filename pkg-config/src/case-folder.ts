@@ -135,7 +135,7 @@ async function pathsIn(folder: string): Promise<string[]> {
   return filesBelow(folder, "", refers ? LEVELS : 1);
 }
 
-/** Levels of folders in which the files that a mesh refers to are looked for. */
+/** Depth of the folders that are searched for the files of a mesh. */
 const LEVELS = 8;
 
 /** The paths of the files in a folder below `root`, down to so many levels; links are followed. */

@@ -59,7 +59,7 @@ async function readFolder(folder: string, { models, sam3d, ...settings }: SceneS
   return { name: basename(resolve(folder)), input, truths, found: { folder, ...found } };
 }
 
-/** Levels of folders in which the files of a scene are looked for. */
+/** Depth of the folders that are searched for the files of a scene. */
 const LEVELS = 4;
 
 /** Reads one image of a scene of BOP. */

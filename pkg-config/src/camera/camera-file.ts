@@ -39,7 +39,7 @@ interface StatedSize {
   height?: number | undefined;
 }
 
-/** Names of a camera file and of its options, for errors. */
+/** The names of a camera file and of its options in errors. */
 export interface CameraFileNames {
   file: string;
   /** Prefix of the names of options. */

@@ -79,7 +79,7 @@ export function focalFromExif(exif: Exif, size: ImageSize): ExifFocal | undefine
   return focalFrom(Object.fromEntries(numbers), image);
 }
 
-/** The same of EXIF data that have been read. */
+/** {@link focalFromExif} without checks of the arguments. */
 export function focalFrom(exif: Partial<Exif>, size: ImageSize): ExifFocal | undefined {
   const { width, height, orientation, ...camera } = exif;
   const image = [size.width, size.height] as const;

@@ -52,7 +52,7 @@ export function alignDetails(name: string, entry: AlignEntry, style: Style): str
   ];
 }
 
-/** Of the method of the paper. */
+/** The outcome of the refinement of preset `paper`. */
 function refinement({ diagnostics }: AlignEntry, lengths: Lengths): Pair[] {
   if (!("residualM" in diagnostics)) return [];
   const { converged, residualM } = diagnostics;

@@ -46,7 +46,7 @@ export interface ExportedMesh<M> {
 export interface ExportedAs {
   /** The `proportions` of its result, if these were asked for. */
   proportions: Pick<Stretch, "matrix" | "stretch"> | undefined;
-  /** In an upright frame, if that is asked for. */
+  /** The upright frame, if it is requested. */
   upright: UprightOptions | undefined;
 }
 

@@ -38,7 +38,7 @@ export interface OutputName extends NamedFile {
   holds?: readonly string[] | undefined;
 }
 
-/** Levels of folders in which inputs are looked for. */
+/** Depth of the folders that are searched for inputs. */
 const LEVELS = 5;
 
 /** The files of a run. */

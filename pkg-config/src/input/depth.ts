@@ -83,7 +83,7 @@ function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDep
 const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "Pf\n", "PF\n"];
 
 /**
- * Reads a depth map of any supported format by the module that knows it.
+ * Reads a depth map of any supported format by the module for that format.
  * @param argument the name of the bytes, in errors
  * @param rename of the arguments in errors of the reader
  */

@@ -53,7 +53,7 @@ export interface CoreHelpers {
   /** Asks for helpers. */
   ask(): void;
   send(helper: number, message: Float64Array): void;
-  /** The next message that has arrived. Its first number is the helper; nothing else says that it has left. */
+  /** The next message that has arrived. Its first number is the helper; a message of that number alone means that it has left. */
   receive(): Float64Array | undefined;
   /** Lets the next turn last until a message arrives. */
   wait(): void;
@@ -188,7 +188,7 @@ export interface PlacedInput extends CoreInput {
 export interface Placed {
   /** Its message to the next round; only the module reads it. */
   placement: Uint8Array;
-  /** In the last round. */
+  /** The result, in the last round. */
   alignment?: Alignment;
 }
 

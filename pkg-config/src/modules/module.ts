@@ -126,7 +126,7 @@ export class WasmModule<G> {
     try {
       return await work();
     } catch (cause) {
-      // A worker is told why its module could not be loaded.
+      // A worker gets the reason why its module could not be loaded.
       throw cause instanceof Sim3AlignError ? cause : notLoaded(this.#name, cause);
     }
   }

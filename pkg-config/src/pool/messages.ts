@@ -24,9 +24,9 @@ export interface HelpJob {
 export interface Request {
   type: "job";
   job: Job | HelpJob | { method: "start" };
-  wantsProgress: boolean;
+  wantsProgress?: boolean;
   /** Whether the data of the job, which were moved to the worker, are returned. */
-  returnsData: boolean;
+  returnsData?: boolean;
   /** Compiled modules that the worker has not got before. */
   modules: ReadonlyMap<ModuleName, CompiledModule>;
   /** Prepared meshes that have been disposed. */

@@ -15,7 +15,7 @@ import { optionsOf, positive, type Quaternion, type Vector3, whole } from "../va
 
 /** An object of a scene for a simulator. */
 export interface SimulatorObject {
-  /** Its name, from which that of its body is made. */
+  /** The name of the object, from which the name of its body is made. */
   name?: string | undefined;
   /** The aligned mesh; `readMesh` of `sim3align/formats` reads files, with their colours. */
   mesh: MeshArrays;
@@ -55,7 +55,7 @@ export interface SimulatorOptions {
 /** Defaults of {@link SimulatorOptions}. */
 export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 1, maxMoveM: 0.0025, rest: true } as const;
 
-/** Their names. */
+/** The names of the options. */
 const OPTIONS = ["support", "camera", "density", "maxParts", "maxTurnDeg", "maxMoveM", "rest", "wasm"] as const;
 
 /** A convex surface. */

@@ -85,8 +85,8 @@ export type AlignAllResult<A = Alignment> =
 export interface InputNotes extends Omit<InputInfo, "depthCalibration"> {
   /** What was subtracted from the coordinates of the mesh file. */
   origin?: readonly number[];
-  /** Of the view. */
+  /** Conditions that concern the view. */
   warnings: readonly Core.Warning[];
-  /** Why the colours of the mesh file are not read. */
+  /** Reasons why the colours of the mesh file are not read. */
   colors: readonly string[];
 }

@@ -35,7 +35,7 @@ export interface CoreMesh {
 /** A mesh, and the id under which each thread caches the data derived from it. */
 export interface KeptMesh {
   readonly id: number;
-  /** Its arrays, and why it has no colours. */
+  /** Its arrays, and the reasons why it has no colours. */
   readonly mesh: CoreMesh & { warnings: readonly string[] };
 }
 
@@ -116,7 +116,7 @@ export interface JobData<T> {
   meshId?: number | undefined;
   /** The data with the prepared mesh. */
   restored(data: T): T;
-  /** To be called when the job has ended. */
+  /** Releases the prepared mesh at the end of the job. */
   release(): void;
 }
 
