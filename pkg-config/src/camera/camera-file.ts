@@ -161,18 +161,9 @@ function sceneEntry(
 
 /** Names of a matrix of intrinsics, or of an object with them. */
 const matrixNames = [
-  ...[
-    "K",
-    "k",
-    "cam_K",
-    "camera_K",
-    "intrinsic",
-    "intrinsics",
-    "intrinsic_matrix",
-    "intrinsics_matrix",
-    "intrinsicMatrix",
-  ],
-  ...["camera_matrix", "cameraMatrix", "camera_intrinsic", "camera_intrinsics", "cameraIntrinsics", "color_intrinsics"],
+  ...["K", "k", "cam_K", "camera_K", "intrinsic", "intrinsics", "intrinsic_matrix", "intrinsics_matrix"],
+  ...["intrinsicMatrix", "camera_matrix", "cameraMatrix", "camera_intrinsic", "camera_intrinsics", "cameraIntrinsics"],
+  "color_intrinsics",
 ];
 
 function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefined, names: CameraFileNames): Pinhole {

@@ -29,7 +29,7 @@ export function optionValues(flags: Flags, rows: readonly OptionRow[]): Record<s
   const values: Record<string, unknown> = {};
   for (const row of rows) {
     const value = flags[valueName(`--${flagName(row)}`)];
-    // Commander sets `true` for a --no flag that was not values.
+    // Commander sets `true` for a --no flag that is not on the command line.
     if (value === undefined || (isNegated(row) && value === true)) continue;
     values[row.name] = value === "none" && row.isNullable ? null : value;
   }
