@@ -31,9 +31,8 @@ import { plainArgument } from "./values/border.js";
 import type { JsonFile } from "./values/json.js";
 import { isRecord } from "./values/kinds.js";
 import type { PixelArray } from "./values/pixels.js";
-import type { ColorSamples } from "./values/prepared-mesh.js";
 import { optionsOf } from "./values/values.js";
-import type { Exif, ExternalResources } from "./wasm/formats.js";
+import type { ColorSamples, Exif, ExternalResources } from "./wasm/formats.js";
 
 export type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
 export { type ExifFocal, focalFromExif } from "./camera/exif-focal.js";

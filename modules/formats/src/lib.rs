@@ -52,14 +52,14 @@ export interface MeshArrays {
 
 /** Colours of a surface, at points spread evenly over it. */
 export interface ColorSamples {
-  /** x, y, z per point. */
+  /** Interleaved x, y, z per point, in the frame of the mesh. */
   positions: Float32Array;
-  /** x, y, z of the unit normal per point, outward. */
+  /** The unit normal of the surface at each point, outward: interleaved x, y, z. */
   normals: Float32Array;
   /** Red, green and blue per point, sRGB-encoded. */
   colors: Uint8Array;
-  /** The same if the textures were stored upside down; missing without textures. */
-  flippedColors?: Uint8Array;
+  /** The same if the textures were stored upside down, with which `align` compares a photo that contradicts `colors`. */
+  flippedColors?: Uint8Array | undefined;
 }
 
 /** The files that a mesh file refers to, by the names in it. */
