@@ -211,7 +211,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<Case> {
-  return caseFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
+  return caseFrom(ownFiles(files), caseOptions(settings));
 }
 
 /**
@@ -225,7 +225,7 @@ export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {})
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
-  return sceneFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
+  return sceneFrom(ownFiles(files), caseOptions(settings));
 }
 
 /**
@@ -243,7 +243,7 @@ export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}
  * `fromSam3d` with the name of the file
  */
 export async function readSam3d(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
-  return sam3dFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
+  return sam3dFrom(ownFiles(files), caseOptions(settings));
 }
 
 const caseOptions = (settings: ReadCaseOptions) =>
@@ -255,4 +255,4 @@ async function jsonOf(argument: string, file: EncodedBytes | string | object): P
 }
 
 const call = <T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> =>
-  callReader(() => formatsModule.load(), "file", bytes, read);
+  callReader(fileReaders.formats, "file", bytes, read);

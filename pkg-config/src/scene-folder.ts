@@ -3,7 +3,7 @@ import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { BopScene, bopModels, isBopScene, readBopModel } from "./bop/dataset.js";
 import type { ReadCaseOptions } from "./case-files.js";
-import { type FoundFiles, filesBelow, filesIn, loadFormats, namesInFolder } from "./case-folder.js";
+import { type FoundFiles, filesBelow, filesIn, namesInFolder } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -55,7 +55,7 @@ async function readFolder(folder: string, { models, sam3d, ...settings }: SceneS
   const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
   if (!sam3d) paths.push(...(await filesBelow(folder, "objects/", LEVELS)));
   const from = sam3d ? sam3dFrom : sceneFrom;
-  const { input, truths, ...found } = await from(filesIn("scene", folder, paths), settings, loadFormats, folder);
+  const { input, truths, ...found } = await from(filesIn("scene", folder, paths), settings, folder);
   return { name: basename(resolve(folder)), input, truths, found: { folder, ...found } };
 }
 

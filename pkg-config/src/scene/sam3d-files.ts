@@ -4,7 +4,6 @@ import { isNoInput, namesOf, partOf } from "../case-names.js";
 import { fromSam3d } from "../conventions/sam3d.js";
 import { requiredBytes } from "../input/bytes.js";
 import { holdsGaussians } from "../input/splat-files.js";
-import type { LoadFormats } from "../modules/readers.js";
 import type { DepthKind } from "../types/inputs.js";
 import { failure, renamed, Sim3AlignError } from "../values/error.js";
 import { parsedJson } from "../values/json.js";
@@ -53,16 +52,11 @@ export interface MadeScene {
  * @param place location of the files, for errors
  * @internal
  */
-export async function sam3dFrom(
-  files: CaseFiles,
-  settings: ReadCaseOptions,
-  formats: LoadFormats,
-  place = "the files",
-): Promise<SceneCase> {
+export async function sam3dFrom(files: CaseFiles, settings: ReadCaseOptions, place = "the files"): Promise<SceneCase> {
   const made = await sam3dScene(files, place);
   // A point map of a large image is smaller than the image.
   const { depthKind = made.depthKind, resizeMask = "nearest", ...more } = settings;
-  const scene = await sceneFrom(made.files, { depthKind, resizeMask, ...more }, formats, place);
+  const scene = await sceneFrom(made.files, { depthKind, resizeMask, ...more }, place);
   const named = Object.entries(scene.files).map(([part, name]) => [part, made.sources[name] ?? name]);
   const used = new Set(Object.values(made.sources));
   const isLeft = (path: string) => !used.has(path) && !isNoInput(path);
