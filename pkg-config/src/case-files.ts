@@ -3,7 +3,7 @@ import { fileOf, isNoInput, namesOf, type Part, partOf } from "./case-names.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { requiredBytes } from "./input/bytes.js";
 import { refersToFiles } from "./input/formats.js";
-import { fileReaders } from "./modules/readers.js";
+import { formatsModule } from "./modules/readers.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
 import { numbersIn, parsedJson, shown } from "./values/json.js";
@@ -153,7 +153,7 @@ export async function meshFile(
   if (format === undefined || partOf(`mesh.${format}`) !== "mesh") return { bytes };
   if (!refersToFiles(name)) return { bytes, format };
   const resources: Record<string, Uint8Array> = {};
-  const readers = await fileReaders.formats();
+  const readers = await formatsModule.load();
   const resourcesOf = (file: Uint8Array) => readers.call((module) => module.externalResources(file));
   const { shape, colors } = resourcesOf(bytes);
   for (const uri of shape) {

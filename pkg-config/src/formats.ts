@@ -255,4 +255,4 @@ async function jsonOf(argument: string, file: EncodedBytes | string | object): P
 }
 
 const call = <T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> =>
-  callReader(fileReaders.formats, "file", bytes, read);
+  callReader(() => formatsModule.load(), "file", bytes, read);
