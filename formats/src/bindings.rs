@@ -1,4 +1,4 @@
-//! What the modules of file readers share: JavaScript's bytes, options, images and errors.
+//! Bindings shared by the modules of file readers: JavaScript's bytes, options, images and errors.
 
 use glam::{DVec3, Vec3};
 use js_sys::{Array, ArrayBuffer, Float32Array, Function, Object, Reflect, Uint8Array, Uint32Array};

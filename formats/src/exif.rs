@@ -1,4 +1,4 @@
-//! What cameras note in the EXIF data of photos (Exif 2.32, CIPA DC-008).
+//! EXIF data of photos (Exif 2.32, CIPA DC-008).
 
 use exif::{Error as ExifError, Exif as Fields, In, Reader, Tag, Value};
 

@@ -1,6 +1,6 @@
 //! NumPy's `.npz`: a ZIP archive of `.npy` arrays, as the programs around depth models save them.
 //!
-//! What those programs write (2026): Depth Pro saves `depth` in metres, and its network returns `focallength_px` beside
+//! Files of these programs (2026): Depth Pro saves `depth` in metres, and its network returns `focallength_px` beside
 //! it. MoGe returns `points` (H×W×3), `depth`, `mask`, and `intrinsics` in image sizes; invalid pixels are infinite.
 //! Depth Anything 3 saves `depth` (N×H×W), `conf`, `intrinsics` (N×3×3, pixels) and `extrinsics`. UniDepth returns `depth`
 //! (1×1×H×W), `points` (1×3×H×W) and `intrinsics` (pixels). Metric3D returns `pred_depth` (1×1×H×W).
@@ -97,7 +97,7 @@ struct Entry {
     bytes: usize,
 }
 
-/// Where the depth is: an image, or the z of points, with its height and width.
+/// The array of the depth: an image, or the z of points, with its height and width.
 enum Source {
     Map(Entry, [usize; 2]),
     /// Whether the coordinates of a point are beside one another.

@@ -3,7 +3,7 @@
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::Image;
 
-/// Where the first row and column of a stored image are when it is viewed: 1, the default, is as stored (Exif 2.32,
+/// The place of the first row and column of a stored image when it is viewed: 1, the default, is as stored (Exif 2.32,
 /// 4.6.4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Orientation(u16);

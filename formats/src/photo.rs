@@ -68,7 +68,7 @@ pub(crate) fn decode(argument: &'static str, bytes: &[u8], max_pixels: usize) ->
     }
 }
 
-/// What to do with an image of another format.
+/// Remedy for an image of another format.
 const CONVERT: &str = "Convert the image to PNG or JPEG.";
 
 enum Format {

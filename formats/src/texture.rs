@@ -20,7 +20,7 @@ const MAX_TEXELS: usize = 1 << 20;
 /// Maximum number of pixels of all textures of a file together: four of the largest size.
 const MAX_TEXTURE_PIXELS: usize = 4 * MAX_PIXELS;
 
-/// How a texture continues beyond its edges.
+/// The continuation of a texture beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Wrap {
     #[default]

@@ -1,4 +1,4 @@
-//! What the values of a depth map are.
+//! Kinds of depth values: metric, or relative up to scale and shift.
 
 use serde::{Serialize, Serializer};
 

@@ -16,7 +16,7 @@ pub trait Link {
     fn send(&self, helper: usize, message: &[f64]);
 
     /// The next message that has arrived: the helper that sent it, and [`READY`] or what [`Part::run`] has made. Nothing but
-    /// the helper says that it has left.
+    /// the helper reports that it has left.
     fn receive(&self) -> Option<Vec<f64>>;
 
     /// Lets the next pause last until a message arrives.

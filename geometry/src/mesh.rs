@@ -136,7 +136,7 @@ impl Mesh {
     }
 }
 
-/// Which vertices are corners of triangles.
+/// The vertices that are corners of triangles.
 #[derive(Debug, Clone)]
 pub struct UsedVertices(Vec<bool>);
 

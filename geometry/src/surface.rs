@@ -213,7 +213,8 @@ fn is_usual(diagonal: f64) -> bool {
     (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal)
 }
 
-/// Checks the diagonal of the bounding box; unused vertices are ignored.
+/// Checks the diagonal of the bounding box; unused vertices are ignored. In 64 bits: the squares of what is refused are
+/// beyond 32 bits.
 fn check_diagonal(mesh: &Mesh) -> Result<f64> {
     let used = mesh.without_unused_vertices();
     let Bounds { min, max } = Bounds::of(used.as_ref().unwrap_or(mesh).positions()).unwrap_or(Bounds::NOTHING);

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod case;
 pub mod case_folder;
 pub mod clouds;
+mod conditions;
 pub mod cost;
 mod draws;
 mod effects;

@@ -13,7 +13,7 @@ const ROUNDS: usize = 4;
 /// A step or a place on the grid of the columns, in cells.
 type Cells = [i64; 2];
 
-/// How deep bodies are inside of each other, metres.
+/// Penetration depth of bodies, metres.
 pub fn depth(a: &[Columns], b: &[Columns]) -> f64 {
     depth_by(a, b, [0, 0])
 }
@@ -32,7 +32,7 @@ fn depth_by(a: &[Columns], b: &[Columns], by: Cells) -> f64 {
 /// Bodies on the grid, each at a place.
 struct Grid<'a> {
     bodies: &'a [Vec<Columns>],
-    /// How far each may be moved, in cells.
+    /// The largest shift of each body, in cells.
     reach: Vec<f64>,
     places: Vec<Cells>,
 }
@@ -57,7 +57,7 @@ pub fn steps_apart(bodies: &[Vec<Columns>], reach_m: &[f64], cell: f64) -> Vec<C
 }
 
 impl Grid<'_> {
-    /// How deep two bodies are inside of each other, if they are at these places.
+    /// Penetration depth of two bodies at these places.
     fn depth(&self, (i, at): (usize, Cells), (k, other): (usize, Cells)) -> f64 {
         depth_by(&self.bodies[i], &self.bodies[k], [at[0] - other[0], at[1] - other[1]])
     }

@@ -32,7 +32,7 @@ pub struct Object {
     pub on: On,
 }
 
-/// How bodies are made.
+/// Options of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Kilograms per cubic metre.
@@ -52,7 +52,7 @@ pub struct Settings {
 /// A change of a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
-    /// How far the farthest point of the surface moves, metres.
+    /// The largest motion of a point of the surface, metres.
     pub move_m: f64,
     /// Degrees.
     pub turn_deg: f64,
@@ -193,7 +193,7 @@ pub fn settle(objects: &[Object], settings: &Settings) -> (Vec<Settled>, f64) {
     (bodies, lift)
 }
 
-/// How far the farthest point of a body is at a pose from where it was found, metres.
+/// The largest distance of a point of a body, at a pose, from where it was found, metres.
 fn distance(Settled { body, found, .. }: &Settled, pose: Pose) -> f64 {
     body.points(pose).zip(body.points(*found)).map(|(to, from)| (to - from).length()).fold(0.0, f64::max)
 }

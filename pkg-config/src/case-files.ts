@@ -3,7 +3,7 @@ import { fileOf, isNoInput, namesOf, type Part, partOf } from "./case-names.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { requiredBytes } from "./input/bytes.js";
 import { refersToFiles } from "./input/formats.js";
-import type { LoadFormats } from "./modules/readers.js";
+import { formatsModule } from "./modules/readers.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
 import { numbersIn, parsedJson, shown } from "./values/json.js";
@@ -35,15 +35,11 @@ export interface Case {
 }
 
 /** Frames whose files have been read, but not decoded. */
-export interface FrameFiles {
+export interface FrameFiles extends Pick<Case, "unread" | "truth"> {
   /** The input for a view or a tracker. */
   input: ViewInput;
   /** The name of the file of each part. */
   files: Readonly<Record<string, string>>;
-  /** The names of files that were not read, in order. */
-  unread: string[];
-  /** The true pose; `null` if unknown. */
-  truth: KnownPose | null;
 }
 
 /**
@@ -111,10 +107,10 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
   return { find, required, viewNames, read, optional, beside, unread };
 }
 
-/** Names that are listed. */
+/** Maximum number of names in a sentence. */
 const LISTED = 10;
 
-/** Names in a sentence; of many, the first ones. */
+/** Names in a sentence, the first ten of many. */
 export const listed = (names: readonly string[]): string =>
   names.length > LISTED ? `${names.slice(0, LISTED).join(", ")} and ${names.length - LISTED} more` : names.join(", ");
 
@@ -133,17 +129,12 @@ function cameraPose(bytes: Uint8Array): number[] {
  * @param place location of the files, for errors
  * @internal
  */
-export async function caseFrom(
-  files: CaseFiles,
-  settings: ReadCaseOptions,
-  formats: LoadFormats,
-  place = "the files",
-): Promise<Case> {
+export async function caseFrom(files: CaseFiles, settings: ReadCaseOptions, place = "the files"): Promise<Case> {
   const reader = filesOf(files, settings, place);
   const { required, viewNames } = reader;
   const names = { depth: required("depth"), mask: required("mask"), mesh: required("mesh"), ...viewNames() };
   const { input, truth } = await viewFrom(reader, names, settings);
-  const mesh = await meshFile(names.mesh, await reader.read(names.mesh), formats, reader.beside);
+  const mesh = await meshFile(names.mesh, await reader.read(names.mesh), reader.beside);
   return { input: { ...input, mesh } as AlignInput, files: names, unread: reader.unread(), truth };
 }
 
@@ -156,14 +147,13 @@ export async function caseFrom(
 export async function meshFile(
   name: string,
   bytes: Uint8Array,
-  formats: LoadFormats,
   read: (path: string) => Promise<Uint8Array>,
 ): Promise<MeshFile> {
   const format = /\.([^./\\]+)$/.exec(name)?.[1]?.toLowerCase() as MeshFormat | undefined;
   if (format === undefined || partOf(`mesh.${format}`) !== "mesh") return { bytes };
   if (!refersToFiles(name)) return { bytes, format };
   const resources: Record<string, Uint8Array> = {};
-  const readers = await formats();
+  const readers = await formatsModule.load();
   const resourcesOf = (file: Uint8Array) => readers.call((module) => module.externalResources(file));
   const { shape, colors } = resourcesOf(bytes);
   for (const uri of shape) {

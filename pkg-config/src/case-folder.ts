@@ -14,7 +14,6 @@ import {
 } from "./case-files.js";
 import { partOf } from "./case-names.js";
 import { refersToFiles } from "./input/formats.js";
-import { formatsModule } from "./modules/readers.js";
 import type { AlignInput, CameraInput, MeshFile } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
 import { naturally } from "./values/order.js";
@@ -45,15 +44,13 @@ export interface CasePaths {
   image?: string | undefined;
 }
 
-export const loadFormats = () => formatsModule.load();
-
 /**
  * Reads a case folder.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
   const files = filesIn("case", folder, await pathsIn(folder));
-  const { input, truth, ...found } = await caseFrom(files, settings, loadFormats, folder);
+  const { input, truth, ...found } = await caseFrom(files, settings, folder);
   return { name: basename(resolve(folder)), input, truth, found: { folder, ...found } };
 }
 
@@ -94,7 +91,7 @@ const isFrame = (path: string) => path.startsWith("frame_");
 export async function openFrames(folder: string, settings: ReadCaseOptions = {}): Promise<FramesFolder> {
   const shared = filesOf(filesIn("case", folder, await pathsIn(folder)), settings, folder);
   const meshName = shared.required("mesh");
-  const mesh = await meshFile(meshName, await shared.read(meshName), loadFormats, shared.beside);
+  const mesh = await meshFile(meshName, await shared.read(meshName), shared.beside);
   let camera: string | undefined;
   return {
     ...{ mesh, names: await frameNames(folder) },
@@ -125,7 +122,7 @@ export function inputOfFrame({ input }: Pick<FrameFiles, "input">, mesh: MeshFil
 /** Reads a mesh file, and the files next to it that it refers to. */
 export async function readMeshFile(path: string): Promise<MeshFile> {
   const beside = (uri: string) => read("mesh", join(dirname(path), uri));
-  return meshFile(path, await read("mesh", path), loadFormats, beside);
+  return meshFile(path, await read("mesh", path), beside);
 }
 
 /** Paths of the files in a case folder; includes subfolders only if the mesh may refer to them. */
@@ -135,7 +132,7 @@ async function pathsIn(folder: string): Promise<string[]> {
   return filesBelow(folder, "", refers ? LEVELS : 1);
 }
 
-/** Levels of folders in which the files that a mesh refers to are looked for. */
+/** Depth of the folders that are searched for the files of a mesh. */
 const LEVELS = 8;
 
 /** The paths of the files in a folder below `root`, down to so many levels; links are followed. */

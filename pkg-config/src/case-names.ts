@@ -5,7 +5,7 @@ import { failure } from "./values/error.js";
 /** The names of the files of each part, and their extensions. */
 export const caseNames = {
   depth: { stems: ["depth"], extensions: extensionsOf("depth") },
-  // The reader refuses WebP, and says why.
+  // The reader refuses WebP with a reason.
   mask: { stems: ["mask"], extensions: [...extensionsOf("mask"), "webp"] },
   mesh: { stems: ["mesh"], extensions: extensionsOf("mesh") },
   camera: {

@@ -5,7 +5,6 @@
  */
 
 import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./camera/camera-file.js";
-import type { Exif } from "./camera/exif-focal.js";
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
@@ -32,11 +31,11 @@ import { plainArgument } from "./values/border.js";
 import type { JsonFile } from "./values/json.js";
 import { isRecord } from "./values/kinds.js";
 import type { PixelArray } from "./values/pixels.js";
-import type { ColorSamples } from "./values/prepared-mesh.js";
 import { optionsOf } from "./values/values.js";
+import type { ColorSamples, Exif, ExternalResources } from "./wasm/formats.js";
 
 export type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
-export { type Exif, type ExifFocal, focalFromExif } from "./camera/exif-focal.js";
+export { type ExifFocal, focalFromExif } from "./camera/exif-focal.js";
 export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
 export type {
@@ -53,6 +52,7 @@ export type { DecodeImage } from "./input/webp.js";
 export type { SceneCase } from "./scene/scene-files.js";
 export type { DepthImage, ReadDepthOptions } from "./types/inputs.js";
 export { Sim3AlignError } from "./values/error.js";
+export type { Exif, ExternalResources } from "./wasm/formats.js";
 
 /** A mesh from a file, in the unit and axes of the file. */
 export interface MeshFromFile {
@@ -72,14 +72,6 @@ export interface MeshFromFile {
 export interface MaskFromFile extends PixelArray<Uint8Array> {
   /** Which values of the file are the object: `"values of 127.5 or more, of 0 to 255"`; not of COCO RLE. */
   reading?: string;
-}
-
-/** The files that a mesh file refers to, by the names in it. */
-export interface ExternalResources {
-  /** The buffers of a `.gltf`, without which it cannot be read. */
-  shape: string[];
-  /** Textures and material libraries, without which it has no colours. */
-  colors: string[];
 }
 
 /**
@@ -219,7 +211,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<Case> {
-  return caseFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
+  return caseFrom(ownFiles(files), caseOptions(settings));
 }
 
 /**
@@ -233,7 +225,7 @@ export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {})
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
-  return sceneFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
+  return sceneFrom(ownFiles(files), caseOptions(settings));
 }
 
 /**
@@ -251,7 +243,7 @@ export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}
  * `fromSam3d` with the name of the file
  */
 export async function readSam3d(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
-  return sam3dFrom(ownFiles(files), caseOptions(settings), () => formatsModule.load());
+  return sam3dFrom(ownFiles(files), caseOptions(settings));
 }
 
 const caseOptions = (settings: ReadCaseOptions) =>

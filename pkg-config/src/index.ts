@@ -128,4 +128,5 @@ export type {
 } from "./types/scene.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./values/error.js";
 export type { PixelArray } from "./values/pixels.js";
-export { type ColorSamples, PreparedMesh } from "./values/prepared-mesh.js";
+export { PreparedMesh } from "./values/prepared-mesh.js";
+export type { ColorSamples } from "./wasm/formats.js";

@@ -3,7 +3,7 @@ import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { BopScene, bopModels, isBopScene, readBopModel } from "./bop/dataset.js";
 import type { ReadCaseOptions } from "./case-files.js";
-import { type FoundFiles, filesBelow, filesIn, loadFormats, namesInFolder } from "./case-folder.js";
+import { type FoundFiles, filesBelow, filesIn, namesInFolder } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -45,7 +45,7 @@ export async function bopImageIn(folder: string, imageId: string | undefined): P
   }
 }
 
-/** Where the models of a scene of BOP are: beside the scene, or beside the folder of its split. */
+/** The folder of the models of a scene of BOP: beside the scene, or beside the folder of its split. */
 const modelPlaces = ["models", "../models", "../../models", "../../models_eval"];
 
 /** The folders that are read of a scene of BOP. */
@@ -55,11 +55,11 @@ async function readFolder(folder: string, { models, sam3d, ...settings }: SceneS
   const paths = await filesBelow(folder, "", sam3d ? LEVELS : 1);
   if (!sam3d) paths.push(...(await filesBelow(folder, "objects/", LEVELS)));
   const from = sam3d ? sam3dFrom : sceneFrom;
-  const { input, truths, ...found } = await from(filesIn("scene", folder, paths), settings, loadFormats, folder);
+  const { input, truths, ...found } = await from(filesIn("scene", folder, paths), settings, folder);
   return { name: basename(resolve(folder)), input, truths, found: { folder, ...found } };
 }
 
-/** Levels of folders in which the files of a scene are looked for. */
+/** Depth of the folders that are searched for the files of a scene. */
 const LEVELS = 4;
 
 /** Reads one image of a scene of BOP. */

@@ -26,7 +26,6 @@ class Missing {
 
 /** Runs the jobs of one worker. */
 class WorkerHost {
-  readonly #post: Post;
   /** The compiled modules that have come with jobs. */
   readonly #compiled = new Map<ModuleName, CompiledModule>();
   readonly #table: ModuleTable = {
@@ -44,9 +43,7 @@ class WorkerHost {
   /** The help that this worker gives. */
   #session: HelperSession | undefined;
 
-  constructor(post: Post) {
-    this.#post = post;
-  }
+  constructor(private readonly post: Post) {}
 
   receive(message: ToWorker): void {
     if (message.type === "job") this.#answer(message);
@@ -58,16 +55,16 @@ class WorkerHost {
 
   /** Reports a message whose content could not be read, so that its call does not wait forever. */
   receiveUnreadable(): void {
-    this.#post(this.#failed(new Error("a message that the worker could not read")));
+    this.post(this.#failed(new Error("a message that the worker could not read")));
   }
 
   async #answer(request: Request): Promise<void> {
     const data = request.returnsData && "data" in request.job ? request.job.data : undefined;
     const answer = await this.#run(request).catch((error) => this.#failed(error));
     try {
-      this.#post({ ...answer, data }, buffersOf(data));
+      this.post({ ...answer, data }, buffersOf(data));
     } catch (error) {
-      this.#post(this.#failed(error));
+      this.post(this.#failed(error));
     }
   }
 
@@ -85,10 +82,10 @@ class WorkerHost {
       await this.#session.run(this.#modules);
       return {};
     }
-    const helpers = new Helpers(() => this.#post({ type: "progress" }));
+    const helpers = new Helpers(() => this.post({ type: "progress" }));
     this.#helpers = helpers;
     const listener = (stage: Stage, fraction: number, best?: Float64Array) =>
-      this.#post({ type: "progress", stage, fraction, best });
+      this.post({ type: "progress", stage, fraction, best });
     try {
       return await perform(job, new JobContext(this.#modules, helpers, wantsProgress ? listener : undefined));
     } finally {

@@ -69,7 +69,7 @@ impl Estimate {
     }
 }
 
-/// Which number of [`Unknowns`] is varied.
+/// The number of [`Unknowns`] that is varied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Axis {
     Relief,
@@ -98,7 +98,7 @@ struct Sample {
     poses: Vec<Option<Pictured>>,
 }
 
-/// Where an estimate starts: with poses of its objects that are known already, by object.
+/// The start of an estimate: poses of its objects from an earlier one, by object.
 pub struct Start {
     /// The unknowns.
     pub at: Unknowns,

@@ -31,7 +31,7 @@ impl Unknowns {
     }
 }
 
-/// What [`Unknowns`] refer to.
+/// The inputs that [`Unknowns`] refer to.
 #[derive(Debug, Clone, Copy)]
 pub struct Reference {
     /// The value of the objects, in the median.

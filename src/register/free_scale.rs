@@ -32,7 +32,7 @@ use crate::progress::{Stage, Stopwatch};
 use crate::register::free_space::{FreeSpace, SEEN};
 use crate::report::Counts;
 
-/// How matches are made at a scale, and poses from matches.
+/// Settings of one round of matching and RANSAC.
 struct Round {
     /// Voxels of the larger cloud.
     voxels: usize,

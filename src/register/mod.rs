@@ -4,7 +4,6 @@
 //! normals, FPFH, mutual matches, consensus and ICP; `paper` and the benchmark compose them anew, so that a stage must not
 //! know which method calls it.
 
-pub mod at_once;
 pub mod cloud_pair;
 pub mod compatibility;
 pub mod density;

@@ -226,13 +226,13 @@ struct Agreement {
     /// Mean of max(0, 1 − (r/d)²) over the source points; d is a third of the inlier distance. In clutter, every point
     /// has a near neighbour; only under the correct pose, many have a very near one.
     score: f64,
-    /// What poses are ranked by: the score or, with a free scale, that of both directions.
+    /// The rank of a pose: the score or, with a free scale, that of both directions.
     rank: f64,
     /// The lower fitness of both directions, if both are known.
     mutual: f64,
 }
 
-/// What compares poses of different scales: a source that shrinks agrees everywhere, but with ever less of the target.
+/// A score that compares poses of different scales: a source that shrinks agrees everywhere, but with ever less of the target.
 struct Reverse {
     source: KdTree,
     target: Cloud,

@@ -22,7 +22,7 @@ pub struct Registration {
     pub diagnostics: RegistrationDiagnostics,
 }
 
-/// What `register` and `estimateSim3` report besides the transform and its fit.
+/// Diagnostics of `register` and `estimateSim3`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]

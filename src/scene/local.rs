@@ -43,7 +43,7 @@ pub fn touch_m(body: &Body) -> f64 {
     TOUCH[0] + TOUCH[1] * body.diameter()
 }
 
-/// How far the readings around a body are over the plane.
+/// The height over the plane of the readings around a body.
 pub fn bend(view: &View, plane: &Plane, body: &Body) -> f64 {
     let limit = MAX_BEND[0] + MAX_BEND[1] * body.depth_m();
     let mut heights = Vec::new();

@@ -119,7 +119,7 @@ fn gap_m(body: &Body) -> f64 {
     GAP[0] + GAP[1] * body.depth_m() + GAP[2] * body.diameter()
 }
 
-/// How far the objects stand over what the depth map shows of the plane: sensors misplace tables. The offset on which
+/// The offset of the objects from the visible part of the plane: sensors misplace tables. The offset on which
 /// most objects agree; one that is off by itself hardly counts.
 fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> f64 {
     let gap = |(plane, p): (&Option<Plane>, &Option<Placement>)| {

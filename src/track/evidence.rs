@@ -29,7 +29,7 @@ pub struct TrackedMesh {
     pub pyramid: Rc<MeshPyramid>,
     /// Grids and weights.
     pub settings: SearchSettings,
-    /// Which of its poses are equivalent.
+    /// Its equivalent poses.
     pub equivalence: Rc<Equivalence>,
 }
 

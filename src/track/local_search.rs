@@ -103,7 +103,7 @@ impl TrackedMesh {
     }
 }
 
-/// How far apart two poses are: about the distance of points of the surface, relative to the diagonal of the object.
+/// The distance of two poses: about that of points of the surface, relative to the diagonal of the object.
 fn apart(a: &CropPose, b: &CropPose) -> f64 {
     let [x, y, z, size, across, down, distance] = a.step_to(b);
     let length = |sides: [f64; 3]| sides.iter().map(|side| side * side).sum::<f64>().sqrt();

@@ -96,7 +96,7 @@ pub struct ViewPose {
     pub warnings: Vec<Warning>,
 }
 
-/// What `alignViews` reports besides the poses.
+/// Diagnostics of `alignViews`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]

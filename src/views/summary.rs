@@ -58,7 +58,7 @@ pub struct SummaryView {
     pub position_sd_m: Option<f64>,
     /// The score in the view.
     pub score: Score,
-    /// What colour contributed.
+    /// The contribution of colour.
     pub color: Option<ColorReport>,
 }
 

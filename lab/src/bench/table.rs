@@ -70,7 +70,7 @@ fn cells(results: &[&ResultRow]) -> Vec<String> {
     ]
 }
 
-/// How often poses with a warning are wrong, compared with poses without it.
+/// Error rates of poses with each warning and without it.
 fn warnings(out: &mut String, name: &str, results: &[ResultRow]) {
     let known: Vec<&ResultRow> = results.iter().filter(|r| r.strict.is_some() && r.error.is_none()).collect();
     for code in distinct(known.iter().flat_map(|r| &r.warnings).map(String::as_str)) {

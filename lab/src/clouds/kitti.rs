@@ -20,10 +20,10 @@ const APART_M: f64 = 10.0;
 /// A pair that all who follow the protocol leave out: sequence, source, target.
 const WRONG: (&str, [usize; 2]) = ("08", [15, 58]);
 
-/// How many frames ahead the second sweep is looked for.
+/// Number of frames ahead within which the second sweep is looked for.
 const AHEAD: usize = 100;
 
-/// A sequence: where each of its sweeps is.
+/// A sequence: the pose of each of its sweeps.
 struct Sequence {
     name: String,
     folder: PathBuf,

@@ -15,7 +15,7 @@ pub struct Block<const N: usize> {
     pub target: u32,
     /// j, the source.
     pub source: u32,
-    /// How many fragments the scene has.
+    /// Number of fragments of the scene.
     pub fragments: u32,
     /// The pose that maps j into i (4×4), or its information (6×6).
     pub matrix: SMatrix<f64, N, N>,

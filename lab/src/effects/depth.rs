@@ -2,12 +2,12 @@
 
 use super::edges::edges;
 use super::noise::{Noise, disc};
+use crate::conditions::{Conditions, DepthFault, DepthSource, Tier};
 use crate::objects::mesh::face;
 use crate::prelude::*;
-use crate::sets::conditions::{Conditions, DepthFault, Tier};
 use crate::statistics::mean;
 use crate::world::Placed;
-use crate::world::view::Sight;
+use crate::world::view::Rendering;
 use sim3align_geometry::components::{Component, components};
 use sim3align_geometry::order::{median, quantile};
 
@@ -20,20 +20,6 @@ const LARGEST_STEP: f64 = 0.06;
 /// Minimum share of the visible pixels that counts as a part, and minimum share of the two largest parts together.
 const LEAST_PART: f64 = 0.12;
 const LEAST_BOTH: f64 = 0.97;
-
-named! {
-    /// A source of depth: a sensor or a depth model.
-    pub enum DepthSource: "source" {
-        /// Stereo matching of blocks, with a projected texture.
-        ActiveStereo = "active-stereo",
-        /// A projected pattern, matched to a reference.
-        StructuredLight = "structured-light",
-        /// The time that light takes.
-        TimeOfFlight = "time-of-flight",
-        /// A model, from one photo.
-        Predicted = "predicted-depth",
-    }
-}
 
 /// A depth map with simulated errors.
 #[derive(Debug)]
@@ -48,31 +34,31 @@ pub struct Readings {
     pub drifts: Vec<f64>,
 }
 
-/// Reads a scene, in which `sight` shows all objects as one, and `things` the pixels of each; `diagonal` is the median
+/// Reads a scene, in which `rendering` shows all objects as one, and `things` the pixels of each; `diagonal` is the median
 /// diagonal of the objects, metres.
 pub fn read(
-    sight: &Sight,
+    rendering: &Rendering,
     things: &[&[bool]],
     diagonal: f64,
     conditions: Conditions,
     random: &mut Random,
 ) -> Result<Readings> {
     let Conditions { tier, class } = conditions;
-    let view = &sight.view;
+    let view = &rendering.view;
     if class.depth.is_empty() {
-        let depth = DepthMap::from_metres(view.width, view.height, sight.depth.clone())?;
+        let depth = DepthMap::from_metres(view.width, view.height, rendering.depth.clone())?;
         return Ok(Readings { depth, bias: 1.0, tags: vec!["exact"], drifts: vec![0.0; things.len()] });
     }
     let source = class.depth[random.below(class.depth.len())];
     let is_wide = class.depth_fault == DepthFault::WideShadow;
     let source = if is_wide { DepthSource::StructuredLight } else { source };
-    let mut depth = edges(source, sight, tier, if is_wide { WIDE } else { 1.0 }, random);
+    let mut depth = edges(source, rendering, tier, if is_wide { WIDE } else { 1.0 }, random);
     let (drifts, bias) = if source == DepthSource::Predicted {
-        let drifts = warp(&mut depth, sight, things, diagonal, tier, random);
+        let drifts = warp(&mut depth, rendering, things, diagonal, tier, random);
         (drifts, libm::exp(between(random, libm::log(0.8), libm::log(1.25))))
     } else {
-        roughen(&mut depth, sight, source, diagonal, tier, random);
-        lose_spots(&mut depth, sight, diagonal, conditions, random);
+        roughen(&mut depth, rendering, source, diagonal, tier, random);
+        lose_spots(&mut depth, rendering, diagonal, conditions, random);
         (vec![0.0; things.len()], 1.0)
     };
     depth.iter_mut().for_each(|z| *z *= bias as f32);
@@ -91,7 +77,7 @@ impl Readings {
     pub fn afflict(
         &mut self,
         mask: &mut Mask,
-        sight: &Sight,
+        rendering: &Rendering,
         placed: &Placed,
         conditions: Conditions,
         random: &mut Random,
@@ -99,7 +85,7 @@ impl Readings {
         let depth = self.depth.data_mut();
         match conditions.class.depth_fault {
             DepthFault::Holes | DepthFault::HolesOfMask => {
-                holes_on(sight, placed, conditions.tier, &mut self.tags, random)
+                holes_on(rendering, placed, conditions.tier, &mut self.tags, random)
                     .into_iter()
                     .for_each(|i| depth[i] = 0.0);
                 if conditions.class.depth_fault == DepthFault::HolesOfMask {
@@ -110,14 +96,16 @@ impl Readings {
                 let set: Vec<bool> = mask.data().iter().map(|m| *m != 0).collect();
                 let lost = usize::from(chance(random, 0.7));
                 if chance(random, 0.5)
-                    && let Some(part) = parts(&set, sight.view.width).get(lost)
+                    && let Some(part) = parts(&set, rendering.view.width).get(lost)
                 {
                     part.pixels().for_each(|i| depth[i] = 0.0);
                     self.tags.push("part-without-depth");
                 }
             }
             DepthFault::Quantised => {
-                let Some(distance) = median(sight.object_depth.iter().copied().filter(|z| *z > 0.0)) else { return };
+                let Some(distance) = median(rendering.object_depth.iter().copied().filter(|z| *z > 0.0)) else {
+                    return;
+                };
                 let tier = conditions.tier;
                 let step = between(random, tier.pick(0.001, 0.002, 0.004), tier.pick(0.003, 0.006, 0.01));
                 // z = k / disparity, whose step is k/disparity² = z²/k.
@@ -136,16 +124,16 @@ impl Readings {
 /// relative shift of each object.
 fn warp(
     depth: &mut [f32],
-    sight: &Sight,
+    rendering: &Rendering,
     things: &[&[bool]],
     diagonal: f64,
     tier: Tier,
     random: &mut Random,
 ) -> Vec<f64> {
-    let view = &sight.view;
+    let view = &rendering.view;
     let amplitude = between(random, 0.3, 1.0) * tier.pick(0.003, 0.012, 0.025) * diagonal;
     let noise = between(random, 0.3, 1.0) * tier.pick(0.0007, 0.0015, 0.003) * diagonal;
-    let z_mean = mean(sight.object_depth.iter().filter(|z| **z > 0.0).map(|z| f64::from(*z))).unwrap_or(0.0);
+    let z_mean = mean(rendering.object_depth.iter().filter(|z| **z > 0.0).map(|z| f64::from(*z))).unwrap_or(0.0);
     let span = view.camera.fx * diagonal / z_mean;
     // cos(a + b) from tables along rows and columns: a wave costs two products a pixel.
     let tables: Vec<_> = (0..3)
@@ -163,7 +151,7 @@ fn warp(
         sum * amplitude / (1.5f64.sqrt() * z_mean)
     };
     let over = |shown: &[bool]| mean((0..shown.len()).filter(|i| shown[*i]).map(wave)).unwrap_or(0.0);
-    let offset = over(&sight.visible);
+    let offset = over(&rendering.visible);
     for (i, z) in depth.iter_mut().enumerate() {
         let grain = (random.uniform() + random.uniform() - 1.0) * noise;
         *z = (f64::from(*z) * (1.0 + wave(i) - offset) + if *z > 0.0 { grain } else { 0.0 }) as f32;
@@ -173,7 +161,14 @@ fn warp(
 
 /// Noise and steps of a sensor: as published for RealSense D400, PrimeSense and Kinect 2, and smooth noise as measured on
 /// real cases (the design history has the table).
-fn roughen(depth: &mut [f32], sight: &Sight, source: DepthSource, diagonal: f64, tier: Tier, random: &mut Random) {
+fn roughen(
+    depth: &mut [f32],
+    rendering: &Rendering,
+    source: DepthSource,
+    diagonal: f64,
+    tier: Tier,
+    random: &mut Random,
+) {
     // Coefficients of z²: white noise, smooth noise, steps; for time of flight, of z.
     let [white, smooth, step] = match source {
         DepthSource::ActiveStereo => [0.0008, 0.014, 0.0005],
@@ -181,7 +176,7 @@ fn roughen(depth: &mut [f32], sight: &Sight, source: DepthSource, diagonal: f64,
         DepthSource::TimeOfFlight | DepthSource::Predicted => [0.001, 0.001, 0.0],
     };
     let share = between(random, 0.6, 1.0);
-    let bumps = Noise::new(&sight.view, 6.0 * sight.view.resolution(), random);
+    let bumps = Noise::new(&rendering.view, 6.0 * rendering.view.resolution(), random);
     // A sensor that drowns the object in noise is the wrong one: the user would step closer.
     let at_most = |x: f64, most: f64| x.min(most * diagonal);
     for (i, value) in depth.iter_mut().enumerate() {
@@ -200,15 +195,15 @@ fn roughen(depth: &mut [f32], sight: &Sight, source: DepthSource, diagonal: f64,
 }
 
 /// Loses readings here and there, on the object and elsewhere.
-fn lose_spots(depth: &mut [f32], sight: &Sight, diagonal: f64, conditions: Conditions, random: &mut Random) {
+fn lose_spots(depth: &mut [f32], rendering: &Rendering, diagonal: f64, conditions: Conditions, random: &mut Random) {
     let Conditions { tier, class } = conditions;
     let wanted = if class.depth_fault == DepthFault::Sparse {
         between(random, tier.pick(0.05, 0.1, 0.18), tier.pick(0.05, 0.18, 0.3))
     } else {
         between(random, 0.0, tier.pick(0.02, 0.08, 0.15))
     };
-    let object: Vec<usize> = (0..depth.len()).filter(|&i| sight.visible[i]).collect();
-    let span = sight.view.camera.fx * diagonal / f64::from(object.first().map_or(1.0, |&i| sight.depth[i]));
+    let object: Vec<usize> = (0..depth.len()).filter(|&i| rendering.visible[i]).collect();
+    let span = rendering.view.camera.fx * diagonal / f64::from(object.first().map_or(1.0, |&i| rendering.depth[i]));
     let missing =
         |depth: &[f32]| object.iter().filter(|&&i| depth[i] == 0.0).count() as f64 / object.len().max(1) as f64;
     for hole in 0..300 {
@@ -218,35 +213,35 @@ fn lose_spots(depth: &mut [f32], sight: &Sight, diagonal: f64, conditions: Condi
         }
         let at = if on_object { object[random.below(object.len())] } else { random.below(depth.len()) };
         let radius = (span * between(random, 0.008, 0.05)).max(1.0);
-        disc(&sight.view, at, radius, |i| depth[i] = 0.0);
+        disc(&rendering.view, at, radius, |i| depth[i] = 0.0);
     }
 }
 
 /// Holes that cover a share of the visible object: on a dark part, on highlights, at grazing angles.
 fn holes_on(
-    sight: &Sight,
+    rendering: &Rendering,
     placed: &Placed,
     tier: Tier,
     tags: &mut Vec<&'static str>,
     random: &mut Random,
 ) -> Vec<usize> {
     let wanted = between(random, tier.pick(0.05, 0.15, 0.25), tier.pick(0.12, 0.3, 0.45));
-    let object: Vec<(usize, usize)> = sight.object_pixels().collect();
+    let object: Vec<(usize, usize)> = rendering.object_pixels().collect();
     let pixels: Vec<usize> = object.iter().map(|(i, _)| *i).collect();
     let kinds = [chance(random, 0.6), chance(random, 0.5), chance(random, 0.5)];
     let kinds = if kinds == [false; 3] { [true, false, false] } else { kinds };
     let each = wanted / kinds.iter().filter(|kind| **kind).count() as f64;
-    let (world_from_camera, eye) = (sight.view.camera_from_world.inverse(), sight.view.eye());
+    let (world_from_camera, eye) = (rendering.view.camera_from_world.inverse(), rendering.view.eye());
     let normal_at = |k: usize| face(&placed.mesh, object[k].1).normalize_or(DVec3::Z);
     let to_eye = |k: usize| {
-        let point = sight.view.world_point(&world_from_camera, object[k].0, sight.object_depth[object[k].0]);
+        let point = rendering.view.world_point(&world_from_camera, object[k].0, rendering.object_depth[object[k].0]);
         (eye - point).normalize_or(DVec3::Z)
     };
     let mut lost = Vec::new();
     if kinds[0] {
         tags.push("dark");
         let span = (object.len() as f64).sqrt();
-        let noise = Noise::new(&sight.view, (span * between(random, 0.15, 0.35)).max(3.0), random);
+        let noise = Noise::new(&rendering.view, (span * between(random, 0.15, 0.35)).max(3.0), random);
         lost.extend(highest(&pixels, |k| noise.at(pixels[k]), each));
     }
     if kinds[1] {

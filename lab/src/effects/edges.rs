@@ -2,11 +2,10 @@
 //!
 //! The true edge moves in or out by an offset that changes along it. Beside the moved edge, readings are missing or mixed.
 
-use super::depth::DepthSource;
 use super::noise::Noise;
+use crate::conditions::{DepthSource, Tier};
 use crate::prelude::*;
-use crate::sets::conditions::Tier;
-use crate::world::view::Sight;
+use crate::world::view::Rendering;
 
 /// Smallest step, as a share of the distance: about a pixel of a stereo camera's disparity.
 const STEP: f64 = 0.02;
@@ -79,9 +78,9 @@ const PREDICTED: EdgeErrors = EdgeErrors {
 
 /// The scene's depth, metres, with the edges of a source but without noise; 0 for no reading. `wide` multiplies the
 /// distance between camera and projector.
-pub fn edges(source: DepthSource, sight: &Sight, tier: Tier, wide: f64, random: &mut Random) -> Vec<f32> {
-    let width = sight.view.width;
-    let resolution = sight.view.resolution();
+pub fn edges(source: DepthSource, rendering: &Rendering, tier: Tier, wide: f64, random: &mut Random) -> Vec<f32> {
+    let width = rendering.view.width;
+    let resolution = rendering.view.resolution();
     let errors = match source {
         DepthSource::ActiveStereo => ACTIVE_STEREO,
         DepthSource::StructuredLight => STRUCTURED_LIGHT,
@@ -92,11 +91,11 @@ pub fn edges(source: DepthSource, sight: &Sight, tier: Tier, wide: f64, random: 
     let of_tier = |values: [f64; 3]| much * values[tier as usize];
     let [mean, deviation] = errors.offset[tier as usize];
     let mean = resolution * (mean + deviation * normal(random));
-    let wobble = Noise::new(&sight.view, errors.place * resolution, random);
-    let filling = Noise::new(&sight.view, 6.0 * resolution, random);
+    let wobble = Noise::new(&rendering.view, errors.place * resolution, random);
+    let filling = Noise::new(&rendering.view, 6.0 * resolution, random);
     let reach = REACH * resolution;
-    let near = Beside::all(sight, reach);
-    let mut depth = sight.depth.clone();
+    let near = Beside::all(rendering, reach);
+    let mut depth = rendering.depth.clone();
     let (ramp, gap) = (of_tier(errors.ramp), of_tier(errors.gap));
     let wobbling = of_tier(errors.wobble);
     for (i, beside) in near.iter().enumerate() {
@@ -114,11 +113,11 @@ pub fn edges(source: DepthSource, sight: &Sight, tier: Tier, wide: f64, random: 
         } else if is_eroded || is_beside {
             0.0
         } else if outwards < 0.0 {
-            if beside.signed < 0.0 { sight.depth[i] } else { beside.near }
+            if beside.signed < 0.0 { rendering.depth[i] } else { beside.near }
         } else if beside.signed < 0.0 {
             beside.far
         } else {
-            sight.depth[i]
+            rendering.depth[i]
         };
     }
     let side = sign(random);
@@ -126,7 +125,7 @@ pub fn edges(source: DepthSource, sight: &Sight, tier: Tier, wide: f64, random: 
     if base > 0.0 {
         let dark = |i: usize| 0.5 * (filling.at(i) + 1.0) < 0.2 + 0.8 * share;
         let widest = WIDEST * resolution * wide;
-        cast_shadow(sight, [base * wide * resolution, widest], side, &mut depth, &dark);
+        cast_shadow(rendering, [base * wide * resolution, widest], side, &mut depth, &dark);
     }
     let shift = crate::world::unit(TAU * random.uniform()) * of_tier(errors.shift);
     shifted(&depth, width, shift.to_array())
@@ -144,8 +143,8 @@ struct Beside {
 
 impl Beside {
     /// For each pixel, its nearest edge, if one is within `reach` pixels.
-    fn all(sight: &Sight, reach: f64) -> Vec<Option<Self>> {
-        let (width, height) = (sight.view.width, sight.view.height);
+    fn all(rendering: &Rendering, reach: f64) -> Vec<Option<Self>> {
+        let (width, height) = (rendering.view.width, rendering.view.height);
         let mut all: Vec<Option<Self>> = vec![None; width * height];
         for v in 0..height {
             for u in 0..width {
@@ -155,11 +154,11 @@ impl Beside {
                     (v + 1 < height).then_some((i + width, [0.0, 0.5])),
                 ];
                 for (j, [du, dv]) in beside.into_iter().flatten() {
-                    let (a, b) = (sight.depth[i], sight.depth[j]);
+                    let (a, b) = (rendering.depth[i], rendering.depth[j]);
                     // An empty scene is far.
                     let (near, far) = if b == 0.0 || (a > 0.0 && a < b) { (a, b) } else { (b, a) };
                     if near > 0.0 && (far == 0.0 || f64::from(far - near) > STEP * f64::from(near)) {
-                        spread(&mut all, sight, [u as f64 + du, v as f64 + dv], reach, [near, far]);
+                        spread(&mut all, rendering, [u as f64 + du, v as f64 + dv], reach, [near, far]);
                     }
                 }
             }
@@ -169,16 +168,16 @@ impl Beside {
 }
 
 /// Records an edge at the pixels around it that have no nearer one.
-fn spread(all: &mut [Option<Beside>], sight: &Sight, [u, v]: [f64; 2], reach: f64, [near, far]: [f32; 2]) {
+fn spread(all: &mut [Option<Beside>], rendering: &Rendering, [u, v]: [f64; 2], reach: f64, [near, far]: [f32; 2]) {
     let range = |x: f64, side: usize| (x - reach).max(0.0).ceil() as usize..=((x + reach) as usize).min(side - 1);
-    for y in range(v, sight.view.height) {
-        for x in range(u, sight.view.width) {
+    for y in range(v, rendering.view.height) {
+        for x in range(u, rendering.view.width) {
             let distance = libm::sqrt((x as f64 - u).powi(2) + (y as f64 - v).powi(2));
-            let slot = &mut all[y * sight.view.width + x];
+            let slot = &mut all[y * rendering.view.width + x];
             if distance > reach || slot.is_some_and(|known| known.signed.abs() <= distance) {
                 continue;
             }
-            let z = sight.depth[y * sight.view.width + x];
+            let z = rendering.depth[y * rendering.view.width + x];
             let is_near = z > 0.0 && (far == 0.0 || z < 0.5 * (near + far));
             // The middle between the two pixels of an edge is half a pixel from each.
             *slot = Some(Beside { signed: if is_near { -distance } else { distance }, near, far });
@@ -188,9 +187,15 @@ fn spread(all: &mut [Option<Beside>], sight: &Sight, [u, v]: [f64; 2], reach: f6
 
 /// Loses the readings that a second eye or a projector beside the camera does not see: `base` is its focal length in pixels
 /// times its distance in metres, `widest` the limit of the shadow in pixels.
-fn cast_shadow(sight: &Sight, [base, widest]: [f64; 2], side: f64, depth: &mut [f32], is_dark: &dyn Fn(usize) -> bool) {
-    let width = sight.view.width;
-    for (v, row) in sight.depth.chunks(width).enumerate() {
+fn cast_shadow(
+    rendering: &Rendering,
+    [base, widest]: [f64; 2],
+    side: f64,
+    depth: &mut [f32],
+    is_dark: &dyn Fn(usize) -> bool,
+) {
+    let width = rendering.view.width;
+    for (v, row) in rendering.depth.chunks(width).enumerate() {
         for u in 1..width {
             // The nearer pixel, and the one beside it on the side of the shadow.
             let (near, first) = if side > 0.0 { (u - 1, u) } else { (u, u - 1) };

@@ -1,13 +1,13 @@
 //! Simulates generative models that reconstruct an object from one photo: two styles of being wrong.
 
+use crate::conditions::{Conditions, EXTRA_PART, MISSING_PART, MeshFault, PLAIN, Tier, WARPED};
 use crate::objects::mesh::{
     bounds, box_of, clustered, compact, corners_of, face, joined, mapped, neighbors, normals, paths, with_vertices,
 };
 use crate::objects::solid::Solid;
 use crate::prelude::*;
-use crate::sets::conditions::{Conditions, EXTRA_PART, MISSING_PART, MeshFault, PLAIN, Tier, WARPED};
 use crate::world::Placed;
-use crate::world::view::Sight;
+use crate::world::view::Rendering;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
 use sim3align_geometry::decimate::decimate;
 
@@ -50,10 +50,10 @@ pub struct Generated {
 
 impl Prior {
     /// The mesh of an object of a scene, whose quality is drawn.
-    pub fn generate(self, placed: &Placed, sight: &Sight, seed: u64) -> Result<Generated> {
+    pub fn generate(self, placed: &Placed, rendering: &Rendering, seed: u64) -> Result<Generated> {
         let random = &mut Random::new(seed, QUALITY_STREAM);
         if self == Self::Smooth {
-            return smooth(placed, sight, random);
+            return smooth(placed, rendering, random);
         }
         let tier = match random.uniform() {
             u if u < 0.3 => Tier::Easy,
@@ -67,7 +67,7 @@ impl Prior {
             _ => &PLAIN,
         };
         let random = &mut Random::new(seed, MESH_STREAM);
-        generate(placed, sight, Conditions { tier, class }, random)
+        generate(placed, rendering, Conditions { tier, class }, random)
     }
 }
 
@@ -105,7 +105,12 @@ impl Strength {
 }
 
 /// The mesh that a generator makes of an object, with the errors of its conditions.
-pub fn generate(placed: &Placed, sight: &Sight, conditions: Conditions, random: &mut Random) -> Result<Generated> {
+pub fn generate(
+    placed: &Placed,
+    rendering: &Rendering,
+    conditions: Conditions,
+    random: &mut Random,
+) -> Result<Generated> {
     let (Conditions { tier, class }, object, original) = (conditions, &placed.object, &placed.mesh);
     let is_symmetric = !placed.symmetry.is_empty();
     // Decimation would tear a thin object.
@@ -120,7 +125,7 @@ pub fn generate(placed: &Placed, sight: &Sight, conditions: Conditions, random: 
         positions = smoothed(&positions, &around);
     }
     let mut positions = fitted(&positions, &vertices, original)?;
-    invent(&mut positions, original, &around, sight, &strength, diagonal, random);
+    invent(&mut positions, original, &around, rendering, &strength, diagonal, random);
 
     let mut tags = Vec::new();
     let mut triangles = original.triangles().to_vec();
@@ -203,14 +208,14 @@ fn invent(
     positions: &mut [DVec3],
     mesh: &Mesh,
     around: &[Vec<u32>],
-    sight: &Sight,
+    rendering: &Rendering,
     strength: &Strength,
     diagonal: f64,
     random: &mut Random,
 ) {
-    let paths = paths(mesh, around, &corners_of(mesh, sight.object_pixels().map(|(_, triangle)| triangle as u32)));
+    let paths = paths(mesh, around, &corners_of(mesh, rendering.object_pixels().map(|(_, triangle)| triangle as u32)));
     let normals = normals(mesh);
-    let eye = sight.view.eye();
+    let eye = rendering.view.eye();
     let wave = DVec3::new(random.uniform(), random.uniform(), random.uniform()) * (TAU / diagonal);
     let phase = TAU * random.uniform();
     for (i, p) in positions.iter_mut().enumerate() {
@@ -219,10 +224,10 @@ fn invent(
         if share == 0.0 {
             continue;
         }
-        let in_camera = sight.view.camera_from_world.apply(vector3(mesh.positions()[i]));
-        let [u, v] = sight.view.camera.project(vec3(&in_camera)).map(|x| x + 0.5);
-        let inside = u >= 0.0 && v >= 0.0 && u < sight.view.width as f64 && v < sight.view.height as f64;
-        let front = if inside { sight.object_depth[v as usize * sight.view.width + u as usize] } else { 0.0 };
+        let in_camera = rendering.view.camera_from_world.apply(vector3(mesh.positions()[i]));
+        let [u, v] = rendering.view.camera.project(vec3(&in_camera)).map(|x| x + 0.5);
+        let inside = u >= 0.0 && v >= 0.0 && u < rendering.view.width as f64 && v < rendering.view.height as f64;
+        let front = if inside { rendering.object_depth[v as usize * rendering.view.width + u as usize] } else { 0.0 };
         let behind = if front > 0.0 { (in_camera.z - f64::from(front)).max(0.0) } else { 0.0 };
         let wavy = 0.8 + 0.2 * libm::cos(wave.dot(*p) + phase);
         let away = (*p - eye).normalize_or_zero();
@@ -249,14 +254,14 @@ fn blob(positions: &[Vec3], diagonal: f64, random: &mut Random) -> Solid {
     solid
 }
 
-fn smooth(placed: &Placed, sight: &Sight, random: &mut Random) -> Result<Generated> {
+fn smooth(placed: &Placed, rendering: &Rendering, random: &mut Random) -> Result<Generated> {
     let blur = if chance(random, 0.25) { between(random, 0.014, 0.018) } else { between(random, 0.01, 0.014) };
     let flattened = between(random, 0.6, 0.85);
     let mesh = decimate(&melted(&placed.mesh, blur)?, SMOOTH_TRIANGLES);
-    let (view, world_from_camera) = (&sight.view, sight.view.camera_from_world.inverse());
-    let shown: Vec<usize> = sight.object_pixels().map(|(i, _)| i).collect();
+    let (view, world_from_camera) = (&rendering.view, rendering.view.camera_from_world.inverse());
+    let shown: Vec<usize> = rendering.object_pixels().map(|(i, _)| i).collect();
     let every = shown.len().div_ceil(FITTED_PIXELS).max(1);
-    let point = |&i: &usize| view.world_point(&world_from_camera, i, sight.object_depth[i]);
+    let point = |&i: &usize| view.world_point(&world_from_camera, i, rendering.object_depth[i]);
     let seen: Vec<Vector3<f64>> = shown.iter().step_by(every).map(|i| Vector3::from(point(i).to_array())).collect();
     let middle = seen.iter().sum::<Vector3<f64>>() / seen.len().max(1) as f64;
     let away = (middle - world_from_camera.translation).normalize();

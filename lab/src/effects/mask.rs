@@ -1,9 +1,9 @@
 //! Masks with the errors of segmentation networks and of annotators.
 
 use super::noise::{Noise, convolved, disc, gaussian};
+use crate::conditions::{Conditions, Framing, MaskSource, Tier};
 use crate::prelude::*;
-use crate::sets::conditions::{Conditions, Framing, Tier};
-use crate::world::view::Sight;
+use crate::world::view::Rendering;
 
 /// Share of the masks that networks make; annotators make the others.
 const NETWORKS: f64 = 0.63;
@@ -14,10 +14,8 @@ const LOGISTIC: f64 = 1.702;
 /// Most that an outline is off, in deviations of the blur.
 const MOST: f64 = 2.5;
 
-/// A source of masks: its errors by tier, in pixels of an image 640 wide.
-#[derive(Debug)]
-pub struct MaskSource {
-    name: &'static str,
+/// Errors of a source of masks by tier, in pixels of an image 640 wide.
+struct MaskErrors {
     /// Deviation of the blur, which rounds corners and loses thin parts.
     blur: [f64; 3],
     /// Mean and deviation of the offset of the whole outline.
@@ -30,8 +28,7 @@ pub struct MaskSource {
 }
 
 /// Logits of 256 cells on the longer side, blurred and enlarged to the photo.
-pub const NETWORK: MaskSource = MaskSource {
-    name: "network-mask",
+const NETWORK: MaskErrors = MaskErrors {
     blur: [1.8, 1.8, 1.8],
     offset: [[0.0, 0.3], [0.3, 0.5], [0.4, 0.8]],
     wobble: [1.6, 2.8, 4.0],
@@ -39,8 +36,7 @@ pub const NETWORK: MaskSource = MaskSource {
     crop: 0.4,
 };
 /// Polygons whose corners are right within about a pixel, as dense as patience allows.
-pub const ANNOTATOR: MaskSource = MaskSource {
-    name: "annotated-mask",
+const ANNOTATOR: MaskErrors = MaskErrors {
     blur: [0.8, 1.1, 1.4],
     offset: [[0.0, 0.2], [0.0, 0.3], [0.0, 0.4]],
     wobble: [1.2, 2.0, 2.8],
@@ -49,32 +45,40 @@ pub const ANNOTATOR: MaskSource = MaskSource {
 };
 
 /// A mask with simulated errors, and their names.
-pub fn mask_of(sight: &Sight, conditions: Conditions, random: &mut Random) -> Result<(Mask, Vec<&'static str>)> {
+pub fn mask_of(
+    rendering: &Rendering,
+    conditions: Conditions,
+    random: &mut Random,
+) -> Result<(Mask, Vec<&'static str>)> {
     let Conditions { tier, class } = conditions;
-    let view = &sight.view;
-    if sight.visible_px() == 0 {
+    let view = &rendering.view;
+    if rendering.visible_px() == 0 {
         return Ok((Mask::filled(view.width, view.height, 0), Vec::new()));
     }
     let is_network = chance(random, NETWORKS);
-    let source = class.mask.unwrap_or(if is_network { &NETWORK } else { &ANNOTATOR });
+    let source = class.mask.unwrap_or(if is_network { MaskSource::Network } else { MaskSource::Annotator });
+    let errors = match source {
+        MaskSource::Network => NETWORK,
+        MaskSource::Annotator => ANNOTATOR,
+    };
     let is_tiny = class.framing == Framing::Tiny;
-    let resolution = if is_tiny { source.crop } else { view.resolution() };
-    let mut data = source.outline(sight, tier, resolution, random);
-    let mut tags = vec![source.name];
-    spoil(&mut data, sight, (tier, class.is_ragged), resolution, &mut tags, random);
+    let resolution = if is_tiny { errors.crop } else { view.resolution() };
+    let mut data = errors.outline(rendering, tier, resolution, random);
+    let mut tags = vec![source.as_str()];
+    spoil(&mut data, rendering, (tier, class.is_ragged), resolution, &mut tags, random);
     Ok((Image::new("mask", view.width, view.height, data)?, tags))
 }
 
-impl MaskSource {
+impl MaskErrors {
     /// The pixels in its outline of an object.
-    fn outline(&self, sight: &Sight, tier: Tier, resolution: f64, random: &mut Random) -> Vec<u8> {
-        let view = &sight.view;
+    fn outline(&self, rendering: &Rendering, tier: Tier, resolution: f64, random: &mut Random) -> Vec<u8> {
+        let view = &rendering.view;
         let sigma = resolution * self.blur[tier as usize];
         let [mean, deviation] = self.offset[tier as usize];
         let offset = resolution * (mean + deviation * normal(random).clamp(-2.0, 2.0));
         let wobble = resolution * between(random, 0.6, 1.0) * self.wobble[tier as usize];
         let noise = Noise::new(view, self.place * resolution, random);
-        let visible: Vec<f64> = sight.visible.iter().map(|visible| f64::from(u8::from(*visible))).collect();
+        let visible: Vec<f64> = rendering.visible.iter().map(|visible| f64::from(u8::from(*visible))).collect();
         let coverage = convolved(&visible, view.width, &gaussian(sigma));
         let is_inside = |(i, share): (usize, f64)| {
             let share = share.clamp(LEAST_COVERAGE, 1.0 - LEAST_COVERAGE);
@@ -90,15 +94,15 @@ impl MaskSource {
 /// Adds and removes regions: background, lost parts, pin holes, islands.
 fn spoil(
     data: &mut [u8],
-    sight: &Sight,
+    rendering: &Rendering,
     (tier, is_ragged): (Tier, bool),
     resolution: f64,
     tags: &mut Vec<&'static str>,
     random: &mut Random,
 ) {
-    let view = &sight.view;
+    let view = &rendering.view;
     let probability = if is_ragged { tier.pick(0.0, 0.5, 0.8) } else { tier.pick(0.0, 0.08, 0.25) };
-    let inner: Vec<usize> = (0..data.len()).filter(|&i| sight.visible[i]).collect();
+    let inner: Vec<usize> = (0..data.len()).filter(|&i| rendering.visible[i]).collect();
     let is_rim =
         |i: &usize| [-1, 1].iter().any(|by| i.checked_add_signed(*by).is_some_and(|k| data.get(k) != Some(&1)));
     let rim: Vec<usize> = inner.iter().copied().filter(is_rim).collect();

@@ -9,5 +9,4 @@ pub mod monocular;
 pub mod noise;
 pub mod painter;
 pub mod photo;
-pub mod print;
 pub mod surplus;

@@ -1,8 +1,8 @@
 //! The colours that a generative model gives its mesh: those of the photo where it saw the object, invented elsewhere.
 
-use super::print::{Print, PrintKind, color, srgb};
+use crate::conditions::Conditions;
+use crate::objects::print::{Print, PrintKind, color, srgb};
 use crate::prelude::*;
-use crate::sets::conditions::Conditions;
 use crate::world::Placed;
 use sim3align::geometry::surface::sample_surface;
 use sim3align_geometry::surface_colors::Rgb;
@@ -12,7 +12,7 @@ const BLUR_SAMPLES: usize = 3;
 /// Number of points whose mean colour is that of an unseen side.
 const MEAN_SAMPLES: usize = 2000;
 
-/// How a model colours the side it did not see.
+/// Colours of a model for the unseen side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Back {
     True,

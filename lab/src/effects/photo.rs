@@ -1,20 +1,20 @@
 //! Photos: a scene under unknown light, through a camera with its own white balance, focus, noise and number of pixels,
 //! most of them saved as JPEG.
 
-use super::print::{Print, color, encoded};
 use crate::case_folder::write::rgb_jpeg;
+use crate::conditions::{Conditions, Tier};
 use crate::objects::mesh::face;
+use crate::objects::print::{Print, color, encoded};
 use crate::prelude::*;
-use crate::sets::conditions::{Conditions, Tier};
 use crate::world::unit;
-use crate::world::view::Sight;
+use crate::world::view::Rendering;
 use sim3align_formats::photo::read_photo;
 
 /// Sizes of photos relative to the depth map; the field of view is the same.
 const SIZES: [f64; 3] = [0.5, 1.5, 2.0];
 
 /// The light of a scene, and the response of the camera.
-struct Look {
+struct PhotoStyle {
     /// Towards the light, world frame.
     light: DVec3,
     ambient: f64,
@@ -32,7 +32,7 @@ struct Look {
     jpeg: Option<(u8, bool)>,
 }
 
-impl Look {
+impl PhotoStyle {
     fn draw(random: &mut Random, tier: Tier, resolution: f64) -> Self {
         let light = unit(TAU * random.uniform()).extend(between(random, 0.3, 2.0)).normalize();
         let warmth = between(random, -1.0, 1.0) * tier.pick(0.08, 0.2, 0.35);
@@ -59,40 +59,41 @@ impl Look {
 
 /// Takes the photo of a scene whose object, `placed` in the world, has a print.
 pub fn take(
-    sight: &Sight,
+    rendering: &Rendering,
     (placed, print): (&Mesh, &Print),
     conditions: Conditions,
     random: &mut Random,
 ) -> Result<Photo> {
     let (tier, is_grey) = (conditions.tier, conditions.class.is_grey);
-    let look = Look::draw(random, tier, sight.view.resolution());
-    let [width, height] = [sight.view.width, sight.view.height].map(|side| (look.size * side as f64).round() as usize);
-    let camera = resized(&sight.view.camera, look.size);
+    let style = PhotoStyle::draw(random, tier, rendering.view.resolution());
+    let [width, height] =
+        [rendering.view.width, rendering.view.height].map(|side| (style.size * side as f64).round() as usize);
+    let camera = resized(&rendering.view.camera, style.size);
     let mut rasteriser = Rasteriser::new();
-    rasteriser.render(placed, &sight.view.camera_from_world, &camera, width, height);
-    let world_from_camera = sight.view.camera_from_world.inverse();
-    let eye = sight.view.eye();
+    rasteriser.render(placed, &rendering.view.camera_from_world, &camera, width, height);
+    let world_from_camera = rendering.view.camera_from_world.inverse();
+    let eye = rendering.view.eye();
     let (ground, other) = (color(random), color(random));
     let lit = |albedo: DVec3, point: DVec3, normal: DVec3, at: DVec3| {
-        let diffuse = normal.dot(look.light).max(0.0);
-        let half = (look.light + (eye - point).normalize_or_zero()).normalize_or_zero();
-        let highlight = look.highlight * libm::pow(normal.dot(half).max(0.0), 30.0);
-        let (across, start, depth) = look.shadow;
+        let diffuse = normal.dot(style.light).max(0.0);
+        let half = (style.light + (eye - point).normalize_or_zero()).normalize_or_zero();
+        let highlight = style.highlight * libm::pow(normal.dot(half).max(0.0), 30.0);
+        let (across, start, depth) = style.shadow;
         let shade = 1.0 - (1.0 - depth) * ((across.dot(at) - start) * 8.0).clamp(0.0, 1.0);
-        (albedo * (look.ambient + (1.0 - look.ambient) * diffuse) + highlight) * shade * look.gain
+        (albedo * (style.ambient + (1.0 - style.ambient) * diffuse) + highlight) * shade * style.gain
     };
     let mut linear = Vec::with_capacity(width * height);
     for v in 0..height {
         for u in 0..width {
             let i = v * width + u;
             // The pixel of the depth map in which the centre of this one lies.
-            let [column, row] = [(u, sight.view.width), (v, sight.view.height)]
-                .map(|(x, size)| (((x as f64 + 0.5) / look.size) as usize).min(size - 1));
-            let place = row * sight.view.width + column;
-            let is_hidden = sight.object_depth[place] > 0.0 && !sight.visible[place];
+            let [column, row] = [(u, rendering.view.width), (v, rendering.view.height)]
+                .map(|(x, size)| (((x as f64 + 0.5) / style.size) as usize).min(size - 1));
+            let place = row * rendering.view.width + column;
+            let is_hidden = rendering.object_depth[place] > 0.0 && !rendering.visible[place];
             let triangle = rasteriser.triangles()[i];
             let is_object = triangle != NO_TRIANGLE && !is_hidden;
-            let z = if is_object { rasteriser.depth()[i] } else { sight.depth[place] };
+            let z = if is_object { rasteriser.depth()[i] } else { rendering.depth[place] };
             let point = world_from_camera.apply(vector3(camera.back_project(u as f64, v as f64, f64::from(z))));
             let point = vec3(&point).as_dvec3();
             let at = DVec3::new(2.0 * u as f64 / width as f64 - 1.0, 2.0 * v as f64 / height as f64 - 1.0, 0.0);
@@ -106,25 +107,25 @@ pub fn take(
             });
         }
     }
-    let blurred = blurred(linear, width, height, look.blur);
+    let blurred = blurred(linear, width, height, style.blur);
     let mut pixels = Vec::with_capacity(width * height);
     for v in 0..height {
         for u in 0..width {
             let from = |x: usize, by: f64, size: usize| {
-                (x as f64 + look.size * by).round().clamp(0.0, size as f64 - 1.0) as usize
+                (x as f64 + style.size * by).round().clamp(0.0, size as f64 - 1.0) as usize
             };
-            let (u, v) = (from(u, look.shift[0], width), from(v, look.shift[1], height));
+            let (u, v) = (from(u, style.shift[0], width), from(v, style.shift[1], height));
             let mut shown = encoded(blurred[v * width + u]);
             if is_grey {
                 shown = DVec3::splat(shown.dot(DVec3::new(0.299, 0.587, 0.114)));
             }
             let noisy = |x: f64, noise: f64| (255.0 * (x + noise)).round().clamp(0.0, 255.0) as u8;
-            let common = look.noise * normal(random);
-            let own = if is_grey { [0.0; 3] } else { [0, 1, 2].map(|_| look.noise * normal(random)) };
+            let common = style.noise * normal(random);
+            let own = if is_grey { [0.0; 3] } else { [0, 1, 2].map(|_| style.noise * normal(random)) };
             pixels.push([0, 1, 2].map(|k| noisy(shown[k], common + own[k])));
         }
     }
-    match look.jpeg {
+    match style.jpeg {
         Some((quality, is_halved)) => read_photo(&rgb_jpeg(&pixels, width, height, quality, is_halved)?),
         None => Image::new("photo", width, height, pixels),
     }

@@ -1,20 +1,9 @@
 //! Parts that generators add to the mesh of an object: floaters, a plate of ground below.
 
+use crate::conditions::Surplus;
 use crate::objects::mesh::{box_of, joined};
 use crate::objects::solid::Solid;
 use crate::prelude::*;
-
-named! {
-    /// Parts that a generator adds.
-    pub enum Surplus: "surplus" {
-        /// Two to four blobs beside the object.
-        Floaters = "floaters",
-        /// A plate below it, a part of its own.
-        Plate = "plate",
-        /// A plate below it that hangs together with it.
-        FusedPlate = "fused-plate",
-    }
-}
 
 /// Radii and distances of floaters, relative to the diagonal.
 const RADII: [f64; 2] = [0.02, 0.05];

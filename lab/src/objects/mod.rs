@@ -3,6 +3,7 @@
 mod figures;
 mod kitchen;
 pub mod mesh;
+pub mod print;
 pub mod solid;
 mod tools;
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::conditions::{Conditions, MeshFault};
 use crate::case::{CaseFrame, CaseObject};
+use crate::conditions::{Conditions, MeshFault};
 use crate::effects::depth;
 use crate::effects::generator::Generated;
 use crate::effects::mask::mask_of;
@@ -11,7 +11,7 @@ use crate::effects::painter::paint;
 use crate::effects::photo::take;
 use crate::objects::mesh::{canonicalise, declared, mapped};
 use crate::prelude::*;
-use crate::world::view::{Sight, View};
+use crate::world::view::{Rendering, View};
 use crate::world::{Placed, World};
 use sim3align_geometry::order::median;
 
@@ -36,28 +36,28 @@ pub struct Made {
     pub missing: Vec<f64>,
 }
 
-/// The image that a view shows. `sights` has the image of each object, `together` that of all as one; `of_depth` has the
+/// The image that a view shows. `renderings` has the image of each object, `together` that of all as one; `of_depth` has the
 /// conditions of depth, `of_masks` those of the mask of each object.
 pub fn image(
     name: String,
     world: &World,
-    (sights, together): (&[Sight], &Sight),
+    (renderings, together): (&[Rendering], &Rendering),
     (of_depth, of_masks): (Conditions, &[Conditions]),
     seed: u64,
 ) -> Result<Made> {
     let view: &View = &together.view;
-    let things: Vec<&[bool]> = sights.iter().map(|sight| sight.visible.as_slice()).collect();
+    let things: Vec<&[bool]> = renderings.iter().map(|rendering| rendering.visible.as_slice()).collect();
     let diagonals = world.objects.iter().map(|placed| placed.object.diagonal() as f32);
     let diagonal = f64::from(median(diagonals).unwrap_or_default());
     let random = &mut Random::new(seed, DEPTH_STREAM);
     let mut readings = depth::read(together, &things, diagonal, of_depth, random)?;
     let missing = things.iter().map(|shown| readings.missing(shown)).collect();
     let (mut masks, mut tags) = (Vec::new(), Vec::new());
-    for (k, (sight, placed)) in sights.iter().zip(&world.objects).enumerate() {
+    for (k, (rendering, placed)) in renderings.iter().zip(&world.objects).enumerate() {
         let random = &mut Random::new(mixed([seed, k as u64]), MASK_STREAM);
-        let (mut mask, own) = mask_of(sight, of_masks[k], random)?;
+        let (mut mask, own) = mask_of(rendering, of_masks[k], random)?;
         let random = &mut Random::new(mixed([seed, k as u64]), FAULT_STREAM);
-        readings.afflict(&mut mask, sight, placed, of_depth, random);
+        readings.afflict(&mut mask, rendering, placed, of_depth, random);
         masks.push(Some(mask));
         tags.extend(own);
     }
@@ -70,7 +70,8 @@ pub fn image(
     let truths = readings.drifts.iter().map(truth).collect();
     let random = &mut Random::new(seed, COLOR_STREAM);
     let printed = world.objects.first().and_then(|placed| Some((placed, placed.print.as_ref()?)));
-    let photo = printed.map(|(placed, print)| take(&sights[0], (&placed.mesh, print), of_depth, random)).transpose()?;
+    let photo =
+        printed.map(|(placed, print)| take(&renderings[0], (&placed.mesh, print), of_depth, random)).transpose()?;
     tags.extend(readings.tags);
     let frame = CaseFrame {
         name,
@@ -80,7 +81,7 @@ pub fn image(
         world_from_camera: Some(view.camera_from_world.inverse()),
         masks,
         truths,
-        visible: 1.0 - sights.first().map_or(0.0, |sight| sight.hidden),
+        visible: 1.0 - renderings.first().map_or(0.0, |rendering| rendering.hidden),
         is_wrong: false,
     };
     Ok(Made { frame, tags, missing })
@@ -90,7 +91,7 @@ pub fn image(
 pub fn object(
     name: String,
     class: String,
-    (placed, sight): (&Placed, &Sight),
+    (placed, rendering): (&Placed, &Rendering),
     generated: &Generated,
     conditions: Conditions,
     seed: u64,
@@ -105,7 +106,7 @@ pub fn object(
         }
         _ => None,
     };
-    let eye = sight.view.eye();
+    let eye = rendering.view.eye();
     let colors =
         placed.print.as_ref().map(|print| paint(&mesh, &world_from_mesh, (placed, print), eye, conditions, random));
     let needs_color = conditions.class.needs_color;

@@ -1,15 +1,14 @@
 //! The generated sets: a case follows from set, seed and index alone.
 
-pub(crate) mod conditions;
 mod images;
 mod scenes;
 mod sequences;
 mod single;
 
 use crate::case::{Case, CaseObject, MISFIT};
+use crate::conditions::{COLORS, Class, Conditions, GENERAL, MONOCULAR, SENSORS, SURPLUS, Tier};
 use crate::effects::generator::Prior;
 use crate::prelude::*;
-use conditions::{COLORS, Class, Conditions, GENERAL, MONOCULAR, SENSORS, SURPLUS, Tier};
 
 /// Maximum number of draws of a case.
 const DRAWS: u64 = 400;

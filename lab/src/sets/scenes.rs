@@ -1,12 +1,12 @@
 //! Scenes of several objects on a desk, among clutter, in front of one camera.
 
-use super::conditions::{Conditions, PLAIN, RAGGED_MASK, Tier};
 use super::images::{OBJECT_STREAM, SCENE_STREAM, SIZE, image, object};
 use super::single::MIN_MASK_PX;
 use crate::case::Case;
+use crate::conditions::{Conditions, PLAIN, RAGGED_MASK, Tier};
 use crate::effects::generator::Prior;
 use crate::prelude::*;
-use crate::world::view::{Sight, View};
+use crate::world::view::{Rendering, View};
 use crate::world::{World, unit};
 use sim3align::scene::plane::Plane;
 
@@ -45,14 +45,14 @@ pub fn draw(index: usize, seed: u64, is_arranged: bool, prior: Prior) -> Result<
     // Every tenth scene or so may show an object that the border cuts; of the arranged ones, every fourth.
     let too_near = chance(random, if is_arranged { 0.25 } else { 0.1 });
     for view in 0..VIEWS {
-        let (sights, together) = camera(&world, too_near, random)?.see(&world);
-        let masked = shown_enough(&world, &sights, if too_near { MOST_CUT } else { 0.0 }, random);
+        let (renderings, together) = camera(&world, too_near, random)?.see(&world);
+        let masked = shown_enough(&world, &renderings, if too_near { MOST_CUT } else { 0.0 }, random);
         let count = masked.iter().filter(|masked| **masked).count();
         // An object that an arranged scene hardly shows is one of the things without a mask.
         let is_enough = if is_arranged { count >= 2 && 3 * count >= 2 * objects } else { count == objects };
         if is_enough {
             let seed = mixed([seed, view]);
-            if let Some(case) = read(index, &world, (&sights, &together), &masked, prior, seed)? {
+            if let Some(case) = read(index, &world, (&renderings, &together), &masked, prior, seed)? {
                 return Ok(Some(case));
             }
         }
@@ -99,23 +99,23 @@ fn camera(world: &World, too_near: bool, random: &mut Random) -> Result<View> {
 }
 
 /// For each object, whether the image shows enough of it to determine its pose.
-fn shown_enough(world: &World, sights: &[Sight], most_cut: f64, random: &mut Random) -> Vec<bool> {
-    let is_shown = |(sight, placed): (&Sight, _)| {
-        sight.visible_px() >= MIN_MASK_PX
-            && sight.visible_share() >= LEAST_VISIBLE
-            && sight.cut <= most_cut + 1e-9
-            && sight.shows_shape(placed, Tier::Hard)
+fn shown_enough(world: &World, renderings: &[Rendering], most_cut: f64, random: &mut Random) -> Vec<bool> {
+    let is_shown = |(rendering, placed): (&Rendering, _)| {
+        rendering.visible_px() >= MIN_MASK_PX
+            && rendering.visible_share() >= LEAST_VISIBLE
+            && rendering.cut <= most_cut + 1e-9
+            && rendering.shows_shape(placed, Tier::Hard)
             // A mug whose handle is out of sight: no case to count on, though one that occurs.
-            && (sight.shows_key(placed) || chance(random, 0.15))
+            && (rendering.shows_key(placed) || chance(random, 0.15))
     };
-    sights.iter().zip(&world.objects).map(is_shown).collect()
+    renderings.iter().zip(&world.objects).map(is_shown).collect()
 }
 
 /// Depth, masks and meshes of a view; `None` where they leave too little of an object.
 fn read(
     index: usize,
     world: &World,
-    (sights, together): (&[Sight], &Sight),
+    (renderings, together): (&[Rendering], &Rendering),
     masked: &[bool],
     prior: Prior,
     seed: u64,
@@ -127,21 +127,21 @@ fn read(
         let is_ragged = tier != Tier::Easy && chance(random, 0.12);
         Conditions { tier, class: if is_ragged { &RAGGED_MASK } else { &PLAIN } }
     };
-    let of_masks: Vec<Conditions> = sights.iter().map(|_| of_mask(random)).collect();
-    let made = image("frame_00".into(), world, (sights, together), (of_depth, &of_masks), seed)?;
+    let of_masks: Vec<Conditions> = renderings.iter().map(|_| of_mask(random)).collect();
+    let made = image("frame_00".into(), world, (renderings, together), (of_depth, &of_masks), seed)?;
     let mut frame = made.frame;
     let (mut objects, mut masks, mut truths) = (Vec::new(), Vec::new(), Vec::new());
-    for k in (0..sights.len()).filter(|k| masked[*k]) {
-        let (sight, placed) = (&sights[k], &world.objects[k]);
+    for k in (0..renderings.len()).filter(|k| masked[*k]) {
+        let (rendering, placed) = (&renderings[k], &world.objects[k]);
         let pixels = frame.masks[k].iter().flat_map(|mask| mask.data()).filter(|m| **m != 0).count();
         if pixels < MIN_MASK_PX || made.missing[k] > MOST_MISSING {
             return Ok(None);
         }
         let seed = mixed([seed, k as u64, prior as u64]);
-        let generated = prior.generate(placed, sight, seed)?;
+        let generated = prior.generate(placed, rendering, seed)?;
         let name = format!("{k}-{}", placed.object.family);
         let class = placed.stance.as_str().to_owned();
-        let (object, world_from_mesh) = object(name, class, (placed, sight), &generated, of_depth, seed)?;
+        let (object, world_from_mesh) = object(name, class, (placed, rendering), &generated, of_depth, seed)?;
         objects.push(object);
         masks.push(frame.masks[k].take());
         truths.push(frame.truths[k].map(|camera_from_world| camera_from_world.compose(&world_from_mesh)));
@@ -150,7 +150,8 @@ fn read(
     let pose = frame.truths[0].unwrap_or_else(Similarity::identity);
     let normal = pose.rotation * Vector3::z();
     let plane = Plane::new(DVec3::from_array(normal.into()), -normal.dot(&pose.translation));
-    let visible = sights.iter().zip(masked).filter(|(_, masked)| **masked).map(|(sight, _)| sight.visible_share());
+    let visible =
+        renderings.iter().zip(masked).filter(|(_, masked)| **masked).map(|(rendering, _)| rendering.visible_share());
     let visible = visible.fold(1.0, f64::min);
     let tier = match visible {
         v if v > 0.85 => Tier::Easy,

@@ -1,14 +1,14 @@
 //! Several images of one object on a table: cameras around it, and videos.
 
-use super::conditions::{Class, Conditions, SPARSE_SENSOR, Tier, WARPED_IN_VIDEO};
 use super::images::{OBJECT_STREAM, SCENE_STREAM, SIZE, image, object};
 use crate::case::{Case, CaseFrame, CaseObject};
+use crate::conditions::{Class, Conditions, SPARSE_SENSOR, Tier, WARPED_IN_VIDEO};
 use crate::effects::generator::{MESH_STREAM, generate};
 use crate::effects::noise::disc;
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
-use crate::world::view::{Sight, View};
+use crate::world::view::{Rendering, View};
 use crate::world::{Placed, World, unit};
 
 /// Distance of the wall: too far for a reading.
@@ -76,28 +76,28 @@ impl Stage {
         View::at(SIZE, self.camera, eye, self.world.center + past - eye, roll.to_radians())
     }
 
-    fn see(&self, view: &View) -> (Sight, Sight) {
-        let (mut sights, together) = view.see(&self.world);
-        (sights.remove(0), together)
+    fn see(&self, view: &View) -> (Rendering, Rendering) {
+        let (mut renderings, together) = view.see(&self.world);
+        (renderings.remove(0), together)
     }
 
     /// The object with the mesh that a generator makes from one image.
-    fn object(&self, sight: &Sight, class: String, seed: u64) -> Result<(CaseObject, Similarity)> {
+    fn object(&self, rendering: &Rendering, class: String, seed: u64) -> Result<(CaseObject, Similarity)> {
         let placed = &self.world.objects[0];
-        let generated = generate(placed, sight, self.conditions, &mut Random::new(seed, MESH_STREAM))?;
-        object(placed.object.family.into(), class, (placed, sight), &generated, self.conditions, seed)
+        let generated = generate(placed, rendering, self.conditions, &mut Random::new(seed, MESH_STREAM))?;
+        object(placed.object.family.into(), class, (placed, rendering), &generated, self.conditions, seed)
     }
 
     fn frame(
         &self,
         name: String,
-        (sight, together): &(Sight, Sight),
+        (rendering, together): &(Rendering, Rendering),
         world_from_mesh: &Similarity,
         seed: u64,
     ) -> Result<CaseFrame> {
         let conditions = (self.conditions, &[self.conditions][..]);
-        let sights = core::slice::from_ref(sight);
-        let mut frame = image(name, &self.world, (sights, together), conditions, seed)?.frame;
+        let renderings = core::slice::from_ref(rendering);
+        let mut frame = image(name, &self.world, (renderings, together), conditions, seed)?.frame;
         frame.truths[0] = frame.truths[0].map(|camera_from_world| camera_from_world.compose(world_from_mesh));
         Ok(frame)
     }
@@ -126,7 +126,7 @@ pub fn views(index: usize, seed: u64) -> Result<Option<Case>> {
     let is_noisy = index % 3 == 1;
     let wrong = (index % 6 == 5 && count > 2).then(|| random.below(count));
     let (first, turn) = (between(random, 0.0, 360.0), sign(random));
-    let mut sights = Vec::new();
+    let mut renderings = Vec::new();
     for k in 0..count {
         let heading = first + turn * baseline * k as f64 + between(random, -2.0, 2.0);
         let angles = [heading, between(random, 15.0, 55.0), between(random, -8.0, 8.0)];
@@ -137,16 +137,16 @@ pub fn views(index: usize, seed: u64) -> Result<Option<Case>> {
         if seen.0.visible_px() < VIEW_PX || 1.0 - seen.0.hidden < MIN_VISIBLE {
             return Ok(None);
         }
-        sights.push(seen);
+        renderings.push(seen);
     }
     let kind = match (wrong, is_noisy) {
         (Some(_), _) => "wrong view",
         (None, true) => "noisy cameras",
         (None, false) => "exact cameras",
     };
-    let (object, world_from_mesh) = stage.object(&sights[0].0, kind.into(), seed)?;
+    let (object, world_from_mesh) = stage.object(&renderings[0].0, kind.into(), seed)?;
     let mut frames = Vec::new();
-    for (k, seen) in sights.iter().enumerate() {
+    for (k, seen) in renderings.iter().enumerate() {
         let mut frame = stage.frame(format!("frame_{k:02}"), seen, &world_from_mesh, mixed([seed, k as u64]))?;
         frame.is_wrong = wrong == Some(k);
         // A camera that was moved after its pose was measured.

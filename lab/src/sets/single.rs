@@ -1,14 +1,14 @@
 //! Cases with one object on a table in front of a wall, with occluders and neighbours.
 
-use super::conditions::{Conditions, DepthFault, Framing, Tier};
 use super::images::{OBJECT_STREAM, SCENE_STREAM, image, object};
 use crate::case::Case;
+use crate::conditions::{Conditions, DepthFault, Framing, Tier};
 use crate::effects::depth::{FARTHEST_M, in_two};
 use crate::effects::generator::{MESH_STREAM, generate};
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
-use crate::world::view::{Sight, View, count, shown};
+use crate::world::view::{Rendering, View, count, shown};
 use crate::world::{Placed, World, things, unit};
 
 /// Minimum number of pixels of a mask, and of those with a reading.
@@ -27,16 +27,16 @@ pub fn draw(index: usize, seed: u64, conditions: Conditions) -> Result<Option<Ca
     let family = drawn.family;
     let placed = Placed::put_down(drawn, tier, random)?.printed(class.print, random);
     let (world, view) = staged(placed, conditions, &mut Random::new(seed, SCENE_STREAM))?;
-    let (sights, together) = view.see(&world);
-    let (sight, placed) = (&sights[0], &world.objects[0]);
-    if !shows_enough(sight, placed, conditions) {
+    let (renderings, together) = view.see(&world);
+    let (rendering, placed) = (&renderings[0], &world.objects[0]);
+    if !shows_enough(rendering, placed, conditions) {
         return Ok(None);
     }
-    let is_determined = placed.print.as_ref().is_none_or(|print| print.determines_turn(placed, sight));
+    let is_determined = placed.print.as_ref().is_none_or(|print| rendering.shows_turn(placed, print));
     if class.needs_color && !is_determined {
         return Ok(None);
     }
-    let made = image("frame_00".into(), &world, (&sights, &together), (conditions, &[conditions]), seed)?;
+    let made = image("frame_00".into(), &world, (&renderings, &together), (conditions, &[conditions]), seed)?;
     let pixels = made.frame.masks[0].iter().flat_map(|mask| mask.data()).zip(made.frame.depth.data());
     let mask_px = pixels.clone().filter(|(m, _)| **m != 0).count();
     let readings = pixels.filter(|(m, z)| **m != 0 && **z > 0.0).count();
@@ -44,9 +44,9 @@ pub fn draw(index: usize, seed: u64, conditions: Conditions) -> Result<Option<Ca
     if is_missing || mask_px < MIN_MASK_PX || (class.framing == Framing::Tiny && mask_px > TINY_PX) {
         return Ok(None);
     }
-    let generated = generate(placed, sight, conditions, &mut Random::new(seed, MESH_STREAM))?;
+    let generated = generate(placed, rendering, conditions, &mut Random::new(seed, MESH_STREAM))?;
     let (object, world_from_mesh) =
-        object(family.into(), class.name.into(), (placed, sight), &generated, conditions, seed)?;
+        object(family.into(), class.name.into(), (placed, rendering), &generated, conditions, seed)?;
     let mut frame = made.frame;
     frame.truths[0] = frame.truths[0].map(|camera_from_world| camera_from_world.compose(&world_from_mesh));
     let tags = made.tags.into_iter().chain(generated.tags).map(str::to_owned).collect();
@@ -61,22 +61,22 @@ pub fn draw(index: usize, seed: u64, conditions: Conditions) -> Result<Option<Ca
 }
 
 /// Whether the image shows enough of the object, and the property of the class.
-fn shows_enough(sight: &Sight, placed: &Placed, Conditions { tier, class }: Conditions) -> bool {
+fn shows_enough(rendering: &Rendering, placed: &Placed, Conditions { tier, class }: Conditions) -> bool {
     let shows_class = match class.framing {
-        Framing::Occluded => sight.hidden >= tier.pick(0.0, 0.05, 0.08),
-        Framing::BorderCut => (0.04..=0.25).contains(&sight.cut),
-        Framing::Split => sight.cut < 1e-9 && in_two(&sight.visible, sight.view.width),
-        Framing::Free | Framing::Tiny => sight.cut < 1e-9,
+        Framing::Occluded => rendering.hidden >= tier.pick(0.0, 0.05, 0.08),
+        Framing::BorderCut => (0.04..=0.25).contains(&rendering.cut),
+        Framing::Split => rendering.cut < 1e-9 && in_two(&rendering.visible, rendering.view.width),
+        Framing::Free | Framing::Tiny => rendering.cut < 1e-9,
     };
     let least = tier.pick(if class.framing == Framing::Split { 0.8 } else { 0.95 }, 0.75, 0.55);
     // An image without the part that determines the orientation is no case to count on, though one that occurs.
-    let shows_key = tier == Tier::Hard && class.depth_fault != DepthFault::HolesOfMask || sight.shows_key(placed);
+    let shows_key = tier == Tier::Hard && class.depth_fault != DepthFault::HolesOfMask || rendering.shows_key(placed);
     shows_class
         && shows_key
-        && sight.visible_px() >= MIN_MASK_PX
-        && sight.visible_share() >= least
-        && sight.shows_shape(placed, tier)
-        && sight.object_depth.iter().all(|z| f64::from(*z) <= FARTHEST_M)
+        && rendering.visible_px() >= MIN_MASK_PX
+        && rendering.visible_share() >= least
+        && rendering.shows_shape(placed, tier)
+        && rendering.object_depth.iter().all(|z| f64::from(*z) <= FARTHEST_M)
 }
 
 /// The world about an object, and a camera.

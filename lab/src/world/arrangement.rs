@@ -2,15 +2,15 @@
 //! hang.
 
 use super::{Placed, Stance, World, center_of, things, unit};
+use crate::conditions::Tier;
 use crate::objects::mesh::{box_of, mapped, random_rotation, shifted, turned_axes};
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
-use crate::sets::conditions::Tier;
 
 /// Directions in which footprints are measured.
 const DIRECTIONS: usize = 64;
-/// How far a thing moves outwards at a time to find room, and when it gives up, metres.
+/// The step of a thing outwards to find room, and the distance at which it gives up, metres.
 const STEP_M: f64 = 0.004;
 const FARTHEST_M: f64 = 3.0;
 /// Share of the objects that are put behind or before another one.

@@ -6,11 +6,11 @@ pub mod view;
 
 use std::sync::Arc;
 
-use crate::effects::print::{Print, PrintKind};
+use crate::conditions::Tier;
 use crate::objects::mesh::{bounds, box_of, mapped, random_rotation, shifted, turned_axes};
+use crate::objects::print::{Print, PrintKind};
 use crate::objects::{Axis, Object};
 use crate::prelude::*;
-use crate::sets::conditions::Tier;
 
 named! {
     /// How an object is supported.

@@ -1,9 +1,16 @@
 //! Cameras, and what they see of a world.
 
 use super::{Placed, World};
+use crate::conditions::Tier;
+use crate::objects::mesh::face;
+use crate::objects::print::{Print, encoded};
 use crate::prelude::*;
-use crate::sets::conditions::Tier;
 use sim3align::geometry::surface::SurfaceMoments;
+
+/// Smallest mean difference of sRGB-encoded colours at which a turned surface is distinguishable.
+const MIN_PRINT_DIFFERENCE: f64 = 0.06;
+/// Number of turns about an axis of revolution that are compared.
+const ROLLS: u32 = 12;
 
 /// A camera at its place.
 #[derive(Debug, Clone, Copy)]
@@ -16,7 +23,7 @@ pub struct View {
 
 /// The ideal image of one object among others.
 #[derive(Debug, Clone)]
-pub struct Sight {
+pub struct Rendering {
     pub view: View,
     /// The object alone: z-depth, 0 elsewhere.
     pub object_depth: Vec<f32>,
@@ -95,7 +102,7 @@ impl View {
     }
 
     /// The images of each object, and of all objects as one.
-    pub fn see(&self, world: &World) -> (Vec<Sight>, Sight) {
+    pub fn see(&self, world: &World) -> (Vec<Rendering>, Rendering) {
         let mut others = vec![0.0; self.pixels()];
         world.others.iter().for_each(|mesh| put_before(&mut others, &self.depth_of(mesh)));
         let alone: Vec<_> = world.objects.iter().map(|placed| self.render(&placed.mesh)).collect();
@@ -112,30 +119,30 @@ impl View {
                 }
             }
         }
-        let sights = (0..alone.len()).map(|i| {
+        let renderings = (0..alone.len()).map(|i| {
             let mut before = others.clone();
             alone.iter().enumerate().filter(|(k, _)| *k != i).for_each(|(_, (z, _))| put_before(&mut before, z));
             let silhouette_px = self.silhouette_px(&world.objects[i].mesh, &alone[i].0);
-            self.sight(alone[i].clone(), &before, depth.clone(), silhouette_px)
+            self.rendering(alone[i].clone(), &before, depth.clone(), silhouette_px)
         });
-        let sights = sights.collect();
+        let renderings = renderings.collect();
         let silhouettes = count(&together);
-        (sights, self.sight((together, Vec::new()), &others, depth.clone(), silhouettes))
+        (renderings, self.rendering((together, Vec::new()), &others, depth.clone(), silhouettes))
     }
 
-    fn sight(
+    fn rendering(
         &self,
         (object_depth, object_triangles): (Vec<f32>, Vec<u32>),
         others: &[f32],
         depth: Vec<f32>,
         silhouette_px: usize,
-    ) -> Sight {
+    ) -> Rendering {
         let share = |px: usize| px as f64 / silhouette_px.max(1) as f64;
         let visible = shown(&object_depth, others);
         let px = count(&object_depth);
         let hidden = share(px - visible.iter().filter(|visible| **visible).count());
         let cut = 1.0 - share(px);
-        Sight { view: *self, depth, visible, silhouette_px, cut, hidden, object_depth, object_triangles }
+        Rendering { view: *self, depth, visible, silhouette_px, cut, hidden, object_depth, object_triangles }
     }
 
     /// Number of pixels that the object would have in an unbounded image.
@@ -173,7 +180,7 @@ impl View {
     }
 }
 
-impl Sight {
+impl Rendering {
     /// Number of pixels that show the object.
     pub fn visible_px(&self) -> usize {
         self.visible.iter().filter(|v| **v).count()
@@ -195,6 +202,35 @@ impl Sight {
         let object = &placed.object;
         let key_px = self.object_pixels().filter(|(_, t)| object.keys.contains(&object.parts[*t])).count();
         object.keys.is_empty() || key_px >= (self.visible_px() / 50).max(25)
+    }
+
+    /// Whether the visible part of the print determines which of the turns that the shape allows is right.
+    pub fn shows_turn(&self, placed: &Placed, print: &Print) -> bool {
+        let world_from_camera = self.view.camera_from_world.inverse();
+        let center = SurfaceMoments::of(&placed.mesh).centroid;
+        let shown: Vec<(DVec3, DVec3)> = self
+            .object_pixels()
+            .step_by(7)
+            .map(|(i, triangle)| {
+                let point = self.view.world_point(&world_from_camera, i, self.object_depth[i]);
+                (point, face(&placed.mesh, triangle).normalize_or_zero())
+            })
+            .collect();
+        let differs = |turn: DMat3| {
+            let difference = |(p, n): &(DVec3, DVec3)| {
+                let other = print.at(turn * (*p - center) + center, turn * *n);
+                (encoded(print.at(*p, *n)) - encoded(other)).abs().max_element()
+            };
+            shown.iter().map(difference).sum::<f64>() / shown.len().max(1) as f64 > MIN_PRINT_DIFFERENCE
+        };
+        let axis_turns = placed.symmetry.iter().flat_map(|&(axis, fold)| {
+            let steps = fold.unwrap_or(ROLLS);
+            (1..steps).map(move |k| DMat3::from_axis_angle(axis.normalize(), TAU * f64::from(k) / f64::from(steps)))
+        });
+        let turns: Vec<DMat3> = axis_turns.collect();
+        let pairs = turns.iter().flat_map(|a| turns.iter().map(|b| *a * *b));
+        let is_turn = |turn: &DMat3| (0.5 * (turn.col(0).x + turn.col(1).y + turn.col(2).z - 1.0)) < 0.95;
+        turns.iter().copied().chain(pairs).filter(is_turn).all(differs)
     }
 
     /// Whether a flat object is not seen on edge, nor a long one from its end: such photos are not taken to be measured.

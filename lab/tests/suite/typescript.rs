@@ -340,12 +340,7 @@ fn entry(row: &Row, shared: Option<&Vec<String>>) -> String {
         }
         parts.insert(0, format!("...{}", row.name));
     }
-    let line = format!("{{ {} }}", parts.join(", "));
-    if line.len() + "    ,".len() <= LINE_WIDTH {
-        line
-    } else {
-        format!("{{\n      {},\n    }}", parts.join(",\n      "))
-    }
+    format!("{{ {} }}", parts.join(", "))
 }
 
 fn options() -> String {
@@ -358,8 +353,7 @@ fn options() -> String {
             shared.entry(&*row.name).or_insert_with(|| properties(row));
         }
     }
-    let constant =
-        |(name, own): (&&str, &Vec<String>)| format!("const {name} = {{\n  {},\n}} as const;\n\n", own.join(",\n  "));
+    let constant = |(name, own): (&&str, &Vec<String>)| format!("const {name} = {{ {} }} as const;\n", own.join(", "));
     let constants: String = shared.iter().map(constant).collect();
     let table = |call: &Call| {
         let rows = call.rows.iter().map(|row| format!("    {},\n", entry(row, shared.get(&*row.name))));
@@ -368,10 +362,10 @@ fn options() -> String {
     // A call, because bundlers keep an unused object with spreads.
     format!(
         "{HEADER}import type {{ OptionRow }} from \"../types/options.js\";\n\
-         import type {{\n  {},\n}} from \"./types.js\";\n\n{}\n{constants}\
+         import type {{ {} }} from \"./types.js\";\n\n{}\n{constants}\n\
          /** Every option with its kind, range, default and a one-line description. */\n\
          export const OPTIONS: Readonly<Record<{}, readonly OptionRow[]>> = /* @__PURE__ */ (() => ({{\n{}}}))();\n",
-        calls.each_ref().map(|call| call.interface).join(",\n  "),
+        calls.each_ref().map(|call| call.interface).join(", "),
         calls.each_ref().map(defaults).join("\n"),
         calls.each_ref().map(|call| format!("\"{}\"", call.key)).join(" | "),
         calls.each_ref().map(table).concat(),

@@ -52,21 +52,21 @@ export interface MeshArrays {
 
 /** Colours of a surface, at points spread evenly over it. */
 export interface ColorSamples {
-  /** x, y, z per point. */
+  /** Interleaved x, y, z per point, in the frame of the mesh. */
   positions: Float32Array;
-  /** x, y, z of the unit normal per point, outward. */
+  /** The unit normal of the surface at each point, outward: interleaved x, y, z. */
   normals: Float32Array;
   /** Red, green and blue per point, sRGB-encoded. */
   colors: Uint8Array;
-  /** The same if the textures were stored upside down; missing without textures. */
-  flippedColors?: Uint8Array;
+  /** The same if the textures were stored upside down, with which `align` compares a photo that contradicts `colors`. */
+  flippedColors?: Uint8Array | undefined;
 }
 
 /** The files that a mesh file refers to, by the names in it. */
 export interface ExternalResources {
-  /** Without these, the mesh can't be read. */
+  /** The buffers of a `.gltf`, without which it cannot be read. */
   shape: string[];
-  /** Without these, it has no colours. */
+  /** Textures and material libraries, without which it has no colours. */
   colors: string[];
 }
 
@@ -99,16 +99,23 @@ export interface DepthImage {
   camera?: { fx: number; fy: number; cx: number; cy: number };
 }
 
-/** EXIF data that were read. */
+/** The camera by the EXIF data of a photo; properties that they do not state are missing. */
 export interface Exif {
+  /** Focal length with the same diagonal field of view on a frame of 36 × 24 mm, in mm: `FocalLengthIn35mmFilm`. */
   focalLength35mm?: number;
+  /** Focal length of the lens, in mm. */
   focalLengthMm?: number;
+  /** Width of the sensor as far as the original image shows it, in mm. */
   sensorWidthMm?: number;
+  /** How many times the camera enlarged the image. */
   digitalZoom?: number;
   make?: string;
   model?: string;
+  /** 1 to 8; from 5, the stored image is viewed with its sides exchanged. 1 if the data state none. */
   orientation: number;
+  /** Width of the original image as stored, in pixels. */
   width?: number;
+  /** Height of the original image as stored, in pixels. */
   height?: number;
 }
 

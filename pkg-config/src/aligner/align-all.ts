@@ -1,6 +1,6 @@
 /** Aligns many inputs with bounded memory, and yields each result when it is ready. */
 
-import { checkSignals, onAbort } from "../concurrency/on-abort.js";
+import { beforeAbort, checkSignals, onAnyAbort } from "../concurrency/on-abort.js";
 import type { AlignInput } from "../types/inputs.js";
 import type { SignalLike } from "../types/platform.js";
 import type { AlignAllResult } from "../types/results.js";
@@ -24,18 +24,10 @@ export async function* alignAll<A extends { input?: AlignInput }>(
   inputs: Inputs,
   { limit, ordered, signal, align, isOwn }: BatchOptions<A>,
 ): AsyncGenerator<AlignAllResult<A>, void, undefined> {
-  if (signal !== undefined) checkSignals([signal]);
+  const signals = signal === undefined ? [] : [signal];
+  checkSignals(signals);
   const stopped = new AbortController();
-  let unfollow = () => {};
-  const aborted = new Promise<never>((_, reject) => {
-    if (signal === undefined) return;
-    unfollow = onAbort(signal, (reason) => {
-      stopped.abort(reason);
-      reject(reason);
-    });
-  });
-  // Prevents an unhandled rejection if nothing awaits the promise.
-  aborted.catch(() => {});
+  const unfollow = onAnyAbort(signals, (reason) => stopped.abort(reason));
   const iterator = iteratorOf(inputs);
   const running = new Map<number, Promise<number>>();
   const settled = new Map<number, Settled<A>>();
@@ -63,7 +55,9 @@ export async function* alignAll<A extends { input?: AlignInput }>(
       if (pull === undefined && !hasEnded && running.size < limit) pull = pullOne();
       if (pull === undefined && running.size === 0) break;
       const awaited = ordered ? [running.get(next)] : running.values();
-      const first = await Promise.race([aborted, ...awaited, pull].filter((promise) => promise !== undefined));
+      checkSignals([stopped.signal]);
+      const any = Promise.race([...awaited, pull].filter((promise) => promise !== undefined));
+      const first = await beforeAbort(any, [stopped.signal]);
       if (first === "pulled") {
         pull = undefined;
         continue;

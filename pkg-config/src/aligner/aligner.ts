@@ -69,7 +69,7 @@ export class Aligner {
   readonly #core: LoadedModule<Core>;
   readonly #modules: Modules;
   readonly #engine: Engine;
-  /** As many scenes at a time as the engine has jobs. */
+  /** Limits the scenes at a time to the number of jobs of the engine. */
   readonly #scenes: Queue<number>;
   #isDisposed = false;
 

@@ -18,7 +18,7 @@ export const METRES_PER_UNIT = 0.001;
 const padded = (id: string | number) => `${id}`.padStart(6, "0");
 const plain = (id: string | number) => `${id}`.replace(/^0+(?=.)/, "");
 
-/** Where the files of a dataset are: those of a scene in its folder, the others in that of the dataset. */
+/** The paths of the files of a dataset: those of a scene in its folder, the others in that of the dataset. */
 const paths = {
   camera: "scene_camera.json",
   poses: "scene_gt.json",

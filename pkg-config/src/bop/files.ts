@@ -48,7 +48,7 @@ function noDetection(found: string) {
 
 /** The first line of a results file. */
 export const RESULTS_HEADER = "scene_id,im_id,obj_id,score,R,t,time";
-/** Numbers in each column. */
+/** Number of values in each column. */
 const COUNTS = [1, 1, 1, 1, 9, 3, 1];
 
 /** A row of a results file. */

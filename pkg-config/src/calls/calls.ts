@@ -60,13 +60,13 @@ interface Calls {
 /** The name of a call. */
 export type Method = keyof Calls;
 
-/** What a call is made with. */
+/** The data of a call. */
 export type DataOf<M extends Method> = Calls[M]["data"];
 
-/** What else it is given. */
+/** The options of a call. */
 export type SettingsOf<M extends Method> = Calls[M]["options"];
 
-/** What it returns. */
+/** The result of a call. */
 export type ResultOf<M extends Method> = Calls[M]["result"];
 
 /** A call as data. */
@@ -78,7 +78,7 @@ export interface Job<M extends Method = Method> {
   meshId?: number | undefined;
 }
 
-/** How a call is run. */
+/** The implementation of a call. */
 interface CallOf<M extends Method> {
   /** The module without which it cannot be run, and which caches its prepared mesh. */
   module: ModuleName;
@@ -141,7 +141,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     async run({ data: { objects, ...view } }, context) {
       const read: CalibrationObject[] = [];
       for (const object of objects) {
-        // What is wrong with a mesh is told where it is aligned.
+        // A faulty mesh is reported where it is aligned.
         const mesh = await readCoreMesh(object.mesh, context.modules, false).catch((error) => {
           if (!isOfInput(error)) throw error;
         });
@@ -235,7 +235,7 @@ function farMesh(origin: readonly number[]) {
   return failure("INVALID_ARGUMENT", "mesh", found, "coordinates near zero", "Subtract the centre from the mesh file.");
 }
 
-/** What a tracker is called where its module keeps it. */
+/** The key of a tracker in its module. */
 export const trackerName = (id: number) => `tracker ${id}`;
 
 /** Aligns an input, whose view is first calibrated by the object, unless its depth and lens are known. */

@@ -23,7 +23,7 @@ interface Searches {
   alignViews: { module: "joint"; input: CoreViews; result: ViewsAlignment };
 }
 
-/** How a search begins, and help with it. */
+/** The functions of a module that run a search: on its thread, and on those of helpers. */
 interface Search<G, I, T> {
   begin(exports: G, input: I, options: object, listener?: CoreListener, helpers?: CoreHelpers): Task<T>;
   help(exports: G, input: I, options: object): Helper;
@@ -60,7 +60,7 @@ export interface SharedSearch<S extends keyof Searches = keyof Searches> {
   options: object;
 }
 
-/** How tasks share their thread. */
+/** Divides the thread between tasks. */
 export interface Scheduler {
   /** About how long each slice takes, milliseconds. */
   readonly sliceMs: number;
@@ -77,21 +77,17 @@ const CALIBRATION = 0.7;
 
 /** A job that runs. */
 export class JobContext {
-  readonly modules: Modules;
-  readonly #scheduler: Scheduler;
-  /** Called when stages begin; if it throws, the job fails with that exception. */
-  readonly listener: CoreListener | undefined;
-
-  constructor(modules: Modules, scheduler: Scheduler, listener: CoreListener | undefined) {
-    this.modules = modules;
-    this.#scheduler = scheduler;
-    this.listener = listener;
-  }
+  /** @param listener called when stages begin; if it throws, the job fails with that exception */
+  constructor(
+    readonly modules: Modules,
+    private readonly scheduler: Scheduler,
+    readonly listener: CoreListener | undefined,
+  ) {}
 
   /** The calibration of a call, and what follows. */
   parts(): [first: JobContext, then: JobContext] {
     const { modules, listener } = this;
-    const of = (part: CoreListener) => new JobContext(modules, this.#scheduler, listener && part);
+    const of = (part: CoreListener) => new JobContext(modules, this.scheduler, listener && part);
     return [
       // Poses of a calibration that is not known yet are nothing to show.
       of((stage, fraction) => listener?.(stage, CALIBRATION * fraction)),
@@ -101,7 +97,7 @@ export class JobContext {
 
   /** The same job without progress. */
   quiet(): JobContext {
-    return new JobContext(this.modules, this.#scheduler, undefined);
+    return new JobContext(this.modules, this.scheduler, undefined);
   }
 
   /** Calls a module with an input. */
@@ -113,7 +109,7 @@ export class JobContext {
   /** Runs a task to its end, and frees it. `input` is what its beginning reads. */
   async task<N extends ModuleName, T>(name: N, input: object, begin: (exports: Exports[N]) => Task<T>): Promise<T> {
     const module: LoadedModule<Exports[N]> = await this.modules[name]();
-    const scheduler = this.#scheduler;
+    const { scheduler } = this;
     scheduler.check();
     for (;;) {
       const task = module.callWith("input", input, (exports) => module.kept(begin(exports)));
@@ -143,7 +139,7 @@ export class JobContext {
     const { module, begin }: SearchOf<S> = searches[search];
     const { id } = input.mesh;
     const mesh = id === undefined ? input.mesh : { positions: new Float32Array(), id };
-    const helpers = this.#scheduler.helpersFor?.({ search, input: { ...input, mesh }, options });
+    const helpers = this.scheduler.helpersFor?.({ search, input: { ...input, mesh }, options });
     return this.task(module, input, (exports) => begin(exports, input, options, this.listener, helpers));
   }
 }

@@ -60,15 +60,13 @@ const SLICE_MS = 40;
 /** Runs jobs on the calling thread. */
 export class MainThreadEngine implements Engine {
   readonly capacity = 1;
-  readonly #table: ModuleTable;
-  readonly #modules: Modules;
   readonly #ended = new AbortController();
 
   /** @param modules loads the modules of the table */
-  constructor(table: ModuleTable, modules: Modules) {
-    this.#table = table;
-    this.#modules = modules;
-  }
+  constructor(
+    private readonly table: ModuleTable,
+    private readonly modules: Modules,
+  ) {}
 
   async run<M extends Method>(job: Job<M>, call: Call): Promise<Outcome<M>> {
     const signals = [this.#ended.signal, ...signalsOf(call)];
@@ -88,7 +86,7 @@ export class MainThreadEngine implements Engine {
     const check = () => checkSignals(signals);
     const load = async <N extends ModuleName>(name: N): Promise<LoadedModule<Exports[N]>> => {
       // A call that waits for the network ends at once: others wait for it.
-      const module = await beforeAbort(this.#modules[name](), signals);
+      const module = await beforeAbort(this.modules[name](), signals);
       check();
       return module;
     };
@@ -101,12 +99,12 @@ export class MainThreadEngine implements Engine {
   }
 
   dropMesh(id: number): void {
-    dropMesh(id, this.#table);
+    dropMesh(id, this.table);
   }
 
   /** Frees a tracker. */
   closeTracker(id: number): void {
-    const joint = this.#table.joint.loaded;
+    const joint = this.table.joint.loaded;
     joint?.call((j) => j.closeTracker(id));
     joint?.drop(trackerName(id));
   }

@@ -1,9 +1,9 @@
-/** The notes of an input: what its files say, for the result. */
+/** Notes on the files of an input, and their warnings, in its result. */
 import type { Warning } from "../generated/types.js";
 import type { InputInfo, InputNotes } from "../types/results.js";
 import { fromOrigin } from "./origin.js";
 
-/** How the files of a view were read. */
+/** The readings of the files of a view. */
 export const sourcesOf = ({ warnings: _, colors: __, origin: ___, ...sources }: InputNotes) => sources;
 
 /** Whether nothing states the unit of the depth. */
@@ -20,7 +20,7 @@ const labels: Warning = {
     "The mask has several labels, and all of them were read as one object. Pass a mask of the object's label alone, or the whole map as labels of alignScene.",
 };
 
-/** A result with what its files say; their warnings before those of the core. */
+/** A result with the notes on its files; their warnings before those of the core. */
 export function withNotes<T extends { warnings: Warning[]; confidence?: number | null }>(
   result: T,
   notes: InputNotes,

@@ -65,7 +65,7 @@ export async function lookedAtAgain(
   return { ...found, warnings };
 }
 
-/** How well the colours agree with the photo; `undefined` if they were not compared. */
+/** The agreement of the colours with the photo; `undefined` if they were not compared. */
 const agreementOf = ({ diagnostics: { color } }: Alignment): number | undefined =>
   color === undefined || color.verdict === "hidden" ? undefined : color.agreement;
 

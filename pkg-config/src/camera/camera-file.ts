@@ -39,7 +39,7 @@ interface StatedSize {
   height?: number | undefined;
 }
 
-/** Names of a camera file and of its options, for errors. */
+/** The names of a camera file and of its options in errors. */
 export interface CameraFileNames {
   file: string;
   /** Prefix of the names of options. */
@@ -161,18 +161,9 @@ function sceneEntry(
 
 /** Names of a matrix of intrinsics, or of an object with them. */
 const matrixNames = [
-  ...[
-    "K",
-    "k",
-    "cam_K",
-    "camera_K",
-    "intrinsic",
-    "intrinsics",
-    "intrinsic_matrix",
-    "intrinsics_matrix",
-    "intrinsicMatrix",
-  ],
-  ...["camera_matrix", "cameraMatrix", "camera_intrinsic", "camera_intrinsics", "cameraIntrinsics", "color_intrinsics"],
+  ...["K", "k", "cam_K", "camera_K", "intrinsic", "intrinsics", "intrinsic_matrix", "intrinsics_matrix"],
+  ...["intrinsicMatrix", "camera_matrix", "cameraMatrix", "camera_intrinsic", "camera_intrinsics", "cameraIntrinsics"],
+  "color_intrinsics",
 ];
 
 function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefined, names: CameraFileNames): Pinhole {

@@ -4,7 +4,7 @@ import { isNumber } from "../values/json.js";
 const numeral = "[-+]?(?:\\d+\\.?\\d*|\\.\\d+)(?:e[-+]?\\d+)?";
 
 /**
- * What a text says of a camera, as the JSON with the same meaning: the numbers of a matrix, or an object of named values.
+ * The camera in a text, as the JSON with the same meaning: the numbers of a matrix, or an object of named values.
  * `undefined` if it is another text.
  */
 export function cameraText(text: string): number[] | Record<string, unknown> | undefined {

@@ -2,26 +2,7 @@
 
 import type { ImageSize } from "../values/pixels.js";
 import { finite, positive, record, withoutUndefined } from "../values/values.js";
-
-/** What the EXIF data of a photo say of its camera; what they do not state is missing. */
-export interface Exif {
-  /** Focal length with the same diagonal field of view on a frame of 36 × 24 mm, in mm: `FocalLengthIn35mmFilm`. */
-  focalLength35mm?: number;
-  /** Focal length of the lens, in mm. */
-  focalLengthMm?: number;
-  /** Width of the sensor as far as the original image shows it, in mm. */
-  sensorWidthMm?: number;
-  /** How many times the camera enlarged the image. */
-  digitalZoom?: number;
-  make?: string;
-  model?: string;
-  /** 1 to 8; from 5, the stored image is viewed with its sides exchanged. 1 if the data state none. */
-  orientation: number;
-  /** Width of the original image as stored, in pixels. */
-  width?: number;
-  /** Height of the original image as stored, in pixels. */
-  height?: number;
-}
+import type { Exif } from "../wasm/formats.js";
 
 /** A focal length from EXIF data. */
 export interface ExifFocal {
@@ -98,7 +79,7 @@ export function focalFromExif(exif: Exif, size: ImageSize): ExifFocal | undefine
   return focalFrom(Object.fromEntries(numbers), image);
 }
 
-/** The same of EXIF data that have been read. */
+/** {@link focalFromExif} without checks of the arguments. */
 export function focalFrom(exif: Partial<Exif>, size: ImageSize): ExifFocal | undefined {
   const { width, height, orientation, ...camera } = exif;
   const image = [size.width, size.height] as const;
@@ -148,7 +129,7 @@ function focalOf(camera: Partial<Exif>, original: Sides, storedWidth: number | u
   return Math.hypot(...first.deviations) <= Math.hypot(...second.deviations) ? first : second;
 }
 
-/** What the focal length of the original is multiplied by. */
+/** The factor of the focal length of the original. */
 function scaleOf(image: Sides, original: Sides): Estimate | undefined {
   // Programs that turn the pixels may leave the sides in the EXIF data as they were.
   const turned: Sides = [original[1], original[0]];

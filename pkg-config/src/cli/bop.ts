@@ -115,7 +115,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
   return { cases, instances };
 }
 
-/** How the mesh is compared with the true pose. */
+/** The symmetry with which the true pose is compared. */
 function symmetryOf(info: BopModelInfo | undefined): KnownPose["symmetry"] {
   return info === undefined || info.discrete.length + info.continuous.length === 0 ? "none" : "auto";
 }

@@ -23,11 +23,12 @@ import {
 } from "./flags.js";
 import { alignHelp, bopHelp, evaluateHelp, sceneHelp, trackHelp } from "./help.js";
 import { optionFlags } from "./option-flags.js";
+import { makeFolder } from "./output-file.js";
 import { camera, jsonObject } from "./parse.js";
 import { pictureFiles } from "./pictures.js";
 import type { CaseKey } from "./record.js";
 import { lockOf } from "./record-lock.js";
-import { makeFolder, type OutputName, RunFiles } from "./run-files.js";
+import { type OutputName, RunFiles } from "./run-files.js";
 import { sceneJob, sceneOptions } from "./scene.js";
 import { trackJob } from "./track.js";
 

@@ -52,7 +52,7 @@ export function alignDetails(name: string, entry: AlignEntry, style: Style): str
   ];
 }
 
-/** Of the method of the paper. */
+/** The outcome of the refinement of preset `paper`. */
 function refinement({ diagnostics }: AlignEntry, lengths: Lengths): Pair[] {
   if (!("residualM" in diagnostics)) return [];
   const { converged, residualM } = diagnostics;
@@ -204,7 +204,7 @@ export function proportionsRows(alignment: object, lengths: Lengths): Pair[] {
   return [["in proportion", sides.join(", ")]];
 }
 
-/** How depth and camera were read: the unit of the depth, its calibration, and where the camera comes from. */
+/** The readings of depth and camera: the unit of the depth, its calibration, and where the camera comes from. */
 export function depthRows({ depthUnit, cameraSource, depthCalibration }: InputInfo): Pair[] {
   const rows: Pair[] = depthUnit === undefined ? [] : [["depth unit", depthUnit]];
   if (depthCalibration !== undefined)

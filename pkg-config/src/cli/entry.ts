@@ -89,7 +89,7 @@ const transformOf = ({ scale, rotation, rotationMatrix, translation, matrix }: S
   ...{ scale, rotation, rotationMatrix, translation, matrix },
 });
 
-/** How the files were read. */
+/** The readings of the files. */
 export const inputEntry = ({ depthUnit, cameraSource, maskReading, imageReading, depthCalibration }: InputInfo) =>
   withoutUndefined({ depthUnit, cameraSource, maskReading, imageReading, depthCalibration }) as InputInfo;
 

@@ -42,11 +42,11 @@ export interface ExportedMesh<M> {
   transform: Sim3Like;
 }
 
-/** How an object is exported. */
+/** Options of the export of an object. */
 export interface ExportedAs {
   /** The `proportions` of its result, if these were asked for. */
   proportions: Pick<Stretch, "matrix" | "stretch"> | undefined;
-  /** In an upright frame, if that is asked for. */
+  /** The upright frame, if it is requested. */
   upright: UprightOptions | undefined;
 }
 

@@ -76,3 +76,21 @@ export function absolutePath(path: string): string {
   const absolute = resolve(path);
   return join(realPath(dirname(absolute)), basename(absolute));
 }
+
+/** The identity of a file, which all its names share, links and those in other case; `undefined` without a file. */
+export function identityOf(path: string): string | undefined {
+  try {
+    const { dev, ino } = statSync(path, { bigint: true });
+    return `${dev}:${ino}`;
+  } catch {
+    return undefined;
+  }
+}
+
+/** The absolute path of a file and, if it exists, its identity. */
+export function placesOf(path: string): string[] {
+  if (path === "-") return [path];
+  const place = realPath(path);
+  const identity = identityOf(place);
+  return [place, ...(identity === undefined ? [] : [identity])];
+}

@@ -25,7 +25,7 @@ interface FlagSettings {
   /** See {@link OutputName}. */
   isOwn?: OutputName["isOwn"];
   holds?: OutputName["holds"];
-  /** Whether results do not depend on it: it names a case, or says how cases are worked on. */
+  /** Whether results do not depend on it: it names a case, or sets the order and the parallelism of the work. */
   isIndifferent?: boolean;
   /** Another flag that it needs, and the name of that flag in the error. */
   needs?: readonly [flag: string, what: string];
@@ -110,7 +110,7 @@ export const pictureFlags: readonly Flag[] = [
   ["--upright", "give the meshes in exported files upright frames: up along the support, a tight box"],
 ];
 
-/** How a case is read. */
+/** Options of reading a case. */
 export const caseFlags: readonly Flag[] = [
   ["--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", { parse: number }],
   ["--depth-kind <kind>", "what the values of the depth map are (default metric)", { choices: depthKindNames }],
@@ -142,7 +142,7 @@ export const sceneFileFlags: readonly Flag[] = [
   ["--no-rest", "keep all objects for simulators where they were found: they are not put at rest"],
 ];
 
-/** How the flags want a case to be read. */
+/** The options of reading a case by the flags. */
 export const caseSettings = ({ depthScale, depthKind, imageId, resizeMask, image }: Flags): ReadCaseOptions =>
   withoutUndefined({ depthScale, depthKind, imageId, resizeMask, image: image === false ? false : undefined });
 

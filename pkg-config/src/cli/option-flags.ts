@@ -29,7 +29,7 @@ export function optionValues(flags: Flags, rows: readonly OptionRow[]): Record<s
   const values: Record<string, unknown> = {};
   for (const row of rows) {
     const value = flags[valueName(`--${flagName(row)}`)];
-    // Commander sets `true` for a --no flag that was not values.
+    // Commander sets `true` for a --no flag that is not on the command line.
     if (value === undefined || (isNegated(row) && value === true)) continue;
     values[row.name] = value === "none" && row.isNullable ? null : value;
   }
@@ -68,7 +68,7 @@ const defaultOf = ({ kind, default: value }: OptionRow) =>
 
 const unit = (name: string) => (name.endsWith("M") ? " <metres>" : name.endsWith("Deg") ? " <degrees>" : " <x>");
 
-/** What follows the flags of each kind of option, by the name of the option, and how it is parsed. */
+/** The value and the parser of the flags of each kind of option, by the name of the option. */
 const kinds: Readonly<
   Record<OptionRow["kind"], { value: (name: string) => string; parse?: (text: string, row: OptionRow) => unknown }>
 > = {

@@ -1,7 +1,19 @@
-/** A file of output, which is written whole or not at all. */
-import { closeSync, fstatSync, ftruncateSync, openSync, renameSync, rmSync, writeSync } from "node:fs";
+/** Output files, which are written whole or not at all, and their folders. */
+import {
+  accessSync,
+  closeSync,
+  constants,
+  fstatSync,
+  ftruncateSync,
+  mkdirSync,
+  openSync,
+  renameSync,
+  rmSync,
+  statSync,
+  writeSync,
+} from "node:fs";
 import { dirname, join } from "node:path";
-import { isOrdinary, realPath } from "./files.js";
+import { isOrdinary, realPath, statOf, UsageError } from "./files.js";
 
 /** An output that cannot be written whole. */
 export class OutputError extends Error {}
@@ -97,5 +109,32 @@ export class OutputFile {
       }
       throw new OutputError(`${this.path}: cannot be written: ${(cause as Error).message}.`, { cause });
     }
+  }
+}
+
+/** @throws {@link UsageError} for an output that cannot be written */
+export function checkWritable(flag: string, path: string): void {
+  if (path === "-") return;
+  try {
+    const found = statOf(path);
+    if (found?.isDirectory()) throw new UsageError(`${flag} ${path}: this is a folder; pass the name of a file.`);
+    const folder = dirname(realPath(path));
+    if (found === undefined && !statSync(folder).isDirectory()) throw new Error(`${folder} is no folder`);
+    accessSync(isOrdinary(path) ? folder : path, constants.W_OK);
+  } catch (error) {
+    if (error instanceof UsageError) throw error;
+    throw new UsageError(`${flag} ${path}: the file cannot be written: ${(error as Error).message}.`);
+  }
+}
+
+/**
+ * Creates a folder for output.
+ * @throws {@link OutputError}
+ */
+export function makeFolder(flag: string, path: string): void {
+  try {
+    mkdirSync(path, { recursive: true });
+  } catch (error) {
+    throw new OutputError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);
   }
 }

@@ -17,7 +17,7 @@ interface Owner {
   pid: number;
   /** The system in which `pid` is a process: a boot of a machine, and a container. */
   system: string;
-  /** When it started, because numbers of processes are used again; empty where the system has no such time. */
+  /** Its start, because numbers of processes are used again; empty where the system has no such time. */
   started: string;
   since: string;
 }
@@ -105,7 +105,7 @@ function reasonToWait(owner: Owner | undefined, markedMs: number, own: Owner): s
   return `${holder} writes this record. Its lock ends in ${restS} s, if it has ended.`;
 }
 
-/** On Linux, the boot and the namespace of processes, which tells containers apart; elsewhere, the machine. */
+/** On Linux, the boot and the namespace of processes, which differs between containers; elsewhere, the machine. */
 function system(): string {
   try {
     const boot = readFileSync("/proc/sys/kernel/random/boot_id", "utf8").trim();
@@ -115,7 +115,7 @@ function system(): string {
   }
 }
 
-/** When a process started, on Linux in ticks since the boot; `undefined` if it does not run. */
+/** The start of a process, on Linux in ticks since the boot; `undefined` if it does not run. */
 function startOf(pid: number): string | undefined {
   try {
     process.kill(pid, 0);

@@ -42,7 +42,7 @@ export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" |
 
 const keyOf = ({ path, name }: Pick<CaseKey, "path" | "name">) => path ?? name;
 
-/** What the results of a record depend on beside the cases; `pathOf` returns the paths of files as the record has them. */
+/** The settings that the results of a record depend on beside the cases; `pathOf` returns the paths of files as the record has them. */
 export type RecordHeader = (pathOf: (path: string) => string) => { command: string; options: Record<string, unknown> };
 
 /** A checksum of the inputs in a folder: its files, those of its frames and of its objects. `undefined` without files. */

@@ -1,10 +1,21 @@
 /** The files of a run: no output is an input or another output. */
-import { accessSync, constants, existsSync, mkdirSync, readFileSync, statSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { basename, dirname, join, sep } from "node:path";
 import { partOf } from "../case-names.js";
 import { refersToFiles } from "../input/formats.js";
-import { bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
-import { OutputError, OutputFile } from "./output-file.js";
+import {
+  bytesOf,
+  identityOf,
+  isFile,
+  isOrdinary,
+  namesIn,
+  partsOf,
+  placesOf,
+  realPath,
+  statOf,
+  UsageError,
+} from "./files.js";
+import { checkWritable, makeFolder, OutputError, OutputFile } from "./output-file.js";
 
 /** A file or folder that a command line names. */
 export interface NamedFile {
@@ -27,7 +38,7 @@ export interface OutputName extends NamedFile {
   holds?: readonly string[] | undefined;
 }
 
-/** Levels of folders in which inputs are looked for. */
+/** Depth of the folders that are searched for inputs. */
 const LEVELS = 5;
 
 /** The files of a run. */
@@ -171,49 +182,4 @@ function mentions(model: string, file: string): boolean {
   if (!file.startsWith(`${dirname(realPath(model))}${sep}`) || !isFile(model)) return false;
   const text = readFileSync(model);
   return [basename(file), encodeURIComponent(basename(file))].some((name) => text.includes(name));
-}
-
-/** What all names of a file have in common, whether they are links or differ in case; `undefined` without a file. */
-function identityOf(path: string): string | undefined {
-  try {
-    const { dev, ino } = statSync(path, { bigint: true });
-    return `${dev}:${ino}`;
-  } catch {
-    return undefined;
-  }
-}
-
-/** Where a file is, and, if it exists, what it is. */
-function placesOf(path: string): string[] {
-  if (path === "-") return [path];
-  const place = realPath(path);
-  const identity = identityOf(place);
-  return [place, ...(identity === undefined ? [] : [identity])];
-}
-
-/** @throws {@link UsageError} for a file that cannot be written */
-function checkWritable(flag: string, path: string): void {
-  if (path === "-") return;
-  try {
-    const found = statOf(path);
-    if (found?.isDirectory()) throw new UsageError(`${flag} ${path}: this is a folder; pass the name of a file.`);
-    const folder = dirname(realPath(path));
-    if (found === undefined && !statSync(folder).isDirectory()) throw new Error(`${folder} is no folder`);
-    accessSync(isOrdinary(path) ? folder : path, constants.W_OK);
-  } catch (error) {
-    if (error instanceof UsageError) throw error;
-    throw new UsageError(`${flag} ${path}: the file cannot be written: ${(error as Error).message}.`);
-  }
-}
-
-/**
- * Creates a folder for output.
- * @throws {@link OutputError}
- */
-export function makeFolder(flag: string, path: string): void {
-  try {
-    mkdirSync(path, { recursive: true });
-  } catch (error) {
-    throw new OutputError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);
-  }
 }

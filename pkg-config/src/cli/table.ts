@@ -67,7 +67,7 @@ export function pairs(entries: readonly Pair[]): string[] {
   return entries.map(([name, value]) => `  ${pad(name, longest, false)}  ${value}`);
 }
 
-/** How lengths are printed. */
+/** The format of lengths. */
 export class Lengths {
   constructor(readonly isMetric: boolean) {}
 

@@ -25,7 +25,7 @@ export function onAbort(signal: SignalLike, act: (reason: unknown) => void): () 
   };
 }
 
-/** The same for several signals. */
+/** {@link onAbort} of several signals. */
 export function onAnyAbort(signals: readonly SignalLike[], act: (reason: unknown) => void): () => void {
   const unfollow = signals.map((signal) => onAbort(signal, act));
   return () => {

@@ -1,7 +1,7 @@
 /** GLB files: JSON, and chunks of bytes. */
+import { bytesOfFile } from "../input/bytes.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
-import { bytesOfFile } from "./file-bytes.js";
 
 /** The content of a GLB file. */
 export interface GlbFile {

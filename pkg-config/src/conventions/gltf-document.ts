@@ -52,7 +52,7 @@ const listOf = (path: string) => patterns.find(([, pattern]) => pattern.test(pat
 export class GltfDocument {
   /** Lists, and what else extensions have at the root, by their paths. */
   readonly #content = new Map<string, unknown>();
-  /** Those after the buffer of the file. */
+  /** The buffers after that of the file. */
   readonly #buffers: unknown[] = [];
   readonly #binaries: Uint8Array[] = [];
   readonly #extensions = { extensionsUsed: new Set<string>(), extensionsRequired: new Set<string>() };

@@ -12,16 +12,13 @@ export const identifier = (name: string): string => name.replace(/[^A-Za-z0-9]+/
 /** Gives each thing in the files of a scene a name of its own. Names that differ in case only are the same to some systems. */
 export class Names {
   readonly #taken = new Set<string>();
-  readonly #form: (name: string) => string;
 
-  /** @param form what the format makes of any text */
-  constructor(form: (name: string) => string = identifier) {
-    this.#form = form;
-  }
+  /** @param form converts any text to a name of the format */
+  constructor(private readonly form: (name: string) => string = identifier) {}
 
   /** The wanted name in the form of the format, with a number after it if it is reserved or has been given before. */
   own(wanted: string): string {
-    const plain = this.#form(wanted);
+    const plain = this.form(wanted);
     const isTaken = (name: string) => RESERVED.test(name) || this.#taken.has(name);
     let own = plain;
     for (let k = 2; isTaken(own.toLowerCase()); k++) own = `${plain}_${k}`;

@@ -4,7 +4,6 @@ import { pinholeOf, resizedPinhole } from "../camera/pinhole.js";
 import type { CameraInput, PinholeCamera } from "../types/inputs.js";
 import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
-import type { PixelArray } from "../values/pixels.js";
 import {
   type DepthPixels,
   depthKinds,
@@ -12,6 +11,7 @@ import {
   type MaskPixels,
   maskKinds,
   nearest,
+  type PixelArray,
   pixelsOf,
   pointKinds,
   sizeOf,
@@ -179,12 +179,8 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
   const source = { column: (u: number) => left + u, row: (v: number) => top + v };
   const hasAlpha = image?.data?.length === 4 * size.width * size.height;
   const formats: Record<string, readonly [kinds: readonly string[], channels: number]> = {
-    ...{
-      depth: [depthKinds, 1],
-      mask: [maskKinds, 1],
-      pointMap: [pointKinds, 3],
-      image: [maskKinds, hasAlpha ? 4 : 3],
-    },
+    ...{ depth: [depthKinds, 1], mask: [maskKinds, 1], pointMap: [pointKinds, 3] },
+    image: [maskKinds, hasAlpha ? 4 : 3],
   };
   const cropped = { ...given };
   for (const [name, part] of images) {

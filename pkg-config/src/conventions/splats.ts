@@ -1,10 +1,10 @@
 /** Placement of 3D Gaussian splats. */
 
+import { bytesOfFile } from "../input/bytes.js";
 import { isPly, isSplatFile, plyHeader, RECORD_BYTES, rotationIn } from "../input/splat-files.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import { failure } from "../values/error.js";
 import { optionsOf, type Vector3 } from "../values/values.js";
-import { bytesOfFile } from "./file-bytes.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { harmonicRotation, MAX_DEGREE } from "./harmonics.js";
 import { quaternionOf, turned } from "./rotation.js";

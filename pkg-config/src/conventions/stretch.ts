@@ -8,7 +8,7 @@ import { mappedMesh, meshOf } from "./mesh.js";
 import { eigenvectors } from "./principal-axes.js";
 import { cofactors, column, dot, type Matrix3, norm, quaternionOf, scaled, transposed, turned } from "./rotation.js";
 
-/** What the functions read of `proportions` of a result. */
+/** The part of `proportions` of a result that the functions read. */
 export interface StretchLike {
   /** A symmetric matrix with positive eigenvalues, as three rows of three or nine numbers. */
   stretch: ArrayLike<number> | readonly (readonly number[])[];

@@ -139,6 +139,6 @@ function upwardOf(mesh: Mesh, meshFromCamera: Matrix3, support: unknown): Vector
 
 const bothWays = (v: Vector3): [Vector3, Vector3] => [v, scaled(v, -1)];
 
-/** Of some directions, the one nearest to another. */
+/** The direction among several that is nearest to another. */
 const nearest = (directions: readonly Vector3[], to: Vector3): Vector3 =>
   directions.reduce((best, direction) => (dot(direction, to) > dot(best, to) ? direction : best));

@@ -4,6 +4,7 @@ import type { LoadedModule } from "../modules/module.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure, invalidArgument, messageOf } from "../values/error.js";
 import { isBuffer, isKind, isTypedArray } from "../values/kinds.js";
+import { wrongKind } from "../values/values.js";
 
 /** An array of bytes. */
 export type Bytes = Uint8Array | Uint8ClampedArray;
@@ -67,4 +68,12 @@ export function beginsLikeJson(bytes: Uint8Array): boolean {
     .replace(/^\xef\xbb\xbf/, "")
     .trimStart()
     .startsWith("{");
+}
+
+/** The bytes of a file that is passed to a conversion, not copied. */
+export function bytesOfFile(argument: string, file: unknown, expected: string): Uint8Array {
+  if (isBuffer(file) || isTypedArray(file, "Uint8Array")) checkAttached(argument, file);
+  if (isBuffer(file)) return new Uint8Array(file);
+  if (isTypedArray<Uint8Array>(file, "Uint8Array")) return file;
+  throw wrongKind(argument, file, expected, "Uint8Array");
 }

@@ -27,7 +27,7 @@ export interface ResolvedCamera {
   camera: Pinhole | undefined;
   /** Standard deviation of the logarithm of the focal length, if it is a guess. */
   focalDeviation?: number | undefined;
-  /** Where the intrinsics come from, if they were not given. */
+  /** The source of the intrinsics, if they were not given. */
   source?: string;
   warnings: readonly Warning[];
 }
@@ -37,7 +37,7 @@ const notPinhole = (message: string): Warning => ({ code: "CAMERA_NOT_PINHOLE", 
 const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
 const fileRemedy = "Pass the content of a camera file as cameraFile.";
 
-/** Names that only camera files use. */
+/** Property names of camera files only. */
 const fileProperties = ["cam_K", "k", "d", "D", "intrinsic_matrix", "ppx", "ppy", "fov_y_deg", "depth_scale"];
 
 /** `readCamera` adds `warnings` and `depthScale` to the intrinsics of a camera file. */

@@ -1,4 +1,4 @@
-/** What documents and user interfaces say of the kinds of depth. */
+/** Descriptions of the kinds of depth for documents and user interfaces. */
 import type { DepthKind } from "../types/inputs.js";
 
 /** A kind of depth. */
@@ -15,7 +15,7 @@ const unitKnown = "in a known unit";
 const unitUnknown = "times an unknown factor";
 const shifted = `${unitUnknown}, plus an unknown shift`;
 
-/** The kinds of depth, the default first. The readers and the aligner know all but `ray-distance`, which needs the camera. */
+/** The kinds of depth, the default first. The readers and the core take all but `ray-distance`, which needs the camera. */
 export const depthKinds: { readonly [K in DepthKind]: KindOfDepth } = {
   metric: { title: "Distances", values: `distances along the optical axis ${unitKnown}`, estimated: "nothing" },
   "ray-distance": {

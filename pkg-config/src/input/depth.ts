@@ -18,7 +18,7 @@ export interface SizedArray<T> {
 
 type DepthArray = Float32Array | Uint16Array;
 
-/** A depth map for the core, and what its file says of it. */
+/** A depth map for the core, with the camera and the unit in its file. */
 export interface ReadDepth extends SizedArray<DepthArray> {
   /** The camera in the file. */
   camera?: Pinhole;
@@ -70,7 +70,7 @@ export async function readDepth(
 /** The unit of an array, in the words of the readers of files. */
 function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDepthScale }: ReadDepthOptions): string {
   if (isAffineInvariant(depthKind)) return `none (${depthKind})`;
-  // Of anything else than a number, the core says what is wrong.
+  // The core refuses anything else than a number.
   if (typeof depthScale === "number") return `${depthScale} m (depthScale)`;
   if (depthKind === "scale-invariant") return `unknown (${depthKind})`;
   if (isFloats(data)) return "metres (float values, assumed)";
@@ -79,11 +79,11 @@ function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDep
     : "0.001 m (16-bit integers, assumed)";
 }
 
-/** How the files of depth models begin: NPZ (also without an array), OpenEXR, TIFF and PFM. */
+/** Signatures of the files of depth models: NPZ (also without an array), OpenEXR, TIFF and PFM. */
 const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "Pf\n", "PF\n"];
 
 /**
- * Reads a depth map of any supported format by the module that knows it.
+ * Reads a depth map of any supported format by the module for that format.
  * @param argument the name of the bytes, in errors
  * @param rename of the arguments in errors of the reader
  */

@@ -1,8 +1,9 @@
 /** Cameras whose intrinsics were not given. */
-import { type Exif, type ExifFocal, focalFrom } from "../camera/exif-focal.js";
+import { type ExifFocal, focalFrom } from "../camera/exif-focal.js";
 import type { Pinhole } from "../camera/pinhole.js";
 import type { Warning } from "../generated/types.js";
 import type { ImageSize } from "../values/pixels.js";
+import type { Exif } from "../wasm/formats.js";
 
 /**
  * The focal length of an image of which nothing is known, relative to its longer side, and the standard deviation of its
@@ -13,7 +14,7 @@ const UNKNOWN_LENS = { focal: 0.87, deviation: 0.3 } as const;
 const unknownLens =
   "No camera was given, and neither the depth file nor the photo states a focal length: it was estimated. Pass the camera, the depth file as the model wrote it, or the photo as the camera wrote it.";
 
-/** What the files of a view say of its camera. */
+/** The camera by the files of a view. */
 export interface CameraHints {
   /** The camera in the depth file. */
   inDepth?: Pinhole | undefined;
@@ -26,7 +27,7 @@ export interface FoundCamera {
   camera: Pinhole;
   /** Standard deviation of the logarithm of the focal length; `undefined` where it is known. */
   focalDeviation: number | undefined;
-  /** Where the intrinsics come from, for people. */
+  /** The source of the intrinsics, for people. */
   source: string;
   warnings: readonly Warning[];
 }

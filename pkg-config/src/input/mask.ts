@@ -14,7 +14,7 @@ const kinds = () =>
 
 /** A mask for the core. */
 export interface ReadMask extends SizedArray<Bytes> {
-  /** Which values of its file are the object, for people. */
+  /** The values of its file that are the object, for people. */
   reading?: string;
 }
 

@@ -1,11 +1,11 @@
 /** The photo of an input. */
 
-import type { Exif } from "../camera/exif-focal.js";
 import type { Photo } from "../modules/core-input.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import type { PixelArray } from "../values/pixels.js";
 import { wrongKind } from "../values/values.js";
+import type { Exif } from "../wasm/formats.js";
 import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";
@@ -18,7 +18,7 @@ const kinds = () =>
 /** A photo for the core. */
 export interface ReadPhoto {
   image?: Photo;
-  /** How it was turned, if not as its EXIF data say. */
+  /** Its orientation, if not that of its EXIF data. */
   imageReading?: string;
 }
 

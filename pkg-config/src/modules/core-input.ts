@@ -11,7 +11,7 @@ export type Photo = PixelArray<Uint8Array>;
 export interface CoreInput {
   depth?: Float32Array | Uint16Array;
   depthScale?: unknown;
-  /** What the values are, unless they are metric. */
+  /** The kind of the depth values, unless they are metric. */
   depthKind?: DepthKind;
   pointMap?: Float32Array;
   width?: unknown;

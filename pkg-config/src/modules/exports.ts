@@ -1,4 +1,4 @@
-/** What the WebAssembly modules export. Their functions validate their arguments and throw errors with codes. */
+/** The exports of the WebAssembly modules. Their functions validate their arguments and throw errors with codes. */
 import type { Pinhole } from "../camera/pinhole.js";
 import type {
   Alignment,
@@ -48,12 +48,12 @@ export interface Task<T> {
   free(): void;
 }
 
-/** What a module asks of the helpers of a task: other threads. */
+/** The helpers of a task, other threads, as a module calls them. */
 export interface CoreHelpers {
   /** Asks for helpers. */
   ask(): void;
   send(helper: number, message: Float64Array): void;
-  /** The next message that has arrived. Its first number is the helper; nothing else says that it has left. */
+  /** The next message that has arrived. Its first number is the helper; a message of that number alone means that it has left. */
   receive(): Float64Array | undefined;
   /** Lets the next turn last until a message arrives. */
   wait(): void;
@@ -186,9 +186,9 @@ export interface PlacedInput extends CoreInput {
 
 /** An object of a scene, aligned in one of its rounds. */
 export interface Placed {
-  /** What it tells the next round; only the module reads it. */
+  /** Its message to the next round; only the module reads it. */
   placement: Uint8Array;
-  /** In the last round. */
+  /** The result, in the last round. */
   alignment?: Alignment;
 }
 

@@ -126,7 +126,7 @@ export class WasmModule<G> {
     try {
       return await work();
     } catch (cause) {
-      // A worker is told why its module could not be loaded.
+      // A worker gets the reason why its module could not be loaded.
       throw cause instanceof Sim3AlignError ? cause : notLoaded(this.#name, cause);
     }
   }
@@ -149,7 +149,7 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
 export class LoadedModule<G> {
   readonly #glue: G & Glue;
   readonly #module: CompiledModule;
-  /** What lives in the instance and is more than a copy: while there is any, its heap stays. */
+  /** The objects in the instance that are more than a copy: while there are any, its heap stays. */
   readonly #kept = new Set<unknown>();
   /** Whether the state of the instance is unknown. */
   #isSpent = false;

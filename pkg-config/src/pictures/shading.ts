@@ -1,4 +1,4 @@
-/** How depth maps of meshes are drawn: the light on their surface, and their outline. */
+/** Shading of depth maps of meshes: the light on their surface, and their outline. */
 
 /** Towards the viewer, from above and from the left: where the light comes from. */
 const LIGHT = [-0.4, -0.6, -0.69] as const;

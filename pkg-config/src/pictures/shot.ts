@@ -19,7 +19,7 @@ export class Shot {
     readonly width: number,
     readonly height: number,
     readonly camera: Pinhole,
-    /** Of the size of the depth map; not 0 in the object. */
+    /** The mask at the size of the depth map; not 0 in the object. */
     readonly mask: MaskPixels,
     readonly photo: Photo | undefined,
     readonly mesh: CoreMesh,

@@ -18,15 +18,13 @@ interface LongJob {
 
 /** Lends workers that have nothing to do, until a job waits for them. What they do changes no result. */
 export class HelperBroker {
-  readonly #queue: Queue<Slot>;
-  readonly #compiled: WorkerSetup["compiled"];
-  /** By the worker that runs the job. */
+  /** The long jobs, by the worker that runs each. */
   readonly #longJobs = new Map<Slot, LongJob>();
 
-  constructor(queue: Queue<Slot>, compiled: WorkerSetup["compiled"]) {
-    this.#queue = queue;
-    this.#compiled = compiled;
-  }
+  constructor(
+    private readonly queue: Queue<Slot>,
+    private readonly compiled: WorkerSetup["compiled"],
+  ) {}
 
   /** The job that this worker runs is long. */
   ask(slot: Slot, job: Job): void {
@@ -45,7 +43,7 @@ export class HelperBroker {
   lend(): void {
     for (;;) {
       const [slot, longJob] = this.#inOrder().find(([, { mayHaveHelp }]) => mayHaveHelp) ?? [];
-      const helper = slot && this.#queue.takeIdle();
+      const helper = slot && this.queue.takeIdle();
       if (slot === undefined || longJob === undefined || helper === undefined) return;
       longJob.helpers.add(helper);
       this.#help(slot, longJob, helper);
@@ -54,7 +52,7 @@ export class HelperBroker {
 
   /** Calls a worker back for a job that waits, if none is idle. */
   recall(): void {
-    if (this.#queue.hasIdle) return;
+    if (this.queue.hasIdle) return;
     const helpers = this.#inOrder().at(-1)?.[1].helpers;
     for (const helper of helpers ?? []) {
       helpers?.delete(helper);
@@ -69,7 +67,7 @@ export class HelperBroker {
     const { job } = longJob;
     const module = moduleOf(job.method);
     try {
-      const modules = new Map([[module, await this.#compiled(module)]]);
+      const modules = new Map([[module, await this.compiled(module)]]);
       await helper.hire().ready();
       // While it started, it may have been called back, or the job may have ended.
       if (!longJob.helpers.has(helper) || !isRunning()) return;
@@ -79,21 +77,20 @@ export class HelperBroker {
       const cached = job.meshId === undefined ? undefined : { id: job.meshId, module };
       const mesh = cached === undefined || helper.last.hasMesh(cached) ? undefined : copied(preparedMesh(job));
       const help = { method: "help", data: { port: port2, mesh } } as const;
-      const sent = { job: help, wantsProgress: false, returnsData: false, report() {} };
-      const answer = await helper.last.request({ ...sent, transfer: [port2], modules, mesh: cached });
+      const answer = await helper.last.request({ job: help, transfer: [port2], modules, mesh: cached });
       if (answer?.result === undefined) longJob.mayHaveHelp = false;
     } catch {
-      // The job does without helpers: what is wrong, if anything, it will find itself.
+      // The job continues without helpers; it reports a fault itself, if there is one.
       longJob.mayHaveHelp = false;
     } finally {
       longJob.helpers.delete(helper);
       if (isRunning() && place !== undefined) slot.last.tell({ type: "helper", helper: place });
-      this.#queue.release(helper);
+      this.queue.release(helper);
       this.lend();
     }
   }
 
-  /** Those with the fewest helpers first. */
+  /** The long jobs, those with the fewest helpers first. */
   #inOrder(): [Slot, LongJob][] {
     return [...this.#longJobs].sort(([, a], [, b]) => a.helpers.size - b.helpers.size);
   }

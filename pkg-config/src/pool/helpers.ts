@@ -1,4 +1,4 @@
-/** In workers: the helpers of a long job, and those that help. */
+/** Code of workers with a long job, and of workers that help with one. */
 import { beginHelp, type Scheduler, type SearchHelp, type SharedSearch } from "../calls/context.js";
 import type { CoreHelpers } from "../modules/exports.js";
 import type { Modules } from "../modules/module.js";
@@ -10,10 +10,10 @@ const SLICE_MS = 8;
 /** About how long a helper runs tasks until it sends their results, milliseconds. */
 const HELP_MS = 3;
 
-/** Numbers of the message that says that a helper is ready. */
+/** The numbers of a ready message of a helper. */
 const READY = 3;
 
-/** What has arrived. */
+/** The messages that have arrived. */
 class Inbox<T> {
   readonly #messages: T[] = [];
   #wake = () => {};
@@ -43,7 +43,6 @@ class Inbox<T> {
 
 /** The helpers of a job, between whose slices their messages arrive. */
 export class Helpers implements CoreHelpers, Scheduler {
-  readonly #askPool: () => void;
   readonly #ports: MessagePort[] = [];
   readonly #inbox = new Inbox<Float64Array>();
   #search: SharedSearch | undefined;
@@ -51,9 +50,7 @@ export class Helpers implements CoreHelpers, Scheduler {
   #isWaiting = false;
 
   /** @param askPool asks the pool for helpers */
-  constructor(askPool: () => void) {
-    this.#askPool = askPool;
-  }
+  constructor(private readonly askPool: () => void) {}
 
   get sliceMs(): number {
     return this.#isAsked ? SLICE_MS : Number.POSITIVE_INFINITY;
@@ -92,7 +89,7 @@ export class Helpers implements CoreHelpers, Scheduler {
   }
 
   ask(): void {
-    if (!this.#isAsked) this.#askPool();
+    if (!this.#isAsked) this.askPool();
     this.#isAsked = true;
   }
 
@@ -109,14 +106,12 @@ export class Helpers implements CoreHelpers, Scheduler {
   }
 }
 
-/** Helps another worker with its job, until it is told to stop. The first message is the search, the others its tasks. */
+/** Helps another worker with its job, until a stop message. The first message is the search, the others its tasks. */
 export class HelperSession {
-  readonly #data: HelpJob["data"];
   readonly #inbox = new Inbox<SharedSearch | Float64Array | "stop">();
   #isOver = false;
 
-  constructor(data: HelpJob["data"]) {
-    this.#data = data;
+  constructor(private readonly data: HelpJob["data"]) {
     data.port.onmessage = ({ data }) => this.#inbox.put(data);
   }
 
@@ -126,7 +121,7 @@ export class HelperSession {
   }
 
   async run(modules: Modules): Promise<void> {
-    const { port, mesh } = this.#data;
+    const { port, mesh } = this.data;
     let help: SearchHelp | undefined;
     try {
       for (;;) {
@@ -150,7 +145,7 @@ export class HelperSession {
     while (this.#inbox.isEmpty) {
       const results = call((helper) => helper.step(HELP_MS));
       if (results === undefined) return;
-      this.#data.port.postMessage(results, [results.buffer]);
+      this.data.port.postMessage(results, [results.buffer]);
       await turn();
     }
   }

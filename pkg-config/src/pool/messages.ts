@@ -24,9 +24,9 @@ export interface HelpJob {
 export interface Request {
   type: "job";
   job: Job | HelpJob | { method: "start" };
-  wantsProgress: boolean;
+  wantsProgress?: boolean;
   /** Whether the data of the job, which were moved to the worker, are returned. */
-  returnsData: boolean;
+  returnsData?: boolean;
   /** Compiled modules that the worker has not got before. */
   modules: ReadonlyMap<ModuleName, CompiledModule>;
   /** Prepared meshes that have been disposed. */
@@ -41,7 +41,7 @@ export type ToWorker =
   /** To a helper: a job waits for it, or that of the other worker is done. */
   | { type: "stop" };
 
-/** What became of a job. */
+/** The outcome of a job. */
 export interface Answer {
   type: "result";
   result?: unknown;
@@ -56,7 +56,7 @@ export interface Answer {
 /** The number of the instance of each module that is loaded. */
 export type Instances = { readonly [N in ModuleName]?: number | undefined };
 
-/** How far a job has come; or, without a stage, that it is long, so that other workers may help. */
+/** The progress of a job; without a stage, a sign that it is long, so that other workers may help. */
 export type Report = { type: "progress"; stage?: undefined } | Progress;
 
 interface Progress {

@@ -1,4 +1,4 @@
-/** A worker of the pool, as the thread of the pool knows it. */
+/** The worker of a pool, as an object of the thread of the pool. */
 import type { ModuleName } from "../modules/exports.js";
 import type { CompiledModule } from "../modules/module.js";
 import type { CreateWorker } from "../types/platform.js";
@@ -9,10 +9,10 @@ import { type Port, portOf } from "./port.js";
 /** The worker terminated or trapped before it answered; the job may be retried. */
 export class WorkerLost extends Error {}
 
-/** What is needed to start a worker, and for what it runs. */
+/** Settings of starting and running a worker. */
 export interface WorkerSetup {
   create: CreateWorker;
-  /** Longest time until a worker says that it is ready, milliseconds. */
+  /** Longest time until the ready message of a worker, milliseconds. */
   startMs: number;
   compiled(name: ModuleName): Promise<CompiledModule>;
 }
@@ -27,27 +27,18 @@ interface Pending {
   method: Request["job"]["method"];
   resolve(answer: Answer): void;
   reject(reason: unknown): void;
-  report(message: Report): void;
+  report: JobMessage["report"];
 }
 
-/** What a job is sent with. */
+/** Parts of a message with a job. */
 export interface JobMessage extends Pick<Request, "job" | "wantsProgress" | "returnsData"> {
-  transfer: Transferable[];
+  transfer?: Transferable[];
   /** The compiled modules that it needs. */
-  modules: ReadonlyMap<ModuleName, CompiledModule>;
+  modules?: ReadonlyMap<ModuleName, CompiledModule>;
   /** Its prepared mesh. */
   mesh?: CachedMesh | undefined;
-  report(message: Report): void;
+  report?(message: Report): void;
 }
-
-const START: JobMessage = {
-  job: { method: "start" },
-  wantsProgress: false,
-  returnsData: false,
-  transfer: [],
-  modules: new Map(),
-  report() {},
-};
 
 /** A worker of the pool, until it ends. */
 export class PoolWorker {
@@ -61,7 +52,7 @@ export class PoolWorker {
   readonly #modules = new Set<ModuleName>();
   /** By prepared mesh: the modules that have cached it, with the numbers of their instances. */
   readonly #meshes = new Map<number, Map<ModuleName, number>>();
-  /** Prepared meshes that it is told to free with its next job. */
+  /** Prepared meshes that it frees with its next job. */
   readonly #dropped = new Set<number>();
   #instances: Instances = {};
 
@@ -76,7 +67,7 @@ export class PoolWorker {
     } catch (error) {
       this.end(new WorkerLost(messageOf(error), { cause: error }));
     }
-    this.#started = this.request(START);
+    this.#started = this.request({ job: { method: "start" } });
     // It may fail while nothing waits for it.
     this.#started.catch(() => {});
   }
@@ -106,7 +97,7 @@ export class PoolWorker {
    * transferred.
    * @throws {@link WorkerLost}, and the reason passed to `end`
    */
-  async request({ transfer, modules, mesh, report, ...job }: JobMessage): Promise<Answer | undefined> {
+  async request({ transfer, modules = new Map(), mesh, report, ...job }: JobMessage): Promise<Answer | undefined> {
     const missing = new Map([...modules].filter(([name]) => !this.#modules.has(name)));
     // The job needs its mesh until its end.
     const droppedMeshes = [...this.#dropped].filter((id) => id !== mesh?.id);
@@ -176,7 +167,7 @@ export class PoolWorker {
     if (!isFromWorker(message) || pending === undefined) {
       this.end(new WorkerLost("a message that worker.js does not send"));
     } else if (message.type === "progress") {
-      pending.report(message);
+      pending.report?.(message);
     } else if (message.error?.code === "INTERNAL") {
       // After a trap, the state of the module is unknown, and its memory may be exhausted.
       this.end(new WorkerLost(message.error.found));
@@ -189,11 +180,9 @@ export class PoolWorker {
 
 /** A place in the pool, whose worker is replaced when it has ended. */
 export class Slot {
-  readonly #setup: WorkerSetup;
   #worker: PoolWorker;
 
-  constructor(setup: WorkerSetup) {
-    this.#setup = setup;
+  constructor(private readonly setup: WorkerSetup) {
     this.#worker = new PoolWorker(setup);
   }
 
@@ -204,7 +193,7 @@ export class Slot {
 
   /** Its worker, or another one if that has ended. */
   hire(): PoolWorker {
-    if (this.#worker.hasEnded) this.#worker = new PoolWorker(this.#setup);
+    if (this.#worker.hasEnded) this.#worker = new PoolWorker(this.setup);
     return this.#worker;
   }
 }

@@ -19,19 +19,19 @@ const ATTEMPTS = 2;
 /** Workers, for which jobs wait in a queue. */
 export class WorkerPool implements Engine {
   readonly capacity: number;
-  readonly #setup: WorkerSetup;
   readonly #slots: readonly Slot[];
-  readonly #fallback: MainThreadEngine;
   readonly #queue: Queue<Slot>;
   readonly #broker: HelperBroker;
   readonly #ended = new AbortController();
 
   /** @param fallback runs jobs that cannot be cloned; it is disposed with the pool */
-  constructor(size: number, setup: WorkerSetup, fallback: MainThreadEngine) {
+  constructor(
+    size: number,
+    private readonly setup: WorkerSetup,
+    private readonly fallback: MainThreadEngine,
+  ) {
     // Two per worker: the next job is prepared while one runs.
     this.capacity = 2 * size;
-    this.#setup = setup;
-    this.#fallback = fallback;
     this.#slots = Array.from({ length: size }, () => new Slot(setup));
     this.#queue = new Queue(this.#slots);
     this.#broker = new HelperBroker(this.#queue, setup.compiled);
@@ -58,13 +58,13 @@ export class WorkerPool implements Engine {
 
   dropMesh(id: number): void {
     for (const { last } of this.#slots) last.dropMesh(id);
-    this.#fallback.dropMesh(id);
+    this.fallback.dropMesh(id);
   }
 
   dispose(): void {
     this.#ended.abort(disposed());
     for (const { last } of this.#slots) last.end(this.#ended.signal.reason);
-    this.#fallback.dispose();
+    this.fallback.dispose();
   }
 
   async #runIn<M extends Method>(
@@ -83,7 +83,7 @@ export class WorkerPool implements Engine {
       return error;
     };
     const compiled = (name: ModuleName) =>
-      this.#setup.compiled(name).catch((error) => {
+      this.setup.compiled(name).catch((error) => {
         throw error instanceof Sim3AlignError ? failed(partsOf(error)) : error;
       });
     for (;;) {
@@ -96,7 +96,7 @@ export class WorkerPool implements Engine {
         if (answer === undefined) {
           // A tracker lives in its worker, which does not need the rest: what a pose then lacks is an error there.
           const isTracked = "tracker" in job.options && !isSendable(job);
-          if (!isTracked) return await this.#fallback.run(job, call);
+          if (!isTracked) return await this.fallback.run(job, call);
           job = sendableParts(job);
           continue;
         }

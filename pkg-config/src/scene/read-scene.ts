@@ -18,7 +18,7 @@ export interface ReadScene {
   /** Width and height of the depth map, pixels. */
   size: [width: number, height: number];
   objects: ReadObject[];
-  /** Masks of what has no mesh. */
+  /** Masks of objects without a mesh. */
   occluders: Uint8Array[];
   /** The number of masks that each pixel is in; `undefined` for a single mask. */
   counts: Uint16Array | undefined;
@@ -26,7 +26,7 @@ export interface ReadScene {
   notes: InputNotes;
 }
 
-/** What is known of an object, beside its mask and mesh. */
+/** Properties of an object beside its mask and mesh. */
 type KnownOfObject = Omit<SceneObjectInput, (typeof objectProperties)[number]>;
 
 /** An object whose mask has been read. */

@@ -4,7 +4,6 @@ import { isNoInput, namesOf, partOf } from "../case-names.js";
 import { fromSam3d } from "../conventions/sam3d.js";
 import { requiredBytes } from "../input/bytes.js";
 import { holdsGaussians } from "../input/splat-files.js";
-import type { LoadFormats } from "../modules/readers.js";
 import type { DepthKind } from "../types/inputs.js";
 import { failure, renamed, Sim3AlignError } from "../values/error.js";
 import { parsedJson } from "../values/json.js";
@@ -30,7 +29,7 @@ const meshFormats = ["glb", "obj", "stl", "ply", "splat"];
 const kindWords =
   /^(objects?|obj|masks?|mesh|meshes|models?|glbs?|ply|gaussians?|gs|splats?|poses?|layouts?|metadata|outputs?|results?|reconstruction|sam3d|gt|truth)$/i;
 
-/** What the files of one object are. */
+/** The files of one object. */
 interface ObjectPaths {
   masks: string[];
   meshes: string[];
@@ -42,7 +41,7 @@ interface ObjectPaths {
 export interface MadeScene {
   /** The files of the scene folder. */
   files: CaseFiles;
-  /** What its depth is, unless something else is known: point maps of SAM 3D Objects have no unit. */
+  /** The kind of its depth, unless a file states another: point maps of SAM 3D Objects have no unit. */
   depthKind: DepthKind;
   /** The paths of the files that these were made of, by their names. */
   sources: Readonly<Record<string, string>>;
@@ -53,16 +52,11 @@ export interface MadeScene {
  * @param place location of the files, for errors
  * @internal
  */
-export async function sam3dFrom(
-  files: CaseFiles,
-  settings: ReadCaseOptions,
-  formats: LoadFormats,
-  place = "the files",
-): Promise<SceneCase> {
+export async function sam3dFrom(files: CaseFiles, settings: ReadCaseOptions, place = "the files"): Promise<SceneCase> {
   const made = await sam3dScene(files, place);
   // A point map of a large image is smaller than the image.
   const { depthKind = made.depthKind, resizeMask = "nearest", ...more } = settings;
-  const scene = await sceneFrom(made.files, { depthKind, resizeMask, ...more }, formats, place);
+  const scene = await sceneFrom(made.files, { depthKind, resizeMask, ...more }, place);
   const named = Object.entries(scene.files).map(([part, name]) => [part, made.sources[name] ?? name]);
   const used = new Set(Object.values(made.sources));
   const isLeft = (path: string) => !used.has(path) && !isNoInput(path);

@@ -1,7 +1,6 @@
 /** A scene from files: one view, and the mask and the mesh of each object. */
 import { type CaseFiles, fileNotFound, filesOf, meshFile, type ReadCaseOptions } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
-import type { LoadFormats } from "../modules/readers.js";
 import type { SceneInput, SceneObjectInput } from "../types/scene.js";
 import { naturally } from "../values/order.js";
 import { withoutUndefined } from "../values/values.js";
@@ -26,7 +25,6 @@ export interface SceneCase {
 export async function sceneFrom(
   files: CaseFiles,
   { resizeMask, ...settings }: ReadCaseOptions,
-  formats: LoadFormats,
   place = "the files",
 ): Promise<SceneCase> {
   const names = objectsIn(files);
@@ -46,7 +44,7 @@ export async function sceneFrom(
     const { required, find, read, optional } = own;
     const parts = { mask: required("mask"), mesh: required("mesh"), initial: find("initial"), truth: find("truth") };
     const mask = await read(parts.mask);
-    const mesh = await meshFile(parts.mesh, await read(parts.mesh), formats, own.beside);
+    const mesh = await meshFile(parts.mesh, await read(parts.mesh), own.beside);
     const [initial, truth] = [await optional(parts.initial), await optional(parts.truth)];
     const pose = initial && parsePoseFile(`${folder}${parts.initial}`, initial)?.transform;
     objects.push({ name, mask, mesh, ...withoutUndefined({ resizeMask, initial: pose }) } as SceneObjectInput);

@@ -1,4 +1,4 @@
-/** What the files for all simulators share: checked scenes, names, numbers and meshes. */
+/** The parts that the files for all simulators share: checked scenes, names, numbers and meshes. */
 import { Names } from "../conventions/names.js";
 import { type Matrix3, product, rotationOfUnit, transposed } from "../conventions/rotation.js";
 import { invalidArgument } from "../values/error.js";

@@ -15,7 +15,7 @@ import { optionsOf, positive, type Quaternion, type Vector3, whole } from "../va
 
 /** An object of a scene for a simulator. */
 export interface SimulatorObject {
-  /** Its name, from which that of its body is made. */
+  /** The name of the object, from which the name of its body is made. */
   name?: string | undefined;
   /** The aligned mesh; `readMesh` of `sim3align/formats` reads files, with their colours. */
   mesh: MeshArrays;
@@ -55,7 +55,7 @@ export interface SimulatorOptions {
 /** Defaults of {@link SimulatorOptions}. */
 export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 1, maxMoveM: 0.0025, rest: true } as const;
 
-/** Their names. */
+/** The names of the options. */
 const OPTIONS = ["support", "camera", "density", "maxParts", "maxTurnDeg", "maxMoveM", "rest", "wasm"] as const;
 
 /** A convex surface. */
@@ -226,7 +226,7 @@ function cameraOf(given: unknown, { translation, rotation }: Similarity, liftM: 
   return { position: [x, y, z + liftM], rotation: quaternionOf(rotation), fovYDeg, width, height };
 }
 
-/** What an object rests on, for the module. */
+/** The support of an object, for the module. */
 function groundOf({ restsOn, transform }: SimulatorObject, count: number): "support" | number | null {
   const contact = isRecord(transform) ? (transform as Record<string, unknown>).contact : undefined;
   const on = restsOn === undefined ? (isRecord(contact) ? contact.restsOn : "support") : restsOn;

@@ -1,8 +1,8 @@
 /** Colours at points of a surface. */
 import { cross, dot, minus } from "../conventions/rotation.js";
 import { rgbOf } from "../input/colors.js";
-import type { ColorSamples } from "../values/prepared-mesh.js";
 import type { Vector3 } from "../values/values.js";
+import type { ColorSamples } from "../wasm/formats.js";
 
 /** Number of points: as many as those of mesh files. */
 const COUNT = 32_768;

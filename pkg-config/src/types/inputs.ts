@@ -1,7 +1,8 @@
 /** The inputs of the calls, and what depth files hold. */
 
 import type { PixelArray } from "../values/pixels.js";
-import type { ColorSamples, PreparedMesh } from "../values/prepared-mesh.js";
+import type { PreparedMesh } from "../values/prepared-mesh.js";
+import type { ColorSamples } from "../wasm/formats.js";
 import type { Sim3Like } from "./argument-types.js";
 import type { BlobLike } from "./platform.js";
 

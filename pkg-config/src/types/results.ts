@@ -81,12 +81,12 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment: A; input?: AlignInput; error?: undefined }
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
-/** What the files of an input say, for its result. */
+/** Notes on the files of an input, for its result. */
 export interface InputNotes extends Omit<InputInfo, "depthCalibration"> {
   /** What was subtracted from the coordinates of the mesh file. */
   origin?: readonly number[];
-  /** Of the view. */
+  /** Conditions that concern the view. */
   warnings: readonly Core.Warning[];
-  /** Why the colours of the mesh file are not read. */
+  /** Reasons why the colours of the mesh file are not read. */
   colors: readonly string[];
 }

@@ -21,7 +21,7 @@ export interface SceneObjectInput
     AlignOptions,
     "scale" | "knownExtentM" | "knownExtentAxis" | "meshUp" | "cameraUp" | "symmetry" | "initial" | "search" | "quality"
   > {
-  /** Its name, for the result. */
+  /** The name of the object in the result. */
   name?: string | undefined;
   /** The mask of the object. Omit it if the scene has a label map. */
   mask?: MaskInput | undefined;

@@ -1,20 +1,9 @@
 /** Meshes that are read, validated and decimated once for many calls. */
+import type { ColorSamples } from "../wasm/formats.js";
 import { brand } from "./brand.js";
 import { failure } from "./error.js";
 import { isRecord } from "./kinds.js";
 import { copied } from "./transfer.js";
-
-/** Colours of a surface, at points spread evenly over it. */
-export interface ColorSamples {
-  /** Interleaved x, y, z per point, in the frame of the mesh. */
-  positions: Float32Array;
-  /** The unit normal of the surface at each point, outward: interleaved x, y, z. */
-  normals: Float32Array;
-  /** Red, green and blue per point, sRGB-encoded. */
-  colors: Uint8Array;
-  /** The same if the textures were stored upside down, with which `align` compares a photo that contradicts `colors`. */
-  flippedColors?: Uint8Array | undefined;
-}
 
 /** A mesh for the core. */
 export interface CoreMesh {
@@ -35,7 +24,7 @@ export interface CoreMesh {
 /** A mesh, and the id under which each thread caches the data derived from it. */
 export interface KeptMesh {
   readonly id: number;
-  /** Its arrays, and why it has no colours. */
+  /** Its arrays, and the reasons why it has no colours. */
   readonly mesh: CoreMesh & { warnings: readonly string[] };
 }
 
@@ -116,7 +105,7 @@ export interface JobData<T> {
   meshId?: number | undefined;
   /** The data with the prepared mesh. */
   restored(data: T): T;
-  /** To be called when the job has ended. */
+  /** Releases the prepared mesh at the end of the job. */
   release(): void;
 }
 

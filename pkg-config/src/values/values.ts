@@ -51,7 +51,7 @@ export type Vector3 = [x: number, y: number, z: number];
 /** A unit quaternion, x, y, z, w: the order of three.js, glTF and ROS. */
 export type Quaternion = [x: number, y: number, z: number, w: number];
 
-/** Levels of nested arrays: a tensor has few, and an array may contain itself. */
+/** Maximum depth of nested arrays: a tensor has few levels, and an array may contain itself. */
 const MAX_NESTING = 16;
 
 function flat(array: readonly unknown[], levels: number): unknown[] {
@@ -136,7 +136,7 @@ export function optionsOf<T extends object>(options: T, names: readonly (keyof T
   return withoutUndefined(knownOptions(record("options", options, OPTIONS) as T, names)) as T;
 }
 
-/** The same for options that contain objects which are alive. */
+/** Options that contain live objects, such as decoders: checked like those of {@link optionsOf}, but not copied. */
 export function knownOptions<T extends object>(options: T, names: readonly (keyof T & string)[]): T {
   checkNames("options.", part("options", options, OPTIONS), names, "Check the spelling.", "UNKNOWN_OPTION");
   return options;

@@ -32,7 +32,7 @@ const DIRECTIONS: usize = 4;
 /// Heights by which the thickness of a plate is measured.
 const BINS: usize = 64;
 /// The interval of no point.
-const NOWHERE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 
 /// A mesh without its ground plate; `None` if it has nothing that looks like one. `decimated` is the mesh with fewer triangles,
 /// which show that most meshes have too little surface in one direction.
@@ -188,13 +188,13 @@ fn extent(mesh: &Mesh, direction: DVec3) -> [f64; 2] {
         let at = p.as_dvec3().dot(direction);
         [low.min(at), high.max(at)]
     };
-    mesh.positions().iter().fold(NOWHERE, along)
+    mesh.positions().iter().fold(EMPTY, along)
 }
 
 /// The interval along a direction of the triangles for which `of` is `side`.
 #[inline(never)]
 fn interval(faces: &[Face], of: &[bool], side: bool, direction: DVec3) -> [f64; 2] {
-    let mut all = NOWHERE;
+    let mut all = EMPTY;
     for (face, _) in faces.iter().zip(of).filter(|(_, of)| **of == side) {
         let [low, high] = face.along(direction);
         all = [all[0].min(low), all[1].max(high)];

@@ -65,7 +65,7 @@ impl MeshPyramid {
         })
     }
 
-    /// Which poses of the mesh are equivalent, given its symmetry.
+    /// The equivalent poses of the mesh by its symmetry.
     ///
     /// # Errors
     /// As [`Symmetry::group`].

@@ -22,7 +22,7 @@ pub struct Rest {
     pub base: DVec3,
     /// Two unit axes about which the object may tip, perpendicular to `down` and to each other.
     pub axes: [DVec3; 2],
-    /// How firmly it stands about each axis, 0 (it rolls) to 1.
+    /// The stability about each axis, 0 (it rolls) to 1.
     pub firmness: [f64; 2],
 }
 

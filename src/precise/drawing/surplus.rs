@@ -103,7 +103,7 @@ fn sum(parts: &MeshParts, is_counted: &dyn Fn(usize) -> bool) -> MeshPart {
     sum
 }
 
-/// Which parts are floaters; none, if they do no harm. `None` for a mesh without area.
+/// Finds the floaters among the parts; none, if they do no harm. `None` for a mesh without area.
 fn floaters(mesh: &Mesh, parts: &MeshParts) -> Option<Vec<bool>> {
     let mut is_floater = vec![false; parts.parts.len()];
     let all = sum(parts, &|_| true);
@@ -191,7 +191,7 @@ fn clusters(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<u
     Some(sets.numbered().0)
 }
 
-/// Which parts are inside all others, and seen from nowhere; `None` if they do no harm.
+/// Finds the parts inside all others that no view shows; `None` if they do no harm.
 fn shells(mesh: &Mesh, parts: &MeshParts, is_floater: &[bool]) -> Option<Vec<bool>> {
     let MeshPart { area, bounds: all } = sum(parts, &|k| !is_floater[k]);
     let is_inside = |part: &Bounds| part.min.cmpgt(all.min).all() && part.max.cmplt(all.max).all();

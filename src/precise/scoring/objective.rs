@@ -21,9 +21,9 @@ pub struct Objective<'a> {
     pub scoring: Scoring,
     /// The prior.
     pub prior: Prior,
-    /// Which poses of the mesh are equivalent.
+    /// The equivalent poses of the mesh.
     pub equivalence: &'a Equivalence,
-    /// What surrounds the object, if that is known.
+    /// The surroundings of the object, if known.
     pub surroundings: Option<&'a Surroundings>,
 }
 

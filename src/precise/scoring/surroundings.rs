@@ -73,7 +73,7 @@ impl Neighbourhood {
     }
 }
 
-/// What surrounds an object.
+/// The surroundings of an object.
 #[derive(Debug, Clone, Default)]
 pub struct Surroundings {
     /// The plane on which it may stand.
@@ -113,7 +113,7 @@ const SHARED_VOLUME: f32 = 0.6;
 struct Stand<'a> {
     /// The attitude; `None` if the pose is far from all of them.
     rest: Option<&'a Rest>,
-    /// What touches the ground, in the normalised frame of the mesh.
+    /// The points that touch the ground, in the normalised frame of the mesh.
     base: DVec3,
     /// Height of the base over the plane, in units of the gap that halves the credit.
     gap: f64,

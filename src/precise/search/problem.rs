@@ -44,7 +44,7 @@ pub struct Search {
     pub(crate) settings: SearchSettings,
     pub(crate) prior: Prior,
     surroundings: Option<Surroundings>,
-    /// Which poses of the mesh are equivalent.
+    /// The equivalent poses of the mesh.
     pub equivalence: Rc<Equivalence>,
     /// The evidence on every grid, on first use.
     grids: Rc<[OnceCell<CropGrid>; GRIDS]>,

@@ -40,7 +40,7 @@ const SMALL: f64 = 1e-4;
 const ROOT_HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 const ROOT_SIXTH: f64 = 0.408_248_290_463_863;
 
-/// Which E a mesh may have, and which are likely.
+/// The admissible E, and their costs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shapes {
     /// Score per square of E: [`DROP`] at one standard deviation.

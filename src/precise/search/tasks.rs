@@ -29,7 +29,7 @@ pub struct RoundTasks<'a> {
     pub effort: Effort,
     /// Whether it has the surroundings of the object.
     pub is_surrounded: bool,
-    /// What each of them does.
+    /// Kind of the tasks.
     pub task: Task,
     /// Index of the grid.
     pub grid: usize,

@@ -30,7 +30,7 @@ impl ColorScore {
     }
 }
 
-/// Which of several poses colour chooses. The first is the best by shape.
+/// The choice of colour among several poses. The first is the best by shape.
 #[derive(Debug, Clone)]
 pub struct Choice {
     scores: Vec<ColorScore>,
@@ -84,7 +84,7 @@ impl Choice {
     }
 }
 
-/// What colour contributes where nothing can be compared.
+/// The contribution of colour where nothing can be compared.
 pub const HIDDEN: ColorReport = ColorReport { verdict: ColorVerdict::Hidden, agreement: 0.0, margin: None };
 
 /// Angles of the steps of a roll, radians.

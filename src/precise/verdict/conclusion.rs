@@ -23,7 +23,7 @@ pub struct Certainty {
     pub turn_confidence: Option<f64>,
     /// Alternative poses.
     pub alternatives: Vec<Alternative>,
-    /// How well each part of the pose is determined.
+    /// The uncertainty of each part of the pose.
     pub uncertainty: Option<Uncertainty>,
     /// The score of the pose.
     pub score: f64,
@@ -31,11 +31,11 @@ pub struct Certainty {
     pub terms: ScoreTerms,
     /// The effort of the search that found the pose.
     pub effort: Effort,
-    /// What colour contributed, if it was known.
+    /// The contribution of colour, if mesh and photo have any.
     pub color: Option<ColorReport>,
 }
 
-/// How likely the best of several poses is right, and the others that may be.
+/// The confidence in the best of several poses, and its alternatives.
 pub struct Reliability {
     /// Probability that the pose is right, by shape alone.
     pub by_shape: f64,

@@ -21,7 +21,7 @@ const MOST: usize = 60;
 const FAR: f32 = 0.25;
 const SAME: f32 = 0.02;
 
-/// How a lookalike looks like the best pose.
+/// The kind of likeness between a lookalike and the best pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Likeness {
     /// A symmetry of the mesh makes them equivalent.
@@ -37,7 +37,7 @@ pub enum Likeness {
 pub struct Lookalike<P> {
     /// The pose.
     pub pose: P,
-    /// How it looks like the best one.
+    /// The kind of likeness to the best pose.
     pub likeness: Likeness,
 }
 

@@ -1,20 +1,13 @@
 //! Prints: the colour of an object's surface, as a function of the position on it.
 
-use crate::objects::Axis;
-use crate::objects::mesh::{bounds, face};
+use super::Axis;
+use super::mesh::bounds;
 use crate::prelude::*;
-use crate::world::Placed;
-use crate::world::view::Sight;
 use sim3align::geometry::surface::SurfaceMoments;
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Sides of a label: those of a box, or one that goes round.
 const SIDES: usize = 6;
-
-/// Smallest mean difference of sRGB-encoded colours at which a turned surface is distinguishable.
-const TELLING: f64 = 0.06;
-/// Number of turns about an axis of revolution that are compared.
-const ROLLS: u32 = 12;
 
 /// Kinds of print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -124,35 +117,6 @@ impl Print {
             }
             Pattern::None => self.base,
         }
-    }
-
-    /// Whether the print shows, at the visible part of the object, which of the turns that its shape allows is right.
-    pub fn determines_turn(&self, placed: &Placed, sight: &Sight) -> bool {
-        let world_from_camera = sight.view.camera_from_world.inverse();
-        let center = SurfaceMoments::of(&placed.mesh).centroid;
-        let shown: Vec<(DVec3, DVec3)> = sight
-            .object_pixels()
-            .step_by(7)
-            .map(|(i, triangle)| {
-                let point = sight.view.world_point(&world_from_camera, i, sight.object_depth[i]);
-                (point, face(&placed.mesh, triangle).normalize_or_zero())
-            })
-            .collect();
-        let differs = |turn: DMat3| {
-            let difference = |(p, n): &(DVec3, DVec3)| {
-                let other = self.at(turn * (*p - center) + center, turn * *n);
-                (encoded(self.at(*p, *n)) - encoded(other)).abs().max_element()
-            };
-            shown.iter().map(difference).sum::<f64>() / shown.len().max(1) as f64 > TELLING
-        };
-        let axis_turns = placed.symmetry.iter().flat_map(|&(axis, fold)| {
-            let steps = fold.unwrap_or(ROLLS);
-            (1..steps).map(move |k| DMat3::from_axis_angle(axis.normalize(), TAU * f64::from(k) / f64::from(steps)))
-        });
-        let turns: Vec<DMat3> = axis_turns.collect();
-        let pairs = turns.iter().flat_map(|a| turns.iter().map(|b| *a * *b));
-        let is_turn = |turn: &DMat3| (0.5 * (turn.col(0).x + turn.col(1).y + turn.col(2).z - 1.0)) < 0.95;
-        turns.iter().copied().chain(pairs).filter(is_turn).all(differs)
     }
 
     fn side(&self, p: DVec3, normal: DVec3) -> (usize, [f64; 2]) {

@@ -1,10 +1,7 @@
 //! The conditions of a case: tiers of difficulty, and classes, each of which changes something of the typical case.
 
-use crate::effects::depth::DepthSource;
-use crate::effects::mask::{ANNOTATOR, MaskSource, NETWORK};
-use crate::effects::print::PrintKind;
-use crate::effects::surplus::Surplus;
 use crate::objects::Pool;
+use crate::objects::print::PrintKind;
 use crate::prelude::*;
 
 named! {
@@ -58,6 +55,30 @@ pub enum Framing {
     Split,
 }
 
+named! {
+    /// A source of depth: a sensor or a depth model.
+    pub enum DepthSource: "source" {
+        /// Stereo matching of blocks, with a projected texture.
+        ActiveStereo = "active-stereo",
+        /// A projected pattern, matched to a reference.
+        StructuredLight = "structured-light",
+        /// The time that light takes.
+        TimeOfFlight = "time-of-flight",
+        /// A model, from one photo.
+        Predicted = "predicted-depth",
+    }
+}
+
+named! {
+    /// A source of masks.
+    pub enum MaskSource: "source" {
+        /// A segmentation network.
+        Network = "network-mask",
+        /// A person who draws polygons.
+        Annotator = "annotated-mask",
+    }
+}
+
 /// Readings that a sensor loses or coarsens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DepthFault {
@@ -74,6 +95,18 @@ pub enum DepthFault {
     LostPart,
     /// Steps of millimetres that grow with the square of the depth, as disparities in steps give it.
     Quantised,
+}
+
+named! {
+    /// Parts that a generator adds.
+    pub enum Surplus: "surplus" {
+        /// Two to four blobs beside the object.
+        Floaters = "floaters",
+        /// A plate below it, a part of its own.
+        Plate = "plate",
+        /// A plate below it that hangs together with it.
+        FusedPlate = "fused-plate",
+    }
 }
 
 /// Faults of a generated mesh beyond those of its tier.
@@ -101,7 +134,7 @@ pub struct Class {
     pub depth: &'static [DepthSource],
     pub depth_fault: DepthFault,
     /// The source of its masks; `None` for any.
-    pub mask: Option<&'static MaskSource>,
+    pub mask: Option<MaskSource>,
     /// Whether the mask has holes, islands, lost and foreign regions.
     pub is_ragged: bool,
     pub mesh_fault: MeshFault,
@@ -214,8 +247,8 @@ pub const SENSORS: &[Class] = &[
     sensor("structured-light", &[DepthSource::StructuredLight]),
     sensor("time-of-flight", &[DepthSource::TimeOfFlight]),
     sensor("predicted-depth", &[DepthSource::Predicted]),
-    Class { name: "network-mask", mask: Some(&NETWORK), ..PLAIN },
-    Class { name: "annotated-mask", mask: Some(&ANNOTATOR), ..PLAIN },
+    Class { name: "network-mask", mask: Some(MaskSource::Network), ..PLAIN },
+    Class { name: "annotated-mask", mask: Some(MaskSource::Annotator), ..PLAIN },
 ];
 /// Coloured objects and their photos, of every tier.
 pub const COLORS: &[Class] = &[
