@@ -2,6 +2,7 @@
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
+import { writeMinified } from "./bundle.mjs";
 import { refuseForeign } from "./notices.mjs";
 import { compiledDir, packageDir } from "./paths.mjs";
 import { wasmFile, wasmModules } from "./wasm.mjs";
@@ -12,6 +13,7 @@ const common = /** @type {const} */ ({
   platform: "neutral",
   target: "es2022",
   minify: true,
+  write: false,
   define: { "import.meta.url": "undefined" },
   logLevel: "warning",
   metafile: true,
@@ -21,7 +23,7 @@ const common = /** @type {const} */ ({
 export async function bundleInline() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
-  const worker = await build({ ...common, entryPoints: [join(compiledDir, "worker.js")], write: false });
+  const worker = await build({ ...common, entryPoints: [join(compiledDir, "worker.js")] });
   refuseForeign(worker.metafile);
   const inlined = new Map([
     ["core", embedded("core")],
@@ -30,7 +32,7 @@ export async function bundleInline() {
   // Callers with arrays do without the readers: they stay a file of their own.
   mkdirSync(join(packageDir, "inline"), { recursive: true });
   writeFileSync(join(packageDir, "inline", "formats.js"), `${exported(embedded("formats"))}\n`);
-  const { metafile } = await build({
+  const { metafile, outputFiles } = await build({
     ...common,
     entryPoints: [join(compiledDir, "inline.js")],
     outfile: join(packageDir, "inline.js"),
@@ -53,6 +55,7 @@ export async function bundleInline() {
     ],
   });
   refuseForeign(metafile);
+  writeMinified(outputFiles);
 }
 
 /** A module as text: gzipped, base64. @param {string} name */
