@@ -62,7 +62,7 @@ export async function bundleGlue() {
   }
 }
 
-/** Bundles the compiler's scripts, without comments; names stay, for stack traces. The glue of the modules stays beside them. */
+/** Bundles and minifies the compiler's scripts. The glue of the modules stays beside them. */
 export async function bundleScripts() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
@@ -72,7 +72,7 @@ export async function bundleScripts() {
     outdir: packageDir,
     outbase: compiledDir,
     ...{ bundle: true, splitting: true, format: "esm", platform: "neutral", target: "es2022", logLevel: "warning" },
-    ...{ minifySyntax: true, minifyWhitespace: true, write: false },
+    ...{ minify: true, write: false },
     chunkNames: PART,
     external: ["node:*", "commander"],
     metafile: true,
