@@ -35,7 +35,9 @@ export function releaseNotes(tag, manifest, changelog, citation) {
   /** @type {string[]} */
   const missing = [];
   if (tag !== `v${version}`)
-    missing.push(`The tag is ${tag}, the package has version ${version}. Remedy: tag v${version}, or raise the version.`);
+    missing.push(
+      `The tag is ${tag}, the package has version ${version}. Remedy: tag v${version}, or raise the version.`,
+    );
   const notes = sectionOf(changelog, version) ?? "";
   if (notes === "") missing.push(`CHANGELOG.md says nothing of ${version}. Remedy: write the section ## [${version}].`);
   if (sectionOf(changelog, "Unreleased"))

@@ -47,7 +47,9 @@ function appFolder(name: string): string {
 for (const name of ["app", "app-inline"]) {
   test(`Vite, built: ${name}`, async () => {
     const root = appFolder(`vite-${name}`);
-    const text = readFileSync(appOf(name), "utf8").replace(".wasm", ".wasm?inline").replace("./work", appOf("work").slice(0, -3));
+    const text = readFileSync(appOf(name), "utf8")
+      .replace(".wasm", ".wasm?url&inline")
+      .replace("./work", appOf("work").slice(0, -3));
     writeFileSync(join(root, "main.js"), text);
     await vite({ root, base: "./", logLevel: "error", configFile: false });
     await check(`apps/vite-${name}/dist/index.html`);
@@ -98,6 +100,7 @@ test("esbuild, in one piece, as one classic script", async () => {
     format: "iife",
     outfile: join(path, "main.js"),
     loader: { ".wasm": "binary" },
+    target: "es2022",
     logLevel: "silent",
   });
   assert.deepEqual(warnings, []);

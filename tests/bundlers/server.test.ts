@@ -37,7 +37,15 @@ async function bundled(name: string, entry: string, format: "esm" | "cjs", worke
   const outfile = join(folder, `${name}-${workers}.${format === "esm" ? "mjs" : "cjs"}`);
   await esbuild({
     stdin: { contents: program(entry, workers), resolveDir: installDir },
-    ...{ bundle: true, platform: "node", format, outfile, logLevel: "error", loader: { ".wasm": "binary" } },
+    ...{
+      bundle: true,
+      platform: "node",
+      format,
+      outfile,
+      logLevel: "error",
+      loader: { ".wasm": "binary" },
+      target: "es2022",
+    },
     // esbuild warns that a CommonJS script has no import.meta.url; the test expects what comes of it.
     logOverride: { "empty-import-meta": "silent" },
   });
@@ -47,7 +55,7 @@ async function bundled(name: string, entry: string, format: "esm" | "cjs", worke
 async function builtByVite(name: string, entry: string): Promise<string> {
   const root = join(folder, name);
   mkdirSync(root, { recursive: true });
-  writeFileSync(join(root, "server.mjs"), program(entry, 0, "?inline"));
+  writeFileSync(join(root, "server.mjs"), program(entry, 0, "?url&inline"));
   await vite({ root, configFile: false, logLevel: "error", ssr: { noExternal: true }, build: { ssr: "server.mjs" } });
   const script = readdirSync(join(root, "dist")).find((name) => name.startsWith("server."));
   return run(join(root, "dist", script ?? ""));

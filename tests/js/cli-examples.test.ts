@@ -84,11 +84,11 @@ const guides = readdirSync(join(repository, "docs", "guides")).map((name) => joi
 /** Flags that documents name, and no command has. */
 const unknown: string[] = [];
 // Of compilers and of other programs.
-const others = ["--allow-read", "--external", "--save-numpy", "--strict"];
+const others = ["--allow-read", "--external", "--loader", "--save-numpy", "--strict"];
 for (const document of ["README.md", ...guides]) {
   const text = readFileSync(join(repository, document), "utf8");
   // Variables of style sheets begin as flags do.
-  const named = text.replace(/^### Style\n[^]*?^## /m, "").matchAll(/`(--[a-z][\w-]*)/g);
+  const named = text.replace(/^### Style\n.*?^## /ms, "").matchAll(/`(--[a-z][\w-]*)/g);
   const missing = [...named].filter(([, flag = ""]) => !flags.has(flag) && !others.includes(flag));
   unknown.push(...missing.map(([, flag]) => `${document}: ${flag}`));
   for (const [, command = ""] of text.matchAll(/^ {4}(npx sim3align .*)$/gm)) add(command, document);
@@ -103,7 +103,11 @@ test("every help text has examples of its command", () => {
 
 test("the first alignment, as written, from an empty folder", { skip }, () => {
   const guide = readFileSync(join(repository, "docs", "guides", "first-alignment.md"), "utf8");
-  const lines = /(?:^ {4}.*\n)+/m.exec(guide)?.[0].split("\n").map((line) => line.trim()) ?? [];
+  const lines =
+    /(?:^ {4}.*\n)+/m
+      .exec(guide)?.[0]
+      .split("\n")
+      .map((line) => line.trim()) ?? [];
   // The package is installed already: no registry is asked.
   const install = lines.indexOf("npm install sim3align");
   assert.ok(install > 0);
