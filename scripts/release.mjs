@@ -18,6 +18,7 @@ await script(async () => {
   const [tag = ""] = positionals;
   const version = packageVersion();
   const text = (/** @type {string} */ name) => readFileSync(at(name), "utf8");
-  const notes = releaseNotes(tag, version, text("CHANGELOG.md"), text("CITATION.cff"));
+  const manifest = JSON.parse(text("pkg-config/package.json"));
+  const notes = releaseNotes(tag, manifest, text("CHANGELOG.md"), text("CITATION.cff"));
   print(`${values["distribution-tag"] ? distributionTag(version) : notes}\n`);
 });

@@ -133,14 +133,11 @@ if (typeof scope.postMessage === "function") {
   scope.onmessage = ({ data }) => host.receive(data);
   scope.onmessageerror = () => host.receiveUnreadable();
 } else {
-  // The name is in a variable, so that browser bundlers do not resolve it. Messages are queued until there is a
-  // listener.
-  const name = "node:worker_threads";
-  import(/* webpackIgnore: true */ /* @vite-ignore */ name).then(
-    ({ parentPort }: typeof import("node:worker_threads")) => {
-      const host = new WorkerHost((message, transfer = []) => parentPort?.postMessage(message, transfer));
-      parentPort?.on("message", (message: ToWorker) => host.receive(message));
-      parentPort?.on("messageerror", () => host.receiveUnreadable());
-    },
-  );
+  // The name is an argument, so that browser bundlers do not resolve it. Messages are queued until there is a listener.
+  const nodeModule = (name: string) => import(/* webpackIgnore: true */ /* @vite-ignore */ name);
+  nodeModule("node:worker_threads").then(({ parentPort }: typeof import("node:worker_threads")) => {
+    const host = new WorkerHost((message, transfer = []) => parentPort?.postMessage(message, transfer));
+    parentPort?.on("message", (message: ToWorker) => host.receive(message));
+    parentPort?.on("messageerror", () => host.receiveUnreadable());
+  });
 }

@@ -1,8 +1,9 @@
 /** The package's scripts and declarations, bundled by entry: what several entries share is in parts beside them. */
-import { chmodSync, readFileSync } from "node:fs";
+import { chmodSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join, normalize, relative, sep } from "node:path";
 import { refuseForeign } from "./notices.mjs";
-import { compiledDir, packageDir, skinDir } from "./paths.mjs";
+import { compiledDir, glueDir, packageDir, skinDir } from "./paths.mjs";
+import { wasmModules } from "./wasm.mjs";
 
 /** Chunks that several entries share: beside them, so that the same paths lead to the modules. */
 const PART = "part-[hash]";
@@ -39,16 +40,39 @@ export function fromFolder(folder, file) {
   return path.startsWith("../") ? path : `./${path}`;
 }
 
-/** Bundles the compiler's scripts. The glue of the modules stays beside them. */
+/**
+ * Writes minified scripts, with the comments by which bundlers leave imports of Node's modules alone: esbuild drops them.
+ * @param {readonly { path: string, text: string }[]} files
+ */
+export function writeMinified(files) {
+  for (const { path, text } of files) {
+    mkdirSync(dirname(path), { recursive: true });
+    const ignored = "import(/* webpackIgnore: true */ /* @vite-ignore */ ";
+    writeFileSync(path, text.replaceAll(/\bimport\((?=[\w$]+\))/g, ignored));
+  }
+}
+
+/** Minifies the glue of the modules. */
+export async function bundleGlue() {
+  // The set-up installs it first.
+  const { transform } = await import("esbuild");
+  for (const { name } of wasmModules) {
+    const { code } = await transform(readFileSync(join(glueDir, `${name}.js`), "utf8"), { minify: true });
+    writeFileSync(join(packageDir, "wasm", `${name}.js`), code);
+  }
+}
+
+/** Bundles and minifies the compiler's scripts. The glue of the modules stays beside them. */
 export async function bundleScripts() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
   const names = named(".js").filter((name) => !apart.includes(name));
-  const { metafile } = await build({
+  const { metafile, outputFiles } = await build({
     entryPoints: names.map((name) => join(compiledDir, `${name}.js`)),
     outdir: packageDir,
     outbase: compiledDir,
     ...{ bundle: true, splitting: true, format: "esm", platform: "neutral", target: "es2022", logLevel: "warning" },
+    ...{ minify: true, write: false },
     chunkNames: PART,
     external: ["node:*", "commander"],
     metafile: true,
@@ -70,6 +94,7 @@ export async function bundleScripts() {
     ],
   });
   refuseForeign(metafile);
+  writeMinified(outputFiles);
   chmodSync(join(packageDir, "cli", "main.js"), 0o755);
 }
 

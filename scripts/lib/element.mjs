@@ -15,6 +15,10 @@ const ownFiles = /** @type {import("esbuild").Plugin} */ ({
   name: "own-files",
   setup(build) {
     build.onResolve({ filter: /^sim3align(\/|$)/ }, ({ path }) => ({ path: join(compiledDir, ownModule(path)) }));
+    // Addons of three.js import from "three", whose WebGL renderer would be in the bundle beside that of "three/webgpu".
+    build.onResolve({ filter: /^three$/ }, ({ kind, resolveDir }) =>
+      build.resolve("three/webgpu", { kind, resolveDir }),
+    );
     build.onResolve({ filter: /\.css\?inline$/ }, ({ path, resolveDir }) => ({
       path: join(resolveDir, path.replace("?inline", "")),
     }));

@@ -1,6 +1,8 @@
 /** `sim3align/inline`: the package in one piece, and the worker's script, whole, in it. */
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { gzipSync } from "node:zlib";
+import { writeMinified } from "./bundle.mjs";
 import { refuseForeign } from "./notices.mjs";
 import { compiledDir, packageDir } from "./paths.mjs";
 import { wasmFile, wasmModules } from "./wasm.mjs";
@@ -10,6 +12,8 @@ const common = /** @type {const} */ ({
   bundle: true,
   platform: "neutral",
   target: "es2022",
+  minify: true,
+  write: false,
   define: { "import.meta.url": "undefined" },
   logLevel: "warning",
   metafile: true,
@@ -19,23 +23,16 @@ const common = /** @type {const} */ ({
 export async function bundleInline() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
-  const base64 = Object.fromEntries(
-    wasmModules.map((module) => [module.name, readFileSync(wasmFile(module)).toString("base64")]),
-  );
-  const worker = await build({ ...common, entryPoints: [join(compiledDir, "worker.js")], write: false, minify: true });
+  const worker = await build({ ...common, entryPoints: [join(compiledDir, "worker.js")] });
   refuseForeign(worker.metafile);
   const inlined = new Map([
-    ["core", base64.core],
+    ["core", embedded("core")],
     ["worker", worker.outputFiles[0]?.text],
   ]);
-  // Few callers need the other modules: they stay files of their own.
+  // Callers with arrays do without the readers: they stay a file of their own.
   mkdirSync(join(packageDir, "inline"), { recursive: true });
-  for (const [name, module] of Object.entries(base64)) {
-    // Nor is the module of `sim3align/simulators` one of this entry.
-    if (name !== "core" && name !== "physics")
-      writeFileSync(join(packageDir, "inline", `${name}.js`), `${exported(module)}\n`);
-  }
-  const { metafile } = await build({
+  writeFileSync(join(packageDir, "inline", "formats.js"), `${exported(embedded("formats"))}\n`);
+  const { metafile, outputFiles } = await build({
     ...common,
     entryPoints: [join(compiledDir, "inline.js")],
     outfile: join(packageDir, "inline.js"),
@@ -58,6 +55,14 @@ export async function bundleInline() {
     ],
   });
   refuseForeign(metafile);
+  writeMinified(outputFiles);
+}
+
+/** A module as text: gzipped, base64. @param {string} name */
+function embedded(name) {
+  const module = wasmModules.find((module) => module.name === name);
+  if (module === undefined) throw new Error(`There is no ${name} module.`);
+  return gzipSync(readFileSync(wasmFile(module)), { level: 9 }).toString("base64");
 }
 
 /** @param {string | undefined} text */

@@ -3,7 +3,7 @@
 import { createHash } from "node:crypto";
 import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { bundleScripts, bundleTypes } from "./bundle.mjs";
+import { bundleGlue, bundleScripts, bundleTypes } from "./bundle.mjs";
 import { cached, digest, once } from "./cache.mjs";
 import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
@@ -43,6 +43,7 @@ async function write(info) {
   const [node, tsc] = nodeProgram("typescript", "tsc");
   await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
   copyFiles();
+  await bundleGlue();
   await bundleScripts();
   await bundleInline();
   await bundleReportPage();
@@ -77,6 +78,7 @@ function copyFiles() {
     if (!existsSync(at(name))) throw new Error(`${name} is missing. Remedy: restore it; the package carries it.`);
     copyFileSync(at(name), join(packageDir, name));
   }
+  cpSync(join(skinDir, "sample"), join(packageDir, "sample"), { recursive: true });
   cpSync(glueDir, join(compiledDir, "wasm"), { recursive: true });
   // Its declarations are internal, and those of raw exports would be resolved for imports of the .wasm file.
   const isUsed = (/** @type {string} */ path) => !path.endsWith(".d.ts");

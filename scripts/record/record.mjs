@@ -64,7 +64,11 @@ export async function record({ quick = false, check, save, out, fresh = false, o
   const version = packageVersion();
   const modules = wasmModules.filter((module) => existsSync(wasmFile(module)));
   const measured = Object.fromEntries(modules.map((module) => [module.name, sizes(wasmFile(module)).gzip]));
-  const now = { version, sizes: measured, sets: found.map(({ set, results }) => ({ set, work: workOf(results), lines: linesOf(results) })) };
+  const now = {
+    version,
+    sizes: measured,
+    sets: found.map(({ set, results }) => ({ set, work: workOf(results), lines: linesOf(results) })),
+  };
   if (save && quick) {
     mkdirSync(at("docs", "record"), { recursive: true });
     writeFileSync(quickFile, `${JSON.stringify(now).replaceAll('},{"row"', '},\n{"row"')}\n`);

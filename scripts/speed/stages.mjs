@@ -26,8 +26,11 @@ export async function measureStages(folders, { runs, quality }) {
     const [there = []] = Object.values(native);
     /** @type {Result[]} */
     const here = [];
+    /** @type {number[]} */
     const whole = [];
+    /** @type {number[]} */
     const again = [];
+    /** @type {number[]} */
     const bare = [];
     const mesh = await aligner.prepareMesh(input.mesh);
     // The first run compiles.

@@ -37,7 +37,8 @@ for (const name of browserNames) {
         const found = (await page.evaluate(`(async () => {
           const { createAligner } = await import("/install-test/node_modules/sim3align/${entry}.js");
           const { work } = await import("/install-test/tests/bundlers/work.js");
-          return JSON.stringify(await work(createAligner));
+          const wasm = { joint: "/install-test/node_modules/sim3align/wasm/joint_bg.wasm" };
+          return JSON.stringify(await work((options) => createAligner({ ...options, wasm })));
         })()`)) as string;
         assert.deepEqual(JSON.parse(found), expected, entry);
       }

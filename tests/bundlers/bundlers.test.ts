@@ -47,7 +47,10 @@ function appFolder(name: string): string {
 for (const name of ["app", "app-inline"]) {
   test(`Vite, built: ${name}`, async () => {
     const root = appFolder(`vite-${name}`);
-    writeFileSync(join(root, "main.js"), `import ${JSON.stringify(appOf(name))};\n`);
+    const text = readFileSync(appOf(name), "utf8")
+      .replace(".wasm", ".wasm?url&inline")
+      .replace("./work", appOf("work").slice(0, -3));
+    writeFileSync(join(root, "main.js"), text);
     await vite({ root, base: "./", logLevel: "error", configFile: false });
     await check(`apps/vite-${name}/dist/index.html`);
   });
@@ -78,6 +81,7 @@ for (const name of ["app", "app-inline"]) {
         mode: "production",
         performance: false,
         entry: appOf(name),
+        module: { rules: name === "app" ? [] : [{ test: /\.wasm$/, type: "asset/inline" }] },
         output: { path, filename: "main.js" },
       } as const;
       webpack(config, (error, result) => (error ? reject(error) : resolve(result)));
@@ -95,6 +99,8 @@ test("esbuild, in one piece, as one classic script", async () => {
     bundle: true,
     format: "iife",
     outfile: join(path, "main.js"),
+    loader: { ".wasm": "binary" },
+    target: "es2022",
     logLevel: "silent",
   });
   assert.deepEqual(warnings, []);

@@ -10,11 +10,12 @@ import { installDir } from "../support/environment.js";
 
 const folder = join(installDir, "servers");
 
-/** A program that prints what comes of a call, with a file among its arguments. */
-const program = (entry: string, workers: number) => `
+/** A program that prints what comes of a call, with a file among its arguments; `query` makes the bundler embed a module. */
+const program = (entry: string, workers: number, query = "") => `
   import { createAligner } from ${JSON.stringify(entry)};
+  import registration from "sim3align/wasm/registration_bg.wasm${query}";
   async function main() {
-    const aligner = await createAligner({ workers: ${workers} });
+    const aligner = await createAligner({ workers: ${workers}, wasm: { registration } });
     const points = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1);
     const { scale } = await aligner.estimateSim3(points, points.map((x) => 2 * x), Uint32Array.of(0, 0, 1, 1, 2, 2, 3, 3));
     const input = { depth: new Uint8Array(3), mask: new Uint8Array(3), camera: { fovYDeg: 50 }, mesh: new Uint8Array(3) };
@@ -36,7 +37,15 @@ async function bundled(name: string, entry: string, format: "esm" | "cjs", worke
   const outfile = join(folder, `${name}-${workers}.${format === "esm" ? "mjs" : "cjs"}`);
   await esbuild({
     stdin: { contents: program(entry, workers), resolveDir: installDir },
-    ...{ bundle: true, platform: "node", format, outfile, logLevel: "error" },
+    ...{
+      bundle: true,
+      platform: "node",
+      format,
+      outfile,
+      logLevel: "error",
+      loader: { ".wasm": "binary" },
+      target: "es2022",
+    },
     // esbuild warns that a CommonJS script has no import.meta.url; the test expects what comes of it.
     logOverride: { "empty-import-meta": "silent" },
   });
@@ -46,7 +55,7 @@ async function bundled(name: string, entry: string, format: "esm" | "cjs", worke
 async function builtByVite(name: string, entry: string): Promise<string> {
   const root = join(folder, name);
   mkdirSync(root, { recursive: true });
-  writeFileSync(join(root, "server.mjs"), program(entry, 0));
+  writeFileSync(join(root, "server.mjs"), program(entry, 0, "?url&inline"));
   await vite({ root, configFile: false, logLevel: "error", ssr: { noExternal: true }, build: { ssr: "server.mjs" } });
   const script = readdirSync(join(root, "dist")).find((name) => name.startsWith("server."));
   return run(join(root, "dist", script ?? ""));

@@ -1,11 +1,11 @@
 /** The examples of the help texts, and the commands of the documents: each runs as written, on data of the names that it uses. */
 import assert from "node:assert/strict";
-import { chmodSync, cpSync, readdirSync, readFileSync } from "node:fs";
+import { chmodSync, cpSync, readdirSync, readFileSync, symlinkSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { before, test } from "node:test";
 import { bopResults, segmentation, writeBop } from "../support/bop.js";
 import { files, folder, pixels, run, shell, writeCase } from "../support/command-line.js";
-import { commandLine, repository } from "../support/environment.js";
+import { commandLine, installDir, repository } from "../support/environment.js";
 import { glb, npy, obj, png, writeFiles } from "../support/files.js";
 import { frameAt, frameFiles } from "../support/rig.js";
 import { sam3dFiles } from "../support/sam3d.js";
@@ -27,6 +27,7 @@ const bop = (path: string) => join(folder, "bop", path);
 const follow = `process.argv[1].slice(1).split(".").reduce((value, key) => value[key], JSON.parse(fs.readFileSync(0)))`;
 
 before(async () => {
+  symlinkSync(join(installDir, "node_modules"), join(folder, "node_modules"));
   const depthFile = npy(depth, height, width);
   const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
   for (const name of ["cases/mug", "cases/pan", "mug", "target/cases/cases/lmo/one"]) {
@@ -83,12 +84,12 @@ const guides = readdirSync(join(repository, "docs", "guides")).map((name) => joi
 /** Flags that documents name, and no command has. */
 const unknown: string[] = [];
 // Of compilers and of other programs.
-const others = ["--allow-read", "--external", "--save-numpy", "--strict"];
+const others = ["--allow-read", "--external", "--loader", "--save-numpy", "--strict"];
 for (const document of ["README.md", ...guides]) {
   const text = readFileSync(join(repository, document), "utf8");
   // Variables of style sheets begin as flags do.
-  const named = document.endsWith("embedding.md") ? [] : [...text.matchAll(/`(--[a-z][\w-]*)/g)];
-  const missing = named.filter(([, flag = ""]) => !flags.has(flag) && !others.includes(flag));
+  const named = text.replace(/^### Style\n.*?^## /ms, "").matchAll(/`(--[a-z][\w-]*)/g);
+  const missing = [...named].filter(([, flag = ""]) => !flags.has(flag) && !others.includes(flag));
   unknown.push(...missing.map(([, flag]) => `${document}: ${flag}`));
   for (const [, command = ""] of text.matchAll(/^ {4}(npx sim3align .*)$/gm)) add(command, document);
 }
@@ -98,6 +99,23 @@ test("every help text has examples of its command", () => {
     assert.ok(examples.length >= 3, command);
     for (const example of examples) assert.match(example, new RegExp(`sim3align ${command}`));
   }
+});
+
+test("the first alignment, as written, from an empty folder", { skip }, () => {
+  const guide = readFileSync(join(repository, "docs", "guides", "first-alignment.md"), "utf8");
+  const lines =
+    /(?:^ {4}.*\n)+/m
+      .exec(guide)?.[0]
+      .split("\n")
+      .map((line) => line.trim()) ?? [];
+  // The package is installed already: no registry is asked.
+  const install = lines.indexOf("npm install sim3align");
+  assert.ok(install > 0);
+  const env = { ...process.env, PATH: `${join(folder, "bin")}${delimiter}${process.env.PATH}` };
+  lines[install] = `ln -s '${join(installDir, "node_modules")}' node_modules`;
+  const { status, stdout, stderr } = shell(lines.filter((line) => line !== "").join(" && "), env);
+  assert.equal(status, 0, stderr);
+  assert.ok(Number(/confidence +([\d.]+)/.exec(stdout)?.[1]) >= 0.9, stdout);
 });
 
 test("the flags that documents name are flags of a command", () => assert.deepEqual(unknown, []));

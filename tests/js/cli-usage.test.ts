@@ -36,7 +36,9 @@ const usage: Record<string, Record<string, RegExp>> = {
   },
   "of options": {
     "align blob --sead 1": /unknown option '--sead'.*--seed/s,
-    "align blob --guard none": /options\.guard.*option of preset "paper"/,
+    "align blob --guard none": /--guard.*option of preset "paper"/,
+    "align blob --camera-up 0,-1,0": /--mesh-up: found --camera-up alone, expected --mesh-up as well/,
+    "align blob --known-extent 0.1 --scale 1": /--known-extent: .*expected --known-extent or --scale/,
     "align blob --preset fast": /Allowed choices are precise, paper/,
     "align blob --symmetry [{axis}]": /Invalid JSON/,
     "align blob --seed one": /Not a number/,

@@ -10,7 +10,7 @@ import { commandLine, installDir, repository } from "../support/environment.js";
 const python = process.env.SIM3ALIGN_NOTEBOOKS ?? "";
 const skip = python === "" && "No Python with the packages of scripts/bench/notebooks/requirements.txt.";
 
-const guide = readFileSync(join(repository, "docs", "guides", "datasets.md"), "utf8");
+const guide = readFileSync(join(repository, "docs", "guides", "batches.md"), "utf8");
 const blocks = [...guide.matchAll(/^```python\n([\s\S]*?)^```$/gm)].map(([, block = ""]) => block);
 
 /** Runs a program of the environment in a folder. `npx sim3align` is the package under test. */

@@ -17,7 +17,7 @@ const folder = join(installDir, "docs-examples");
 const errors = compile();
 provideScene();
 // Examples read the sample that the guides copy into the working directory.
-cpSync(join(repository, "www", "samples", "mug"), join(folder, "mug"), { recursive: true });
+cpSync(join(installDir, "node_modules", "sim3align", "sample"), join(folder, "mug"), { recursive: true });
 process.chdir(folder);
 // The runner reads its messages from standard output, and loses the file when an example's own output cuts one in two.
 for (const method of ["log", "info", "warn", "error", "table"] as const) console[method] = () => {};

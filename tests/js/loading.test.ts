@@ -165,6 +165,14 @@ test("inline: the same bits, with workers and without", async () => {
   }
 });
 
+test("inline: a module that it does not embed is named, with the remedy", async () => {
+  for (const workers of [0, 1]) {
+    using aligner = await inline.createAligner({ workers });
+    const call = () => aligner.estimateSim3(Float64Array.of(), Float64Array.of(), Uint32Array.of());
+    await rejectsWith(call, "NOT_INITIALISED wasm.registration", /registration_bg\.wasm.*wasm: \{ registration \}/);
+  }
+});
+
 test("errors and prepared meshes of one copy of the package are known to the other", async () => {
   const thrown = await (async () => toSim3(5 as never))().catch((error: unknown) => error);
   for (const Known of [Sim3AlignError, inline.Sim3AlignError, Error]) assert.ok(thrown instanceof Known);

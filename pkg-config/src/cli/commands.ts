@@ -5,7 +5,7 @@ import { alignJob, paper, precise, shared } from "./align.js";
 import { type Job, runBatch } from "./batch.js";
 import { bopJob, bopOptions, isScores, resultsFile } from "./bop.js";
 import { evaluateJob, evaluateOptions } from "./evaluate.js";
-import { isFile, isOrdinary } from "./files.js";
+import { isFile, isOrdinary, UsageError } from "./files.js";
 import {
   batchFlags,
   caseFlags,
@@ -22,7 +22,7 @@ import {
   writes,
 } from "./flags.js";
 import { alignHelp, bopHelp, evaluateHelp, sceneHelp, trackHelp } from "./help.js";
-import { optionFlags } from "./option-flags.js";
+import { inFlags, optionFlags } from "./option-flags.js";
 import { makeFolder } from "./output-file.js";
 import { camera, jsonObject } from "./parse.js";
 import { pictureFiles } from "./pictures.js";
@@ -207,5 +207,9 @@ export async function runCommand(command: CommandRow, args: readonly string[], f
   files.add(inputs);
   files.check([...outputs, ...pictureFiles(flags, job.tasks)]);
   for (const { flag, path, isFolder } of outputs) if (isFolder) makeFolder(flag, path);
-  return runBatch(job, flags, files, (pathOf) => ({ command: name, options: settingsOf(list, flags, pathOf) }));
+  try {
+    return await runBatch(job, flags, files, (pathOf) => ({ command: name, options: settingsOf(list, flags, pathOf) }));
+  } catch (error) {
+    throw error instanceof UsageError ? new UsageError(inFlags(error.message, list), { cause: error }) : error;
+  }
 }

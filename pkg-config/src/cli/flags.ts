@@ -42,7 +42,7 @@ export const ofCase = { use: "reads", isIndifferent: true } as const;
 /** Flags, and titles in the help of the flags that follow. */
 export type FlagList = readonly (Flag | string)[];
 
-const withoutTitles = (list: FlagList): Flag[] => list.filter((row) => typeof row !== "string");
+export const withoutTitles = (list: FlagList): Flag[] => list.filter((row) => typeof row !== "string");
 
 type Texts =
   | ("list" | "json" | "jsonl" | "csv" | "report" | "overlay" | "glb" | "sceneGlb" | "mjcf" | "urdf" | "usd" | "scores")
@@ -163,7 +163,7 @@ export function addFlags(command: Command, list: FlagList): void {
 }
 
 /** The name of a flag without its value: `--jsonl`. */
-const nameOf = (flag: string) => flag.split(" ")[0] as string;
+export const nameOf = (flag: string) => flag.split(" ")[0] as string;
 
 /** The name under which Commander stores the value of a flag. */
 export const valueName = (flag: string) =>

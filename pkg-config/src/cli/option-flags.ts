@@ -1,15 +1,24 @@
 /** Flags for the options in the generated option tables. */
 import { InvalidArgumentError } from "commander";
 import type { OptionRow } from "../types/options.js";
-import { type Flag, type Flags, reads, valueName } from "./flags.js";
+import { type Flag, type FlagList, type Flags, nameOf, reads, valueName, withoutTitles } from "./flags.js";
 import { direction, guard, number, scale, symmetry } from "./parse.js";
 
 /** Flags that are shorter than their option's name. */
 const FLAG_NAMES: Readonly<Record<string, string>> = { knownExtentM: "known-extent" };
 
 /** The flag of an option, without the dashes: `known-extent-axis` for `knownExtentAxis`. */
-const flagName = ({ name }: OptionRow) =>
+const flagName = ({ name }: Pick<OptionRow, "name">) =>
   FLAG_NAMES[name] ?? name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+
+/** A message about options, with the flags that the command has for them: `--mesh-up` for `options.meshUp`. */
+export function inFlags(message: string, list: FlagList): string {
+  const flags = new Map(withoutTitles(list).map(([flag]) => [nameOf(flag).replace(/^--(no-)?/, ""), nameOf(flag)]));
+  return message.replace(
+    /\boptions\.(\w+)|`(\w+)`/g,
+    (text, option?: string, quoted?: string) => flags.get(flagName({ name: option ?? quoted ?? "" })) ?? text,
+  );
+}
 
 /** Whether the flag disables an option that is on by default. */
 const isNegated = ({ kind, default: value }: OptionRow) => kind === "boolean" && value === true;
