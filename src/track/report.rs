@@ -33,7 +33,8 @@ pub struct TrackedFrame {
     pub state: TrackState,
     /// Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost.
     pub confidence: f64,
-    /// Standard deviation of the size, relative: 0.01 is one per cent. 0 for a given scale.
+    /// Standard deviation of the size, relative: 0.01 is one per cent. It includes errors that all frames share. 0 for a given
+    /// scale.
     pub scale_sd: f64,
     /// Whether the size is settled: later frames keep it.
     pub is_scale_settled: bool,

@@ -89,6 +89,18 @@ test("the same call gives the same bits, after other calls and errors and in ano
   assert.deepEqual([depth, mask, mesh.positions, mesh.indices], before);
 });
 
+test("a mesh whose arrays were changed in place is another one", async () => {
+  const positions = Float32Array.from(input.mesh.positions);
+  const call = { ...input, mesh: { ...input.mesh, positions } };
+  const { scale } = await aligner.align(call, quick);
+  positions.forEach((x, i) => {
+    positions[i] = 2 * x;
+  });
+  const again = await aligner.align(call, quick);
+  assert.deepEqual(withoutTimes(again), withoutTimes(await (await createAligner()).align(call, quick)));
+  assert.ok(Math.abs((2 * again.scale) / scale - 1) < 0.01, `${scale} -> ${again.scale}`);
+});
+
 test("a disposed aligner says so, and others go on", async () => {
   const disposed = await createAligner();
   const cloud = new Float32Array(99);

@@ -639,7 +639,9 @@ export type Alignment = Sim3 & {
   confidence: number;
   /**
    * Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the
-   * one whose colours are those of the photo. `null` where the shape has no symmetry, or colour does not decide.
+   * one whose colours are those of the photo. `null` where no other turn is possible: the shape has no symmetry, its
+   * turns look alike, or there are no colours to compare. Where no turn agrees with the photo, all are equally
+   * likely.
    */
   turnConfidence: number | null;
   /**
@@ -716,7 +718,7 @@ export type ViewPose = Sim3 & {
   warnings: Array<Warning>;
 };
 
-/** What `alignViews` reports besides the poses. */
+/** Diagnostics of `alignViews`. */
 export type ViewsDiagnostics = {
   /** The seed it ran with. */
   seed: number;
@@ -776,7 +778,10 @@ export type TrackedFrame = Sim3 & {
   state: TrackState;
   /** Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost. */
   confidence: number;
-  /** Standard deviation of the size, relative: 0.01 is one per cent. 0 for a given scale. */
+  /**
+   * Standard deviation of the size, relative: 0.01 is one per cent. It includes errors that all frames share. 0 for a
+   * given scale.
+   */
   scaleSd: number;
   /** Whether the size is settled: later frames keep it. */
   isScaleSettled: boolean;
@@ -822,7 +827,7 @@ export type Contact = {
   snappedM: number;
 };
 
-/** What `register` and `estimateSim3` report besides the transform and its fit. */
+/** Diagnostics of `register` and `estimateSim3`. */
 export type RegistrationDiagnostics = {
   /** The seed it ran with. */
   seed: number;
