@@ -42,7 +42,7 @@ test("a wrong mesh is named, and a known size is tried at once", hammer, async (
   // The cause is named first, and the files are one click away.
   assert.equal(await page.getAttribute(".advice", "data-cause"), "mesh");
   assert.deepEqual(await opened.violations(), []);
-  await page.locator(".advice button", { hasText: "Change the mesh" }).click();
+  await page.locator(".advice button", { hasText: "Change the files" }).click();
   await opened.sheet();
   await page.click("#intake-cancel");
   await page.fill("#remedy-size", "20");

@@ -20,7 +20,7 @@ import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
 import { SpaceView } from "./views/space-view.js";
 
-const { largeView, notKept, othersScenes, scene, space, video } = page;
+const { gizmo, largeView, notKept, othersScenes, scene, space, video } = page;
 
 const Intake = lazy(
   () => draft.value !== null,
@@ -54,7 +54,7 @@ export function App() {
     <WorkspaceProvider value={page}>
       <div class="frame">
         <Header />
-        <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
+        <main class="page" data-large={large} data-scene={scene.value?.name ?? ""} data-fixing={gizmo.value !== null}>
           {/* First, so that the Tab key reaches it first. */}
           <aside class="side" aria-label="Scene">
             <Kept />

@@ -9,7 +9,7 @@ import { alignAll } from "../run/align.js";
 import { openVideo, trackAll } from "../run/video.js";
 import { isSession } from "../session/pack.js";
 import { openProject } from "../session/project.js";
-import { type Draft, draft, draftInputs, isReady, seenDoubts } from "../state/draft.js";
+import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../state/draft.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
 import { canReplace, replaced } from "./replace.js";
@@ -88,6 +88,26 @@ export async function asVideo(isOne: boolean): Promise<void> {
 export function edit(inputs: Inputs): Promise<void> {
   return set({ scenes: [{ ...inputs, files: filesOf(inputs) }], index: 0, isVideo: false, isEdit: true });
 }
+
+/** Makes inputs the scene that is shown, unless they raise a question that nobody has seen. */
+export async function remake(inputs: Inputs): Promise<void> {
+  await edit({ ...inputs, ...ownName(inputs), files: filesOf(inputs) });
+  await acceptIfClear();
+}
+
+/** Makes inputs a draft in which the mask of an object is marked. */
+export async function correct(inputs: Inputs, object: number): Promise<void> {
+  const named = { ...inputs, ...ownName(inputs), files: filesOf(inputs) };
+  await set({ scenes: [named], index: 0, isVideo: false, isEdit: true, isCorrection: true });
+  if (draft.peek()?.isCorrection) marked.value = object;
+}
+
+/** Opens the draft, unless it raises a question that nobody has seen. */
+export async function acceptIfClear(): Promise<void> {
+  if (draft.peek()?.problems.every(isSeen)) await accept();
+}
+
+const isSeen = ({ kind, message }: Problem) => kind === "doubt" && seenDoubts.has(message);
 
 /** Looks at another scene of the draft. */
 export async function look(index: number): Promise<void> {

@@ -166,7 +166,7 @@ const DRAGGED = "application/x-sim3align-mesh";
 
 function maskTitle({ mask }: ObjectFiles): string {
   if (mask === null) return "no mask";
-  const name = baseName(mask.file.path);
+  const name = `${baseName(mask.file.path)}${mask.isInverted === true ? ", inverted" : ""}`;
   if (mask.label !== undefined) return `${name}, value ${mask.label}`;
   return mask.annotation === undefined ? name : `${name}, annotation ${mask.annotation + 1}`;
 }

@@ -38,13 +38,17 @@ export interface MeshSource {
   siblings: readonly NamedFile[];
 }
 
-/** A mask: a file, one value of a label map, or one annotation of a COCO file. */
+/** A mask: a file, one value of a label map, or one annotation of a COCO file; or what one of these leaves out. */
 export interface MaskSource {
   file: NamedFile;
   /** The value in a label map. */
   label?: number;
   /** The index of the annotation in a COCO file. */
   annotation?: number;
+  /** Whether a person has drawn it here: no other file has it. */
+  isDrawn?: boolean;
+  /** Whether the file marks the background. */
+  isInverted?: boolean;
 }
 
 /** A true pose: a file, or an entry of BOP's `scene_gt.json`. */
@@ -114,6 +118,20 @@ export const newId = (): string => `${Date.now().toString(36)}-${Math.random().t
 
 /** The inputs of the user's own scene, with an id. */
 export const withId = (inputs: Inputs): Inputs => (inputs.id !== "" ? inputs : { ...inputs, id: newId() });
+
+/** The inputs with another mask for an object. */
+export const withMask =
+  (index: number, change: (mask: MaskSource) => MaskSource) =>
+  (inputs: Inputs): Inputs => ({
+    ...inputs,
+    objects: inputs.objects.map((one, i) =>
+      i === index && one.mask !== null ? { ...one, mask: change(one.mask) } : one,
+    ),
+  });
+
+/** The inputs with the mask of an object inverted. */
+export const withInverted = (index: number) =>
+  withMask(index, (mask) => ({ ...mask, isInverted: mask.isInverted !== true }));
 
 /** The input fields. */
 export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";

@@ -23,8 +23,15 @@ const plainMask = once(async (file: NamedFile): Promise<ReadMask> => {
   return readMask(await file.bytes());
 });
 
-/** The mask of a source. Label maps and annotations are read by a script of their own. */
+/** The mask of a source. */
 export async function maskOf(source: MaskSource): Promise<ReadMask> {
+  const mask = await markedBy(source);
+  if (source.isInverted !== true) return mask;
+  return { ...mask, data: mask.data.map((inside) => (inside === 0 ? 1 : 0)), reading: "inverted" };
+}
+
+/** Label maps and annotations are read by a script of their own. */
+async function markedBy(source: MaskSource): Promise<ReadMask> {
   const { file, label, annotation } = source;
   if (label !== undefined || annotation !== undefined) return (await import("./label-masks.js")).maskFrom(source);
   return plainMask(file);

@@ -67,6 +67,16 @@ export async function editInputs(): Promise<void> {
   if (draft.peek() === null) await attempt(async () => (await intake()).edit(ownInputs()));
 }
 
+/** Makes a change of the inputs of the scene that is shown. */
+async function changeInputs(apply: (inputs: Inputs) => Inputs): Promise<void> {
+  if (draft.peek() === null) await attempt(async () => (await intake()).remake(apply(ownInputs())));
+}
+
+/** Corrects the mask of an object of the scene that is shown. */
+async function correctMask(object: number): Promise<void> {
+  if (draft.peek() === null) await attempt(async () => (await intake()).correct(ownInputs(), object));
+}
+
 /** Opens a scene of the list, as it was left. */
 export async function openListed({ id }: Inputs): Promise<void> {
   const inputs = list.peek().find((one) => one.inputs.id === id)?.inputs;
@@ -119,4 +129,6 @@ export async function openAnother(): Promise<void> {
   else if (first !== undefined && (await openSample(first))) await alignAll(page);
 }
 
-page.fileActions.value = { edit: editInputs, next: openNext };
+page.fileActions.value = {
+  ...{ edit: editInputs, change: changeInputs, correct: correctMask, next: openNext },
+};

@@ -105,12 +105,10 @@ export async function readInputs(
       ? null
       : await attempt("depth", depthFile, () => readDepthMap(depthFile, inputs.depthKind, scales));
   const { photo: photoFile } = inputs;
-  // Beside a depth map that cannot be read, the size of the photo says nothing.
-  const canShow = read !== null || depthFile === null;
-  const readingPhoto =
-    photoFile === null || !canShow ? null : attempt("photo", photoFile, () => readPhoto(photoFile, read));
+  // Beside a depth map that cannot be read, photo and masks are shown all the same.
+  const readingPhoto = photoFile === null ? null : attempt("photo", photoFile, () => readPhoto(photoFile, read));
   // Without both, masks are shown by themselves.
-  const [mask] = canShow ? inputs.objects.flatMap(({ mask }) => mask ?? []) : [];
+  const [mask] = inputs.objects.flatMap(({ mask }) => mask ?? []);
   const shown =
     read ?? (await readingPhoto)?.shown ?? (mask === undefined ? null : await maskOf(mask).catch(() => null));
   const [photo, objects] = await Promise.all([

@@ -31,14 +31,18 @@ export const accept = decideOn("accepted");
 
 const after = (objects: readonly ObjectModel[], object: ObjectModel) => objects.slice(objects.indexOf(object) + 1);
 
-/** Shows the handles and the controls of the selected object. */
-export function fix({ gizmo }: Workspace, { currentTarget }: Event): void {
+/** Shows the handles and the controls of the selected object. On small screens, these come together. */
+export function fix({ gizmo, largeView, space }: Workspace, { currentTarget }: Event): void {
   gizmo.value = gizmo.peek() ?? "translate";
+  if (space.peek().kind === "ready") largeView.value = "space";
   const root = (currentTarget as Element).getRootNode() as Document | ShadowRoot;
-  const panel = root.querySelector(".hand-panel");
-  panel?.scrollIntoView({ block: "nearest" });
-  // Without a 3D view there are no handles.
-  panel?.querySelector<HTMLElement>(".handles button:enabled, #refine")?.focus();
+  // The layout changes with the handles.
+  requestAnimationFrame(() => {
+    for (const part of [".space", ".handles"]) root.querySelector(part)?.scrollIntoView({ block: "nearest" });
+    // Without a 3D view there are no handles.
+    const first = root.querySelector<HTMLElement>(".handles button:enabled, #refine");
+    first?.focus({ preventScroll: true });
+  });
 }
 
 /**
@@ -67,7 +71,8 @@ export function next(workspace: Workspace): unknown {
 
 export function Decision({ object }: { object: ObjectModel | null }) {
   const workspace = useWorkspace();
-  const { list, scene } = workspace;
+  const { fileActions, list, scene } = workspace;
+  const correct = () => object !== null && fileActions.peek()?.correct(scene.peek()?.objects.indexOf(object) ?? 0);
   const verdict = object?.verdict.value ?? null;
   const hasNext = (scene.value?.objects.length ?? 0) > 1 || list.value.length > 1;
   return (
@@ -85,6 +90,11 @@ export function Decision({ object }: { object: ObjectModel | null }) {
       <button type="button" id="fix" onClick={(event) => fix(workspace, event)}>
         Fix
       </button>
+      {fileActions.value !== null && (
+        <button type="button" id="correct-mask" title="Correct the mask" onClick={correct}>
+          Mask …
+        </button>
+      )}
       <button type="button" id="next" disabled={!hasNext} aria-keyshortcuts="N" onClick={() => next(workspace)}>
         Next
       </button>

@@ -5,7 +5,7 @@ import type { MetricText } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
 /** The metrics that are always shown. */
-export const MAIN = 3;
+export const MAIN = 1;
 
 interface MetricTableProps {
   object: ObjectModel | null;

@@ -169,7 +169,7 @@ async function together(
       const object = whole.objects[i];
       if (object === undefined || !objects.includes(object)) return;
       if (found.error === undefined) {
-        object.pose.value = poseOf(found, "aligned");
+        object.pose.value = poseOf(withoutStated(found, whole), "aligned");
         object.run.value = { state: "done" };
       } else {
         // A pose in another calibration means nothing.
@@ -192,9 +192,16 @@ export const poseOf = (alignment: AnyAlignment, source: PoseSource): Pose => ({
   ...{ transform: toSim3(alignment), source, alignment },
 });
 
-function finish({ place }: Workspace, object: ObjectModel, alignment: AnyAlignment, source: PoseSource): void {
+/** The package gets a depth map in metres: only the page knows whether its file has stated a unit. */
+function withoutStated<T extends AnyAlignment>(alignment: T, { depthUnit }: Scene): T {
+  if (depthUnit.endsWith("assumed)")) return alignment;
+  return { ...alignment, warnings: alignment.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL") };
+}
+
+function finish({ place, scene }: Workspace, object: ObjectModel, alignment: AnyAlignment, source: PoseSource): void {
   object.run.value = { state: "done" };
-  place(object, poseOf(alignment, source));
+  const whole = scene.peek();
+  place(object, poseOf(whole === null ? alignment : withoutStated(alignment, whole), source));
 }
 
 function summary(objects: readonly ObjectModel[], isAborted: boolean, ms: number): Status {

@@ -39,4 +39,8 @@ export function givenViewOf(scene: Scene) {
 }
 
 /** The input of `align` and `evaluate` for an object. */
-export const inputOf = (scene: Scene, { mask, mesh }: ObjectModel): AlignInput => ({ ...viewOf(scene), mask, mesh });
+export const inputOf = (scene: Scene, { mask, mesh }: Pick<ObjectModel, "mask" | "mesh">): AlignInput => ({
+  ...viewOf(scene),
+  mask,
+  mesh,
+});

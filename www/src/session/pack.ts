@@ -1,9 +1,9 @@
 /** A session as plain data: the files of a scene, and what was done with its objects. */
-import type { DepthCalibration, DepthKind } from "sim3align";
+import type { DepthCalibration, DepthKind, Support } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import { baseName, type NamedFile } from "../load/files.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, Role, TruthSource } from "../load/inputs.js";
-import type { AnyAlignment } from "../state/alignment.js";
+import { type AnyAlignment, hasSizeDoubt } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
 import type { ObjectModel, Verdict } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
@@ -73,10 +73,15 @@ export interface Packed extends PackedInputs {
   /** In whose depth the poses are. */
   calibration: DepthCalibration | null;
   options: Options;
+  /** The ground, if an alignment has found it. */
+  support?: Support | null;
   /** Those of a video, and the index of the one that was shown last. */
   frames?: PackedFrame[];
   frameIndex?: number;
 }
+
+/** What counts for a whole scene. */
+export type Settings = Pick<Packed, "options" | "support">;
 
 /** What is done in a video. */
 export interface VideoWork {
@@ -89,14 +94,14 @@ export interface VideoWork {
 export function packed(
   inputs: Inputs,
   done: Scene | VideoWork | null,
-  options: Options,
+  settings: Settings,
 ): { session: Packed; files: NamedFile[] } {
   const files = new Map<NamedFile, Ref>();
   const scene = done !== null && "objects" in done ? done : null;
   const work = done !== null && "framePoses" in done ? done : null;
   const session: Packed = {
     ...packedInputs(inputs, scene, files),
-    ...{ version: VERSION, calibration: scene?.calibration ?? null, options },
+    ...{ version: VERSION, calibration: scene?.calibration ?? null, ...settings },
   };
   if (inputs.frames !== undefined) {
     session.frameIndex = work?.frameIndex ?? 0;
@@ -170,7 +175,8 @@ export function progressOfPacked({ frames, objects }: Packed): Progress | null {
     objects.map(({ state }): Judged => {
       const { source = "start", alignment = null } = state ?? {};
       const found = isResult(source) && alignment !== null && "confidence" in alignment ? alignment.confidence : null;
-      return { isPlaced: source !== "start", verdict: verdictOf(state), confidence: found };
+      const isSizeDoubtful = hasSizeDoubt(alignment);
+      return { isPlaced: source !== "start", verdict: verdictOf(state), confidence: found, isSizeDoubtful };
     }),
   );
 }
@@ -234,15 +240,18 @@ interface SessionState {
   objects: readonly { state: PackedState | null }[];
   options: Partial<Options>;
   calibration?: DepthCalibration | null | undefined;
+  support?: Support | null | undefined;
 }
 
 /** Gives the objects of the scene that is shown the poses and settings of a session. */
-export function applyState({ objects, options: chosen, calibration }: SessionState, workspace: Workspace): void {
-  const { options, recalibrate, scene } = workspace;
+export function applyState(session: SessionState, workspace: Workspace): void {
+  const { objects, options: chosen, calibration, support: ground = null } = session;
+  const { options, recalibrate, scene, support } = workspace;
   const whole = scene.peek();
   if (whole === null) return;
   options.value = { ...options.peek(), ...chosen };
   if (calibration) recalibrate(inCalibration(whole, calibration));
+  support.value = ground;
   whole.objects.forEach((object, i) => {
     const state = objects[i]?.state;
     if (state != null) applyToObject(state, object);

@@ -63,5 +63,6 @@ async function align(from: Inputs): Promise<void> {
   await alignAll(behind);
   const isCancelled = opened.objects.some(({ run }) => run.peek().state === "cancelled");
   const isThere = list.peek().some((one) => one.inputs.id === from.id && isWaiting(one));
-  if (!isCancelled && isThere && behind.scene.peek() !== null) keep(from, behind.scene.peek(), options.peek(), false);
+  const settings = { options: options.peek(), support: behind.support.peek() };
+  if (!isCancelled && isThere && behind.scene.peek() !== null) keep(from, behind.scene.peek(), settings, false);
 }

@@ -17,11 +17,16 @@ export interface Draft {
   isVideo: boolean;
   /** Whether these are the inputs of the scene that is shown already. */
   isEdit: boolean;
+  /** Whether it was made to correct one mask: it is opened once that is done. */
+  isCorrection?: boolean;
   /** Files that may belong to the scene that is shown: whether they do is asked. */
   forShown?: readonly Typed[];
 }
 
 export const draft = signal<Draft | null>(null);
+
+/** The index of the object whose mask is being marked; null for none. */
+export const marked = signal<number | null>(null);
 
 /** The doubts that a person has seen and left as they are: the other scenes of a drop mostly have the same ones. */
 export const seenDoubts = new Set<string>();

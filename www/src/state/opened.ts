@@ -14,6 +14,10 @@ export type NextKind = "doubtful" | "open" | "any";
 export interface FileActions {
   /** Changes the files of the scene. */
   edit(): void;
+  /** Changes how they are read, and aligns anew, unless that raises a question. */
+  change(apply: (inputs: Inputs) => Inputs): void;
+  /** Corrects the mask of the object with this index. */
+  correct(object: number): void;
   /** Shows the next frame or scene of this kind. Returns whether there is one. */
   next(kind: NextKind): boolean;
 }

@@ -112,9 +112,9 @@ export function ImageView() {
             min="0"
             max="1"
             step="0.01"
-            value={1 - wipe}
-            aria-label="Share of the view that shows the present poses"
-            onInput={({ currentTarget }) => setLayer("wipe", 1 - currentTarget.valueAsNumber)}
+            value={wipe}
+            aria-label="Share of the view that shows the poses before any alignment"
+            onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
           />
           <span>After</span>
         </label>
