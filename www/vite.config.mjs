@@ -56,12 +56,12 @@ export default defineConfig({
   },
   define: {
     ...definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
-    DOCUMENTS: JSON.stringify(guides.map(({ title, fileName }) => [title, fileName])),
+    DOCUMENTS: JSON.stringify(guides.listed.map(({ title, fileName }) => [title, fileName])),
   },
   // What workers load later has names of its own.
   worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
-  plugins: [preloadedModules, documentation(guides), serviceWorker(www)],
+  plugins: [preloadedModules, documentation(www, guides), serviceWorker(www)],
   build: {
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,

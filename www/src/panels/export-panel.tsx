@@ -31,11 +31,13 @@ export function ExportPanel() {
   return (
     <section class="panel export-panel" aria-labelledby="export-title">
       <h2 id="export-title">Export</h2>
-      {buttons(true)}
-      <Menu title="More formats" label="More formats">
-        {buttons(false)}
-        {whole !== null && whole.sample === null && <p class="quiet">Your own files cannot be linked.</p>}
-      </Menu>
+      <div class="row">
+        {buttons(true)}
+        <Menu title="More formats" label="More formats">
+          {buttons(false)}
+          {whole !== null && whole.sample === null && <p class="quiet">Your own files cannot be linked.</p>}
+        </Menu>
+      </div>
     </section>
   );
 }

@@ -17,18 +17,20 @@ function stateOf(run: Run, object: ObjectModel, unit: Unit, ground: Support | nu
   if (!object.isPlaced) return run.state === "cancelled" ? "cancelled" : "not aligned";
   const sizeM = inOrder(sidesOf(object, ground), object.box.value.sizeM);
   if (unit !== null) return sizeM.map((side) => (side / unit).toFixed(2)).join("×");
-  return `${sizeM.map((side) => Math.round(100 * side)).join("×")} cm`;
+  return sizeM.map((side) => Math.round(100 * side)).join("×");
 }
 
 export function ObjectsPanel() {
-  const { inputs, isReading, scene } = useWorkspace();
+  const { inputs, isReading, scene, unit } = useWorkspace();
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
     <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
-      <h2 id="objects-title">Objects</h2>
+      <h2 id="objects-title">
+        Objects <span class="quiet">{unit.value === null && "cm"}</span>
+      </h2>
       <ul class="objects">
         {objects.map((object) => (
           <Row key={object.id} object={object} />
