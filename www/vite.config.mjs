@@ -19,7 +19,7 @@ const { OPTIONS } = await import(pathToFileURL(join(compiled, "index.js")).href)
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(run\/(advice|video|known-size)|load\/(allowance|archives|case-url|label-masks|mesh-header|slices)|draw\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(nudges|reveal)|panels\/(advised|choices|kept|palette|palette-commands|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
+  /\/src\/(commands\/(nudges|palette-commands)|intake|masking|session|export|view3d)\/|\/src\/(alignment\/(advice|swap|video|known-size)|input\/(allowance|archives|camera-size|label-masks|mesh-header|pairing|slices|video-frames)|state\/object-work|opening\/case-url|pictures\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(reveal|choices)|panels\/(advised|kept|palette|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);

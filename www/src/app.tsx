@@ -1,5 +1,8 @@
 /** The page. */
 import { useEffect } from "preact/hooks";
+import { pageCommands } from "./commands/page-commands.js";
+import { listenToKeys } from "./commands/shortcuts.js";
+import { draft } from "./input/draft.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
 import { ExportPanel } from "./panels/export-panel.js";
 import { Header } from "./panels/header.js";
@@ -10,12 +13,9 @@ import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { ScenesPanel } from "./panels/scenes.js";
 import { StartPanel } from "./panels/start-panel.js";
-import { draft } from "./state/draft.js";
 import { isHelpOpen, isPaletteOpen } from "./state/help.js";
 import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
-import { pageCommands } from "./ui/page-commands.js";
-import { listenToKeys } from "./ui/shortcuts.js";
 import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
 import { SpaceView } from "./views/space-view.js";

@@ -1,18 +1,18 @@
 /** Scenes that a host gives to the element: as arrays or encoded files in memory, as files, or by an address. */
 import type { EncodedBytes, PixelArray } from "sim3align";
 import type { MeshFromFile } from "sim3align/formats";
+import { extractArchives } from "../input/archives.js";
+import { cameraOf, knownCamera, type ReadDepthMap, viewOf } from "../input/depth-view.js";
+import { fromFile } from "../input/files.js";
+import { atSize } from "../input/masks.js";
+import { photoFrom } from "../input/photo.js";
+import { type ReadObject, readInputs, sceneOf } from "../input/read-scene.js";
+import { readDepth, readMask, readMesh } from "../input/reader.js";
 import { rolesOf } from "../intake/roles.js";
 import { scenesOfTyped } from "../intake/scenes.js";
-import { extractArchives } from "../load/archives.js";
-import { filesAt } from "../load/case-url.js";
-import { cameraOf, knownCamera, type ReadDepthMap, viewOf } from "../load/depth-view.js";
-import { fromFile, type NamedFile } from "../load/files.js";
-import { type Inputs, noInputs } from "../load/inputs.js";
-import { atSize } from "../load/masks.js";
-import { photoFrom } from "../load/photo.js";
-import { type ReadObject, readInputs, sceneOf } from "../load/read-scene.js";
-import { readDepth, readMask, readMesh } from "../load/reader.js";
+import { filesAt } from "../opening/case-url.js";
 import { isSession, type Packed, sessionParts, unpacked } from "../session/pack.js";
+import { type Inputs, type NamedFile, noInputs } from "../state/inputs.js";
 import type { Scene } from "../state/scene.js";
 import type { GivenInput, GivenObject, GivenScene } from "./sim3-align.js";
 

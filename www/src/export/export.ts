@@ -1,9 +1,9 @@
 /** Copies and saves results. */
-import { extension } from "../load/files.js";
-import { isMetric } from "../state/calibration.js";
+import { extension } from "../input/files.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { permalink } from "../state/permalink.js";
+import { isMetric } from "../state/raw-view.js";
 import type { Scene } from "../state/scene.js";
 import { imageSnapshot } from "../views/image-view.js";
 

@@ -1,13 +1,13 @@
 /** What is missing, contradictory or implausible in the inputs of a scene. */
 import type { PixelArray } from "sim3align";
 import { doubtOfSize } from "sim3align/camera/pinhole";
-import { depthRange } from "../draw/colours.js";
-import { otherSize, scaled } from "../load/camera-size.js";
-import { baseName, folderOf } from "../load/files.js";
-import { type Inputs, withInverted } from "../load/inputs.js";
-import { doubt, error, type Problem, type Remedy, withoutObject } from "../load/problems.js";
-import type { Reading, ReadObject } from "../load/read-scene.js";
-import { visibleExtent } from "../load/visible-extent.js";
+import { otherSize, scaled } from "../input/camera-size.js";
+import { baseName, folderOf } from "../input/files.js";
+import { doubt, error, type Problem, type Remedy, withoutObject } from "../input/problems.js";
+import type { Reading, ReadObject } from "../input/read-scene.js";
+import { depthRange } from "../pictures/colours.js";
+import { type Inputs, withInverted } from "../state/inputs.js";
+import { visibleExtent } from "../state/visible-extent.js";
 import { isForeign, isNamedPhoto } from "./roles.js";
 
 /** A typical vertical field of view of phones and laptops. */

@@ -1,22 +1,21 @@
 /** Makes and changes the draft. A draft without any problem becomes the scene by itself. */
 
-import { extractArchives } from "../load/archives.js";
-import type { NamedFile } from "../load/files.js";
-import { type Inputs, noInputs, type Role, type Typed, withId } from "../load/inputs.js";
-import { error, errorOf, type Problem } from "../load/problems.js";
-import { readInputs, sceneOf } from "../load/read-scene.js";
-import { alignAll } from "../run/align.js";
-import { openVideo, trackAll } from "../run/video.js";
+import { alignAll } from "../alignment/align.js";
+import { openVideo, trackAll } from "../alignment/video.js";
+import { extractArchives } from "../input/archives.js";
+import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../input/draft.js";
+import { error, errorOf, type Problem } from "../input/problems.js";
+import { readInputs, sceneOf } from "../input/read-scene.js";
+import { asListed, isVideo } from "../input/video-frames.js";
 import { isSession } from "../session/pack.js";
 import { openProject } from "../session/project.js";
-import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../state/draft.js";
+import { type Inputs, type NamedFile, noInputs, type Role, type Typed, withId } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
 import { canReplace, replaced } from "./replace.js";
 import { rolesOf } from "./roles.js";
 import { fromSam3d } from "./sam3d.js";
 import { scenesOfTyped } from "./scenes.js";
-import { asListed, isVideo } from "./video.js";
 
 const { announce, enlist, inputs, scene, show } = page;
 

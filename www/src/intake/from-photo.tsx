@@ -1,5 +1,5 @@
 /** Where depth map, mask and mesh of a photo come from. */
-import type { Inputs } from "../load/inputs.js";
+import type { Inputs } from "../state/inputs.js";
 import { MarkButton } from "./marking.js";
 
 type Source = readonly [title: string, address: string];

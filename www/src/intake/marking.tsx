@@ -1,12 +1,11 @@
 /** Masks that are marked on the photo of a draft. */
 import { useMemo } from "preact/hooks";
-import type { NamedFile } from "../load/files.js";
-import type { Inputs, ObjectFiles } from "../load/inputs.js";
-import { colourOf } from "../load/read-scene.js";
+import { type Draft, draftInputs, marked } from "../input/draft.js";
+import { colourOf } from "../input/read-scene.js";
 import { depthFile, maskFile } from "../masking/mask-file.js";
 import { seenBy } from "../masking/photo-model.js";
 import type { Mark } from "../masking/strokes.js";
-import { type Draft, draftInputs, marked } from "../state/draft.js";
+import type { Inputs, NamedFile, ObjectFiles } from "../state/inputs.js";
 import { lazy } from "../ui/lazy.js";
 import { acceptIfClear, change, dismiss } from "./draft.js";
 

@@ -1,7 +1,7 @@
 /** What is said of a result: the cause of what is wrong first, with what helps; warnings and contact among the rest. */
 import { useEffect } from "preact/hooks";
-import { type Advice, adviceFor } from "../run/advice.js";
-import { searchSwap, swapIn } from "../run/swap.js";
+import { type Advice, adviceFor } from "../alignment/advice.js";
+import { searchSwap, swapIn } from "../alignment/swap.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";

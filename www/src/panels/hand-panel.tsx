@@ -1,7 +1,7 @@
 /** Adjusting the pose by hand: undo and redo; while something is fixed, handles, refine, numbers and steps. */
-import { refine } from "../run/align.js";
+import { refine } from "../alignment/align.js";
+import { canNudge, nudgeGroups } from "../commands/nudges.js";
 import { Check } from "../ui/controls.js";
-import { canNudge, nudgeGroups } from "../ui/nudges.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { KnownSize } from "./known-size.js";
 import { Numbers } from "./numbers.js";

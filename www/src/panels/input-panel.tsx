@@ -1,6 +1,6 @@
 /** The input files of the scene that is shown. */
-import { baseName } from "../load/files.js";
-import { editInputs } from "../load/open.js";
+import { baseName } from "../input/files.js";
+import { editInputs } from "../opening/open.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
 

@@ -1,6 +1,6 @@
 /** A known length of an object. It is one fact of the object, wherever it is entered. */
 import { useState } from "preact/hooks";
-import { canTry, setKnownSize, type Trial, takeTrial, trySize } from "../run/known-size.js";
+import { canTry, setKnownSize, type Trial, takeTrial, trySize } from "../alignment/known-size.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { inOrder, sidesOf } from "../state/sides.js";
 import { Choices } from "../ui/controls.js";

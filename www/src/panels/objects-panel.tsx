@@ -1,7 +1,7 @@
 /** The outliner: the objects of the scene. The selected one has a menu, by which it is shown, locked, renamed and removed. */
 import { useEffect, useRef } from "preact/hooks";
 import type { Support } from "sim3align";
-import { alignSelected } from "../run/align.js";
+import { alignSelected } from "../alignment/align.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
 import { inOrder, sidesOf } from "../state/sides.js";
 import { Check, Menu } from "../ui/controls.js";

@@ -3,7 +3,7 @@
  * layout does not shift.
  */
 import type { PoseErrors } from "sim3align";
-import { fieldOf } from "../load/problems.js";
+import { fieldOf } from "../input/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import { inOrder, sidesOf } from "../state/sides.js";

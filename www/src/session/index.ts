@@ -2,34 +2,26 @@
  * The session: the user's own scenes and videos, kept in the browser while they work. Each is kept by its id, and belongs to
  * one tab. A video counts as a scene.
  */
+
 import { batch, effect, untracked } from "@preact/signals";
-import { type SceneResult, sceneResult, videoResult } from "../export/results.js";
-import type { NamedFile } from "../load/files.js";
-import type { Inputs } from "../load/inputs.js";
-import { openAnother } from "../load/open.js";
-import { readInputs, sceneOf } from "../load/read-scene.js";
-import { alignAll } from "../run/align.js";
-import { openVideo, videoWork } from "../run/video.js";
+import { alignAll } from "../alignment/align.js";
+import { openVideo, videoWork } from "../alignment/video.js";
+import { readInputs, sceneOf } from "../input/read-scene.js";
+import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
+import { stateOf } from "../state/object-work.js";
 import { page } from "../state/page.js";
 import type { Progress } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
 import { hasSession } from "../state/session-flag.js";
+import type { VideoWork } from "../state/video.js";
 import { disown, onTakenOver, own } from "./owner.js";
-import {
-  applyState,
-  type Packed,
-  packed,
-  progressOfPacked,
-  type Settings,
-  stateOf,
-  unpacked,
-  type VideoWork,
-  videoWorkOf,
-} from "./pack.js";
+import { applyState, type Packed, packed, progressOfPacked, type Settings, unpacked, videoWorkOf } from "./pack.js";
+import { type SceneResult, sceneResult, videoResult } from "./results.js";
 import { claimWork, forgetWork, storedFiles, storedWorks, storeWork, type Work } from "./store.js";
 
-const { announce, enlist, inputs, list, notKept, options, othersScenes, scene, show, support, video } = page;
+const { announce, enlist, fileActions, inputs, list, notKept, options, othersScenes, scene, show, support, video } =
+  page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
@@ -257,7 +249,7 @@ async function leave(id: string): Promise<void> {
   if (inputs.peek().id !== id) return;
   pending = null;
   inputs.value = { ...inputs.peek(), id: "" };
-  await openAnother();
+  await fileActions.peek()?.another();
 }
 
 async function open(session: Packed, named: Inputs): Promise<boolean> {

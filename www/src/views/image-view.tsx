@@ -2,7 +2,7 @@
 import { effect } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { differenceLimit } from "sim3align/pictures/colours";
-import { depthGradient } from "../draw/colours.js";
+import { depthGradient } from "../pictures/colours.js";
 import type { Workspace } from "../state/workspace.js";
 import { Check, Menu } from "../ui/controls.js";
 import { depth, small } from "../ui/format.js";
