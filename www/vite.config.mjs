@@ -19,7 +19,7 @@ const { OPTIONS } = await import(pathToFileURL(join(compiled, "index.js")).href)
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(commands\/(nudges|palette-commands)|intake|masking|session|export|view3d)\/|\/src\/(alignment\/(advice|swap|video|known-size)|input\/(allowance|archives|camera-size|label-masks|mesh-header|pairing|slices|video-frames)|state\/object-work|opening\/case-url|pictures\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(reveal|choices)|panels\/(advised|kept|palette|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
+  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(alignment\/(advice|swap|video|known-size)|input\/(allowance|archives|camera-size|label-masks|mesh-header|pairing|slices|video-frames)|state\/object-work|commands\/(nudges|palette-commands)|opening\/case-url|pictures\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(reveal|choices|metric-texts)|panels\/(advised|export-panel|scenes|kept|palette|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);
@@ -50,6 +50,8 @@ export default defineConfig({
   publicDir: false,
   resolve: {
     alias: [
+      // The readers of files refer to this one as well, but the page does not use it at first: a module of its own.
+      { find: /^sim3align\/scene\/sam3d-files$/, replacement: join(compiled, "scene", "sam3d-files.js?intake") },
       { find: /^sim3align$/, replacement: join(compiled, "index.js") },
       { find: /^sim3align\/(.+)$/, replacement: join(compiled, "$1.js") },
     ],

@@ -4,14 +4,12 @@ import { pageCommands } from "./commands/page-commands.js";
 import { listenToKeys } from "./commands/shortcuts.js";
 import { draft } from "./input/draft.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
-import { ExportPanel } from "./panels/export-panel.js";
 import { Header } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
 import { HandPanel, OptionsPanel } from "./panels/later.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
-import { ScenesPanel } from "./panels/scenes.js";
 import { StartPanel } from "./panels/start-panel.js";
 import { isHelpOpen, isPaletteOpen } from "./state/help.js";
 import { page } from "./state/page.js";
@@ -20,7 +18,7 @@ import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
 import { SpaceView } from "./views/space-view.js";
 
-const { gizmo, largeView, notKept, othersScenes, scene, space, video } = page;
+const { gizmo, isSettled, largeView, list, notKept, othersScenes, scene, space, video } = page;
 
 const Intake = lazy(
   () => draft.value !== null,
@@ -29,6 +27,15 @@ const Intake = lazy(
 const TimePanel = lazy(
   () => video.value !== null,
   () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
+);
+
+const ExportPanel = lazy(
+  () => isSettled.value,
+  () => import("./panels/export-panel.js").then(({ ExportPanel }) => ExportPanel),
+);
+const ScenesPanel = lazy(
+  () => list.value.length > 0,
+  () => import("./panels/scenes.js").then(({ ScenesPanel }) => ScenesPanel),
 );
 
 const Kept = lazy(
@@ -63,8 +70,8 @@ export function App() {
             <StartPanel />
             <ObjectsPanel />
             <ResultPanel />
-            <ExportPanel />
             <InputPanel />
+            <ExportPanel />
             <OptionsPanel />
           </aside>
           <SpaceView />

@@ -8,11 +8,11 @@ import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import { inOrder, sidesOf } from "../state/sides.js";
 import { orDash, percent, significant, size } from "../ui/format.js";
-import { metricTexts } from "../ui/texts.js";
+import { overlapText } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { Decision } from "./decision.js";
 import { Advised, Alternatives, Details, Remedies, Warnings } from "./later.js";
-import { MAIN, MetricTable } from "./metrics.js";
+import { MetricTable } from "./metrics.js";
 import { NameField } from "./object-name.js";
 
 export function ResultPanel() {
@@ -49,7 +49,7 @@ export function ResultPanel() {
           <Alternatives object={object} />
         </>
       )}
-      <MetricTable object={object} metrics={metricTexts.slice(0, MAIN)} id="metrics" />
+      <MetricTable object={object} metrics={[overlapText]} id="metrics" />
       <Truth object={object} />
       <Warnings object={object} />
       <Details object={object} />
