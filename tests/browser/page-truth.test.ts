@@ -52,17 +52,17 @@ test("only what stands in front of an object explains a low overlap", "#sample=o
 
 /** The inputs with a mistake, the question of the sheet that is passed over, the cause that is named, and the button that helps. */
 const mistakes: readonly [mistake: string, dropped: Files, asks: boolean, cause: string, helps: string][] = [
-  [
-    "a mask of the background",
-    { ...files, "mask.png": maskPng(seen.mask.map((inside) => 1 - inside)) },
-    true,
-    "mask",
-    "Invert the mask",
-  ],
   ["the camera of a smaller image", { ...files, "camera.json": halfCamera }, true, "camera", "Scale them by 2"],
   ["a picture of the depth, near is dark", nearIsDark, true, "depth", "Near is dark"],
   ["two masks that are swapped", swappedMasks(), false, "swap", "Exchange the masks"],
 ];
+test("a mask of the background is inverted in the sheet", async (opened, page) => {
+  await drop(opened, { ...files, "mask.png": maskPng(seen.mask.map((inside) => 1 - inside)) });
+  await (await opened.sheet()).getByRole("button", { name: "Invert it" }).first().click();
+  await opened.shows("Own files");
+  await page.locator(".badge", { hasText: "Likely correct" }).waitFor(PATIENCE);
+});
+
 for (const [mistake, dropped, asks, cause, helps] of mistakes) {
   test(`${mistake}: the cause is named, and one button removes it`, async (opened, page) => {
     await drop(opened, dropped);

@@ -17,7 +17,7 @@ const meshModels: readonly Source[] = [
 ];
 
 /** The guide, which is beside the page. */
-const GUIDE = "docs/from-a-photo.txt";
+const GUIDE = "docs/from-a-photo.html";
 
 /** `canMark` says whether the photo is there to be marked. */
 export function FromPhoto({ inputs: { photo, objects }, canMark }: { inputs: Inputs; canMark: boolean }) {
