@@ -179,5 +179,6 @@ test("sizes are width, depth and height on a known ground", "#sample=desk", asyn
   const [first = 0, second = 0, third = 0] = await opened.dimensions();
   assert.ok(first >= second && second >= third);
   await page.click("#align-all");
+  await page.locator(".objects .select", { hasText: "Animal" }).click();
   await page.locator(".sides", { hasText: "width × depth × height" }).waitFor(PATIENCE);
 });
