@@ -16,6 +16,7 @@ import "../style/layout.css";
 import "../style/controls.css";
 import "../style/views.css";
 import "../style/panels.css";
+import "../style/page.css";
 import "../style/intake.css";
 
 const { announce, isSettled } = page;
