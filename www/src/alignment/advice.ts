@@ -137,7 +137,7 @@ function otherUnits({ depthUnit, distanceM, extentM }: Findings): Remedy[] {
 
 const isRelative = ({ depthKind }: Findings) => depthKind.startsWith("affine");
 
-/** The causes, the surest first. How often each is right: docs/design-history.md. */
+/** The causes, the surest first. How the limits of overlaps were set: docs/design-history.md. */
 const rows: readonly Row[] = [
   {
     cause: "moved",
