@@ -19,7 +19,7 @@ const { OPTIONS } = await import(pathToFileURL(join(compiled, "index.js")).href)
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(run\/(advice|video|known-size)|load\/(allowance|archives|case-url|label-masks|mesh-header|slices)|draw\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(nudges|reveal)|panels\/(advised|choices|kept|palette|palette-commands|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
+  /\/src\/(intake|masking|session|export|view3d)\/|\/src\/(alignment\/(advice|swap|video|known-size)|input\/(allowance|archives|camera-size|label-masks|mesh-header|pairing|slices|video-frames)|state\/object-work|commands\/(nudges|palette-commands)|opening\/case-url|pictures\/(albedo|evidence|pose-thumbnail|thumbnails)|views\/space|ui\/(reveal|choices|metric-texts)|panels\/(advised|export-panel|scenes|kept|palette|keys|time-panel|help-dialog|alternatives|late|hand-panel|numbers|known-size|options-panel|remedies|details|input-rows))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);
@@ -50,18 +50,20 @@ export default defineConfig({
   publicDir: false,
   resolve: {
     alias: [
+      // The readers of files refer to this one as well, but the page does not use it at first: a module of its own.
+      { find: /^sim3align\/scene\/sam3d-files$/, replacement: join(compiled, "scene", "sam3d-files.js?intake") },
       { find: /^sim3align$/, replacement: join(compiled, "index.js") },
       { find: /^sim3align\/(.+)$/, replacement: join(compiled, "$1.js") },
     ],
   },
   define: {
     ...definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
-    DOCUMENTS: JSON.stringify(guides.map(({ title, fileName }) => [title, fileName])),
+    DOCUMENTS: JSON.stringify(guides.listed.map(({ title, fileName }) => [title, fileName])),
   },
   // What workers load later has names of its own.
   worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
-  plugins: [preloadedModules, documentation(guides), serviceWorker(www)],
+  plugins: [preloadedModules, documentation(www, guides), serviceWorker(www)],
   build: {
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,

@@ -60,7 +60,7 @@ export async function bundleElement() {
     entryPoints: {
       "sim3-align": join(sources, "element", "index.ts"),
       frame: join(sources, "element", "frame.ts"),
-      "reader-worker": join(sources, "load", "reader-worker.ts"),
+      "reader-worker": join(sources, "input", "reader-worker.ts"),
       worker: join(compiledDir, "worker.js"),
     },
     outdir: folder,

@@ -1,11 +1,12 @@
 /** The static site: `www/` with the built package and the samples. */
 import { cpSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { documents } from "../../www/documentation.mjs";
 import { history } from "../record/history.mjs";
 import { recordPage } from "../record/page.mjs";
 import { cached, digest, once } from "./cache.mjs";
 import { buildPackage } from "./package.mjs";
-import { at, compiledDir, siteDir } from "./paths.mjs";
+import { at, compiledDir, repository, siteDir } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
 import { step } from "./step.mjs";
 
@@ -15,11 +16,9 @@ export const buildSite = once(async () => {
   await step("site", async (say) => {
     const inputs = digest([
       at("www"),
-      at("docs", "record"),
+      at("docs"),
       at("scripts", "record"),
-      at("docs", "guides"),
-      at("docs", "how-it-works.md"),
-      at("README.md"),
+      ...documents(repository).all.map(({ path }) => path),
       at("package-lock.json"),
       compiledDir,
     ]);

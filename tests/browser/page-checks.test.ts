@@ -16,7 +16,7 @@ import {
   WIDTH,
 } from "../support/page-files.js";
 import { pinhole } from "../support/scene.js";
-import { pageTests, type SitePage } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
 
@@ -91,6 +91,12 @@ test("a wrong file is an error of its field alone", async (opened, page, t) => {
       await page.click("#intake-cancel");
     });
   }
+});
+
+test("beside a depth map that cannot be read, mask and mesh are shown", async (opened, page) => {
+  await drop(opened, { ...files, "depth.npy": Uint8Array.of(1, 2, 3) });
+  assert.deepEqual(Object.keys(await problems(opened)), ["depth"]);
+  for (const of of ["Mask of", "Mesh for"]) await page.locator(`.pair canvas[aria-label^="${of}"]`).waitFor(PATIENCE);
 });
 
 test("remedies are buttons", async (opened, page) => {

@@ -1,6 +1,7 @@
 /** The decision about results: accept, fix, next; what helps when unsure; the objects of a scene. */
 import assert from "node:assert/strict";
-import { choose, files } from "../support/page-files.js";
+import { SOFTWARE } from "../support/browser.js";
+import { choose, drop, files } from "../support/page-files.js";
 import { PATIENCE, pageTests } from "../support/site.js";
 
 const test = pageTests();
@@ -42,7 +43,7 @@ test("a wrong mesh is named, and a known size is tried at once", hammer, async (
   // The cause is named first, and the files are one click away.
   assert.equal(await page.getAttribute(".advice", "data-cause"), "mesh");
   assert.deepEqual(await opened.violations(), []);
-  await page.locator(".advice button", { hasText: "Change the mesh" }).click();
+  await page.locator(".advice button", { hasText: "Change the files" }).click();
   await opened.sheet();
   await page.click("#intake-cancel");
   await page.fill("#remedy-size", "20");
@@ -76,8 +77,9 @@ test("objects are hidden, locked, renamed and removed", "#sample=desk", async (o
   await page.keyboard.press("Enter");
   assert.equal(await rows.nth(0).locator(".name").textContent(), "Tea box");
   assert.deepEqual(await page.locator(".objects .rename").count(), 0);
-  const json = JSON.parse(`${(await opened.saved("JSON")).bytes}`) as object;
-  assert.ok("Tea box" in json);
+  const { name, bytes } = await opened.saved("JSON");
+  assert.equal(name, "desk.json");
+  assert.ok("Tea box" in (JSON.parse(`${bytes}`) as object));
 
   // A locked pose stays where a person has put it.
   await page.click(".hand-panel .more summary");
@@ -134,3 +136,49 @@ test(
     assert.equal((Object.values(saved)[0] as { comment: string }).comment, "lid open");
   },
 );
+
+test("a mask is corrected beside the result, or left as it is", async (opened, page) => {
+  await drop(opened, files);
+  await opened.shows("Own files");
+  const before = await page.textContent("#centre");
+  await page.click("#correct-mask");
+  await page.locator(".mask-editor").waitFor(PATIENCE);
+  await page.click("#mask-cancel");
+  await page
+    .locator("dialog[open]")
+    .first()
+    .waitFor({ state: "detached", ...PATIENCE });
+  assert.equal(await page.textContent("#centre"), before);
+  await page.click("#correct-mask");
+  await page.click("#mask-here", PATIENCE);
+  await page.locator("#mask-status[aria-busy=false]").filter({ hasText: "is marked" }).waitFor(PATIENCE);
+  await page.click("#mask-done");
+  // It is aligned anew without another question.
+  await page
+    .locator("dialog[open]")
+    .first()
+    .waitFor({ state: "detached", ...PATIENCE });
+  await opened.shows("Own files");
+});
+
+const phone = { viewport: { width: 390, height: 844 }, address: "#sample=mug" };
+pageTests(SOFTWARE)("on a phone, the handles are below the 3D view that has them", phone, async (_opened, page) => {
+  await page.locator('.space[data-state="ready"]').waitFor(PATIENCE);
+  await page.click("#fix");
+  const ends = async (part: string) => {
+    const { y = 0, height = 0 } = (await page.locator(part).boundingBox()) ?? {};
+    return [Math.round(y), Math.round(y + height)] as const;
+  };
+  await page.locator(".handles button:focus").waitFor(PATIENCE);
+  const [view, handles, bar] = [await ends(".space .view-host"), await ends(".handles"), await ends(".run")];
+  assert.ok(view[0] >= 0 && view[1] <= handles[0] && handles[1] <= bar[0], `${view}; ${handles}; ${bar}`);
+});
+
+test("sizes are width, depth and height on a known ground", "#sample=desk", async (opened, page) => {
+  await page.locator(".sides", { hasText: "longest side first" }).waitFor(PATIENCE);
+  const [first = 0, second = 0, third = 0] = await opened.dimensions();
+  assert.ok(first >= second && second >= third);
+  await page.click("#align-all");
+  await page.locator(".objects .select", { hasText: "Animal" }).click();
+  await page.locator(".sides", { hasText: "width × depth × height" }).waitFor(PATIENCE);
+});

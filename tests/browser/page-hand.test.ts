@@ -16,6 +16,7 @@ test("a decision is undone and redone with the pose it is about", async (opened,
   assert.equal(await text(), "Accept");
   await page.click("#undo");
   assert.match(await text(), /Accepted/);
+  await opened.says(/^Undid the change of/);
   await page.click("#undo");
   assert.equal(await text(), "Accept");
   assert.equal(await opened.source(), "aligned");

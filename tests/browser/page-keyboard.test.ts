@@ -101,7 +101,7 @@ test(
       await press("Control+Enter");
     }
     await opened.says(/All objects are accepted/);
-    assert.deepEqual([await saved("JSON"), await saved("GLB")], ["mug.json", "mug-placed.glb"]);
+    assert.deepEqual([await saved("JSON"), await saved("GLB")], ["table.json", "mug-placed.glb"]);
     // Nothing below the window, to which the arrows could scroll.
     assert.equal(await page.evaluate(() => document.documentElement.scrollHeight - innerHeight), 0);
   },

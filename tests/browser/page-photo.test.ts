@@ -101,7 +101,7 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   assert.equal(await page.inputValue("#depth-kind"), "affine-invariant-disparity");
   assert.match((await page.textContent("#depth-unit")) ?? "", /No unit/);
   assert.match((await sheet.locator('[data-field="camera"]').textContent()) ?? "", /EXIF: 65 mm/);
-  assert.match((await sheet.textContent()) ?? "", /looks like relative disparity/);
+  assert.match((await sheet.textContent()) ?? "", /looks like relative depth/);
   await page.click("#intake-open");
   await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.9);

@@ -1,7 +1,7 @@
 /** Statements of the page: sizes along an object's own sides, and causes of differences between mask and mesh. */
 import assert from "node:assert/strict";
-import { depthInUnits, SIDES_M, tiltedBox } from "../support/page-cases.js";
-import { drop } from "../support/page-files.js";
+import { depthInUnits, halfCamera, nearIsDark, SIDES_M, swappedMasks, tiltedBox } from "../support/page-cases.js";
+import { drop, type Files, files, maskPng, seen } from "../support/page-files.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
@@ -50,15 +50,40 @@ test("only what stands in front of an object explains a low overlap", "#sample=o
   await opened.isNow("aligned");
 });
 
+/** The inputs with a mistake, the question of the sheet that is passed over, the cause that is named, and the button that helps. */
+const mistakes: readonly [mistake: string, dropped: Files, asks: boolean, cause: string, helps: string][] = [
+  ["the camera of a smaller image", { ...files, "camera.json": halfCamera }, true, "camera", "Scale them by 2"],
+  ["a picture of the depth, near is dark", nearIsDark, true, "depth", "Near is dark"],
+  ["two masks that are swapped", swappedMasks(), false, "swap", "Exchange the masks"],
+];
+test("a mask of the background is inverted in the sheet", async (opened, page) => {
+  await drop(opened, { ...files, "mask.png": maskPng(seen.mask.map((inside) => 1 - inside)) });
+  await (await opened.sheet()).getByRole("button", { name: "Invert it" }).first().click();
+  await opened.shows("Own files");
+  await page.locator(".badge", { hasText: "Likely correct" }).waitFor(PATIENCE);
+});
+
+for (const [mistake, dropped, asks, cause, helps] of mistakes) {
+  test(`${mistake}: the cause is named, and one button removes it`, async (opened, page) => {
+    await drop(opened, dropped);
+    if (asks) {
+      await opened.sheet();
+      await page.click("#intake-open");
+    }
+    await page.locator(`.advice[data-cause="${cause}"]`).waitFor(PATIENCE);
+    await page.locator(".advice").getByRole("button", { name: helps }).click();
+    await page.locator(`.advice[data-cause="${cause}"]`).waitFor({ state: "detached", ...PATIENCE });
+    await opened.aligned();
+    await page.locator(".badge", { hasText: /Likely correct|Check it/ }).waitFor(PATIENCE);
+  });
+}
+
 test("a unit that was assumed is asked about, where the object would be as large as furniture", async (opened, page) => {
   // 5000 units per metre, as some datasets have, are taken for millimetres.
   await drop(opened, depthInUnits(5000));
-  assert.match(await advice(opened), /^unit: Is it really .* cm across and 3\.\d m away\? .* was assumed: 0\.001 m/);
-  // A unit that was given is not asked about.
-  await opened.press("Change the unit …");
-  await opened.sheet();
-  await page.selectOption("#depth-scale", "0.0002");
-  await opened.sheet();
-  await page.click("#intake-open");
-  await page.locator(".advice").waitFor({ state: "detached", ...PATIENCE });
+  assert.match(await advice(opened), /^unit: Is it really .* cm across and 3\.\d+ m away\? .* read in 0\.001 m/);
+  assert.match((await page.textContent(".badge")) ?? "", /Check the size/);
+  // A unit that was chosen is not asked about.
+  await page.locator(".advice button", { hasText: /^0\.2 mm: / }).click();
+  await page.locator(".badge", { hasText: "Likely correct" }).waitFor(PATIENCE);
 });

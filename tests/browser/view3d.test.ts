@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { columnMajor } from "../support/scene.js";
 import { isGreen, isNear, open, openCube, pixelOf, placeOf, withoutWebGpu, withWebGpu } from "../support/view3d.js";
 
 const [webGpu, webGl] = [withWebGpu(), withoutWebGpu()];
@@ -62,6 +63,34 @@ test("glTF node transforms are applied, and an invalid GLB leaves the view uncha
   assert.match(said, /Error/);
   await check();
   assert.deepEqual(errors, []);
+});
+
+test("views from above and from the side follow the ground", async () => {
+  const { page, colours } = await openCube(webGl);
+  // Turned about the camera's x axis, together with what stands on it.
+  const lean = (35 * Math.PI) / 180;
+  await page.evaluate(
+    ([pose, normal]) => {
+      harness.view.setGround({ normal: normal as [number, number, number], d: 0.6 });
+      return harness.view.setPose("cube", pose as number[]);
+    },
+    [
+      columnMajor({
+        ...{ scale: 0.1, rotation: [Math.sin(-lean / 2), 0, 0, Math.cos(lean / 2)] },
+        translation: [-0.3, 0, 0.8],
+      }),
+      [0, -Math.cos(lean), Math.sin(lean)],
+    ] as const,
+  );
+  const corners: [number, number][] = [-55, 55].flatMap((x) =>
+    [-55, 55].map((y) => [250 + x, 150 + y] as [number, number]),
+  );
+  for (const look of ["top", "side"]) {
+    await page.evaluate((look) => harness.view.lookFrom(look), look);
+    const found = await colours(corners);
+    // The cube is a square with level sides: in any other turn, its corners are elsewhere.
+    assert.ok(found.every(isGreen), `${look}: ${found.join("; ")}`);
+  }
 });
 
 test("a lost WebGL 2 device is replaced once; a second loss shows a message", async () => {

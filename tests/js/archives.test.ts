@@ -12,10 +12,10 @@ interface NamedFile {
   bytes(): Promise<Uint8Array>;
 }
 const { extractArchives } = await pageModule<{ extractArchives(files: readonly NamedFile[]): Promise<NamedFile[]> }>(
-  "load/archives",
+  "input/archives",
 );
 type Limits = { MAX_FILES: number; MAX_RATIO: number; RATIO_FROM_BYTES: number };
-const { MAX_FILES, MAX_RATIO, RATIO_FROM_BYTES } = await pageModule<Limits>("load/allowance");
+const { MAX_FILES, MAX_RATIO, RATIO_FROM_BYTES } = await pageModule<Limits>("input/allowance");
 
 const file = (path: string, content: Uint8Array): NamedFile => ({ path, bytes: async () => content });
 const extract = (entries: readonly ZipEntry[], count?: number) =>

@@ -1,4 +1,7 @@
 /** Scenes that the tests of the page drop on it: several ones, a video, and inputs of which one is wrong or odd. */
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { repository } from "./environment.js";
 import { obj, png } from "./files.js";
 import {
   cameraFile,
@@ -53,6 +56,36 @@ export function depthInUnits(perMetre: number): Files {
 export function otherCamera(width: number, height: number): Files {
   const scaled = { fx: 2 * pinhole.fx, fy: 2 * pinhole.fy, cx: 2 * pinhole.cx + 0.5, cy: 2 * pinhole.cy + 0.5 };
   return changed({ "camera.json": jsonFile({ ...scaled, width, height }) });
+}
+
+/** The intrinsics of an image of half the size, which does not say so. */
+export const halfCamera = jsonFile({
+  ...{ fx: pinhole.fx / 2, fy: pinhole.fy / 2 },
+  ...{ cx: (pinhole.cx + 0.5) / 2 - 0.5, cy: (pinhole.cy + 0.5) / 2 - 0.5 },
+});
+
+/** A picture of the depth in 256 grey levels: 0 has no reading, and near is dark. */
+export const nearIsDark: Files = (() => {
+  const { "depth.npy": _, ...rest } = files;
+  const readings = [...seen.depth].filter((z) => z > 0);
+  const [near, far] = [Math.min(...readings), Math.max(...readings)];
+  const grey = Uint8Array.from(seen.depth, (z) => (z > 0 ? Math.round(1 + (254 * (z - near)) / (far - near)) : 0));
+  return { ...rest, "depth.png": png(grey, WIDTH, HEIGHT) };
+})();
+
+/** The sample of a table, with the masks of mug and box in each other's place. */
+export function swappedMasks(): Files {
+  const folder = join(repository, "www", "samples", "table");
+  const read = (path: string) => readFileSync(join(folder, path));
+  const dropped: Files = Object.fromEntries(["depth.png", "camera.json", "rgb.png"].map((name) => [name, read(name)]));
+  for (const [mesh, mask] of [
+    ["mug", "box"],
+    ["box", "mug"],
+  ] as const) {
+    dropped[`objects/${mesh}/mesh.glb`] = read(`objects/${mesh}/mesh.glb`);
+    dropped[`objects/${mesh}/mask.png`] = read(`objects/${mask}/mask.png`);
+  }
+  return dropped;
 }
 
 /** The number of frames of the video. */

@@ -88,7 +88,8 @@ export class SitePage {
   /** Waits for a metric of the current pose. */
   async metric(name: string): Promise<number> {
     const cell = this.page.locator(`[data-metric="${name}"]:not([data-value=""])`);
-    await cell.waitFor(PATIENCE);
+    // Most are behind a disclosure.
+    await cell.waitFor({ state: "attached", ...PATIENCE });
     return Number(await cell.getAttribute("data-value"));
   }
 

@@ -31,6 +31,8 @@ interface Harness {
     setPose(id: string, pose: number[]): Promise<void>;
     select(id: string | null): void;
     setGizmo(mode: string | null): void;
+    setGround(plane: { normal: [number, number, number]; d: number }): void;
+    lookFrom(which: string): void;
   };
 }
 declare global {

@@ -1,26 +1,24 @@
 /** The page. */
 import { useEffect } from "preact/hooks";
+import { pageCommands } from "./commands/page-commands.js";
+import { listenToKeys } from "./commands/shortcuts.js";
+import { draft } from "./input/draft.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
-import { ExportPanel } from "./panels/export-panel.js";
 import { Header } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
 import { HandPanel, OptionsPanel } from "./panels/later.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
-import { ScenesPanel } from "./panels/scenes.js";
 import { StartPanel } from "./panels/start-panel.js";
-import { draft } from "./state/draft.js";
 import { isHelpOpen, isPaletteOpen } from "./state/help.js";
 import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
-import { pageCommands } from "./ui/page-commands.js";
-import { listenToKeys } from "./ui/shortcuts.js";
 import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
 import { SpaceView } from "./views/space-view.js";
 
-const { largeView, notKept, othersScenes, scene, space, video } = page;
+const { gizmo, isSettled, largeView, list, notKept, othersScenes, scene, space, video } = page;
 
 const Intake = lazy(
   () => draft.value !== null,
@@ -29,6 +27,15 @@ const Intake = lazy(
 const TimePanel = lazy(
   () => video.value !== null,
   () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
+);
+
+const ExportPanel = lazy(
+  () => isSettled.value,
+  () => import("./panels/export-panel.js").then(({ ExportPanel }) => ExportPanel),
+);
+const ScenesPanel = lazy(
+  () => list.value.length > 0,
+  () => import("./panels/scenes.js").then(({ ScenesPanel }) => ScenesPanel),
 );
 
 const Kept = lazy(
@@ -54,7 +61,7 @@ export function App() {
     <WorkspaceProvider value={page}>
       <div class="frame">
         <Header />
-        <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
+        <main class="page" data-large={large} data-scene={scene.value?.name ?? ""} data-fixing={gizmo.value !== null}>
           {/* First, so that the Tab key reaches it first. */}
           <aside class="side" aria-label="Scene">
             <Kept />
@@ -63,8 +70,8 @@ export function App() {
             <StartPanel />
             <ObjectsPanel />
             <ResultPanel />
-            <ExportPanel />
             <InputPanel />
+            <ExportPanel />
             <OptionsPanel />
           </aside>
           <SpaceView />

@@ -1,13 +1,13 @@
 /** Entry point of the page. Downloads start at once and in parallel. */
 import { render } from "preact";
 import { loadFormats } from "sim3align/formats";
+import { alignAll, alignEach } from "./alignment/align.js";
+import { aligner } from "./alignment/aligner.js";
+import { observePoses } from "./alignment/evaluate.js";
 import { App } from "./app.js";
-import { openFiles, openSample } from "./load/open.js";
-import { sampleOf, samples } from "./load/samples.js";
 import { storePage } from "./offline/offline.js";
-import { alignAll, alignEach } from "./run/align.js";
-import { aligner } from "./run/aligner.js";
-import { observePoses } from "./run/evaluate.js";
+import { openFiles, openSample } from "./opening/open.js";
+import { sampleOf, samples } from "./opening/samples.js";
 import { page } from "./state/page.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
 import { hasSession } from "./state/session-flag.js";
@@ -16,6 +16,7 @@ import "../style/layout.css";
 import "../style/controls.css";
 import "../style/views.css";
 import "../style/panels.css";
+import "../style/page.css";
 import "../style/intake.css";
 
 const { announce, isSettled } = page;
@@ -42,7 +43,7 @@ async function restored(): Promise<boolean> {
 async function openAddress(url: string): Promise<void> {
   announce("Loading …", "working");
   try {
-    await openFiles(await (await import("./load/case-url.js")).filesAt(url));
+    await openFiles(await (await import("./opening/case-url.js")).filesAt(url));
   } catch (error) {
     announce(error instanceof Error ? error.message : `${error}`, "failed");
   }
@@ -70,7 +71,7 @@ async function start(): Promise<void> {
   // The user's own scenes are listed, whatever the address names.
   if (hasSession() && isNamed) await restoreSession(false);
   keepSession();
-  (await import("./session/queue.js")).runAhead();
+  (await import("./intake/queue.js")).runAhead();
   // From here on, files can be dropped without a connection. Without one now, the first drop tries again.
   import("./intake/index.js").catch(() => {});
   storePage();

@@ -1,56 +1,20 @@
 /** Scenes that a host gives to the element: as arrays or encoded files in memory, as files, or by an address. */
 import type { EncodedBytes, PixelArray } from "sim3align";
 import type { MeshFromFile } from "sim3align/formats";
-import { rolesOf } from "../intake/roles.js";
-import { scenesOfTyped } from "../intake/scenes.js";
-import { extractArchives } from "../load/archives.js";
-import { filesAt } from "../load/case-url.js";
-import { cameraOf, knownCamera, type ReadDepthMap, viewOf } from "../load/depth-view.js";
-import { fromFile, type NamedFile } from "../load/files.js";
-import { type Inputs, noInputs } from "../load/inputs.js";
-import { atSize } from "../load/masks.js";
-import { photoFrom } from "../load/photo.js";
-import { type ReadObject, readInputs, sceneOf } from "../load/read-scene.js";
-import { readDepth, readMask, readMesh } from "../load/reader.js";
-import { isSession, type Packed, sessionParts, unpacked } from "../session/pack.js";
-import type { Scene } from "../state/scene.js";
+import { cameraOf, knownCamera, type ReadDepthMap, viewOf } from "../input/depth-view.js";
+import { atSize } from "../input/masks.js";
+import { photoFrom } from "../input/photo.js";
+import { type ReadObject, sceneOf } from "../input/read-scene.js";
+import { readDepth, readMask, readMesh } from "../input/reader.js";
+
+import { type Inputs, noInputs } from "../state/inputs.js";
+import type { Opened } from "./given-files.js";
 import type { GivenInput, GivenObject, GivenScene } from "./sim3-align.js";
 
-/** A scene that can be shown, and what was done with it before. */
-export interface Opened {
-  scene: Scene;
-  inputs: Inputs;
-  session: Packed | null;
-}
-
-/** Reads what a host gives. */
+/** Reads what a host gives. What files and addresses need is loaded with the first of them. */
 export async function readGiven(given: GivenInput): Promise<Opened> {
-  if (typeof given === "string") return fromFiles(await filesAt(given));
-  if (given instanceof Blob) return fromFiles([fromFile(asFile(given))]);
-  if (Array.isArray(given)) return fromFiles(given.map((file: File) => fromFile(file)));
-  return fromMemory(given as GivenScene);
-}
-
-const asFile = (blob: Blob) => (blob instanceof File ? blob : new File([blob], "case.zip"));
-
-/** The first scene of files, which may be a project. */
-async function fromFiles(files: readonly NamedFile[]): Promise<Opened> {
-  const extracted = await extractArchives(files);
-  const session = extracted.find(isSession);
-  const parts = session === undefined ? null : await sessionParts(extracted, session);
-  const inputs =
-    parts === null
-      ? (await scenesOfTyped(await rolesOf(extracted)))[0]
-      : (unpacked(parts.session, parts.files) ?? undefined);
-  if (inputs === undefined) throw new Error("The files contain no scene that this version can open.");
-  const reading = await readInputs(inputs);
-  const [problem] = reading.problems;
-  if (problem !== undefined) throw new Error(`${problem.field}: ${problem.message}`);
-  const scene = sceneOf(inputs, reading);
-  if (scene === null) {
-    throw new Error("The files lack a part: a scene has a depth map, a camera, and a mask and a mesh per object.");
-  }
-  return { scene, inputs, session: parts?.session ?? null };
+  const isFiles = typeof given === "string" || given instanceof Blob || Array.isArray(given);
+  return isFiles ? (await import("./given-files.js")).readFiles(given) : fromMemory(given as GivenScene);
 }
 
 /** A scene in memory, read as files are. */

@@ -1,14 +1,14 @@
 /** What an element says about its objects, as plain data. */
 import type { Sim3 } from "sim3align";
-import { type PackedState, stateOf } from "../session/pack.js";
-import { isMetric } from "../state/calibration.js";
 import type { ObjectModel } from "../state/object-model.js";
+import { type ObjectWork, stateOf } from "../state/object-work.js";
+import { isMetric } from "../state/raw-view.js";
 import type { Workspace } from "../state/workspace.js";
 import type { ElementSession as HostSession, ObjectResult } from "./sim3-align.js";
 
 /** As hosts see it, with the state that is opaque to them. */
 export interface ElementSession extends HostSession {
-  objects: { name: string; state: PackedState }[];
+  objects: { name: string; state: ObjectWork }[];
 }
 
 /** A copy of the pose, which the host may keep and change. */

@@ -1,9 +1,9 @@
 /** Copies and saves results. */
-import { extension } from "../load/files.js";
-import { isMetric } from "../state/calibration.js";
+import { extension } from "../input/files.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { permalink } from "../state/permalink.js";
+import { isMetric } from "../state/raw-view.js";
 import type { Scene } from "../state/scene.js";
 import { imageSnapshot } from "../views/image-view.js";
 
@@ -18,7 +18,13 @@ const writers = () => import("./files.js");
 export const allExports: readonly Export[] = [
   ["GLB", async (_, object) => download(`${fileName(object.name)}-placed.glb`, (await writers()).glbBytes(object))],
   ["GLB of the scene", async (scene) => download("scene.glb", (await writers()).sceneBytes(scene))],
-  ["JSON", async (scene, { name }) => download(`${fileName(name)}.json`, (await writers()).jsonText(scene))],
+  [
+    "JSON",
+    async (scene, { name }) => {
+      const of = scene.objects.length > 1 ? scene.name : name;
+      download(`${fileName(of)}.json`, (await writers()).jsonText(scene));
+    },
+  ],
   [
     "BOP JSON",
     async (scene) => {

@@ -1,10 +1,10 @@
 /** Writers of results, in formats that other programs read. */
 import { exportGlb, exportPly, exportSceneGlb, placeGlb, toBop, toRowMajor } from "sim3align/conventions";
-import { videoWork } from "../run/video.js";
+import { videoWork } from "../alignment/video.js";
+import { sceneResult, videoResult } from "../session/results.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
-import { sceneResult, videoResult } from "./results.js";
 
 const { support } = page;
 

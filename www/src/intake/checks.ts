@@ -1,11 +1,13 @@
 /** What is missing, contradictory or implausible in the inputs of a scene. */
+import type { PixelArray } from "sim3align";
 import { doubtOfSize } from "sim3align/camera/pinhole";
-import { depthRange } from "../draw/colours.js";
-import { baseName, folderOf } from "../load/files.js";
-import type { Inputs } from "../load/inputs.js";
-import { doubt, error, type Problem, type Remedy, withoutObject } from "../load/problems.js";
-import type { Reading, ReadObject } from "../load/read-scene.js";
-import { visibleExtent } from "../load/visible-extent.js";
+import { otherSize, scaled } from "../input/camera-size.js";
+import { baseName, folderOf } from "../input/files.js";
+import { doubt, error, type Problem, type Remedy, withoutObject } from "../input/problems.js";
+import type { Reading, ReadObject } from "../input/read-scene.js";
+import { depthRange } from "../pictures/colours.js";
+import { type Inputs, withInverted } from "../state/inputs.js";
+import { visibleExtent } from "../state/visible-extent.js";
 import { isForeign, isNamedPhoto } from "./roles.js";
 
 /** A typical vertical field of view of phones and laptops. */
@@ -19,6 +21,8 @@ const PLAUSIBLE_SIZE_M = [0.002, 100] as const;
 const PLAUSIBLE_FOV_DEG = [4, 140] as const;
 /** A mask with a larger share of the image shows no single object. */
 const MOST_OF_IMAGE = 0.97;
+/** A mask with a larger share of the image's border is mostly that of the background. */
+const MOST_OF_BORDER = 0.8;
 /** Ratios of width and height that differ more show different fields of view. */
 const ASPECT_TOLERANCE = 0.02;
 
@@ -100,13 +104,16 @@ function guessed({ depthKind: chosen }: Inputs, { cameraSource, depth, depthKind
     title: `Use ${ASSUMED_FOV_DEG}° field of view`,
     apply: (inputs) => ({ ...inputs, camera: { kind: "assumed", fovYDeg: ASSUMED_FOV_DEG } }),
   };
-  const right: Remedy = { title: "It is", apply: (inputs) => ({ ...inputs, depthKind }) };
+  const right: Remedy = { title: "Near is bright", apply: (inputs) => ({ ...inputs, depthKind }) };
+  const dark: Remedy = { title: "Near is dark", apply: (inputs) => ({ ...inputs, depthKind: "affine-invariant" }) };
   const looksRelative =
-    "This looks like relative disparity, as models draw it: near is bright. Sizes will have no unit until one is known.";
+    "This looks like relative depth, as models draw it: mostly, near is bright. Sizes will have no unit until one is known.";
   const unknown =
     "No camera, and neither the depth file nor the photo states one: the focal length will be estimated together with the poses.";
   return [
-    ...(depth !== null && chosen === null && depthKind !== "metric" ? [doubt("depth", looksRelative, [right])] : []),
+    ...(depth !== null && chosen === null && depthKind !== "metric"
+      ? [doubt("depth", looksRelative, [right, dark])]
+      : []),
     ...(cameraSource === "estimate" ? [doubt("camera", unknown, [assumed])] : []),
   ];
 }
@@ -153,6 +160,12 @@ function ofCamera({ camera, cameraSize, depth }: Reading): Problem[] {
   const fovDeg = fovYDegOf(camera, depth);
   const [narrow, wide] = PLAUSIBLE_FOV_DEG;
   const ofOtherSize = cameraSize === null ? doubtOfSize(camera, depth) : undefined;
+  const factor = otherSize(camera, depth);
+  const scale = (by: number): Remedy => ({
+    title: `Scale by ${Number(by.toFixed(2))}`,
+    apply: (inputs) => ({ ...inputs, camera: scaled(camera, by) }),
+  });
+  const rescaled = factor === null ? [] : [scale(factor)];
   return [
     ...(fovDeg < narrow || fovDeg > wide
       ? [
@@ -162,7 +175,7 @@ function ofCamera({ camera, cameraSize, depth }: Reading): Problem[] {
           ),
         ]
       : []),
-    ...(ofOtherSize === undefined ? [] : [doubt("camera", ofOtherSize)]),
+    ...(ofOtherSize === undefined ? [] : [doubt("camera", ofOtherSize, rescaled)]),
   ];
 }
 
@@ -197,11 +210,17 @@ function ofObject(
     problems.push(doubt("mesh", `Do ${names} belong together? Their names do not say so.`, [right], i));
   }
   if (mask === null || depth === null) return problems;
-  const { count, readings } = counted(mask, depth.data);
+  const { count, readings, border } = counted(mask, depth);
+  const invert: Remedy = { title: "Invert it", apply: withInverted(i) };
   if (count === 0)
     return [...problems, error("mask", "The mask is empty: no pixel is marked.", several ? [leaveOut] : [], i)];
   if (count > MOST_OF_IMAGE * mask.length) {
-    return [...problems, error("mask", "The mask covers the whole image. It should mark the object only.", [], i)];
+    const all = "The mask covers the whole image. It should mark the object only.";
+    return [...problems, error("mask", all, [invert], i)];
+  }
+  if (border > MOST_OF_BORDER) {
+    const around = "The mask covers the border of the image: it seems to mark the background instead of the object.";
+    problems.push(doubt("mask", around, [invert], i));
   }
   if (readings === 0) {
     return [...problems, error("mask", "No pixel of the mask has a depth reading.", several ? [leaveOut] : [], i)];
@@ -216,13 +235,15 @@ function ofObject(
   return problems;
 }
 
-/** The pixels of a mask, and those with a depth reading. */
-function counted(mask: Uint8Array, depthM: Float32Array): { count: number; readings: number } {
-  let [count, readings] = [0, 0];
+/** The pixels of a mask, those with a depth reading, and the share of the image's border that they cover. */
+function counted(mask: Uint8Array, { data, width, height }: PixelArray<Float32Array>) {
+  let [count, readings, atBorder] = [0, 0, 0];
   for (let pixel = 0; pixel < mask.length; pixel++) {
     if (mask[pixel] === 0) continue;
+    const [x, y] = [pixel % width, Math.floor(pixel / width)];
     count++;
-    if ((depthM[pixel] as number) > 0) readings++;
+    if ((data[pixel] as number) > 0) readings++;
+    if (x === 0 || y === 0 || x === width - 1 || y === height - 1) atBorder++;
   }
-  return { count, readings };
+  return { count, readings, border: atBorder / (2 * (width + height) - 4) };
 }

@@ -1,22 +1,21 @@
 /** Makes and changes the draft. A draft without any problem becomes the scene by itself. */
 
-import { extractArchives } from "../load/archives.js";
-import type { NamedFile } from "../load/files.js";
-import { type Inputs, noInputs, type Role, type Typed, withId } from "../load/inputs.js";
-import { error, errorOf, type Problem } from "../load/problems.js";
-import { readInputs, sceneOf } from "../load/read-scene.js";
-import { alignAll } from "../run/align.js";
-import { openVideo, trackAll } from "../run/video.js";
+import { alignAll } from "../alignment/align.js";
+import { openVideo, trackAll } from "../alignment/video.js";
+import { extractArchives } from "../input/archives.js";
+import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../input/draft.js";
+import { error, errorOf, type Problem } from "../input/problems.js";
+import { readInputs, sceneOf } from "../input/read-scene.js";
+import { asListed, isVideo } from "../input/video-frames.js";
 import { isSession } from "../session/pack.js";
 import { openProject } from "../session/project.js";
-import { type Draft, draft, draftInputs, isReady, seenDoubts } from "../state/draft.js";
+import { type Inputs, type NamedFile, noInputs, type Role, type Typed, withId } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
 import { canReplace, replaced } from "./replace.js";
 import { rolesOf } from "./roles.js";
 import { fromSam3d } from "./sam3d.js";
 import { scenesOfTyped } from "./scenes.js";
-import { asListed, isVideo } from "./video.js";
 
 const { announce, enlist, inputs, scene, show } = page;
 
@@ -88,6 +87,26 @@ export async function asVideo(isOne: boolean): Promise<void> {
 export function edit(inputs: Inputs): Promise<void> {
   return set({ scenes: [{ ...inputs, files: filesOf(inputs) }], index: 0, isVideo: false, isEdit: true });
 }
+
+/** Makes inputs the scene that is shown, unless they raise a question that nobody has seen. */
+export async function remake(inputs: Inputs): Promise<void> {
+  await edit({ ...inputs, ...ownName(inputs), files: filesOf(inputs) });
+  await acceptIfClear();
+}
+
+/** Makes inputs a draft in which the mask of an object is marked. */
+export async function correct(inputs: Inputs, object: number): Promise<void> {
+  const named = { ...inputs, ...ownName(inputs), files: filesOf(inputs) };
+  await set({ scenes: [named], index: 0, isVideo: false, isEdit: true, isCorrection: true });
+  if (draft.peek()?.isCorrection) marked.value = object;
+}
+
+/** Opens the draft, unless it raises a question that nobody has seen. */
+export async function acceptIfClear(): Promise<void> {
+  if (draft.peek()?.problems.every(isSeen)) await accept();
+}
+
+const isSeen = ({ kind, message }: Problem) => kind === "doubt" && seenDoubts.has(message);
 
 /** Looks at another scene of the draft. */
 export async function look(index: number): Promise<void> {

@@ -1,5 +1,5 @@
 /** Where depth map, mask and mesh of a photo come from. */
-import type { Inputs } from "../load/inputs.js";
+import type { Inputs } from "../state/inputs.js";
 import { MarkButton } from "./marking.js";
 
 type Source = readonly [title: string, address: string];
@@ -17,7 +17,7 @@ const meshModels: readonly Source[] = [
 ];
 
 /** The guide, which is beside the page. */
-const GUIDE = "docs/from-a-photo.txt";
+const GUIDE = "docs/from-a-photo.html";
 
 /** `canMark` says whether the photo is there to be marked. */
 export function FromPhoto({ inputs: { photo, objects }, canMark }: { inputs: Inputs; canMark: boolean }) {

@@ -1,18 +1,13 @@
 /** Masks that are marked on the photo of a draft. */
-import { signal } from "@preact/signals";
 import { useMemo } from "preact/hooks";
-import type { NamedFile } from "../load/files.js";
-import type { Inputs, ObjectFiles } from "../load/inputs.js";
-import { colourOf } from "../load/read-scene.js";
+import { type Draft, draftInputs, marked } from "../input/draft.js";
+import { colourOf } from "../input/read-scene.js";
 import { depthFile, maskFile } from "../masking/mask-file.js";
 import { seenBy } from "../masking/photo-model.js";
 import type { Mark } from "../masking/strokes.js";
-import { type Draft, draftInputs } from "../state/draft.js";
+import type { Inputs, NamedFile, ObjectFiles } from "../state/inputs.js";
 import { lazy } from "../ui/lazy.js";
-import { change } from "./draft.js";
-
-/** The index of the object that is being marked; null for none. */
-const marked = signal<number | null>(null);
+import { acceptIfClear, change, dismiss } from "./draft.js";
 
 /** How masks were made that were made here, for going on with them. */
 const marksOf = new WeakMap<NamedFile, readonly Mark[]>();
@@ -57,12 +52,16 @@ export function Marking({ open, ground }: { open: Draft; ground: Uint8ClampedArr
       before={reading?.objects[i]?.mask ?? null}
       marks={(mask && marksOf.get(mask.file)) ?? []}
       model={photo === null ? undefined : globalThis.sim3alignPhotoModel}
-      onCancel={close}
+      onCancel={() => {
+        close();
+        if (open.isCorrection) dismiss();
+      }}
       onDone={async (drawn, marks) => {
         const file = await maskFile(drawn, shown, size, name);
         marksOf.set(file, marks);
         close();
         await change(withMask(i, file), true);
+        if (open.isCorrection) await acceptIfClear();
       }}
       onAsk={async (place) => {
         const model = globalThis.sim3alignPhotoModel;
@@ -93,7 +92,7 @@ const withMask =
     const before = inputs.objects[i];
     const object: ObjectFiles = before ?? { name: "Object", mask: null, mesh: null, truth: null, isSure: true };
     const objects = [...inputs.objects];
-    objects[i] = { ...object, mask: { file }, isSure: true };
+    objects[i] = { ...object, mask: { file, isDrawn: true }, isSure: true };
     const files = inputs.files.filter((one) => one.file !== before?.mask?.file);
     return { ...inputs, objects, files: [...files, { file, role: "mask" }] };
   };

@@ -1,13 +1,13 @@
 /** The objects of a draft: each mask with its mesh. Meshes are paired anew by selecting or dragging. */
 import { useMemo } from "preact/hooks";
 import { meshResources } from "sim3align/input/formats";
-import { maskThumbnail, meshThumbnail } from "../draw/thumbnails.js";
-import { baseName } from "../load/files.js";
-import type { Inputs, MeshSource, ObjectFiles } from "../load/inputs.js";
-import { photoExtensions } from "../load/photo.js";
-import { withoutObject } from "../load/problems.js";
-import { colourOf, type ReadObject } from "../load/read-scene.js";
-import { type Draft, draftInputs } from "../state/draft.js";
+import { type Draft, draftInputs } from "../input/draft.js";
+import { baseName } from "../input/files.js";
+import { photoExtensions } from "../input/photo.js";
+import { withoutObject } from "../input/problems.js";
+import { colourOf, type ReadObject } from "../input/read-scene.js";
+import { maskThumbnail, meshThumbnail } from "../pictures/thumbnails.js";
+import type { Inputs, MeshSource, ObjectFiles } from "../state/inputs.js";
 import { Check, Choices } from "../ui/controls.js";
 import { Picture } from "../ui/picture.js";
 import { acceptOf, FieldFiles } from "./cards.js";
@@ -166,7 +166,7 @@ const DRAGGED = "application/x-sim3align-mesh";
 
 function maskTitle({ mask }: ObjectFiles): string {
   if (mask === null) return "no mask";
-  const name = baseName(mask.file.path);
+  const name = `${baseName(mask.file.path)}${mask.isInverted === true ? ", inverted" : ""}`;
   if (mask.label !== undefined) return `${name}, value ${mask.label}`;
   return mask.annotation === undefined ? name : `${name}, annotation ${mask.annotation + 1}`;
 }

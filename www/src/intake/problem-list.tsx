@@ -1,7 +1,8 @@
 /** The problems of a field, with buttons that help. */
-import type { Field } from "../load/inputs.js";
-import type { Problem } from "../load/problems.js";
-import { draft } from "../state/draft.js";
+
+import { draft } from "../input/draft.js";
+import type { Problem } from "../input/problems.js";
+import type { Field } from "../state/inputs.js";
 import { change } from "./draft.js";
 
 /** The problems of a field; with an object, those of it. */

@@ -1,7 +1,7 @@
 /** Puts dropped files into inputs in place of those that they name. */
-import { baseName, type NamedFile } from "../load/files.js";
-import type { Inputs, ObjectFiles, Role, Typed } from "../load/inputs.js";
-import { paired } from "./pairing.js";
+import { baseName } from "../input/files.js";
+import { paired } from "../input/pairing.js";
+import type { Inputs, NamedFile, ObjectFiles, Role, Typed } from "../state/inputs.js";
 import { scenesOfTyped } from "./scenes.js";
 
 /** What can be replaced in a scene that is there: all but its depth map, with which a new scene begins. */

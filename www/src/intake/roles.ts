@@ -1,10 +1,10 @@
 /** The role of each file of a drop: by its name, and where the name says nothing, by how the file begins. */
 import { type Part, partOf } from "sim3align/case-names";
 import { extensionsOf, meshResources } from "sim3align/input/formats";
-import { baseName, extension, type NamedFile } from "../load/files.js";
-import type { Role, Typed } from "../load/inputs.js";
-import { isBlackAndWhite } from "../load/label-masks.js";
-import { photoExtensions } from "../load/photo.js";
+import { baseName, extension } from "../input/files.js";
+import { isBlackAndWhite } from "../input/label-masks.js";
+import { photoExtensions } from "../input/photo.js";
+import type { NamedFile, Role, Typed } from "../state/inputs.js";
 
 /** Files that hold nothing but depth. */
 const depthExtensions = extensionsOf("depth").filter((ending) => !extensionsOf("mask").includes(ending));

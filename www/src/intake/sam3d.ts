@@ -2,7 +2,8 @@
 import type { DepthKind } from "sim3align";
 import { requiredBytes } from "sim3align/input/bytes";
 import { sam3dScene } from "sim3align/scene/sam3d-files";
-import { baseName, extension, type NamedFile } from "../load/files.js";
+import { baseName, extension } from "../input/files.js";
+import type { NamedFile } from "../state/inputs.js";
 
 /** The files of a scene folder, and what its depth is. */
 interface MadeScene {

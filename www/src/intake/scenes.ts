@@ -1,19 +1,20 @@
 /** Divides the files of a drop into scenes: one depth map each, with the files that belong to it. */
 import { ofDepthCamera } from "sim3align/case-names";
 import { naturally } from "sim3align/values/order";
-import { baseName, folderOf, type NamedFile, stem } from "../load/files.js";
+import { baseName, folderOf, stem } from "../input/files.js";
+import { annotationsOf, labelValues } from "../input/label-masks.js";
+import { paired, titleOf, wordsOf } from "../input/pairing.js";
 import {
   type Inputs,
   type MaskSource,
   type MeshSource,
+  type NamedFile,
   noInputs,
   type ObjectFiles,
   type Role,
   type TruthSource,
   type Typed,
-} from "../load/inputs.js";
-import { annotationsOf, labelValues } from "../load/label-masks.js";
-import { paired, titleOf, wordsOf } from "./pairing.js";
+} from "../state/inputs.js";
 import { isNamedPhoto } from "./roles.js";
 
 /** The scenes of a drop; at least one, which lacks what the files lack. */

@@ -1,9 +1,10 @@
 /** The intake sheet: what each file of a draft is used for, what is missing, and what helps. */
 import { useEffect, useMemo, useRef } from "preact/hooks";
-import { depthImage } from "../draw/colours.js";
-import { baseName } from "../load/files.js";
-import type { Inputs, Role } from "../load/inputs.js";
-import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
+import { type Draft, draft, draftInputs, isReady } from "../input/draft.js";
+import { baseName } from "../input/files.js";
+import { canBeVideo } from "../input/video-frames.js";
+import { depthImage } from "../pictures/colours.js";
+import type { Inputs, Role } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { Check, Choices, FileButton } from "../ui/controls.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
@@ -12,7 +13,6 @@ import { FromPhoto } from "./from-photo.js";
 import { Marking } from "./marking.js";
 import { ObjectRows } from "./object-rows.js";
 import { Problems } from "./problem-list.js";
-import { canBeVideo } from "./video.js";
 
 export function Sheet() {
   const dialog = useRef<HTMLDialogElement>(null);

@@ -1,5 +1,5 @@
 /** Draws a photo with the mask that is being made. */
-import { rgbOf } from "../draw/colours.js";
+import { rgbOf } from "../pictures/colours.js";
 import type { Mark } from "./strokes.js";
 
 interface Shown {

@@ -1,5 +1,5 @@
 /** Files of what was marked or found on a photo. */
-import type { NamedFile } from "../load/files.js";
+import type { NamedFile } from "../state/inputs.js";
 
 interface Size {
   width: number;

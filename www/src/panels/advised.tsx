@@ -1,9 +1,10 @@
 /** What is said of a result: the cause of what is wrong first, with what helps; warnings and contact among the rest. */
-import { type Advice, adviceFor } from "../run/advice.js";
-import { applyAlternative } from "../run/alternatives.js";
+import { useEffect } from "preact/hooks";
+import { type Advice, adviceFor } from "../alignment/advice.js";
+import { searchSwap, swapIn } from "../alignment/swap.js";
 import type { ObjectModel } from "../state/object-model.js";
+import { SURE } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
-import { small, type Unit } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { warningsOf } from "./sureness.js";
 
@@ -12,34 +13,41 @@ interface OfObject {
 }
 
 const adviceIn = (scene: Scene | null, object: ObjectModel | null): Advice | null =>
-  scene === null || object === null ? null : adviceFor(scene, object);
+  scene === null || object === null ? null : adviceFor(scene, object, swapIn(scene).value);
 
 export function Advised({ object }: OfObject) {
   const workspace = useWorkspace();
-  const { fileActions, isReadonly, scene } = workspace;
-  const advice = adviceIn(scene.value, object);
+  const { fileActions, isReadonly, isRunning } = workspace;
+  const [scene, isBusy] = [workspace.scene.value, isRunning.value];
+  useEffect(() => {
+    if (scene !== null && object !== null && !isBusy) searchSwap(scene).catch(console.error);
+  }, [scene, object, isBusy]);
+  const advice = adviceIn(scene, object);
   if (advice === null || object === null) return null;
-  const { cause, text, remedy } = advice;
-  const files = fileActions.value;
-  const act = remedy?.act === "files" ? files?.edit : () => applyAlternative(workspace, object, -1);
+  const { cause, text, remedies } = advice;
+  const hasFiles = fileActions.value !== null;
+  const offered = isReadonly.value ? [] : remedies.filter(({ needsFiles }) => hasFiles || !needsFiles);
   return (
-    <p class="advice" role="status" data-cause={cause}>
-      {text}{" "}
-      {remedy !== null && act !== undefined && !isReadonly.value && (
-        <button type="button" onClick={act}>
-          {remedy.title}
-        </button>
+    <div class="advice" role="status" data-cause={cause}>
+      <p>{text}</p>
+      {offered.length > 0 && (
+        <p class="row">
+          {offered.map(({ title, act }) => (
+            <button key={title} type="button" disabled={isBusy} onClick={() => act(workspace, object)}>
+              {title}
+            </button>
+          ))}
+        </p>
       )}
-    </p>
+    </div>
   );
 }
 
 export function Warnings({ object }: OfObject) {
-  const { scene, unit } = useWorkspace();
-  const contact = object === null ? null : contactText(scene.value, object, unit.value);
-  // The advice names the cause of a mesh that seems to be another one.
-  const isTold = adviceIn(scene.value, object) !== null;
-  const own = object === null ? [] : warningsOf(object).filter(({ code }) => !isTold || code !== "MESH_DOUBTFUL");
+  const { scene } = useWorkspace();
+  const contact = object === null ? null : contactText(scene.value, object);
+  const told: readonly string[] = adviceIn(scene.value, object)?.codes ?? [];
+  const own = object === null ? [] : warningsOf(object).filter(({ code }) => !told.includes(code));
   const warnings = [...(scene.value?.warnings ?? []), ...own.map(({ message }) => message)];
   return (
     <>
@@ -55,18 +63,16 @@ export function Warnings({ object }: OfObject) {
   );
 }
 
-/** What the object rests on, if the alignment of the scene says so. */
-function contactText(whole: Scene | null, object: ObjectModel, unit: Unit): string | null {
-  const contact = object.alignment.value?.contact;
-  if (contact === undefined || object.pose.value.source !== "aligned") return null;
-  const { restsOn, gapM } = contact;
-  if (restsOn === null) return "Touches nothing: it hangs, leans or floats.";
-  const what =
-    restsOn === "support"
-      ? "the ground"
-      : restsOn === "level"
-        ? "a level above the ground"
-        : (whole?.objects[restsOn]?.name ?? "another object");
-  const gap = gapM === null ? "" : `, ${small(Math.abs(gapM), unit)} ${gapM < 0 ? "sunk in" : "above it"}`;
-  return `Stands on ${what}${gap}.`;
+/** Of a mesh that a generator has made, the underside is a guess. Gaps above this share of the size are no contact. */
+const TOUCHING = 0.03;
+
+/** What the object rests on, if that is sure. */
+function contactText(whole: Scene | null, object: ObjectModel): string | null {
+  const { box, confidence, pose } = object;
+  const { restsOn = null, gapM } = object.alignment.value?.contact ?? {};
+  const isSure = pose.value.source === "aligned" && (confidence ?? 0) >= SURE;
+  if (restsOn === null || !isSure || Math.abs(gapM ?? 1) > TOUCHING * Math.max(...box.value.sizeM)) return null;
+  if (restsOn === "support") return "Stands on the ground.";
+  if (restsOn === "level") return "Stands on a level above the ground.";
+  return `Stands on ${whole?.objects[restsOn]?.name ?? "another object"}.`;
 }

@@ -1,7 +1,7 @@
 /** The result and its alternatives, as pictures. */
 import { useMemo } from "preact/hooks";
-import { poseThumbnail } from "../draw/pose-thumbnail.js";
-import { applyAlternative, shownAlternative } from "../run/alternatives.js";
+import { applyAlternative, shownAlternative } from "../alignment/alternatives.js";
+import { poseThumbnail } from "../pictures/pose-thumbnail.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";

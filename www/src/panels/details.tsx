@@ -3,17 +3,18 @@ import type { Stage } from "sim3align";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
 import { orDash, significant, small } from "../ui/format.js";
-import { metricTexts, stageTitles } from "../ui/texts.js";
+import { metricTexts } from "../ui/metric-texts.js";
+import { overlapText, stageTitles } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { inputRows } from "./input-rows.js";
-import { MAIN, MetricTable } from "./metrics.js";
+import { MetricTable } from "./metrics.js";
 import { quietWarningsOf } from "./sureness.js";
 
 export function Details({ object }: { object: ObjectModel | null }) {
   return (
     <details class="more details">
       <summary>Details</summary>
-      <MetricTable object={object} metrics={metricTexts.slice(MAIN)} id="more-metrics" />
+      <MetricTable object={object} metrics={metricTexts} id="more-metrics" />
       <Pose object={object} />
       {object !== null &&
         quietWarningsOf(object).map(({ code, message }) => (
@@ -37,7 +38,7 @@ const meanings: readonly (readonly [title: string, text: string])[] = [
     "Alternatives",
     "Other poses that explain the observation nearly as well, best first. Objects that look similar from several sides have several. The angle is the rotation from the result.",
   ],
-  ...metricTexts.map(
+  ...[overlapText, ...metricTexts].map(
     ({ title, about, better }) =>
       [title, `${about} ${better === "higher" ? "Higher is better." : "Lower is better."}`] as const,
   ),

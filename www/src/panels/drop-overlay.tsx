@@ -1,7 +1,7 @@
 /** Accepts files dropped anywhere on the page. */
 import { useEffect, useState } from "preact/hooks";
-import { droppedFiles } from "../load/files.js";
-import { openFiles } from "../load/open.js";
+import { droppedFiles } from "../input/files.js";
+import { openFiles } from "../opening/open.js";
 
 const hasFiles = ({ dataTransfer }: DragEvent) => dataTransfer?.types.includes("Files") === true;
 

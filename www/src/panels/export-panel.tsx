@@ -1,15 +1,12 @@
 /** Buttons that copy or save results. */
 import { allExports, listExport, videoExport } from "../export/export.js";
 import { page } from "../state/page.js";
+import { Menu } from "../ui/controls.js";
 
 const { list, scene, selected, video } = page;
 
-/** What is not behind "More formats": the mesh and the numbers for other programs, and everything in one file. */
-const first = new Set<unknown>([
-  videoExport,
-  listExport,
-  ...allExports.filter(([title]) => ["GLB", "JSON", "Project"].includes(title)),
-]);
+/** What is not behind "More formats". */
+const first = new Set<unknown>([videoExport, listExport, ...allExports.filter(([title]) => title === "JSON")]);
 
 export function ExportPanel() {
   const [whole, object] = [scene.value, selected.value];
@@ -34,12 +31,13 @@ export function ExportPanel() {
   return (
     <section class="panel export-panel" aria-labelledby="export-title">
       <h2 id="export-title">Export</h2>
-      {buttons(true)}
-      <details class="more">
-        <summary>More formats</summary>
-        {buttons(false)}
-        {whole !== null && whole.sample === null && <p class="quiet">Your own files cannot be linked.</p>}
-      </details>
+      <div class="row">
+        {buttons(true)}
+        <Menu title="More formats" label="More formats">
+          {buttons(false)}
+          {whole !== null && whole.sample === null && <p class="quiet">Your own files cannot be linked.</p>}
+        </Menu>
+      </div>
     </section>
   );
 }

@@ -1,7 +1,7 @@
-/** Adjusting the pose by hand: undo and redo, handles, refine; behind "More", what a correction rarely needs. */
-import { refine } from "../run/align.js";
+/** Adjusting the pose by hand: undo and redo; while something is fixed, handles, refine, numbers and steps. */
+import { refine } from "../alignment/align.js";
+import { canNudge, nudgeGroups } from "../commands/nudges.js";
 import { Check } from "../ui/controls.js";
-import { canNudge, nudgeGroups } from "../ui/nudges.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { KnownSize } from "./known-size.js";
 import { Numbers } from "./numbers.js";
@@ -32,9 +32,8 @@ export function HandPanel() {
   const size = <KnownSize object={object} id="known-size" />;
   return (
     <section class="panel hand-panel" part="hand" aria-labelledby="hand-title">
+      {/* Each is in sight while it can do something, or has the focus. */}
       <div class="panel-head">
-        <h2 id="hand-title">By hand</h2>
-        {/* Each is in sight while it can do something, or has the focus. */}
         {steps.map(([name, title, keys, can]) => (
           <button
             key={name}
@@ -49,37 +48,37 @@ export function HandPanel() {
           </button>
         ))}
       </div>
-      <fieldset class="handles" disabled={!isReady || space.value.kind !== "ready"}>
-        <legend>Handles in 3D, and arrow keys</legend>
-        {modes.map(([mode, title, key]) => (
-          <button
-            key={mode}
-            type="button"
-            aria-pressed={gizmo.value === mode}
-            aria-keyshortcuts={key}
-            disabled={mode === "scale" && lockScale}
-            onClick={() => {
-              gizmo.value = gizmo.peek() === mode ? null : mode;
-            }}
-          >
-            {title}
-          </button>
-        ))}
-      </fieldset>
-      {/* A disabled button would lose the focus while it runs. */}
-      <button
-        type="button"
-        id="refine"
-        aria-disabled={!isReady}
-        aria-keyshortcuts="F"
-        onClick={() => refine(workspace)}
-      >
-        Refine pose
-      </button>
       {/* Without it, no size of the scene has a unit. */}
       {!isMetric && size}
-      <details class="more">
-        <summary>More</summary>
+      <details class="more" open={gizmo.value !== null}>
+        <summary id="hand-title">By hand</summary>
+        <fieldset class="handles" disabled={!isReady || space.value.kind !== "ready"}>
+          <legend>Handles in 3D, and arrow keys</legend>
+          {modes.map(([mode, title, key]) => (
+            <button
+              key={mode}
+              type="button"
+              aria-pressed={gizmo.value === mode}
+              aria-keyshortcuts={key}
+              disabled={mode === "scale" && lockScale}
+              onClick={() => {
+                gizmo.value = gizmo.peek() === mode ? null : mode;
+              }}
+            >
+              {title}
+            </button>
+          ))}
+        </fieldset>
+        {/* A disabled button would lose the focus while it runs. */}
+        <button
+          type="button"
+          id="refine"
+          aria-disabled={!isReady}
+          aria-keyshortcuts="F"
+          onClick={() => refine(workspace)}
+        >
+          Refine pose
+        </button>
         {isMetric && size}
         <div class="row">
           <Check

@@ -1,5 +1,5 @@
 /** The header: title, claim, commands and help. */
-import { toggleHelp, togglePalette } from "../ui/page-commands.js";
+import { toggleHelp, togglePalette } from "../commands/page-commands.js";
 
 export function Header() {
   return (

@@ -1,10 +1,10 @@
 /** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
 import { formatsText } from "sim3align/input/formats";
+import { pageCommands } from "../commands/page-commands.js";
 import { isHelpOpen } from "../state/help.js";
 import { type Theme, theme } from "../state/theme.js";
 import { Choices } from "../ui/controls.js";
-import { pageCommands } from "../ui/page-commands.js";
 import { Keys } from "./keys.js";
 
 /** Titles and addresses, inserted by the build. */

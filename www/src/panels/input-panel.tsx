@@ -1,16 +1,17 @@
 /** The input files of the scene that is shown. */
-import { baseName } from "../load/files.js";
-import { editInputs } from "../load/open.js";
+import { baseName } from "../input/files.js";
+import { editInputs } from "../opening/open.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
 
 const { inputs, objects, scene, unit } = page;
 
-/** Forgets the scene. What a person has decided or set is not forgotten unasked. */
+/** Forgets the scene. What a person has decided, set or drawn is not forgotten unasked. */
 async function forget(): Promise<void> {
-  const { name } = inputs.peek();
-  const isWork = objects.peek().some(({ verdict, pose }) => verdict.peek() !== null || pose.peek().source === "hand");
-  if (isWork && !confirm(`Forget ${name}, with what you have set and accepted?`)) return;
+  const { name, objects: pairs } = inputs.peek();
+  const isSet = objects.peek().some(({ verdict, pose }) => verdict.peek() !== null || pose.peek().source === "hand");
+  const isDrawn = pairs.some(({ mask }) => mask?.isDrawn === true);
+  if ((isSet || isDrawn) && !confirm(`Forget ${name}, with what you have set, accepted and drawn?`)) return;
   await (await import("../session/index.js")).forgetScene();
 }
 

@@ -1,7 +1,8 @@
 /** A known length of an object. It is one fact of the object, wherever it is entered. */
 import { useState } from "preact/hooks";
-import { canTry, setKnownSize, type Trial, takeTrial, trySize } from "../run/known-size.js";
+import { canTry, setKnownSize, type Trial, takeTrial, trySize } from "../alignment/known-size.js";
 import type { ObjectModel } from "../state/object-model.js";
+import { inOrder, sidesOf } from "../state/sides.js";
 import { Choices } from "../ui/controls.js";
 import { centimetres, orDash, percent } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
@@ -84,7 +85,11 @@ const NOTABLE = 0.03;
 function Change({ object, trial, onDecide }: ChangeProps) {
   const iou = object.metrics.value?.iou;
   const { confidence } = object;
-  const size = (sides: readonly number[]) => `${sides.map((m) => centimetres(m)).join(" × ")} cm`;
+  const sides = sidesOf(object, useWorkspace().support.value);
+  const size = (sizeM: readonly number[]) =>
+    `${inOrder(sides, sizeM)
+      .map((m) => centimetres(m))
+      .join(" × ")} cm`;
   const rows = [
     ["Size", size(object.box.value.sizeM), size(trial.sizeM)],
     ["Overlap", orDash(iou, percent), orDash(trial.iou, percent)],

@@ -4,9 +4,6 @@ import { orDash } from "../ui/format.js";
 import type { MetricText } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
-/** The metrics that are always shown. */
-export const MAIN = 3;
-
 interface MetricTableProps {
   object: ObjectModel | null;
   metrics: readonly MetricText[];

@@ -1,32 +1,36 @@
 /** The outliner: the objects of the scene. The selected one has a menu, by which it is shown, locked, renamed and removed. */
 import { useEffect, useRef } from "preact/hooks";
-import { alignSelected } from "../run/align.js";
+import type { Support } from "sim3align";
+import { alignSelected } from "../alignment/align.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
+import { inOrder, sidesOf } from "../state/sides.js";
 import { Check, Menu } from "../ui/controls.js";
 import { percent, type Unit } from "../ui/format.js";
 import { Icon } from "../ui/icons.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { NameField } from "./object-name.js";
 
-function stateOf(run: Run, object: ObjectModel, unit: Unit): string {
+function stateOf(run: Run, object: ObjectModel, unit: Unit, ground: Support | null): string {
   if (run.state === "waiting") return "waiting";
   if (run.state === "running") return `${Math.round(100 * run.fraction)} %`;
   if (run.state === "failed") return "failed";
   if (!object.isPlaced) return run.state === "cancelled" ? "cancelled" : "not aligned";
-  const { sizeM } = object.box.value;
+  const sizeM = inOrder(sidesOf(object, ground), object.box.value.sizeM);
   if (unit !== null) return sizeM.map((side) => (side / unit).toFixed(2)).join("×");
-  return `${sizeM.map((side) => Math.round(100 * side)).join("×")} cm`;
+  return sizeM.map((side) => Math.round(100 * side)).join("×");
 }
 
 export function ObjectsPanel() {
-  const { inputs, isReading, scene } = useWorkspace();
+  const { inputs, isReading, scene, unit } = useWorkspace();
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
     <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
-      <h2 id="objects-title">Objects</h2>
+      <h2 id="objects-title">
+        Objects <span class="quiet">{unit.value === null && "cm"}</span>
+      </h2>
       <ul class="objects">
         {objects.map((object) => (
           <Row key={object.id} object={object} />
@@ -112,7 +116,7 @@ function ObjectMenu({ object }: { object: ObjectModel }) {
 const marks = { accepted: "✓", skipped: "skipped", impossible: "✗" };
 
 function ObjectButton({ object }: { object: ObjectModel }) {
-  const { renamed, select, selected, unit } = useWorkspace();
+  const { renamed, select, selected, support, unit } = useWorkspace();
   const { id, name, colour, run, verdict, isLocked, isShown } = object;
   const { confidence } = object;
   const rename = () => {
@@ -132,7 +136,7 @@ function ObjectButton({ object }: { object: ObjectModel }) {
       <span class="name">{name}</span>
       {!isShown.value && <Icon name="hidden" />}
       {isLocked.value && <Icon name="locked" />}
-      <span class="state">{stateOf(run.value, object, unit.value)}</span>
+      <span class="state">{stateOf(run.value, object, unit.value, support.value)}</span>
       <span class="confidence">
         {verdict.value !== null ? marks[verdict.value] : confidence === null ? "" : percent(confidence)}
       </span>

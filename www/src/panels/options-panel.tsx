@@ -1,8 +1,8 @@
 /** Options of the alignment: prior knowledge about the object, and the seed. */
 import { defaultOptions, MAX_SEED } from "../state/options.js";
+import { type Choice, effort, symmetry, up } from "../ui/choices.js";
 import { Choices, Tip } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { type Choice, effort, symmetry, up } from "./choices.js";
 
 function Select({ id, title, about, titles, chosen, choose }: Choice) {
   const workspace = useWorkspace();

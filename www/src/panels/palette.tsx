@@ -1,10 +1,10 @@
 /** The command palette: every command with its key, filtered by typing. */
 import { useEffect, useRef, useState } from "preact/hooks";
+import { commandsNow } from "../commands/palette-commands.js";
+import type { Command } from "../commands/shortcuts.js";
 import { isPaletteOpen } from "../state/help.js";
 import { page } from "../state/page.js";
-import type { Command } from "../ui/shortcuts.js";
 import { Keys } from "./keys.js";
-import { commandsNow } from "./palette-commands.js";
 
 /** The commands whose text contains all words. */
 function matches(query: string): readonly Command[] {

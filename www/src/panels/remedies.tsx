@@ -1,10 +1,10 @@
 /** What helps if a result is unsure, beside the result instead of in an explanation. */
-import { alignSelected } from "../run/align.js";
+import { alignSelected } from "../alignment/align.js";
+import { fix } from "../commands/decisions.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
 import { SURE } from "../state/progress.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { fix } from "./decision.js";
 import { KnownSize } from "./known-size.js";
 
 const ups: readonly (readonly [Options["up"], string])[] = [

@@ -3,15 +3,16 @@
  * layout does not shift.
  */
 import type { PoseErrors } from "sim3align";
-import { fieldOf } from "../load/problems.js";
+import { fieldOf } from "../input/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
+import { inOrder, sidesOf } from "../state/sides.js";
 import { orDash, percent, significant, size } from "../ui/format.js";
-import { metricTexts } from "../ui/texts.js";
+import { overlapText } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { Decision } from "./decision.js";
 import { Advised, Alternatives, Details, Remedies, Warnings } from "./later.js";
-import { MAIN, MetricTable } from "./metrics.js";
+import { MetricTable } from "./metrics.js";
 import { NameField } from "./object-name.js";
 
 export function ResultPanel() {
@@ -48,7 +49,7 @@ export function ResultPanel() {
           <Alternatives object={object} />
         </>
       )}
-      <MetricTable object={object} metrics={metricTexts.slice(0, MAIN)} id="metrics" />
+      <MetricTable object={object} metrics={[overlapText]} id="metrics" />
       <Truth object={object} />
       <Warnings object={object} />
       <Details object={object} />
@@ -70,11 +71,11 @@ function Failure({ error }: { error: Error }) {
   );
 }
 
-const sides = ["width", "height", "depth"];
-
 function Size({ object }: { object: ObjectModel | null }) {
-  const unit = useWorkspace().unit.value;
-  const sizeM = object?.box.value.sizeM ?? [null, null, null];
+  const { support, unit: shownUnit } = useWorkspace();
+  const unit = shownUnit.value;
+  const sides = object && sidesOf(object, support.value);
+  const sizeM = sides === null || object === null ? [null, null, null] : inOrder(sides, object.box.value.sizeM);
   const largestM = Math.max(...sizeM.map((side) => side ?? 0));
   return (
     <div class="size">
@@ -82,13 +83,13 @@ function Size({ object }: { object: ObjectModel | null }) {
         class="dimensions"
         title={
           unit === null
-            ? "Width × height × depth, along the sides of the smallest box"
+            ? "Along the sides of the smallest box"
             : "The depth map has no unit: multiples of the longest side of the first object"
         }
       >
         <span id="dimensions">
           {sizeM.map((side, i) => (
-            <span key={sides[i]}>
+            <span key={i}>
               {i > 0 && <span class="times"> × </span>}
               {orDash(side, (m) => size(m, unit, largestM).split(" ")[0] ?? "")}
             </span>
@@ -96,13 +97,14 @@ function Size({ object }: { object: ObjectModel | null }) {
           <span class="unit">{unit === null ? "cm" : "relative"}</span>
         </span>
       </p>
+      <p class="quiet sides">{sides?.isUpright ? "width × depth × height" : "longest side first"}</p>
       <Confidence object={object} />
     </div>
   );
 }
 
 function Confidence({ object }: { object: ObjectModel | null }) {
-  const { frameIndex, framePoses } = useWorkspace();
+  const { frameIndex, framePoses, unit } = useWorkspace();
   const isTracked = object?.pose.value.source === "tracked";
   const frame = framePoses.value[frameIndex.value] ?? null;
   const confidence = isTracked ? (frame?.confidence ?? null) : (object?.confidence ?? null);
@@ -114,8 +116,10 @@ function Confidence({ object }: { object: ObjectModel | null }) {
       </p>
     );
   }
-  const level = confidence >= SURE ? "high" : confidence >= 0.7 ? "medium" : "low";
-  const advice = { high: "Likely correct", medium: "Check it", low: "Unreliable: fix it" }[level];
+  const isSizeDoubtful = object?.isSizeDoubtful === true && unit.value === null;
+  const level = confidence < 0.7 ? "low" : confidence < SURE || isSizeDoubtful ? "medium" : "high";
+  const medium = isSizeDoubtful ? "Check the size" : "Check it";
+  const advice = { high: "Likely correct", medium, low: "Unreliable: fix it" }[level];
   return (
     <p class="badge" data-level={level}>
       <span id="confidence">

@@ -1,5 +1,5 @@
 /** Align, cancel and progress. */
-import { alignAll } from "../run/align.js";
+import { alignAll } from "../alignment/align.js";
 import { stageTitles } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 

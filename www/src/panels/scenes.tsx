@@ -1,6 +1,6 @@
 /** The user's own scenes and videos, each with how far the work on it is. */
 import { signal } from "@preact/signals";
-import { isOfKind, openListed, progressOf } from "../load/open.js";
+import { isOfKind, openListed, progressOf } from "../opening/open.js";
 import type { Listed } from "../state/opened.js";
 import { page } from "../state/page.js";
 import { Check } from "../ui/controls.js";

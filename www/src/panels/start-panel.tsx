@@ -1,8 +1,9 @@
 /** Where to begin: the user's own files, or a sample. */
-import { openFiles, openSample } from "../load/open.js";
-import { sampleOf, samples, sampleUrl } from "../load/samples.js";
+
+import { alignAll } from "../alignment/align.js";
 import { offlineState } from "../offline/offline.js";
-import { alignAll } from "../run/align.js";
+import { openFiles, openSample } from "../opening/open.js";
+import { sampleOf, samples, sampleUrl } from "../opening/samples.js";
 import { page } from "../state/page.js";
 import { FileButton, Menu } from "../ui/controls.js";
 

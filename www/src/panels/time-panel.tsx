@@ -1,6 +1,6 @@
 /** The time axis of a video. */
 import { useEffect } from "preact/hooks";
-import { alignFrames, correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../run/video.js";
+import { alignFrames, correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../alignment/video.js";
 import { page } from "../state/page.js";
 import type { FramePose } from "../state/video.js";
 import { percent } from "../ui/format.js";

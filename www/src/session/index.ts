@@ -2,34 +2,26 @@
  * The session: the user's own scenes and videos, kept in the browser while they work. Each is kept by its id, and belongs to
  * one tab. A video counts as a scene.
  */
+
 import { batch, effect, untracked } from "@preact/signals";
-import { type SceneResult, sceneResult, videoResult } from "../export/results.js";
-import type { NamedFile } from "../load/files.js";
-import type { Inputs } from "../load/inputs.js";
-import { openAnother } from "../load/open.js";
-import { readInputs, sceneOf } from "../load/read-scene.js";
-import { alignAll } from "../run/align.js";
-import { openVideo, videoWork } from "../run/video.js";
+import { alignAll } from "../alignment/align.js";
+import { openVideo, videoWork } from "../alignment/video.js";
+import { readInputs, sceneOf } from "../input/read-scene.js";
+import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
-import type { Options } from "../state/options.js";
+import { stateOf } from "../state/object-work.js";
 import { page } from "../state/page.js";
 import type { Progress } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
 import { hasSession } from "../state/session-flag.js";
+import type { VideoWork } from "../state/video.js";
 import { disown, onTakenOver, own } from "./owner.js";
-import {
-  applyState,
-  type Packed,
-  packed,
-  progressOfPacked,
-  stateOf,
-  unpacked,
-  type VideoWork,
-  videoWorkOf,
-} from "./pack.js";
+import { applyState, type Packed, packed, progressOfPacked, type Settings, unpacked, videoWorkOf } from "./pack.js";
+import { type SceneResult, sceneResult, videoResult } from "./results.js";
 import { claimWork, forgetWork, storedFiles, storedWorks, storeWork, type Work } from "./store.js";
 
-const { announce, enlist, inputs, list, notKept, options, othersScenes, scene, show, video } = page;
+const { announce, enlist, fileActions, inputs, list, notKept, options, othersScenes, scene, show, support, video } =
+  page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
@@ -62,7 +54,7 @@ function shownWork(): Scene | VideoWork | null {
 export function keepSession(): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
-    const [done, { id }, settings] = [shownWork(), inputs.value, options.value];
+    const [done, { id }, settings] = [shownWork(), inputs.value, { options: options.value, support: support.value }];
     clearTimeout(timer);
     // The changes of a scene that is left are not lost.
     if (pending !== null && pending.id !== id) untracked(pending.write);
@@ -80,7 +72,7 @@ export function keepSession(): void {
   });
   effect(() => {
     const waiting = list.value.filter(({ inputs: { id } }) => !works.has(id) && id !== inputs.peek().id);
-    for (const { inputs: from } of waiting) untracked(() => keep(from, null, options.peek()));
+    for (const { inputs: from } of waiting) untracked(() => keep(from, null, { options: options.peek() }));
   });
   addEventListener("beforeunload", (event) => {
     if (unstored.size > 0) event.preventDefault();
@@ -89,7 +81,7 @@ export function keepSession(): void {
 }
 
 /** Keeps what was done with a scene; null if it was not opened yet. */
-export function keep(from: Inputs, done: Scene | VideoWork | null, settings: Options, isShown = done !== null): void {
+export function keep(from: Inputs, done: Scene | VideoWork | null, settings: Settings, isShown = done !== null): void {
   const { id } = from;
   const { session, files } = packed(from, done, settings);
   const before = works.get(id);
@@ -109,7 +101,7 @@ const resultOf = (from: Inputs, done: Scene | VideoWork): SceneResult =>
 export function workNow(from: Inputs): { work: Omit<Work, "id" | "order">; files: NamedFile[] } {
   const isShown = from.id === inputs.peek().id;
   const done = isShown ? untracked(shownWork) : null;
-  const { session, files } = packed(from, done, options.peek());
+  const { session, files } = packed(from, done, { options: options.peek(), support: support.peek() });
   const before = works.get(from.id);
   const { result = null, shownAt = 0 } = before ?? {};
   return done === null
@@ -181,7 +173,7 @@ export async function adopt(work: Work): Promise<void> {
   const files = await storedFiles(work.id);
   if (!enter(work, files))
     notKept.value = `Another version of this page has kept ${work.session.name}, which this one cannot open.`;
-  else stored.set(work.id, packed(listed(work.id) as Inputs, null, options.peek()).files);
+  else stored.set(work.id, packed(listed(work.id) as Inputs, null, { options: options.peek() }).files);
 }
 
 /** Adds a scene that is not stored yet, as it was saved, or as another tab has it. */
@@ -191,7 +183,7 @@ export function add(
   { id, result, shownAt }: Omit<Work, "session" | "order">,
 ): Work {
   const work = { id, session, result, order: nextOrder(), shownAt };
-  if (enter(work, files)) store(work, packed(listed(id) as Inputs, null, options.peek()).files);
+  if (enter(work, files)) store(work, packed(listed(id) as Inputs, null, { options: options.peek() }).files);
   return work;
 }
 
@@ -234,7 +226,7 @@ export async function forgetScene(): Promise<void> {
   // There may be room for the others now.
   for (const { inputs: from } of list.peek()) {
     const work = works.get(from.id);
-    if (unstored.has(from.id) && work !== undefined) store(work, packed(from, null, options.peek()).files);
+    if (unstored.has(from.id) && work !== undefined) store(work, packed(from, null, { options: options.peek() }).files);
   }
 }
 
@@ -257,7 +249,7 @@ async function leave(id: string): Promise<void> {
   if (inputs.peek().id !== id) return;
   pending = null;
   inputs.value = { ...inputs.peek(), id: "" };
-  await openAnother();
+  await fileActions.peek()?.another();
 }
 
 async function open(session: Packed, named: Inputs): Promise<boolean> {

@@ -1,5 +1,5 @@
 /** The scenes of other tabs: taken over, or opened as copies. */
-import { newId } from "../load/inputs.js";
+import { newId } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { add, adopt, openLast } from "./index.js";
 import { takeOver } from "./owner.js";

@@ -1,6 +1,6 @@
 /** Which tab a stored scene belongs to: only one tab at a time shows and changes it. Another one may take it over. */
 
-import { newId } from "../load/inputs.js";
+import { newId } from "../state/inputs.js";
 
 /** This tab. */
 export const TAB = newId();

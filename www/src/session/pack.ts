@@ -1,16 +1,16 @@
 /** A session as plain data: the files of a scene, and what was done with its objects. */
-import type { DepthCalibration, DepthKind } from "sim3align";
+import type { DepthCalibration, DepthKind, Support } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import { baseName, type NamedFile } from "../load/files.js";
-import type { CameraSource, Inputs, MaskSource, MeshSource, Role, TruthSource } from "../load/inputs.js";
-import type { AnyAlignment } from "../state/alignment.js";
+import { baseName } from "../input/files.js";
+import { hasSizeDoubt } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
-import type { ObjectModel, Verdict } from "../state/object-model.js";
+import type { CameraSource, Inputs, MaskSource, MeshSource, NamedFile, Role, TruthSource } from "../state/inputs.js";
+import { applyToObject, type ObjectWork, stateOf, verdictOf } from "../state/object-work.js";
 import type { Options } from "../state/options.js";
-import { isResult, type PoseSource } from "../state/pose.js";
+import { isResult } from "../state/pose.js";
 import { type Judged, type Progress, progressOf, progressOfFrames } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
-import type { FramePose } from "../state/video.js";
+import type { FramePose, VideoWork } from "../state/video.js";
 import type { Workspace } from "../state/workspace.js";
 
 /** The version of the format. Other versions are not read. */
@@ -29,28 +29,13 @@ interface PackedObject {
   truth: (Omit<TruthSource, "file"> & { file: Ref }) | null;
   initial?: Ref;
   /** Null if the scene was not opened yet. */
-  state: PackedState | null;
-}
-
-/** What was done with an object. */
-export interface PackedState {
-  matrix: readonly number[];
-  source: PoseSource;
-  alternative?: number | undefined;
-  verdict?: Verdict | null;
-  /** In place of the verdict, as 1.0.0-rc.1 has stored it. */
-  isAccepted?: boolean;
-  comment?: string;
-  isShown: boolean;
-  isLocked: boolean;
-  knownScale: number | null;
-  alignment: AnyAlignment | null;
+  state: ObjectWork | null;
 }
 
 /** A frame of a video: its tracked pose, and what a person has done in it. */
 interface PackedFrame extends PackedInputs {
   tracked: (Omit<FramePose, "transform"> & { matrix: readonly number[] }) | null;
-  work: PackedState | null;
+  work: ObjectWork | null;
 }
 
 /** The inputs of a scene. */
@@ -73,30 +58,28 @@ export interface Packed extends PackedInputs {
   /** In whose depth the poses are. */
   calibration: DepthCalibration | null;
   options: Options;
+  /** The ground, if an alignment has found it. */
+  support?: Support | null;
   /** Those of a video, and the index of the one that was shown last. */
   frames?: PackedFrame[];
   frameIndex?: number;
 }
 
-/** What is done in a video. */
-export interface VideoWork {
-  frameIndex: number;
-  framePoses: readonly (FramePose | null)[];
-  frameWorks: readonly (PackedState | null)[];
-}
+/** What counts for a whole scene. */
+export type Settings = Pick<Packed, "options" | "support">;
 
 /** The session of a scene or a video, and its files in the order of their indices. */
 export function packed(
   inputs: Inputs,
   done: Scene | VideoWork | null,
-  options: Options,
+  settings: Settings,
 ): { session: Packed; files: NamedFile[] } {
   const files = new Map<NamedFile, Ref>();
   const scene = done !== null && "objects" in done ? done : null;
   const work = done !== null && "framePoses" in done ? done : null;
   const session: Packed = {
     ...packedInputs(inputs, scene, files),
-    ...{ version: VERSION, calibration: scene?.calibration ?? null, options },
+    ...{ version: VERSION, calibration: scene?.calibration ?? null, ...settings },
   };
   if (inputs.frames !== undefined) {
     session.frameIndex = work?.frameIndex ?? 0;
@@ -145,20 +128,6 @@ function packedInputs(inputs: Inputs, scene: Scene | null, files: Map<NamedFile,
 /** Files that meshes refer to. */
 const isResource = (path: string) => /\.(bin|mtl|png|jpe?g|webp)$/i.test(baseName(path));
 
-/** What was done with an object. */
-export function stateOf(object: ObjectModel): PackedState {
-  const { alignment, comment, isLocked, isShown, knownScale, pose, verdict } = object;
-  const { transform, source, alternative } = pose.value;
-  return {
-    ...{ matrix: [...transform.matrix], source, alternative },
-    ...{ verdict: verdict.value, comment: comment.value, isShown: isShown.value, isLocked: isLocked.value },
-    ...{ knownScale: knownScale.value, alignment: alignment.value },
-  };
-}
-
-const verdictOf = (state: PackedState | null): Verdict | null =>
-  state?.verdict ?? (state?.isAccepted === true ? "accepted" : null);
-
 /** How far the work of a session is; null if it has not begun. */
 export function progressOfPacked({ frames, objects }: Packed): Progress | null {
   if (frames !== undefined) {
@@ -170,7 +139,8 @@ export function progressOfPacked({ frames, objects }: Packed): Progress | null {
     objects.map(({ state }): Judged => {
       const { source = "start", alignment = null } = state ?? {};
       const found = isResult(source) && alignment !== null && "confidence" in alignment ? alignment.confidence : null;
-      return { isPlaced: source !== "start", verdict: verdictOf(state), confidence: found };
+      const isSizeDoubtful = hasSizeDoubt(alignment);
+      return { isPlaced: source !== "start", verdict: verdictOf(state), confidence: found, isSizeDoubtful };
     }),
   );
 }
@@ -231,37 +201,25 @@ function unpackedInputs(
 
 /** What a session says of a scene that is there. */
 interface SessionState {
-  objects: readonly { state: PackedState | null }[];
+  objects: readonly { state: ObjectWork | null }[];
   options: Partial<Options>;
   calibration?: DepthCalibration | null | undefined;
+  support?: Support | null | undefined;
 }
 
 /** Gives the objects of the scene that is shown the poses and settings of a session. */
-export function applyState({ objects, options: chosen, calibration }: SessionState, workspace: Workspace): void {
-  const { options, recalibrate, scene } = workspace;
+export function applyState(session: SessionState, workspace: Workspace): void {
+  const { objects, options: chosen, calibration, support: ground = null } = session;
+  const { options, recalibrate, scene, support } = workspace;
   const whole = scene.peek();
   if (whole === null) return;
   options.value = { ...options.peek(), ...chosen };
   if (calibration) recalibrate(inCalibration(whole, calibration));
+  support.value = ground;
   whole.objects.forEach((object, i) => {
     const state = objects[i]?.state;
     if (state != null) applyToObject(state, object);
   });
-}
-
-/** Gives an object the pose, the decision and the settings that were stored. */
-export function applyToObject(state: PackedState, object: ObjectModel): void {
-  const { matrix, source, alternative, alignment, comment = "" } = state;
-  const verdict = verdictOf(state);
-  const pose = { transform: toSim3(matrix), source, alignment, ...(alternative !== undefined && { alternative }) };
-  object.run.value = { state: alignment === null ? "idle" : "done" };
-  // The pose of an object that was not aligned is the one before any alignment, in the present calibration.
-  if (source !== "start") object.pose.value = pose;
-  object.decision.value = verdict === null ? null : { verdict, pose: object.pose.peek() };
-  object.comment.value = comment;
-  object.isShown.value = state.isShown;
-  object.isLocked.value = state.isLocked;
-  object.knownScale.value = state.knownScale;
 }
 
 /** Whether a file of an archive is a session. */

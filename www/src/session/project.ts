@@ -1,10 +1,10 @@
 /** The project: all scenes of this tab in one file, with what was done, and its results as plain data. */
-import type { SceneResult } from "../export/results.js";
-import type { NamedFile } from "../load/files.js";
-import { type Inputs, newId } from "../load/inputs.js";
+
+import { type Inputs, type NamedFile, newId } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { add, openLast, workNow } from "./index.js";
 import { isSession, type Packed, SESSION_FILE, sessionParts } from "./pack.js";
+import type { SceneResult } from "./results.js";
 import type { Work } from "./store.js";
 
 const { inputs, list } = page;

@@ -1,5 +1,5 @@
 /** Keeps the user's own scenes in the browser's own database, each by its id. */
-import type { NamedFile } from "../load/files.js";
+import type { NamedFile } from "../state/inputs.js";
 import { TAB } from "./owner.js";
 import type { Packed } from "./pack.js";
 

@@ -1,21 +1,8 @@
 /** Views whose depth or focal length are not fully known: what they are taken to be, before and after an alignment. */
 import type { DepthCalibration, DepthKind } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
+import type { RawView } from "./raw-view.js";
 import type { Scene } from "./scene.js";
-
-/** What is given of such a view. */
-export interface RawView {
-  /** The values of the depth map. */
-  readonly depth: Float32Array;
-  readonly width: number;
-  readonly height: number;
-  readonly depthKind: DepthKind;
-  readonly camera: Scene["camera"];
-  /** Relative standard deviation of the focal length; 0 if it is known. */
-  readonly focalUncertainty: number;
-  /** Warnings of the file readers. */
-  readonly warnings: readonly string[];
-}
 
 type Numbers = Pick<DepthCalibration, "depthKind" | "scale" | "shift">;
 
@@ -42,10 +29,6 @@ export function corrected(
   if (depthKind === "metric") return depth;
   return correctDepth({ data: depth, width, height }, numbers as DepthCalibration).data;
 }
-
-/** Whether lengths of a scene are metres. */
-export const isMetric = ({ raw, calibration }: Pick<Scene, "raw" | "calibration">): boolean =>
-  calibration?.isMetric ?? (raw === null || raw.depthKind === "metric");
 
 /** A scene in the depth and with the camera of a calibration. */
 export function inCalibration(scene: Scene, calibration: DepthCalibration, more: readonly string[] = []): Scene {

@@ -7,6 +7,7 @@ import type { Support } from "sim3align";
 import type { Decision, ObjectModel, Verdict } from "./object-model.js";
 import { type Nudge, nudged, type Pose } from "./pose.js";
 import type { Scene, SceneState } from "./scene.js";
+import type { StatusState } from "./status.js";
 
 /** What steps restore. */
 interface Snapshot {
@@ -35,7 +36,10 @@ interface Step {
 const MAX_STEPS = 200;
 
 /** The undo steps of a scene. */
-export function historyState({ objects, recalibrate, scene, select, support }: SceneState) {
+export function historyState(
+  { objects, recalibrate, scene, select, support }: SceneState,
+  { announce }: Pick<StatusState, "announce">,
+) {
   const undoSteps = signal<readonly Step[]>([]);
   const redoSteps = signal<readonly Step[]>([]);
 
@@ -106,6 +110,7 @@ export function historyState({ objects, recalibrate, scene, select, support }: S
         object.knownScale.value = knownScale;
       }
     });
+    announce(`${side === "before" ? "Undid" : "Redid"} the change of ${step.object.name}.`);
   }
 
   const undo = () => move(undoSteps, redoSteps, "before");

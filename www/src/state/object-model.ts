@@ -2,7 +2,7 @@
 import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
 import type { MeshArrays, Metrics, PoseErrors, Sim3AlignError, Sim3Like, Stage } from "sim3align";
 import type { Vector3 } from "sim3align/conventions";
-import type { AnyAlignment, PreciseAlignment } from "./alignment.js";
+import { type AnyAlignment, hasSizeDoubt, type PreciseAlignment } from "./alignment.js";
 import { boundsOf, isResult, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
 
 /** The state of an alignment. */
@@ -131,6 +131,10 @@ export class ObjectModel implements Readonly<ObjectParts> {
   /** The confidence in the present pose; null for one that no alignment has found. */
   get confidence(): number | null {
     return isResult(this.pose.value.source) ? (this.precise?.confidence ?? null) : null;
+  }
+
+  get isSizeDoubtful(): boolean {
+    return hasSizeDoubt(this.alignment.value);
   }
 
   /** The last alignment, if it is one of the preset `precise`. */

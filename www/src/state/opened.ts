@@ -1,7 +1,7 @@
 /** The inputs of the scene that is shown. */
 import { batch, signal } from "@preact/signals";
-import { type Inputs, noInputs, withId } from "../load/inputs.js";
 import type { DisplayState } from "./display.js";
+import { type Inputs, noInputs, withId } from "./inputs.js";
 import type { ObjectModel } from "./object-model.js";
 import type { Progress } from "./progress.js";
 import type { Scene, SceneState } from "./scene.js";
@@ -14,6 +14,12 @@ export type NextKind = "doubtful" | "open" | "any";
 export interface FileActions {
   /** Changes the files of the scene. */
   edit(): void;
+  /** Changes how they are read, and aligns anew, unless that raises a question. */
+  change(apply: (inputs: Inputs) => Inputs): void;
+  /** Corrects the mask of the object with this index. */
+  correct(object: number): void;
+  /** Shows the next scene of the list or, without any, a sample. */
+  another(): Promise<void>;
   /** Shows the next frame or scene of this kind. Returns whether there is one. */
   next(kind: NextKind): boolean;
 }

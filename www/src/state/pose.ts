@@ -1,8 +1,8 @@
 /** Poses of a mesh (camera from mesh, OpenCV camera frame, metres) and the bounding box that they transform. */
 import type { MeshArrays, Sim3 } from "sim3align";
 import { applyToPoints, compose, orientedBoundingBox, toSim3, type Vector3 } from "sim3align/conventions";
-import { once } from "../load/once.js";
 import type { AnyAlignment } from "./alignment.js";
+import { once } from "./once.js";
 
 /** The origin of a pose. */
 export type PoseSource = "start" | "aligned" | "alternative" | "refined" | "hand" | "tracked";

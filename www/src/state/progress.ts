@@ -28,10 +28,12 @@ export interface Judged {
   readonly verdict: Verdict | null;
   /** That of the present pose; null for one that no alignment has found. */
   readonly confidence: number | null;
+  readonly isSizeDoubtful?: boolean;
 }
 
-/** Whether an object waits for a person: nothing is decided, and the search is not sure. */
-export const isDoubtful = ({ verdict, confidence }: Judged): boolean => verdict === null && (confidence ?? 0) < SURE;
+/** Whether an object waits for a person: nothing is decided, and the search or the unit is not sure. */
+export const isDoubtful = ({ verdict, confidence, isSizeDoubtful }: Judged): boolean =>
+  verdict === null && ((confidence ?? 0) < SURE || isSizeDoubtful === true);
 
 export function progressOf(objects: readonly Judged[], hasDoubt = objects.some(isDoubtful)): Progress {
   const open = objects.filter(({ verdict }) => verdict === null);
@@ -45,8 +47,8 @@ export function progressOf(objects: readonly Judged[], hasDoubt = objects.some(i
   };
 }
 
-export const judged = ({ confidence, isPlaced, verdict }: ObjectModel): Judged => ({
-  ...{ confidence, isPlaced, verdict: verdict.value },
+export const judged = ({ confidence, isPlaced, isSizeDoubtful, verdict }: ObjectModel): Judged => ({
+  ...{ confidence, isPlaced, isSizeDoubtful, verdict: verdict.value },
 });
 
 /** The same of objects in their present state. */

@@ -1,9 +1,9 @@
 /** The scene: a depth map with its camera, an optional photo, and the objects in it. */
 import { batch, computed, signal } from "@preact/signals";
-import type { DepthCalibration, PinholeCamera, Support } from "sim3align";
-import { visibleExtent } from "../load/visible-extent.js";
-import { isMetric, type RawView } from "./calibration.js";
+import type { DepthCalibration, Support } from "sim3align";
 import type { ObjectModel } from "./object-model.js";
+import { type Intrinsics, isMetric, type RawView } from "./raw-view.js";
+import { visibleExtent } from "./visible-extent.js";
 
 export interface Scene {
   readonly name: string;
@@ -13,7 +13,7 @@ export interface Scene {
   readonly depthM: Float32Array;
   readonly width: number;
   readonly height: number;
-  readonly camera: Pick<PinholeCamera, "fx" | "fy" | "cx" | "cy">;
+  readonly camera: Intrinsics;
   /** The photo, resized to the depth map. */
   readonly rgba: Uint8ClampedArray | null;
   readonly objects: readonly ObjectModel[];

@@ -1,8 +1,8 @@
 /** The video: frames with one object, and its tracked poses. */
 import { signal } from "@preact/signals";
 import type { DepthCalibration, Sim3, TrackState } from "sim3align";
-import type { Inputs } from "../load/inputs.js";
-import type { PackedState } from "../session/pack.js";
+import type { Inputs } from "./inputs.js";
+import type { ObjectWork } from "./object-work.js";
 
 /** The pose of a frame. */
 export interface FramePose {
@@ -22,6 +22,13 @@ export interface Video {
   readonly cameras: readonly Sim3[] | null;
 }
 
+/** What is done in a video. */
+export interface VideoWork {
+  frameIndex: number;
+  framePoses: readonly (FramePose | null)[];
+  frameWorks: readonly (ObjectWork | null)[];
+}
+
 /** The state of a video. */
 export function videoState() {
   const video = signal<Video | null>(null);
@@ -33,7 +40,7 @@ export function videoState() {
   const framePoses = signal<readonly (FramePose | null)[]>([]);
 
   /** What a person has done in the frames that were left: poses that are not the tracked ones, decisions and comments. */
-  const frameWorks = signal<readonly (PackedState | null)[]>([]);
+  const frameWorks = signal<readonly (ObjectWork | null)[]>([]);
 
   return { video, frameIndex, framePoses, frameWorks };
 }

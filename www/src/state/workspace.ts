@@ -26,7 +26,7 @@ export function createWorkspace({ theme }: Surroundings) {
     ...scene,
     ...display,
     ...status,
-    ...historyState(scene),
+    ...historyState(scene, status),
     ...optionsState(),
     ...runningState(scene),
     ...openedState(scene, display, status),

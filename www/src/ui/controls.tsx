@@ -1,7 +1,8 @@
 /** Controls that several panels use. */
 import type { ComponentChildren } from "preact";
 import { useId, useRef } from "preact/hooks";
-import { filesOf, type NamedFile } from "../load/files.js";
+import { filesOf } from "../input/files.js";
+import type { NamedFile } from "../state/inputs.js";
 
 interface ChoicesProps<V extends string> {
   id?: string;

@@ -1,5 +1,5 @@
 /** The part of the image that shows the objects. */
-import { boxOf } from "../draw/box.js";
+import { boxOf } from "../pictures/box.js";
 import type { Model } from "./model.js";
 import type { ObjectInput, SceneInput } from "./types.js";
 import type { Rect } from "./viewpoint.js";

@@ -234,6 +234,7 @@ export class SceneView {
   /** Shows the ground as a grid; `null` hides it. */
   setGround(plane: PlaneInput | null): void {
     this.plane = plane;
+    this.viewpoint.setUp(plane && toThree(plane.normal));
     this.surroundings.setGround(plane, this.extent(), colours(this.display.theme, this.host).frustum);
     this.update();
   }

@@ -1,11 +1,13 @@
 /** The viewpoint: exactly the depth camera, or an orbit around a target. */
 import { applyPinhole } from "sim3align/three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { DirectionalLight, PerspectiveCamera, Spherical, type Vector3 } from "three/webgpu";
+import { DirectionalLight, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three/webgpu";
 import type { Look, SceneInput } from "./types.js";
 
 /** Viewpoints as angles from the depth camera in degrees: to the right, and up. */
 const directions: Record<Exclude<Look, "camera">, [number, number]> = { orbit: [28, 16], top: [0, 80], side: [82, 8] };
+/** The same where the ground is known: exactly along its axes, from the depth camera's side. */
+const onGround = { ...directions, top: [0, 90], side: [90, 0] } satisfies typeof directions;
 /** Share of the smaller side of the view that the target fills. */
 const fill = 0.8;
 
@@ -50,6 +52,11 @@ export class Viewpoint {
   /** The part of the image that fills the view; `null` is all of it. */
   private crop: Rect | null = null;
   private target: Vector3 | null = null;
+  /** The ground's normal in the frame of three.js; up in the image without one. */
+  private up = new Vector3(0, 1, 0);
+  private hasGround = false;
+  /** From the axis of the orbit to y. */
+  private readonly turn = new Quaternion();
   private size = { width: 1, height: 1 };
   private readonly lens = { near: 0.01, far: 100 };
 
@@ -160,7 +167,8 @@ export class Viewpoint {
     this.crop = which === "camera" ? crop : null;
     this.target = target.clone();
     this.updateLens();
-    camera.up.set(0, 1, 0);
+    // From the depth camera, the image is upright.
+    this.orbitAbout(which === "camera" ? new Vector3(0, 1, 0) : this.up);
     // Ends the damping of the last movement.
     const isDamped = controls.enableDamping;
     controls.enableDamping = false;
@@ -170,12 +178,17 @@ export class Viewpoint {
       // On the optical axis, because the controls point the camera at the target.
       controls.target.set(0, 0, Math.min(target.z, -this.lens.near));
     } else {
-      const [right, up] = directions[which].map((angle) => (angle * Math.PI) / 180) as [number, number];
+      const [right, up] = (this.hasGround ? onGround : directions)[which].map((angle) => (angle * Math.PI) / 180) as [
+        number,
+        number,
+      ];
       const distance = radius / (fill * Math.sin((Math.PI / 360) * Math.min(this.fovDeg, 2 * MAX_HALF_FOV_DEG)));
       this.reach(radius);
-      const away = new Spherical().setFromVector3(target.clone().negate());
-      const phi = Math.max(0.08, away.phi - up);
-      camera.position.setFromSphericalCoords(distance, phi, away.theta + right).add(target);
+      const away = this.awayFrom(target, new Vector3());
+      // Above the depth camera, or above the ground.
+      const isLevel = this.hasGround && which !== "orbit";
+      const phi = Math.max(isLevel ? 0.01 : 0.08, (isLevel ? Math.PI / 2 : away.phi) - up);
+      this.moveTo(target, new Spherical(distance, phi, away.theta + right));
       controls.target.copy(target);
     }
     controls.update();
@@ -202,12 +215,37 @@ export class Viewpoint {
     if (this.isCamera) this.leaveCamera();
     this.isTouched = true;
     const { camera, controls } = this;
-    const away = new Spherical().setFromVector3(camera.position.clone().sub(controls.target));
+    const away = this.awayFrom(controls.target, camera.position);
     away.theta += (rightDeg * Math.PI) / 180;
     away.phi = Math.min(Math.max(away.phi - (upDeg * Math.PI) / 180, 0.02), Math.PI - 0.02);
     away.radius *= factor;
-    camera.position.setFromSpherical(away).add(controls.target);
+    this.moveTo(controls.target, away);
     controls.update();
+  }
+
+  /** Sets the ground's normal, which views from above and from the side have upwards; null is up in the image. */
+  setUp(normal: Vector3 | null): void {
+    this.hasGround = normal !== null;
+    this.up = normal?.clone().normalize() ?? new Vector3(0, 1, 0);
+  }
+
+  private orbitAbout(up: Vector3): void {
+    this.camera.up.copy(up);
+    this.turn.setFromUnitVectors(up, new Vector3(0, 1, 0));
+    // The controls read the axis once, when they are made.
+    const axis = this.controls as unknown as { _quat: Quaternion; _quatInverse: Quaternion };
+    axis._quat.copy(this.turn);
+    axis._quatInverse.copy(this.turn).invert();
+  }
+
+  /** Where a place is from a target, by angles about the axis of the orbit. */
+  private awayFrom(target: Vector3, place: Vector3): Spherical {
+    return new Spherical().setFromVector3(place.clone().sub(target).applyQuaternion(this.turn));
+  }
+
+  private moveTo(target: Vector3, away: Spherical): void {
+    const back = this.turn.clone().invert();
+    this.camera.position.setFromSpherical(away).applyQuaternion(back).add(target);
   }
 
   /** Centres the view on a point and orbits around it. */

@@ -1,5 +1,5 @@
 /** What pointer and wheel do in the image view: read, select, drag and zoom. */
-import { clampedZoom, type Zoom } from "../draw/zoom.js";
+import { clampedZoom, type Zoom } from "../pictures/zoom.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import { imageOf } from "./image.js";

@@ -2,7 +2,7 @@
 import { effect } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { differenceLimit } from "sim3align/pictures/colours";
-import { depthGradient } from "../draw/colours.js";
+import { depthGradient } from "../pictures/colours.js";
 import type { Workspace } from "../state/workspace.js";
 import { Check, Menu } from "../ui/controls.js";
 import { depth, small } from "../ui/format.js";
@@ -112,9 +112,9 @@ export function ImageView() {
             min="0"
             max="1"
             step="0.01"
-            value={1 - wipe}
-            aria-label="Share of the view that shows the present poses"
-            onInput={({ currentTarget }) => setLayer("wipe", 1 - currentTarget.valueAsNumber)}
+            value={wipe}
+            aria-label="Share of the view that shows the poses before any alignment"
+            onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
           />
           <span>After</span>
         </label>

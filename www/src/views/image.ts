@@ -1,11 +1,11 @@
 /** What the image view draws: the scene with its objects, zoomed. */
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
-import { depthImage, depthRange } from "../draw/colours.js";
-import { compose, type DrawnObject, drawObject } from "../draw/composition.js";
-import { drawnScene } from "../draw/reduced.js";
-import { wholeImage, type Zoom, zoomToObjects } from "../draw/zoom.js";
-import { once } from "../load/once.js";
+import { depthImage, depthRange } from "../pictures/colours.js";
+import { compose, type DrawnObject, drawObject } from "../pictures/composition.js";
+import { drawnScene } from "../pictures/reduced.js";
+import { wholeImage, type Zoom, zoomToObjects } from "../pictures/zoom.js";
 import type { ObjectModel } from "../state/object-model.js";
+import { once } from "../state/once.js";
 import type { Workspace } from "../state/workspace.js";
 
 /** The image of a workspace. */

@@ -1,6 +1,6 @@
 /** The frame of the 3D view: its canvas and its controls. */
 import { useEffect, useRef } from "preact/hooks";
-import { samples, sampleUrl } from "../load/samples.js";
+import { samples, sampleUrl } from "../opening/samples.js";
 import type { Display3d } from "../state/display.js";
 import { Check, Menu } from "../ui/controls.js";
 import { size, type Unit } from "../ui/format.js";

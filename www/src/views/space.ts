@@ -1,7 +1,7 @@
 /** Keeps the 3D view in sync with the state of the page. */
 import { effect } from "@preact/signals";
 import { compose, invert, toSim3 } from "sim3align/conventions";
-import { depthImage } from "../draw/colours.js";
+import { depthImage } from "../pictures/colours.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Pose, tightBoundsOf } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";

@@ -1,0 +1,58 @@
+/** The documentation: the page's help opens it, and no link of it is dead. */
+import assert from "node:assert/strict";
+import { readdirSync } from "node:fs";
+import { join } from "node:path";
+import { pageTests, siteDir } from "../support/site.js";
+
+const test = pageTests();
+
+/** Runs in the page: what a document links to and shows, its anchors, and formulas that were left as they are written. */
+const parts = `async (address) => {
+  const text = await (await fetch(address)).text();
+  const page = new DOMParser().parseFromString(text, "text/html");
+  const all = (selector, name) => [...page.querySelectorAll(selector)].map((one) => one.getAttribute(name));
+  for (const code of page.querySelectorAll("code, annotation")) code.remove();
+  return {
+    title: page.querySelector("h1")?.textContent ?? "",
+    links: all("a[href]", "href"),
+    pictures: all("img[src], link[href]", "src").filter(Boolean),
+    anchors: all("[id]", "id"),
+    isRaw: /\\$\\$|\\]\\(/.test(page.querySelector("main").textContent),
+  };
+}`;
+
+interface Parts {
+  title: string;
+  links: string[];
+  pictures: string[];
+  anchors: string[];
+  isRaw: boolean;
+}
+
+test("the help opens documents as pages, and each of their links leads somewhere", async (opened, page) => {
+  await opened.press("Help");
+  const [document] = await Promise.all([
+    page.waitForEvent("popup"),
+    page.locator(".documents a", { hasText: "Frames" }).first().click(),
+  ]);
+  await document.locator("main h1").waitFor();
+  assert.ok((await document.locator("nav a").count()) > 10);
+  const files = readdirSync(join(siteDir, "docs"));
+  const pages = files.filter((name) => name.endsWith(".html"));
+  const found = new Map<string, Parts>();
+  for (const name of pages) found.set(name, (await document.evaluate(`(${parts})("${name}")`)) as Parts);
+  const dead = [...found].flatMap(([name, { anchors, isRaw, links, pictures, title }]) => {
+    const isDead = (link: string) => {
+      const [file = "", anchor] = link.split("#");
+      if (/^https?:/.test(link) || link === "../") return false;
+      const target = file === "" ? anchors : found.get(file)?.anchors;
+      return target === undefined || (anchor !== undefined && !target.includes(anchor));
+    };
+    const missing = pictures.filter((picture) => !files.includes(picture));
+    return [
+      ...[...links.filter(isDead), ...missing].map((what) => `${name}: ${what}`),
+      ...(isRaw || title === "" ? [`${name}: not rendered`] : []),
+    ];
+  });
+  assert.deepEqual(dead, []);
+});

@@ -1,0 +1,303 @@
+/** The cause of a result that is not right, and what helps: what the package warns of, and what the page measures. An unknown cause is not guessed. */
+import type { DepthKind, Metrics, WarningCode } from "sim3align";
+import { otherSize, scaled } from "../input/camera-size.js";
+import { type Evidence, evidenceOf } from "../pictures/evidence.js";
+import { type Inputs, withInverted } from "../state/inputs.js";
+import type { ObjectModel } from "../state/object-model.js";
+import { isResult } from "../state/pose.js";
+import { SURE } from "../state/progress.js";
+import { isMetric } from "../state/raw-view.js";
+import type { Scene } from "../state/scene.js";
+import type { Workspace } from "../state/workspace.js";
+import { centimetres, depth, percent, significant } from "../ui/format.js";
+import { alignSelected } from "./align.js";
+import { applyAlternative } from "./alternatives.js";
+import { exchanged, type Swap } from "./swap.js";
+
+export type Cause =
+  | "moved"
+  | "mask"
+  | "camera"
+  | "swap"
+  | "size"
+  | "mirrored"
+  | "depth"
+  | "texture"
+  | "occluded"
+  | "mesh"
+  | "unit";
+
+/** What a button does. Those that change files are not there where the page has none. */
+export interface Remedy {
+  title: string;
+  needsFiles: boolean;
+  act(workspace: Workspace, object: ObjectModel): unknown;
+}
+
+export interface Advice {
+  cause: Cause;
+  text: string;
+  remedies: readonly Remedy[];
+  /** The warnings that it stands for. */
+  codes: readonly WarningCode[];
+}
+
+/** What the tests look at. */
+interface Findings extends Evidence {
+  /** The index of the object. */
+  index: number;
+  /** Whether a person has set the pose. */
+  isByHand: boolean;
+  /** Whether a person has set the size. */
+  isSizeKnown: boolean;
+  /** The overlap (IoU) of mask and mesh: at the present pose, and where the last alignment has put it. */
+  iou: number;
+  foundIou: number | null;
+  /** That of the pose; 1 for one that no alignment has found. */
+  confidence: number;
+  warnings: readonly WarningCode[];
+  depthKind: DepthKind;
+  isMetric: boolean;
+  depthUnit: string;
+  camera: Scene["camera"];
+  /** By how much the image to which the intrinsics seem to belong is smaller; null if they seem to be those of this one. */
+  cameraFactor: number | null;
+  swap: Swap | null;
+}
+
+interface Row {
+  cause: Cause;
+  codes?: readonly WarningCode[];
+  test(of: Findings): boolean;
+  text(of: Findings): string;
+  remedies?(of: Findings): readonly Remedy[];
+}
+
+/** Overlaps below this are low. */
+const LOW_IOU = 0.85;
+/** Overlaps below this are no fit at all. */
+const WRONG_IOU = 0.7;
+/** Below this confidence, a result is rather wrong than right. */
+const DOUBT = 0.5;
+
+const changed = (title: string, apply: (inputs: Inputs) => Inputs): Remedy => ({
+  ...{ title, needsFiles: true },
+  act: ({ fileActions }) => fileActions.peek()?.change(apply),
+});
+
+const choose = (what: string): Remedy => ({
+  ...{ title: `Change the ${what} …`, needsFiles: true },
+  act: ({ fileActions }) => fileActions.peek()?.edit(),
+});
+
+const readAs = (title: string, depthKind: DepthKind) => changed(title, (inputs) => ({ ...inputs, depthKind }));
+const nearIsBright = readAs("Near is bright", "affine-invariant-disparity");
+const nearIsDark = readAs("Near is dark", "affine-invariant");
+
+const back: Remedy = {
+  ...{ title: "Back to the result", needsFiles: false },
+  act: (workspace, object) => applyAlternative(workspace, object, -1),
+};
+
+const freeSize: Remedy = {
+  ...{ title: "Search without this size", needsFiles: false },
+  act(workspace, object) {
+    object.lockScale(false);
+    return alignSelected(workspace);
+  },
+};
+
+/** Metres per unit of depth that are usual, and how they are called. */
+const units = [
+  [1, "Metres"],
+  [0.01, "Centimetres"],
+  [0.001, "Millimetres"],
+  [0.0002, "0.2 mm"],
+  [0.0001, "0.1 mm"],
+] as const;
+/** Sizes and distances of objects that nobody would doubt, metres. */
+const [USUAL_SIZE_M, USUAL_DISTANCE_M] = [
+  [0.03, 0.6],
+  [0.2, 5],
+] as const;
+
+/** The units in which the object would have a usual size. */
+function otherUnits({ depthUnit, distanceM, extentM }: Findings): Remedy[] {
+  // The unit of floats is written as a word.
+  const present = Number.parseFloat(depthUnit) || 1;
+  const isIn = (m: number, [least, most]: readonly [number, number]) => m >= least && m <= most;
+  return units.flatMap(([unit, title]) => {
+    const factor = unit / present;
+    const [sizeM, awayM] = [extentM * factor, distanceM * factor];
+    if (unit === present || !isIn(sizeM, USUAL_SIZE_M) || !isIn(awayM, USUAL_DISTANCE_M)) return [];
+    const what = `${title}: ${centimetres(sizeM)} cm across, ${depth(awayM, null)} away`;
+    return [changed(what, (inputs) => ({ ...inputs, depthScale: unit }))];
+  });
+}
+
+const isRelative = ({ depthKind }: Findings) => depthKind.startsWith("affine");
+
+/** The causes, the surest first. How the limits of overlaps were set: docs/design-history.md. */
+const rows: readonly Row[] = [
+  {
+    cause: "moved",
+    test: ({ isByHand, visibleIou, foundIou, iou }) =>
+      isByHand && visibleIou < WRONG_IOU && foundIou !== null && foundIou > iou + 0.15,
+    text: ({ iou, foundIou }) =>
+      `Moved by hand, the object overlaps its mask by ${percent(iou)}; where the alignment had put it, by ${percent(foundIou ?? 0)}.`,
+    remedies: () => [back],
+  },
+  {
+    cause: "mask",
+    codes: ["MASK_LOOKS_INVERTED", "MASK_COVERS_IMAGE", "MASK_TOUCHES_BORDER"],
+    test: has("MASK_LOOKS_INVERTED", "MASK_COVERS_IMAGE"),
+    text: () => "The mask covers the border of the image: it seems to mark the background instead of the object.",
+    remedies: ({ index }) => [changed("Invert the mask", withInverted(index)), choose("mask")],
+  },
+  {
+    cause: "camera",
+    codes: ["MESH_DOUBTFUL", "SIZE_DOUBTFUL"],
+    test: ({ cameraFactor, confidence }) => cameraFactor !== null && confidence < SURE,
+    text: () =>
+      "The principal point is far from the middle: the intrinsics seem to be those of an image of another size.",
+    remedies: ({ camera, cameraFactor }) => [
+      ...(cameraFactor === null
+        ? []
+        : [
+            changed(`Scale them by ${significant(cameraFactor, 3)}`, (inputs) => ({
+              ...inputs,
+              camera: scaled(camera, cameraFactor),
+            })),
+          ]),
+      choose("camera"),
+    ],
+  },
+  {
+    cause: "swap",
+    codes: ["MESH_DOUBTFUL"],
+    test: ({ swap }) => swap !== null,
+    text: ({ swap }) =>
+      `The masks of ${swap?.names.join(" and ")} seem to be swapped: each mesh fits the other mask better (${swap?.confidences.map(percent).join(" and ")}).`,
+    remedies: ({ swap }) => (swap === null ? [] : [changed("Exchange the masks", exchanged(swap))]),
+  },
+  {
+    cause: "size",
+    codes: ["MESH_DOUBTFUL", "SCALE_CLAMPED"],
+    test: ({ isSizeKnown, isByHand, confidence }) => isSizeKnown && !isByHand && confidence < DOUBT,
+    text: () => "With the size that was entered, the mesh does not fit. Check the number and its edge.",
+    remedies: () => [freeSize],
+  },
+  {
+    cause: "mirrored",
+    codes: ["MESH_LOOKS_MIRRORED", "MESH_DOUBTFUL"],
+    test: has("MESH_LOOKS_MIRRORED"),
+    text: () => "The mirror image of the mesh fits far better. Export it again: some exporters exchange two axes.",
+    remedies: () => [choose("mesh")],
+  },
+  {
+    cause: "depth",
+    codes: ["DEPTH_LOOKS_NORMALISED", "DEPTH_LOOKS_INVERTED", "MESH_DOUBTFUL", "SIZE_DOUBTFUL"],
+    test: (of) => of.isMetric && !isRelative(of) && has("DEPTH_LOOKS_NORMALISED")(of),
+    text: () => "The depth map spans its whole range, as one that was normalised: its values are no lengths.",
+    remedies: () => [nearIsBright, nearIsDark],
+  },
+  {
+    cause: "depth",
+    codes: ["DEPTH_LOOKS_INVERTED", "MESH_DOUBTFUL", "SIZE_DOUBTFUL"],
+    // Real sensors have such outlines, too, where something hides the object.
+    test: (of) => !isRelative(of) && has("DEPTH_LOOKS_INVERTED")(of) && of.confidence < DOUBT,
+    text: () =>
+      "At the outline, the surroundings are nearer than the object: near seems to be large in this depth map.",
+    remedies: () => [readAs("Read it as disparity", "affine-invariant-disparity"), choose("depth map")],
+  },
+  {
+    cause: "depth",
+    codes: ["DEPTH_LOOKS_INVERTED", "MESH_DOUBTFUL"],
+    test: (of) => isRelative(of) && (has("DEPTH_LOOKS_INVERTED")(of) || of.confidence < DOUBT),
+    text: ({ depthKind }) =>
+      `Read as relative depth of which near is ${depthKind === "affine-invariant" ? "dark" : "bright"}, the depth map does not fit the mesh.`,
+    remedies: ({ depthKind }) => [depthKind === "affine-invariant" ? nearIsBright : nearIsDark, choose("depth map")],
+  },
+  {
+    cause: "unit",
+    codes: ["DEPTH_LOOKS_LIKE_MILLIMETRES", "DEPTH_LOOKS_TOO_SMALL", "SIZE_DOUBTFUL"],
+    test: has("DEPTH_LOOKS_LIKE_MILLIMETRES", "DEPTH_LOOKS_TOO_SMALL", "SIZE_DOUBTFUL"),
+    text: ({ depthUnit, distanceM, extentM }) =>
+      `Is it really ${centimetres(extentM)} cm across and ${depth(distanceM, null)} away? The depth map does not state its unit; it was read in ${depthUnit}.`,
+    remedies: (of) => [...otherUnits(of), choose("unit")],
+  },
+  {
+    cause: "texture",
+    codes: ["TEXTURE_LOOKS_FLIPPED"],
+    test: has("TEXTURE_LOOKS_FLIPPED"),
+    text: () => "The photo shows the print of the mesh upside down, so the turn is in doubt. Export the mesh again.",
+    remedies: () => [choose("mesh")],
+  },
+  {
+    cause: "mask",
+    // A thin object that lies on the surface fits its mask and depth.
+    test: ({ bulge, step, confidence, isByHand }) => bulge < 0.05 && step < 0.045 && (isByHand || confidence < 0.7),
+    text: () => "The mask shows a flat surface that goes on around it, not an object.",
+    remedies: () => [choose("mask")],
+  },
+  {
+    cause: "occluded",
+    test: (of) =>
+      of.isBehindSomething &&
+      of.visibleIou >= LOW_IOU &&
+      of.hidden > 0.1 &&
+      of.residual < 0.04 &&
+      !has("MESH_DOUBTFUL")(of),
+    text: ({ hidden }) => `The overlap is low because ${percent(hidden)} of the object is behind something else.`,
+  },
+  {
+    cause: "mesh",
+    codes: ["MESH_DOUBTFUL"],
+    test: (of) => !of.isByHand && has("MESH_DOUBTFUL")(of) && of.confidence < DOUBT,
+    text: () =>
+      "Even the best pose fits poorly: the mesh may be that of another object, or mask, depth map and camera do not belong together.",
+    remedies: () => [choose("files")],
+  },
+];
+
+function has(...codes: readonly WarningCode[]) {
+  return ({ warnings }: Findings) => codes.some((code) => warnings.includes(code));
+}
+
+/** Each pose has metrics of its own. */
+const found = new WeakMap<Metrics, { swap: Swap | null; advice: Advice | null }>();
+
+/** The advice on the present pose of an object, once its metrics are known. */
+export function adviceFor(scene: Scene, object: ObjectModel, swap: Swap | null): Advice | null {
+  const metrics = object.metrics.value;
+  if (metrics === null) return null;
+  const known = found.get(metrics);
+  if (known !== undefined && known.swap === swap) return known.advice;
+  const findings = findingsOf(scene, object, metrics, swap);
+  const row = rows.find(({ test }) => test(findings));
+  const { cause, codes = [], remedies = () => [] } = row ?? {};
+  const advice =
+    row === undefined || cause === undefined
+      ? null
+      : { cause, codes, text: row.text(findings), remedies: remedies(findings) };
+  found.set(metrics, { swap, advice });
+  return advice;
+}
+
+function findingsOf(scene: Scene, object: ObjectModel, metrics: Metrics, swap: Swap | null): Findings {
+  const { alignment, confidence, knownScale, pose } = object;
+  const { camera, cameraSource, depthUnit, objects, raw } = scene;
+  const index = objects.indexOf(object);
+  return {
+    ...evidenceOf(scene, object),
+    ...{ index, camera, depthUnit, isMetric: isMetric(scene), depthKind: raw?.depthKind ?? "metric" },
+    isByHand: !isResult(pose.value.source),
+    isSizeKnown: knownScale.value !== null,
+    iou: metrics.iou ?? 0,
+    foundIou: alignment.value?.metrics.iou ?? null,
+    confidence: confidence ?? 1,
+    warnings: alignment.value?.warnings.map(({ code }) => code) ?? [],
+    cameraFactor: cameraSource === null ? otherSize(camera, scene) : null,
+    swap: swap?.indices.includes(index) ? swap : null,
+  };
+}
