@@ -117,8 +117,10 @@ function Confidence({ object }: { object: ObjectModel | null }) {
     );
   }
   const isSizeDoubtful = object?.isSizeDoubtful === true && unit.value === null;
-  const level = confidence < 0.7 ? "low" : confidence < SURE || isSizeDoubtful ? "medium" : "high";
-  const medium = isSizeDoubtful ? "Check the size" : "Check it";
+  const isTurnDoubtful = !isTracked && (object?.precise?.turnConfidence ?? 1) < 0.7;
+  const isMedium = confidence < SURE || isSizeDoubtful || isTurnDoubtful;
+  const level = confidence < 0.7 ? "low" : isMedium ? "medium" : "high";
+  const medium = isSizeDoubtful ? "Check the size" : isTurnDoubtful ? "Check the turn" : "Check it";
   const advice = { high: "Likely correct", medium, low: "Unreliable: fix it" }[level];
   return (
     <p class="badge" data-level={level}>
