@@ -113,7 +113,7 @@ impl Scene {
                 let along = facing.dot(ray);
                 let weight = f64::from(weights.depth) * share(0) * curvature;
                 add(differences(pose, lock_scale, |q| along * error(q)), weight);
-                let seen = grid.normals[i].as_dvec3();
+                let seen = grid.normal_at(i).as_dvec3();
                 if seen != DVec3::ZERO {
                     let weight = f64::from(weights.normals) * share(1);
                     for axis in 0..3 {

@@ -48,7 +48,7 @@ fn empty_grid(width: usize, height: usize) -> CropGrid {
         mask_cells: 0,
         depth_cells: 0,
         depth: vec![0.0; cells],
-        normals: vec![Vec3::ZERO; cells],
+        normals: [0, 1, 2].map(|_| vec![0.0; cells]),
         scene: vec![0.0; cells],
         known: 0.0,
         outline: vec![0.0; cells],
@@ -79,7 +79,8 @@ pub fn noisy_grid(draw: &mut Draw, model: &Model, pose: &CropPose, scoring: &Sco
                 if w > 0.0 && draw.below(5) > 0 {
                     let normal = facing(&canvas, model, &grid, u, v);
                     let turn = exp(DVec3::from(<[f64; 3]>::from(draw.direction())) * draw.between(0.0, 0.7));
-                    grid.normals[i] = (turn * normal.as_dvec3()).as_vec3();
+                    let turned = (turn * normal.as_dvec3()).as_vec3().to_array();
+                    grid.normals.iter_mut().zip(turned).for_each(|(axis, x)| axis[i] = x);
                 }
             }
             grid.scene[i] = match draw.below(6) {
@@ -142,7 +143,7 @@ fn by_definition(
         if grid.mask[i] && grid.depth[i] > 0.0 {
             let error = (z - f64::from(grid.depth[i])).abs() / f64::from(scoring.depth_m);
             depths.push(1.0 - error / (1.0 + error));
-            let seen = grid.normals[i].as_dvec3();
+            let seen = grid.normal_at(i).as_dvec3();
             if seen != DVec3::ZERO {
                 let drawn = pose.rotation * model.normals[canvas.triangle[i] as usize].as_dvec3();
                 alike.push(seen.dot(drawn).abs());

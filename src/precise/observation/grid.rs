@@ -43,7 +43,7 @@ pub struct CropGrid {
     pub depth: Vec<f32>,
     /// Number of cells with a depth of the object.
     pub depth_cells: usize,
-    /// Normal of the object, towards the camera; zero if unknown.
+    /// Normal of the object by axis, towards the camera; zero if unknown.
     pub normals: [Vec<f32>; 3],
     /// Depth of the scene, metres; 0 without a reading, almost 0 outside the image.
     pub scene: Vec<f32>,
@@ -104,6 +104,12 @@ impl CropGrid {
     pub fn ray(&self, u: f32, v: f32) -> Vec3 {
         let focal = self.focal as f32;
         Vec3::new((u - self.center[0] as f32) / focal, (v - self.center[1] as f32) / focal, 1.0)
+    }
+
+    /// The normal of the object in a cell, towards the camera; zero if unknown.
+    #[inline]
+    pub fn normal_at(&self, cell: usize) -> Vec3 {
+        Vec3::from(self.normals.each_ref().map(|axis| axis[cell]))
     }
 
     /// The weight in the union of a silhouette cell without a reading, given that in a complete depth map.

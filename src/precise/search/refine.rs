@@ -133,7 +133,7 @@ impl Refiner<'_> {
                     let gradient = normal * per_depth;
                     let residual = normal.dot(point) * w * error;
                     add(point, gradient, residual, depth_weight * curvature);
-                    let seen = Vec3::from(grid.normals.each_ref().map(|axis| axis[i]));
+                    let seen = grid.normal_at(i);
                     if seen.z != 0.0 {
                         turns.add(normal, seen);
                     }
