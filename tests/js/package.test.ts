@@ -22,7 +22,9 @@ test("what an entry imports is in the package: no three.js, and no other package
   for (const entry of ["sim3align", "sim3align/conventions", "sim3align/three", "sim3align/formats"]) {
     const loaded = new Set([require.resolve(entry)]);
     for (const file of loaded) {
-      for (const [, name = ""] of readFileSync(file, "utf8").matchAll(/^(?:import|export)\b[^;]*?from "([^"]+)"/gm)) {
+      // Whatever their spaces: scripts are minified.
+      const imports = /(?:^|[;}])(?:import|export)\b(?:[^;"()]*\bfrom)?\s*"([^"]+)"/gm;
+      for (const [, name = ""] of readFileSync(file, "utf8").matchAll(imports)) {
         assert.match(name, /^\.{1,2}\//, file);
         loaded.add(join(dirname(file), name));
       }
