@@ -47,6 +47,8 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   await opened.kept();
   await page.reload();
   await isShown(page, "IMG_003");
+  // The list comes after the first picture.
+  await page.locator(".scenes li").nth(3).waitFor(PATIENCE);
   assert.equal(await page.locator(".scenes li").count(), 4);
   await page.locator(".scenes button", { hasText: "IMG_002" }).click();
   await isShown(page, "IMG_002");
