@@ -11,7 +11,7 @@ function pageOf(repository, path) {
   return `docs/${own.join("-").toLowerCase().replace(/\.md$/, "")}.html`;
 }
 
-/** Where a link of a document leads in the repository. @param {string} from @param {string} link */
+/** The file in the repository to which a link of a document refers. @param {string} from @param {string} link */
 const targetOf = (from, link) => join(dirname(from), decodeURI(link.split("#")[0] ?? ""));
 
 /**
@@ -38,7 +38,7 @@ export function documents(repository) {
 }
 
 /** The anchor of a heading, as GitHub and npm make it. @param {string} title */
-const anchorOf = (title) =>
+export const anchorOf = (title) =>
   title
     .toLowerCase()
     .replace(/[^\p{L}\p{N} _-]/gu, "")

@@ -33,3 +33,11 @@ impl Random {
         f64::from(self.0.next_u32()) / 4_294_967_296.0
     }
 }
+
+/// A hash of 64 bits: one step of SplitMix64 (Steele et al., "Fast splittable pseudorandom number generators", OOPSLA 2014).
+pub fn mixed(bits: u64) -> u64 {
+    let bits = bits.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    bits ^ (bits >> 31)
+}

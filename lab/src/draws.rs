@@ -1,6 +1,6 @@
 //! Random draws of the generators.
 
-use sim3align_geometry::random::Random;
+use sim3align_geometry::random::{self, Random};
 
 /// A number in [`low`, `high`).
 pub(crate) fn between(random: &mut Random, low: f64, high: f64) -> f64 {
@@ -25,10 +25,5 @@ pub(crate) fn sign(random: &mut Random) -> f64 {
 
 /// A seed derived from several numbers: SplitMix64 over each in turn.
 pub(crate) fn mixed<const N: usize>(numbers: [u64; N]) -> u64 {
-    numbers.into_iter().fold(0, |state, x| {
-        let mut z = (state ^ x).wrapping_add(0x9e37_79b9_7f4a_7c15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    })
+    numbers.into_iter().fold(0, |state, x| random::mixed(state ^ x))
 }

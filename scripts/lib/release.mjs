@@ -1,6 +1,6 @@
 /** Requirements of a release: a tag that names the version, a dated section of the changelog, a citation of both, and addresses. */
 
-/** What stands for the owner of the repository in its addresses, until it is known. */
+/** Placeholder for the owner of the repository in addresses. */
 const PLACEHOLDER = "OWNER";
 
 /**

@@ -6,7 +6,11 @@ import { createAligner, readTypedCase } from "./inputs.mjs";
 
 /** @typedef {{ matrix: number[], diagnostics: { timingsMs: Record<string, number> } }} Result */
 
-const TETRAHEDRON = Uint32Array.of(0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3);
+/** Another mesh than that of any case. */
+const tetrahedron = {
+  positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1),
+  indices: Uint32Array.of(0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3),
+};
 
 /** @param {readonly Result[]} results @param {string} stage */
 const milliseconds = (results, stage) => median(results.map(({ diagnostics }) => diagnostics.timingsMs[stage] ?? NaN));
@@ -18,7 +22,6 @@ const milliseconds = (results, stage) => median(results.map(({ diagnostics }) =>
  */
 export async function measureStages(folders, { runs, quality }) {
   const aligner = await createAligner();
-  const tetrahedron = { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1), indices: TETRAHEDRON };
   for (const folder of folders) {
     const { name, input } = await readTypedCase(folder);
     /** @type {Record<string, Result[]>} */
@@ -33,20 +36,21 @@ export async function measureStages(folders, { runs, quality }) {
     /** @type {number[]} */
     const bare = [];
     const mesh = await aligner.prepareMesh(input.mesh);
-    // The first run compiles.
+    /** @param {number[]} list @param {() => Promise<Result>} call */
+    const timed = async (list, call) => {
+      const began = performance.now();
+      const result = await call();
+      list.push(performance.now() - began);
+      return result;
+    };
     for (let run = -1; run < runs; run++) {
+      // The first run compiles.
+      if (run === 0) for (const list of [here, whole, again, bare]) list.length = 0;
       // The aligner keeps the last mesh: after this one, it analyses that of the case anew.
       await aligner.align({ ...input, mesh: tetrahedron }, { quality: "fast", metrics: false }).catch(() => {});
-      const times = [performance.now()];
-      const result = await aligner.align(input, { quality });
-      times.push(performance.now());
-      await aligner.align(input, { quality });
-      times.push(performance.now());
-      await aligner.align({ ...input, mesh }, { quality, metrics: false });
-      times.push(performance.now());
-      if (run < 0) continue;
-      here.push(result);
-      for (const [i, list] of [whole, again, bare].entries()) list.push((times[i + 1] ?? NaN) - (times[i] ?? NaN));
+      here.push(await timed(whole, () => aligner.align(input, { quality })));
+      await timed(again, () => aligner.align(input, { quality }));
+      await timed(bare, () => aligner.align({ ...input, mesh }, { quality, metrics: false }));
     }
     mesh.dispose();
     const rows = Object.keys(here[0]?.diagnostics.timingsMs ?? {}).map((stage) => [

@@ -1,6 +1,7 @@
 /** References of the documents: links, commands, and the sections of the guide on errors. */
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
+import { anchorOf } from "../../www/documentation.mjs";
 import { filesBelow } from "../lib/cache.mjs";
 import { at, repository } from "../lib/paths.mjs";
 
@@ -11,14 +12,8 @@ const documents = () =>
     .filter((path) => path.endsWith(".md") && !isMade(path))
     .map((path) => ({ path, text: readFileSync(path, "utf8") }));
 
-/** The anchors of headings, as GitHub and npm make them. @param {string} text */
-const anchorsIn = (text) =>
-  Array.from(text.matchAll(/^#+ (.*)$/gm), ([, title = ""]) =>
-    title
-      .toLowerCase()
-      .replace(/[^\p{L}\p{N} _-]/gu, "")
-      .replaceAll(" ", "-"),
-  );
+/** The anchors of headings. @param {string} text */
+const anchorsIn = (text) => Array.from(text.matchAll(/^#+ (.*)$/gm), ([, title = ""]) => anchorOf(title));
 
 /** @throws if a link leads nowhere or a command does not exist */
 export function checkDocuments() {

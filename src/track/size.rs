@@ -70,9 +70,9 @@ impl Size {
     /// Adds the evidence of a frame.
     pub fn add(&mut self, rotation: DQuat, evidence: SizeEvidence) {
         self.frames.push((rotation, evidence));
-        let settled = pooled(self.frames.iter().map(|(_, evidence)| *evidence));
-        if self.frames.len() >= SETTLED || settled.is_some_and(|(_, sd)| sd < SETTLED_SD) {
-            self.settled = settled;
+        let all = self.evidence();
+        if self.frames.len() >= SETTLED || all.is_some_and(|(_, sd)| sd < SETTLED_SD) {
+            self.settled = all;
         }
     }
 

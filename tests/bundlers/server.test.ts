@@ -10,7 +10,7 @@ import { installDir } from "../support/environment.js";
 
 const folder = join(installDir, "servers");
 
-/** A program that prints what comes of a call, with a file among its arguments; `query` makes the bundler embed a module. */
+/** A program that prints the result of a call with a file argument; `query` makes the bundler embed a module. */
 const program = (entry: string, workers: number, query = "") => `
   import { createAligner } from ${JSON.stringify(entry)};
   import registration from "sim3align/wasm/registration_bg.wasm${query}";

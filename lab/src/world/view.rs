@@ -204,7 +204,7 @@ impl Rendering {
         object.keys.is_empty() || key_px >= (self.visible_px() / 50).max(25)
     }
 
-    /// Whether the visible part of the print determines which of the turns that the shape allows is right.
+    /// Whether the visible part of the print distinguishes the turns of a symmetric shape.
     pub fn shows_turn(&self, placed: &Placed, print: &Print) -> bool {
         let world_from_camera = self.view.camera_from_world.inverse();
         let center = SurfaceMoments::of(&placed.mesh).centroid;

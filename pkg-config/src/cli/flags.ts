@@ -25,7 +25,7 @@ interface FlagSettings {
   /** See {@link OutputName}. */
   isOwn?: OutputName["isOwn"];
   holds?: OutputName["holds"];
-  /** Whether results do not depend on it: it names a case, or sets the order and the parallelism of the work. */
+  /** Whether it leaves results unchanged: names of cases, order and parallelism of the work. */
   isIndifferent?: boolean;
   /** Another flag that it needs, and the name of that flag in the error. */
   needs?: readonly [flag: string, what: string];

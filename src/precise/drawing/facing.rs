@@ -6,6 +6,7 @@ use glam::DVec2;
 use super::pose::CropPose;
 use super::render::{Canvas, Model};
 use crate::geometry::mesh::Mesh;
+use crate::geometry::random::mixed;
 use crate::geometry::rotations::super_fibonacci;
 use crate::precise::observation::grid::CropGrid;
 use crate::precise::observation::resolution::{GRIDS, SIEVE};
@@ -63,12 +64,4 @@ fn is_closed(mesh: &Mesh) -> bool {
         }
     }
     sum == 0
-}
-
-/// A hash of 64 bits (Steele et al., "Fast splittable pseudorandom number generators", OOPSLA 2014).
-fn mixed(bits: u64) -> u64 {
-    let bits = bits.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ bits >> 31
 }

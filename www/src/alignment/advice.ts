@@ -27,7 +27,7 @@ export type Cause =
   | "mesh"
   | "unit";
 
-/** What a button does. Those that change files are not there where the page has none. */
+/** The action of a button. Actions that change files need a page with files. */
 export interface Remedy {
   title: string;
   needsFiles: boolean;
@@ -42,13 +42,13 @@ export interface Advice {
   codes: readonly WarningCode[];
 }
 
-/** What the tests look at. */
+/** The evidence for the tests. */
 interface Findings extends Evidence {
   /** The index of the object. */
   index: number;
-  /** Whether a person has set the pose. */
+  /** Whether the pose was set by hand. */
   isByHand: boolean;
-  /** Whether a person has set the size. */
+  /** Whether the size was entered. */
   isSizeKnown: boolean;
   /** The overlap (IoU) of mask and mesh: at the present pose, and where the last alignment has put it. */
   iou: number;
