@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::problem::Search;
 use super::ranking::Found;
 use super::recipe::{SURE, SearchSettings};
-use super::rounds::Rounds;
+use super::rounds::{ELSEWHERE, Rounds};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::rotations::super_fibonacci;
@@ -27,8 +27,6 @@ use crate::precise::scoring::surroundings::{Neighbourhood, Surroundings};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Effort;
 
-/// Rotation from the best pose from which on rivals are looked for, radians.
-const ELSEWHERE: f64 = 0.5;
 /// Score below that of the best pose down to which a pose is its rival.
 const RIVAL: f32 = 0.05;
 
@@ -56,6 +54,9 @@ pub fn begin(
         return Err(degenerate_mask(format!("{} pixels in a line, or apart", rounds.search.observation.pixels)));
     }
     if let Some(previous) = previous {
+        if options.search == SearchScope::Global {
+            rounds.follow(previous);
+        }
         rounds.search.renders += previous.search.renders;
         rounds.resume(&previous.found);
     }
@@ -63,9 +64,10 @@ pub fn begin(
     Ok(rounds)
 }
 
-/// A search for rivals of the best pose of another search: from rotations between those of its grid, far from the pose.
+/// A search for rivals of the best pose of another search, if that is contested: from rotations between those of its grid,
+/// far from the pose.
 pub fn rival_search(rounds: &Rounds) -> Option<Rounds> {
-    let best = rounds.found.first()?;
+    let best = rounds.found.first().filter(|_| rounds.is_contested())?;
     let search = &rounds.search;
     let again = search.for_rivals();
     let count = again.settings.rotations();

@@ -104,7 +104,7 @@ function Size({ object }: { object: ObjectModel | null }) {
 }
 
 function Confidence({ object }: { object: ObjectModel | null }) {
-  const { frameIndex, framePoses, unit } = useWorkspace();
+  const { frameIndex, framePoses } = useWorkspace();
   const isTracked = object?.pose.value.source === "tracked";
   const frame = framePoses.value[frameIndex.value] ?? null;
   const confidence = isTracked ? (frame?.confidence ?? null) : (object?.confidence ?? null);
@@ -116,11 +116,9 @@ function Confidence({ object }: { object: ObjectModel | null }) {
       </p>
     );
   }
-  const isSizeDoubtful = object?.isSizeDoubtful === true && unit.value === null;
-  const isTurnDoubtful = !isTracked && (object?.precise?.turnConfidence ?? 1) < 0.7;
-  const isMedium = confidence < SURE || isSizeDoubtful || isTurnDoubtful;
-  const level = confidence < 0.7 ? "low" : isMedium ? "medium" : "high";
-  const medium = isSizeDoubtful ? "Check the size" : isTurnDoubtful ? "Check the turn" : "Check it";
+  const doubt = object?.doubt ?? null;
+  const level = confidence < 0.7 ? "low" : confidence < SURE || doubt !== null ? "medium" : "high";
+  const medium = doubt === null ? "Check it" : `Check the ${doubt}`;
   const advice = { high: "Likely correct", medium, low: "Unreliable: fix it" }[level];
   return (
     <p class="badge" data-level={level}>

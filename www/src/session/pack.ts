@@ -2,7 +2,7 @@
 import type { DepthCalibration, DepthKind, Support } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import { baseName } from "../input/files.js";
-import { hasSizeDoubt } from "../state/alignment.js";
+import { doubtOf } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, NamedFile, Role, TruthSource } from "../state/inputs.js";
 import { applyToObject, type ObjectWork, stateOf, verdictOf } from "../state/object-work.js";
@@ -139,8 +139,8 @@ export function progressOfPacked({ frames, objects }: Packed): Progress | null {
     objects.map(({ state }): Judged => {
       const { source = "start", alignment = null } = state ?? {};
       const found = isResult(source) && alignment !== null && "confidence" in alignment ? alignment.confidence : null;
-      const isSizeDoubtful = hasSizeDoubt(alignment);
-      return { isPlaced: source !== "start", verdict: verdictOf(state), confidence: found, isSizeDoubtful };
+      const doubt = isResult(source) ? doubtOf(alignment) : null;
+      return { isPlaced: source !== "start", verdict: verdictOf(state), confidence: found, doubt };
     }),
   );
 }

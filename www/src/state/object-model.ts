@@ -2,7 +2,7 @@
 import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
 import type { MeshArrays, Metrics, PoseErrors, Sim3AlignError, Sim3Like, Stage } from "sim3align";
 import type { Vector3 } from "sim3align/conventions";
-import { type AnyAlignment, hasSizeDoubt, type PreciseAlignment } from "./alignment.js";
+import { type AnyAlignment, type Doubt, doubtOf, type PreciseAlignment } from "./alignment.js";
 import { boundsOf, isResult, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
 
 /** The state of an alignment. */
@@ -133,8 +133,9 @@ export class ObjectModel implements Readonly<ObjectParts> {
     return isResult(this.pose.value.source) ? (this.precise?.confidence ?? null) : null;
   }
 
-  get isSizeDoubtful(): boolean {
-    return hasSizeDoubt(this.alignment.value);
+  /** What to check in the pose of the alignment. */
+  get doubt(): Doubt | null {
+    return isResult(this.pose.value.source) ? doubtOf(this.alignment.value) : null;
   }
 
   /** The last alignment, if it is one of the preset `precise`. */

@@ -1,5 +1,6 @@
 /** How far the work on a scene is. */
 
+import type { Doubt } from "./alignment.js";
 import type { ObjectModel, Verdict } from "./object-model.js";
 import type { FramePose } from "./video.js";
 
@@ -28,12 +29,12 @@ export interface Judged {
   readonly verdict: Verdict | null;
   /** That of the present pose; null for one that no alignment has found. */
   readonly confidence: number | null;
-  readonly isSizeDoubtful?: boolean;
+  readonly doubt?: Doubt | null;
 }
 
-/** Whether an object waits for a person: nothing is decided, and the search or the unit is not sure. */
-export const isDoubtful = ({ verdict, confidence, isSizeDoubtful }: Judged): boolean =>
-  verdict === null && ((confidence ?? 0) < SURE || isSizeDoubtful === true);
+/** Whether an object waits for a person: nothing is decided, and the search, the unit or the turn is not sure. */
+export const isDoubtful = ({ verdict, confidence, doubt = null }: Judged): boolean =>
+  verdict === null && ((confidence ?? 0) < SURE || doubt !== null);
 
 export function progressOf(objects: readonly Judged[], hasDoubt = objects.some(isDoubtful)): Progress {
   const open = objects.filter(({ verdict }) => verdict === null);
@@ -47,8 +48,8 @@ export function progressOf(objects: readonly Judged[], hasDoubt = objects.some(i
   };
 }
 
-export const judged = ({ confidence, isPlaced, isSizeDoubtful, verdict }: ObjectModel): Judged => ({
-  ...{ confidence, isPlaced, isSizeDoubtful, verdict: verdict.value },
+export const judged = ({ confidence, doubt, isPlaced, verdict }: ObjectModel): Judged => ({
+  ...{ confidence, doubt, isPlaced, verdict: verdict.value },
 });
 
 /** The same of objects in their present state. */
