@@ -16,7 +16,7 @@ function named(extension) {
 }
 
 /** Entries whose scripts are bundled in ways of their own. */
-const apart = ["inline", join("element", "sim3-align")];
+const apart = ["inline", join("element", "sim3-align"), join("element", "shared")];
 
 /**
  * Files that are named relative to a script, as seen from another place.
