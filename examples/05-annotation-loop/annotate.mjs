@@ -1,7 +1,7 @@
 // From a pose set by hand to an exported annotation: node annotate.mjs [FOLDER] [OUT_FOLDER]
 import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { createAligner } from "sim3align";
-import { compose, orientedBoundingBox, placeGlb, toBop } from "sim3align/conventions";
+import { compose, exportGlb, orientedBoundingBox, toBop } from "sim3align/conventions";
 import { readMesh } from "sim3align/formats";
 
 const [folder = "../sample/mug", out = "annotation"] = process.argv.slice(2);
@@ -46,7 +46,7 @@ aligner.dispose();
 const { entry, scale: metresPerUnit } = toBop(locked, { objId: 1 });
 await mkdir(out, { recursive: true });
 await writeFile(`${out}/scene_gt.json`, JSON.stringify({ 0: [entry] }, null, 2));
-await writeFile(`${out}/placed.glb`, placeGlb(glb, locked));
+await writeFile(`${out}/placed.glb`, exportGlb(glb, locked));
 const summary = {
   knownExtentM,
   sizeM: orientedBoundingBox(mesh, locked).sizeM,

@@ -1,10 +1,10 @@
-import { depthFromTensor, maskFromTensor, resizeMask } from "sim3align/conventions";
+import { fromTensor, resizeInput } from "sim3align/conventions";
 
 /**
  * Aligns a mesh with the tensors that transformers.js returns for one photo. No camera is needed: the photo's EXIF data state
  * the focal length, or it is estimated.
  *
- * @typedef {import("sim3align/conventions").TensorLike} Tensor such as a `Tensor` of transformers.js
+ * @typedef {{ data: unknown, dims: readonly number[] }} Tensor such as a `Tensor` of transformers.js
  * @param {import("sim3align").Aligner} aligner
  * @param {object} found
  * @param {Tensor} found.predicted_depth from the pipeline `depth-estimation`: height × width floats. Do not use its
@@ -18,8 +18,9 @@ import { depthFromTensor, maskFromTensor, resizeMask } from "sim3align/conventio
  * @param {import("sim3align").AlignOptions} [options] `knownExtentM` makes relative depth metric
  */
 export async function alignTensors(aligner, { predicted_depth, depthKind, masks, iou_scores }, photo, mesh, options) {
-  const depth = depthFromTensor(predicted_depth);
-  const mask = maskFromTensor(masks, { scores: iou_scores });
+  const depth = fromTensor(predicted_depth, "depth");
+  const mask = fromTensor(masks, "mask", { scores: iou_scores });
   // The pipelines resize depth and masks to the size of the image; a model that is called directly may not.
-  return aligner.align({ depth, depthKind, mask: resizeMask(mask, depth), image: photo, mesh }, options);
+  const resized = resizeInput({ mask }, depth);
+  return aligner.align({ depth, depthKind, ...resized, image: photo, mesh }, options);
 }

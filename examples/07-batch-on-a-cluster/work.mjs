@@ -109,7 +109,7 @@ export const perform = {
       }
       return { scale: frames.at(-1)?.scale, frames };
     } finally {
-      tracker.close();
+      tracker.dispose();
     }
   },
 };

@@ -38,7 +38,7 @@ for (let k = 0; k < FRAMES; k++) {
     console.log(`correction of ${(100 * (truth.scale / scale - 1)).toFixed(1)} % in frame ${k}`);
   }
 }
-tracker.close();
+tracker.dispose();
 aligner.dispose();
 
 const poses = annotations.map(({ scale, rotation, translation }) => ({ scale, rotation, translation }));

@@ -8,7 +8,7 @@ import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./came
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
-import { fromCocoRle, readRleFile } from "./input/coco-rle.js";
+import { decodedRle, readRleFile } from "./input/coco-rle.js";
 import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
 import type { DracoDecoderModule, MeshoptDecoder } from "./input/mesh-decoders.js";
@@ -105,7 +105,7 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskFromFile> {
-  if (isRecord(file)) return fromCocoRle(file as unknown as CocoRle);
+  if (isRecord(file)) return decodedRle("rle", file);
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return call(bytes, (readers) => readers.readMask(bytes));

@@ -8,55 +8,20 @@
 export { Aligner, createAligner } from "./aligner/aligner.js";
 export type { AlignerOptions } from "./aligner/aligner-options.js";
 export { Tracker } from "./aligner/tracker.js";
-export {
-  ALIGN_DEFAULTS,
-  ESTIMATE_SIM3_DEFAULTS,
-  EVALUATE_DEFAULTS,
-  OPTIONS,
-  PAPER_DEFAULTS,
-  REGISTER_DEFAULTS,
-  TRACK_DEFAULTS,
-  VIEWS_DEFAULTS,
-} from "./generated/options.js";
+export { OPTIONS } from "./generated/options.js";
 export type {
   Alternative,
-  CalibrationUncertainty,
-  CameraPose,
-  ColorReport,
-  ColorVerdict,
   Contact,
   CorrectedFrame,
-  Counts,
   DepthCalibration,
-  Diagnostics,
-  Effort,
-  EvaluationDiagnostics,
-  ExtentAxis,
-  GuardMode,
-  Icp,
-  LayoutErrors,
   Metrics,
-  PaperDiagnostics,
   PoseErrors,
-  PreciseDiagnostics,
   Preset,
-  Proportions,
   Quality,
-  RegistrationDiagnostics,
-  ScoreTerms,
-  SearchCounts,
-  SearchScope,
   Stage,
-  Stretch,
-  Timings,
-  TrackState,
   Uncertainty,
-  ViewRole,
-  ViewsDiagnostics,
   Warning,
   WarningCode,
-  WorldFrame,
-  WorldUncertainty,
 } from "./generated/types.js";
 export type { Sim3, Sim3Like } from "./input/sim3.js";
 export type { WasmModules } from "./modules/modules.js";
@@ -69,17 +34,14 @@ export type {
   DepthKind,
   DepthView,
   EncodedBytes,
-  FieldOfViewCamera,
   FrameInput,
   MaskInput,
-  MatrixCamera,
   MeshArrays,
   MeshFile,
   MeshFormat,
   MeshInput,
   PhotoInput,
   PinholeCamera,
-  UnknownCamera,
   ViewInput,
   ViewsInput,
 } from "./types/inputs.js";
@@ -87,27 +49,23 @@ export type {
   AlignAllOptions,
   AlignOptions,
   CallOptions,
-  Direction,
   EstimateSim3Options,
   EvaluateOptions,
   OptionRow,
-  OptionsOf,
   PaperOptions,
   Progress,
   RegisterOptions,
   ScaleOption,
-  SymmetryAxis,
   SymmetryOption,
   TrackOptions,
   ViewsOptions,
 } from "./types/options.js";
-export type { BlobLike, SignalLike, UrlLike, WasmSource, WorkerLike } from "./types/platform.js";
+export type { WasmSource, WorkerLike } from "./types/platform.js";
 export type {
   AlignAllResult,
   Alignment,
   AlignResult,
   Evaluation,
-  InputInfo,
   PaperAlignment,
   Registration,
   TrackedFrame,
@@ -115,18 +73,15 @@ export type {
   ViewsAlignment,
 } from "./types/results.js";
 export type {
-  LabelMap,
   Plane,
   SceneAlignment,
   SceneFailure,
   SceneInput,
-  SceneMetrics,
   SceneObjectInput,
   SceneOptions,
   SceneResult,
   Support,
 } from "./types/scene.js";
-export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./values/error.js";
+export { type ErrorCode, Sim3AlignError } from "./values/error.js";
 export type { PixelArray } from "./values/pixels.js";
 export { PreparedMesh } from "./values/prepared-mesh.js";
-export type { ColorSamples } from "./wasm/formats.js";

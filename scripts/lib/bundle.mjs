@@ -16,7 +16,7 @@ function named(extension) {
 }
 
 /** Entries whose scripts are bundled in ways of their own. */
-const apart = ["inline", join("element", "sim3-align")];
+const apart = ["inline", join("element", "sim3-align"), join("element", "shared")];
 
 /**
  * Files that are named relative to a script, as seen from another place.
@@ -109,8 +109,9 @@ export async function bundleTypes() {
     plugins: [dts()],
     external: [/^node:/, "three"],
     onLog: (_, { code, message }) => {
-      // The worker exports nothing.
-      if (code !== "EMPTY_BUNDLE") throw new Error(message);
+      // The worker exports nothing. Types of parts are reached by the properties that have them; what compilers write about
+      // these into the declarations of users, tests/js/inferred.test-d.ts shows.
+      if (code !== "EMPTY_BUNDLE" && !/private shared type exports/.test(message)) throw new Error(message);
     },
   });
   await bundle.write({

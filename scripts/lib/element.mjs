@@ -1,6 +1,6 @@
 /** `sim3align/element`: the custom element and its page for iframes, in one folder, which uses the WebAssembly of the package around it. */
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
-import { basename, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { definitions } from "../../www/definitions.mjs";
 import { fromFolder, withAddresses } from "./bundle.mjs";
@@ -9,12 +9,36 @@ import { at, compiledDir, packageDir } from "./paths.mjs";
 
 const sources = at("www", "src");
 const folder = join(packageDir, "element");
+/** The entries of the element. */
+const entries = {
+  "sim3-align": join(sources, "element", "index.ts"),
+  shared: join(sources, "element", "shared.ts"),
+};
+/** What the 3D view uses of three.js. */
+const threeFile = join(sources, "view3d", "three.ts");
 
 /** The package's files, style sheets as texts, and addresses of files beside the bundle instead of beside their source. */
 const ownFiles = /** @type {import("esbuild").Plugin} */ ({
   name: "own-files",
   setup(build) {
     build.onResolve({ filter: /^sim3align(\/|$)/ }, ({ path }) => ({ path: join(compiledDir, ownModule(path)) }));
+    // The view gets three.js from its source when it runs: only the two entries of the element import it.
+    build.onResolve({ filter: /\/three\.js$/ }, ({ importer, path, resolveDir }) => {
+      const file = join(resolveDir, path.replace(/js$/, "ts"));
+      if (file !== threeFile || importer === entries["sim3-align"]) return undefined;
+      return { path: file, namespace: importer === entries.shared ? "three-of-app" : "three-names" };
+    });
+    build.onLoad({ filter: /./, namespace: "three-of-app" }, () => ({
+      contents: readFileSync(threeFile, "utf8"),
+      loader: "ts",
+    }));
+    build.onLoad({ filter: /./, namespace: "three-names" }, () => {
+      const lists = readFileSync(threeFile, "utf8").matchAll(/^export \{([^}]*)\}/gm);
+      const names = Array.from(lists, ([, list = ""]) => list.replace(/,\s*$/, ""));
+      const contents = `import { three } from "./three-source.js"; export const { ${names.join(", ")} } = three();`;
+      return { contents, resolveDir: dirname(threeFile) };
+    });
+    build.onResolve({ filter: /^three(\/|$)/, namespace: "three-of-app" }, ({ path }) => ({ path, external: true }));
     // Addons of three.js import from "three", whose WebGL renderer would be in the bundle beside that of "three/webgpu".
     build.onResolve({ filter: /^three$/ }, ({ kind, resolveDir }) =>
       build.resolve("three/webgpu", { kind, resolveDir }),
@@ -58,7 +82,7 @@ export async function bundleElement() {
   const { OPTIONS } = await import(pathToFileURL(join(packageDir, "index.js")).href);
   const { metafile } = await build({
     entryPoints: {
-      "sim3-align": join(sources, "element", "index.ts"),
+      ...entries,
       frame: join(sources, "element", "frame.ts"),
       "reader-worker": join(sources, "input", "reader-worker.ts"),
       worker: join(compiledDir, "worker.js"),

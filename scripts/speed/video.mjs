@@ -65,7 +65,7 @@ export async function measureVideo(folders, { runs, quick }) {
           const { user, system } = process.cpuUsage(began);
           if (run > 0 && k > 0) times.push((user + system) / 1000);
         }
-        tracker.close();
+        tracker.dispose();
       }
       rows.push([
         `${name}, ${frames.length} frames`,

@@ -25,10 +25,17 @@ const resolutions = { node16: { module: "node16" }, bundler: { module: "esnext",
 async function compileStrictly(name) {
   await install();
   const project = join(installDir, `tsconfig.${name}.json`);
-  const compilerOptions = { ...resolutions[name], strict: true, noEmit: true, target: "es2022", types: [] };
+  const compilerOptions = {
+    ...resolutions[name],
+    strict: true,
+    noEmit: true,
+    declaration: true,
+    target: "es2022",
+    types: [],
+  };
   // Nothing of the repository's: the compiler looks for packages in the folders above.
   const lib = ["es2022", "esnext.disposable", "dom", "dom.iterable"];
-  const files = ["types", "conventions", "element"].map((of) => `tests/js/${of}.test-d.ts`);
+  const files = ["types", "conventions", "element", "inferred"].map((of) => `tests/js/${of}.test-d.ts`);
   writeFileSync(project, JSON.stringify({ compilerOptions: { ...compilerOptions, lib }, files }));
   const [node, tsc] = nodeProgram("typescript", "tsc");
   await run(node, [tsc, "--project", project]);

@@ -1,6 +1,6 @@
 /** Wrong inputs: each says at its own field what is wrong and what helps, and nothing runs meanwhile. */
 import assert from "node:assert/strict";
-import { resizeMask } from "sim3align/conventions";
+import { resizeInput } from "sim3align/conventions";
 import { maskPng as maskFile, png } from "../support/files.js";
 import { otherCamera } from "../support/page-cases.js";
 import {
@@ -101,7 +101,7 @@ test("beside a depth map that cannot be read, mask and mesh are shown", async (o
 
 test("remedies are buttons", async (opened, page) => {
   const half = { width: WIDTH / 2, height: HEIGHT / 2 };
-  const { data } = resizeMask({ data: seen.mask, width: WIDTH, height: HEIGHT }, half);
+  const { data } = resizeInput({ mask: { data: seen.mask, width: WIDTH, height: HEIGHT } }, half).mask;
   await drop(opened, {
     ...files,
     "mask.png": maskFile(data, half.width, half.height),

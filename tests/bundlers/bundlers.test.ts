@@ -1,13 +1,13 @@
 /** The package in apps of every kind, without any configuration for it, in a real browser: the bits are those of Node. */
 import assert from "node:assert/strict";
 import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { before, test } from "node:test";
 import { build as esbuild } from "esbuild";
 import { createAligner } from "sim3align";
 import { createServer, build as vite } from "vite";
 import webpack from "webpack";
-import { browserFor } from "../support/browser.js";
+import { browserFor, WEBGL } from "../support/browser.js";
 import { installDir } from "../support/environment.js";
 import { type Found, work } from "./work.js";
 
@@ -18,6 +18,7 @@ const page =
   `<body><script type="module" src="./main.js"></script></body></html>`;
 
 const browser = browserFor(installDir);
+const drawing = browserFor(installDir, WEBGL);
 let expected: Found;
 before(async () => {
   rmSync(folder, { recursive: true, force: true });
@@ -91,6 +92,29 @@ for (const name of ["app", "app-inline"]) {
     await check(`apps/webpack-${name}/index.html`);
   });
 }
+
+test("the element draws with the three.js of an app, which is in its bundle once", async () => {
+  const copies = (text: string) => text.match(/\.isObject3D\s*=\s*(?:!0|true)/g)?.length ?? 0;
+  const root = appFolder("vite-element");
+  const own = readFileSync(appOf("app-element"), "utf8").replace(
+    "../support/",
+    join(dirname(appOf("app")), "../support/"),
+  );
+  const counts: number[] = [];
+  // The entry with a copy of its own would show twice as many: what is counted is there.
+  for (const text of [own.replaceAll("sim3align/element/shared", "sim3align/element"), own]) {
+    writeFileSync(join(root, "main.js"), text);
+    await vite({ root, base: "./", logLevel: "error", configFile: false });
+    const assets = join(root, "dist", "assets");
+    const scripts = readdirSync(assets).filter((name) => name.endsWith(".js"));
+    counts.push(scripts.reduce((sum, name) => sum + copies(readFileSync(join(assets, name), "utf8")), 0));
+  }
+  assert.deepEqual(counts, [2, 1]);
+  const { page, errors } = await drawing.open("apps/vite-element/dist/index.html");
+  await page.locator("sim3-align .space[data-state=ready] canvas").first().waitFor({ timeout: 120_000 });
+  assert.deepEqual(errors, []);
+  await page.close();
+});
 
 test("esbuild, in one piece, as one classic script", async () => {
   const path = appFolder("esbuild");

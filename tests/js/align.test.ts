@@ -1,7 +1,7 @@
 /** `align` as its callers see it: the form of a result, repeatability, progress, the life of an aligner. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ALIGN_DEFAULTS, createAligner, PAPER_DEFAULTS } from "sim3align";
+import { createAligner } from "sim3align";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { assertForms, withoutTimes } from "../support/results.js";
 import { brick, input } from "../support/scene.js";
@@ -68,15 +68,9 @@ test("the stages are timed, and the total is their sum", async () => {
   assert.ok(total > 0 && Math.abs(total - sum) < 1e-6 * total + 1e-9, `${total} against ${sum}`);
 });
 
-test("the defaults are those of the documentation: passing them, or undefined, changes nothing", async () => {
-  assert.deepEqual([ALIGN_DEFAULTS.symmetry, PAPER_DEFAULTS.guard], ["auto", [0.5, 1.5]]);
-  for (const options of [
-    { ...ALIGN_DEFAULTS, seed: 3 },
-    { seed: 3, quality: undefined, onProgress: undefined },
-  ]) {
-    assert.deepEqual(withoutTimes(await aligner.align(input, options)), reference);
-  }
-  assert.deepEqual(withoutTimes(await aligner.align(input, PAPER_DEFAULTS)), withoutTimes(baseline));
+test("an option that is undefined is left out", async () => {
+  const options = { seed: 3, quality: undefined, onProgress: undefined };
+  assert.deepEqual(withoutTimes(await aligner.align(input, options)), reference);
 });
 
 test("the same call gives the same bits, after other calls and errors and in another instance; arguments stay", async () => {

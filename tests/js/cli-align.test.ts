@@ -40,7 +40,12 @@ const quick = ["--quality", "fast"];
 test("--help explains the layout, frames, units and exit status, and has a flag for every option", () => {
   assert.match(succeeds("--help").stdout, /^Usage: sim3align.*align.*evaluate.*Examples/s);
   assert.match(run("evaluate --help").stdout, /transform file/);
-  const { stdout } = succeeds("align --help");
+  const { stdout: common } = succeeds("align --help");
+  const { stdout: ofPaper } = succeeds("align --help paper");
+  assert.ok(
+    !common.includes("--support-angle-deg") && !ofPaper.includes("--known-extent") && !ofPaper.includes("Examples"),
+  );
+  const stdout = common + ofPaper;
   for (const word of ["depth.npy", "camera.json", "metres", "OpenCV", "Exit status"])
     assert.ok(stdout.includes(word), word);
   for (const { name, kind, default: value } of [...OPTIONS.align, ...OPTIONS.paper]) {

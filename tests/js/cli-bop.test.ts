@@ -100,7 +100,7 @@ test("detections take the place of masks, and pictures show the poses", async ()
   ]);
   writeFileSync(join(folder, "detections.json"), JSON.stringify(detections));
   const pictures = "--report pictures --overlay overlay --glb posed";
-  const { stderr } = bop(`--masks detections.json --quality fast --csv cnos --json d.json ${pictures}`);
+  const { stderr } = bop(`--masks detections.json --quality fast --suffix cnos --json d.json ${pictures}`);
   assert.doesNotMatch(stderr, /no pictures/);
   const entries = results("d.json");
   const names = ["1/0/1-0", "1/7/2-0", "1/7/2-1"];
@@ -130,7 +130,7 @@ test("what cannot be read is reported, with the file and the line", () => {
     ["--masks object.json", /no list/, 1],
     ["--masks entry.json", /entry 0/, 1],
     ["--masks empty.json", /nothing to align/, 2],
-    ["--csv a_b", /--csv a_b/, 2],
+    ["--suffix a_b", /--suffix a_b/, 2],
     ["--scores s.json", /--scores needs --evaluate/, 2],
     ["--split nowhere", /nothing to read at .*nowhere/, 1],
   ];

@@ -9,11 +9,9 @@ import {
   fromCvatCuboid,
   fromFrame,
   orientedBoundingBox,
-  placeGlb,
   toCuboid,
   toCvatCuboid,
   toFrame,
-  uprightGlb,
   uprightMesh,
 } from "sim3align/conventions";
 import { Euler, Matrix4, Quaternion, Vector3 } from "three";
@@ -177,9 +175,9 @@ test("a box that lies askew in its file gets tight axes, its up and its bottom, 
 test("a GLB and a scene of upright objects are where they were", async () => {
   const support = { normal: [0.1, -0.9, -0.4], d: 0.8 };
   const straight = uprightMesh(mesh, truth, { support });
-  const glb = uprightGlb(exportGlb(mesh, still, { frame: "opencv" }), mesh, truth, { support });
+  const glb = uprightMesh(mesh, truth, { support, glb: exportGlb(mesh, still, { frame: "opencv" }) });
   assertNear(glb.transform.matrix, straight.transform.matrix, "one frame", 0);
-  const placed = placeGlb(glb.mesh, glb.transform, { frame: "opencv" });
+  const placed = exportGlb(glb.mesh, glb.transform, { frame: "opencv" });
   await assertValid(placed);
   assertNear(await verticesOf(placed), applyToPoints(truth, mesh.positions), "the GLB", 1e-5);
   assertNear(await verticesOf(glb.mesh), straight.mesh.positions, "in the upright frame", 1e-5);

@@ -7,8 +7,6 @@ import {
   exportGlb,
   exportPly,
   exportSceneGlb,
-  placeGlb,
-  stretchGlb,
   stretchMesh,
   toFrame,
   toSim3,
@@ -63,20 +61,20 @@ test("a GLB of another program is put where it is, with all that it has, twice, 
   const binary = (glb: Uint8Array) => glb.subarray(20 + new DataView(glb.buffer, glb.byteOffset).getUint32(12, true));
   for (const name of ["scene.glb", "mesh.glb"]) {
     const original = fixture(name);
-    const placed = placeGlb(original, truth, { name: "placed" });
+    const placed = exportGlb(original, truth, { name: "placed" });
     await assertValid(placed);
     const expected = applyToPoints(toFrame(truth, "opengl"), Float64Array.from(await verticesOf(original)));
     assertNear(await verticesOf(placed), expected, name, 1e-6);
     assert.equal((await loadGlb(placed)).children[0]?.name, "placed");
     assert.deepEqual([...binary(placed)], [...binary(original)], "the binary chunk stays");
-    await assertValid(placeGlb(Uint8Array.from(placed).buffer, truth));
+    await assertValid(exportGlb(Uint8Array.from(placed).buffer, truth));
   }
   const nodes = [{ children: [1], translation: [1, 2, 3] }, { name: "leaf" }, { name: "other" }];
-  const scene = await loadGlb(placeGlb(glbOf({ asset: { version: "2.0" }, nodes }, new Uint8Array()), truth));
+  const scene = await loadGlb(exportGlb(glbOf({ asset: { version: "2.0" }, nodes }, new Uint8Array()), truth));
   assert.deepEqual([scene.children[0]?.name, scene.children[0]?.children.length], ["sim3align", 2]);
   assert.equal(scene.getObjectByName("leaf")?.parent?.position.y, 2);
   const nothing = glbOf({ asset: { version: "2.0" }, buffers: [{ byteLength: 4 }] }, new Uint8Array(4));
-  assert.equal((await loadGlb(placeGlb(nothing, truth))).children.length, 1);
+  assert.equal((await loadGlb(exportGlb(nothing, truth))).children.length, 1);
 });
 
 test("a scene of several GLB files: morph targets and compressed primitives keep their data", async () => {
@@ -207,8 +205,8 @@ test("a mesh and a GLB in other proportions, by nodes that glTF allows", async (
     );
     const { positions } = stretchMesh(mesh, { stretch });
     assertNear(positions, expected, `seed ${seed}`, 1e-6);
-    const stretched = stretchGlb(exportGlb(mesh, still, { frame: "opencv" }), { stretch });
-    const glb = placeGlb(stretched, truth, { frame: "opencv" });
+    const stretched = stretchMesh(exportGlb(mesh, still, { frame: "opencv" }), { stretch });
+    const glb = exportGlb(stretched, truth, { frame: "opencv" });
     await assertValid(glb);
     assertNear(await verticesOf(glb), applyToPoints(truth, positions), `seed ${seed}`, 1e-6);
   }
@@ -222,7 +220,7 @@ test("what is no mesh, GLB or stretch is refused", async () => {
       exportGlb(wrong as never, truth, options);
   const good = Uint8Array.from(exportGlb(soup, truth));
   const place = (at: number, byte: number) => () =>
-    placeGlb(
+    exportGlb(
       good.map((old, i) => (i === at ? byte : old)),
       truth,
     );
@@ -236,8 +234,9 @@ test("what is no mesh, GLB or stretch is refused", async () => {
     [glb({ positions, indices: Uint32Array.of(0, 1, 9) }), "INDEX_OUT_OF_RANGE mesh.indices", /below 9/],
     [glb({ positions: positions.map((x, i) => (i === 5 ? Number.NaN : x)) }), "NON_FINITE mesh.positions", /vertex 1/],
     [glb(soup, { mode: "bake" }), "INVALID_OPTION options.mode", /"node" or "baked"/],
-    [() => placeGlb(new Uint8Array(7), truth), "CORRUPT_FILE glb", /without a GLB header/],
-    [() => placeGlb(good.slice(0, -1), truth), "CORRUPT_FILE glb", /bytes of/],
+    [() => exportGlb(new Uint8Array(7), truth), "CORRUPT_FILE glb", /without a GLB header/],
+    [() => exportGlb(good, truth, { mode: "baked" }), "INVALID_OPTION options.mode", /"node" keeps/],
+    [() => exportGlb(good.slice(0, -1), truth), "CORRUPT_FILE glb", /bytes of/],
     [place(20, 0x78), "CORRUPT_FILE glb", /JSON/],
     [place(4, 1), "UNSUPPORTED_FORMAT glb", /glTF 2/],
     [stretch(1, 0.5, 0, 0, 1, 0, 0, 0, 1), "INVALID_ARGUMENT proportions.stretch", /symmetric/],

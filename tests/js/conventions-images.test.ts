@@ -1,18 +1,8 @@
 /** Tensors, depth, point maps, and images of another size, with the camera kept right. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createAligner } from "sim3align";
-import {
-  cropInput,
-  depthFromDisparity,
-  depthFromTensor,
-  maskBox,
-  maskFromTensor,
-  pointMapFromMoge,
-  resizeCamera,
-  resizeDepth,
-  resizeMask,
-} from "sim3align/conventions";
+import { type CameraInput, createAligner, type PinholeCamera } from "sim3align";
+import { correctDepth, cropInput, fromTensor, pointMapFromMoge, resizeInput } from "sim3align/conventions";
 import { fixtures } from "../support/conventions.js";
 import { type Refused, rejectsWith } from "../support/errors.js";
 import { fixture } from "../support/files.js";
@@ -27,20 +17,20 @@ test("a mask is chosen from a tensor by its number or its score; depth comes as 
   const data = Uint8Array.of(1, 0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1);
   const tensor = { data, dims: [1, 3, 2, 3] };
   const scores = { data: Float32Array.of(0.2, 0.9, 0.4), dims: [1, 1, 3] };
-  assert.deepEqual([...maskFromTensor(tensor, { scores }).data], [1, 1, 0, 0, 0, 0]);
-  assert.deepEqual([...maskFromTensor(tensor, { scores: [0.2, 0.1, 0.4] }).data], [0, 0, 0, 0, 1, 1]);
+  assert.deepEqual([...fromTensor(tensor, "mask", { scores }).data], [1, 1, 0, 0, 0, 0]);
+  assert.deepEqual([...fromTensor(tensor, "mask", { scores: [0.2, 0.1, 0.4] }).data], [0, 0, 0, 0, 1, 1]);
   const first = { data: Uint8Array.of(1, 0, 0, 0, 0, 0), width: 3, height: 2 };
-  assert.deepEqual(maskFromTensor(tensor, { index: 0 }), first);
-  assert.deepEqual([...maskFromTensor({ data: [true, false], dims: [1, 2] }).data], [1, 0]);
+  assert.deepEqual(fromTensor(tensor, "mask", { index: 0 }), first);
+  assert.deepEqual([...fromTensor({ data: [true, false], dims: [1, 2] }, "mask").data], [1, 0]);
   const logits = { data: Float32Array.of(-3, 0.1, Number.NaN, 7, 0, -0), dims: [1, 1, 2, 3] };
-  assert.deepEqual([...maskFromTensor(logits).data], [0, 1, 0, 1, 0, 0]);
+  assert.deepEqual([...fromTensor(logits, "mask").data], [0, 1, 0, 1, 0, 0]);
   for (const dims of [
     [height, width],
     [1, height, width],
     [1, 1, height, width],
   ]) {
     for (const values of [view.depth, Float64Array.from(view.depth)]) {
-      assert.deepEqual(depthFromTensor({ data: values, dims }), depth);
+      assert.deepEqual(fromTensor({ data: values, dims }, "depth"), depth);
     }
   }
 });
@@ -48,11 +38,13 @@ test("a mask is chosen from a tensor by its number or its score; depth comes as 
 test("disparity becomes depth, and what has none becomes no reading", () => {
   forSeeds(10, (random, seed) => {
     const [scale, shift] = [random.between(0.01, 5), random.between(-0.2, 0.2)];
-    const relative = { ...depth, data: view.depth.map((z) => (1 / z - shift) / scale) };
-    assertNear(depthFromDisparity(relative, { scale, shift }).data, view.depth, seed, 1e-5);
+    const relative = { ...depth, data: view.depth.map((z) => scale / z - shift) };
+    const ofStereo = { depthKind: "affine-invariant-disparity", scale, shift } as const;
+    assertNear(correctDepth(relative, ofStereo).data, view.depth, seed, 1e-5);
   });
   const strange = { data: Float32Array.of(0, -1, Number.NaN, Number.POSITIVE_INFINITY), width: 2, height: 2 };
-  assert.deepEqual([...depthFromDisparity(strange, { scale: 1 }).data], [0, 0, 0, 0]);
+  assert.deepEqual([...correctDepth(strange, { depthKind: "affine-invariant-disparity" }).data], [1000, 1000, 0, 0]);
+  assert.deepEqual([...correctDepth(strange, { depthKind: "metric", scale: 2 }).data], [0, 0, 0, 0]);
 });
 
 test("MoGe's point map becomes ours: pixels where they were, and what is invalid not a number", () => {
@@ -82,19 +74,21 @@ const place = (of: Camera, to: { width: number; height: number }, [x = 0, y = 0,
 ];
 
 test("a resized camera sees every point at the same place of the picture", () => {
-  const from = { fromWidth: width, fromHeight: height };
+  const resized = (camera: CameraInput, to: { width: number; height: number }) =>
+    resizeInput({ depth, camera }, to).camera as PinholeCamera;
   forSeeds(20, (random, seed) => {
     const to = { width: random.whole(1, 900), height: random.whole(1, 900) };
-    const there = resizeCamera(camera, { ...from, ...to });
+    const there = resized(camera, to);
     assert.deepEqual([there.width, there.height], [to.width, to.height]);
     const point = [...random.list(2, -1, 1), random.between(0.5, 4)];
     assertNear(place(there, to, point), place(camera, view, point), seed);
   });
   const K = [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1];
-  const size = { ...from, width: 80, height: 60 };
-  assert.deepEqual(resizeCamera({ K }, size), resizeCamera(camera, size));
+  const size = { width: 80, height: 60 };
+  assert.deepEqual(resized({ K }, size), resized(camera, size));
+  assert.deepEqual(resizeInput({ camera: { ...camera, width, height } }, size).camera, resized(camera, size));
   const fovYDeg = (360 / Math.PI) * Math.atan(height / 2 / 100);
-  const { fx, fy, cx, cy } = resizeCamera({ fovYDeg }, size);
+  const { fx, fy, cx, cy } = resized({ fovYDeg }, size);
   assertNear([fx, fy, cx, cy], [50, 50, 39.5, 29.5], "field of view");
 });
 
@@ -102,7 +96,7 @@ test("resized pixels are old pixels, each its nearest", () => {
   forSeeds(20, (random, seed) => {
     const to = { width: random.whole(1, 60), height: random.whole(1, 60) };
     const image = { data: Uint16Array.from({ length: 35 }, (_, i) => i), width: 7, height: 5 };
-    const { data } = resizeDepth(image, to);
+    const { data } = resizeInput({ depth: image }, to).depth;
     assert.ok(data instanceof Uint16Array);
     data.forEach((found, i) => {
       // The new pixel's centre, in pixels of the old image from its edge.
@@ -112,14 +106,27 @@ test("resized pixels are old pixels, each its nearest", () => {
       assert.ok(off <= 0.5 + 1e-9, `${seed}: pixel ${i} is ${off} from its source`);
     });
   });
-  assert.deepEqual(resizeMask(mask, view), mask);
+  const points = { data: Float32Array.from({ length: 12 }, (_, i) => i), width: 2, height: 2 };
+  const part = resizeInput({ mask, pointMap: points, image: points, seed: 3 } as never, { width: 1, height: 2 });
+  assert.deepEqual(
+    { ...(part as object), mask: 0 },
+    {
+      ...{
+        mask: 0,
+        pointMap: { data: Float32Array.of(3, 4, 5, 9, 10, 11), width: 1, height: 2 },
+        image: points,
+        seed: 3,
+      },
+    },
+  );
+  assert.deepEqual(resizeInput({ mask }, view).mask, mask);
 });
 
 test("a cropped input is the same scene: half a pixel more would show", async () => {
   const aligner = await createAligner();
-  const box = maskBox(mask, { marginPx: 5 });
-  assert.ok(box.width < width && box.height < height);
-  const { metrics } = await aligner.evaluate(cropInput({ depth, mask, camera, mesh }, box), truth);
+  const cropped = cropInput({ depth, mask, camera, mesh }, { marginPx: 5 });
+  assert.ok(cropped.depth.width < width && cropped.depth.height < height);
+  const { metrics } = await aligner.evaluate(cropped, truth);
   assert.ok((metrics.iou ?? 0) > 0.97 && (metrics.depthMaeMm ?? 9) < 0.01, JSON.stringify(metrics));
   assert.ok((metrics.centerDriftPx ?? 9) < 0.05, JSON.stringify(metrics));
 });
@@ -138,29 +145,38 @@ test("a crop holds the pixels of its box, of the photo too, and everything else 
     assert.deepEqual([...pointMap.data], [27, 28, 29, 30, 31, 32]);
     assert.deepEqual(photo.data, image.data.slice(9 * (3 + k), 11 * (3 + k)));
   }
-  const found = maskBox({ ...labels, data: Uint8Array.of(0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0) });
-  assert.deepEqual(found, { left: 1, top: 1, width: 2, height: 2 });
+  const marked = { ...labels, data: Uint8Array.of(0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0) };
+  const data = Uint8Array.of(0, 1, 1, 0);
+  assert.deepEqual(cropInput({ mask: marked }, { marginPx: 0 }).mask, { data, width: 2, height: 2 });
 });
 
 test("tensors that leave the choice open, and sizes that do not go together, are refused", async () => {
   const tensor = { data: new Uint8Array(18), dims: [1, 3, 2, 3] };
-  const small = resizeMask(mask, { width: 8, height: 6 });
+  const { mask: small } = resizeInput({ mask }, { width: 8, height: 6 });
   const whole = { left: 0, top: 0, width, height };
   const refused: Refused[] = [
-    [() => maskFromTensor(tensor), "INVALID_OPTION choice", /iou_scores/],
-    [() => maskFromTensor(tensor, { scores: [1, 2] }), "WRONG_LENGTH choice.scores", /2 scores/],
+    [() => fromTensor(tensor, "mask"), "INVALID_OPTION choice", /iou_scores/],
+    [() => fromTensor(tensor, "mask", { scores: [1, 2] }), "WRONG_LENGTH choice.scores", /2 scores/],
     [
-      () => depthFromTensor({ data: new Uint8Array(6), dims: [2, 3] }),
+      () => fromTensor({ data: new Uint8Array(6), dims: [2, 3] }, "depth"),
       "EIGHT_BIT_DEPTH tensor.data",
       /predicted_depth/,
     ],
     [() => cropInput({ depth, mask: small }, whole), "SIZE_MISMATCH input.mask", /8 × 6 pixels, expected 160 × 120/],
-    [() => maskFromTensor({ ...tensor, data: new Uint8Array(17) }), "WRONG_LENGTH tensor.data", /17 values/],
-    [() => maskBox({ data: new Uint8Array(4), width: 2, height: 2 }), "EMPTY_MASK mask", /no non-zero pixel/],
+    [() => fromTensor({ ...tensor, data: new Uint8Array(17) }, "mask"), "WRONG_LENGTH tensor.data", /17 values/],
+    [
+      () => cropInput({ mask: { data: new Uint8Array(4), width: 2, height: 2 } }, { marginPx: 1 }),
+      ...(["EMPTY_MASK input.mask", /no non-zero pixel/] as const),
+    ],
+    [() => resizeInput({ camera }, { width: 8, height: 6 }), "INVALID_ARGUMENT input.camera.width"],
     [() => cropInput({ depth }, { ...whole, left: 1 }), "SIZE_MISMATCH box", /within/],
     // Bytes of a file cannot be cropped, and the whole photo would not belong to the part.
     [() => cropInput({ depth, image: fixture("photo.png") as never }, whole), "INVALID_ARGUMENT input.image"],
-    [() => depthFromDisparity(depth, { scale: Number.NaN }), "INVALID_ARGUMENT calibration.scale", /finite/],
+    [
+      () => correctDepth(depth, { depthKind: "metric", scale: Number.NaN }),
+      ...(["INVALID_ARGUMENT correction.scale", /finite/] as const),
+    ],
+    [() => correctDepth(depth, { depthKind: "ray-distance" }), "INVALID_ARGUMENT correction.camera"],
   ];
   for (const each of refused) await rejectsWith(...each);
 });

@@ -8,25 +8,19 @@ import {
   fromBop,
   fromFrame,
   fromSam3d,
-  type GeneratorFrame,
   generatorFrames,
   invert,
   toBop,
   toFrame,
-  toGltfNode,
-  toRos,
   toRowMajor,
   toSam3d,
   toSim3,
-  toThree,
-  wxyzFromXyzw,
-  xyzwFromWxyz,
 } from "sim3align/conventions";
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { fixtures } from "../support/conventions.js";
 import { type Refused, rejectsWith } from "../support/errors.js";
 import { assertNear, forSeeds } from "../support/random.js";
-import { columnMajor, type Pose, rotationRows, transformed } from "../support/scene.js";
+import { columnMajor, type Pose, rotationRows } from "../support/scene.js";
 
 const points = Float64Array.from(fixtures.meshPoints.flat());
 
@@ -68,10 +62,10 @@ test("every form of a transform is understood, and all forms are returned", () =
   });
 });
 
-test("row-major matrices are NumPy's, and each frame is the one that its axes say, also for ROS messages", () => {
+test("row-major matrices are NumPy's, and each frame is the one that its axes say", () => {
   for (const { scale, quaternionWxyz, translation, rowMajor, rotationRows, points: expected } of fixtures.poses) {
-    const rotation = xyzwFromWxyz(quaternionWxyz);
-    assertNear(wxyzFromXyzw(rotation), quaternionWxyz, "order");
+    const [w = 0, ...xyz] = quaternionWxyz;
+    const rotation = [...xyz, w];
     assertNear(toRowMajor({ scale, rotation, translation }), rowMajor, "from a quaternion");
     const pose = { scale, rotation: rotationRows, translation };
     assertNear(toRowMajor(pose), rowMajor, "from rows");
@@ -79,47 +73,23 @@ test("row-major matrices are NumPy's, and each frame is the one that its axes sa
       assertNear(applyToPoints(toFrame(pose, frame), points), expected[frame].flat(), frame);
       assertNear(fromFrame(toFrame(pose, frame), frame).matrix, toSim3(pose).matrix, `${frame} and back`);
     }
-    for (const [frame, name] of [
-      ["body", "ros"],
-      ["optical", "opencv"],
-    ] as const) {
-      const { position, orientation, scale: scaled } = toRos(pose, { frame });
-      assert.equal([...Object.keys(position), ...Object.keys(orientation)].join(), "x,y,z,x,y,z,w");
-      const moved = {
-        scale: scaled,
-        rotation: Object.values(orientation),
-        translation: Object.values(position),
-      } as Pose;
-      assertNear(transformed(points, moved), expected[name].flat(), frame);
-    }
-    assert.deepEqual(toRos(pose), toRos(pose, { frame: "body" }));
   }
 });
 
-test("OpenGL's frame, compose and invert, glTF's nodes: by three.js", () => {
+test("OpenGL's frame, compose and invert: by three.js", () => {
   forSeeds(20, (random, seed) => {
     const [a, b, c] = [random.pose(), random.pose(), random.pose()];
     const expected = new Matrix4().makeScale(1, -1, -1).multiply(threeMatrix(a));
-    const { matrix, position, quaternion, scale } = toThree(a);
-    const [place, turned] = [new Vector3(...position), new Quaternion(...quaternion)];
-    const composed = new Matrix4().compose(place, turned, new Vector3(...scale));
-    for (const found of [toFrame(a, "opengl").matrix, matrix, composed.elements])
-      assertNear(found, expected.elements, seed);
-    const node = toGltfNode(a);
-    const [at, turn, size] = [node.translation, node.rotation, node.scale];
-    const placed = new Matrix4().compose(new Vector3(...at), new Quaternion(...turn), new Vector3(...size));
-    assertNear(placed.elements, expected.elements, `${seed}: node`);
-    const plain = toGltfNode(a, { frame: "opencv" });
-    assertNear([...plain.translation, plain.extras.sim3align.metresPerUnit], [...a.translation, a.scale], seed);
+    const { matrix, translation, rotation, scale } = toFrame(a, "opengl");
+    const [place, turned] = [new Vector3(...translation), new Quaternion(...rotation)];
+    const composed = new Matrix4().compose(place, turned, new Vector3(scale, scale, scale));
+    for (const found of [matrix, composed.elements]) assertNear(found, expected.elements, seed);
     const product = threeMatrix(a).multiply(threeMatrix(b)).multiply(threeMatrix(c));
     assertNear(compose(a, b, c).matrix, product.elements, seed);
     assertNear(compose(a).matrix, threeMatrix(a).elements, seed);
     assertNear(invert(a).matrix, threeMatrix(a).invert().elements, seed);
     assertNear(compose(a, invert(a)).matrix, new Matrix4().elements, seed);
   });
-  const result = { ...toSim3({ scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 1] }), metrics: { iou: 0.9 } };
-  const { name, extras } = toGltfNode(result, { metrics: null, name: "mug" });
-  assert.deepEqual([name, "metrics" in extras.sim3align], ["mug", false]);
 });
 
 test("BOP's poses move models in millimetres, and survive", () => {
@@ -159,7 +129,7 @@ test("an object is upright, and seen from its front, by the frame of each genera
   const along = (vertices: number[][], [x, y, z]: readonly [number, number, number]) =>
     vertices.map(([a = 0, b = 0, c = 0]) => x * a + y * b + z * c);
   const frameOf = (name: string, file: string) =>
-    (generatorFrames as unknown as Record<string, Record<string, GeneratorFrame>>)[name]?.[file];
+    (generatorFrames as unknown as Record<string, Record<string, typeof generatorFrames.sam3d.mesh>>)[name]?.[file];
   const tested = fixtures.generators.map(({ generator, file, vertices, heights, towardsCamera }) => {
     const { up, front } = frameOf(generator, file) ?? assert.fail(`${generator} ${file}`);
     assertNear(along(vertices, up), heights, `${generator}, ${file}: up`);

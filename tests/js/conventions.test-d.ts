@@ -4,19 +4,19 @@ import {
   applyToPoints,
   compose,
   cropInput,
-  fromCocoRle,
-  fromCvatRle,
+  exportGlb,
+  fromRle,
   fromSam3d,
-  maskFromTensor,
+  fromTensor,
   orientedBoundingBox,
-  resizeDepth,
+  resizeInput,
+  stretchMesh,
   toBop,
   toCocoRle,
   toCuboid,
   toFrame,
-  toGltfNode,
   toRowMajor,
-  toThree,
+  uprightMesh,
 } from "sim3align/conventions";
 import { applyPinhole, applyToObject3D, meshInputFromThree, transformFromObject3D } from "sim3align/three";
 import { type BufferGeometry, type Group, InstancedMesh, Mesh, PerspectiveCamera, type SkinnedMesh } from "three";
@@ -32,20 +32,20 @@ const size = { width: 2, height: 2 };
 export function accepted(): void {
   const row: Float64Array = toRowMajor(alignment);
   const both: Sim3 = compose(toFrame(alignment, "ros"), { matrix: row }, row);
-  const [x, y, z]: [number, number, number] = toThree(both).position;
+  const [x, y, z]: [number, number, number] = toFrame(both, "opengl").translation;
   const [single, double]: [Float32Array, Float64Array] = [applyToPoints(both, floats), applyToPoints(both, doubles)];
   const text: string = toCocoRle({ data: bytes, ...size }).counts;
   const runs: readonly number[] = toCocoRle({ data: bytes, ...size }, { compressed: false }).counts;
-  const mask: AlignInput["mask"] = fromCocoRle({ size: [2, 2], counts: text });
-  const other: AlignInput["mask"] = maskFromTensor({ data: bytes, dims: [1, 1, 2, 2] });
-  const depth: Uint16Array = resizeDepth({ data: wholes, ...size }, size).data;
+  const mask: AlignInput["mask"] = fromRle({ size: [2, 2], counts: text });
+  const other: AlignInput["mask"] = fromTensor({ data: bytes, dims: [1, 1, 2, 2] }, "mask");
+  const depth: Uint16Array = resizeInput({ depth: { data: wholes, ...size } }, size).depth.data;
   const element = { rle: "1, 3", left: "0", top: "0", width: "2", height: "2" };
-  fromCvatRle(element, size);
+  fromRle(element, "cvat", size);
   fromSam3d({ scale: [[1, 1, 1]], rotation: floats, translation: [[[0, 0, 1]]] });
   const input: AlignInput = cropInput(
     {
       depth: { data: floats, ...size },
-      mask: fromCvatRle([1, 3, 0, 0, 1, 1], size),
+      mask: fromRle([1, 3, 0, 0, 1, 1], "cvat", size),
       camera: { K: [[1]] },
       mesh: bytes,
     },
@@ -53,8 +53,10 @@ export function accepted(): void {
   );
   const metres: number = orientedBoundingBox({ positions: floats }, alignment, { box: "minimal" }).sizeM[0];
   toCuboid(orientedBoundingBox({ positions: floats }, alignment), { front: "-x", up: "z" });
-  toGltfNode(alignment, { metrics: alignment.metrics });
-  toGltfNode(alignment, { metrics: null });
+  const file: Uint8Array = exportGlb(bytes, alignment, { metrics: alignment.metrics });
+  const straight: Uint8Array = uprightMesh({ positions: floats }, alignment, { glb: file }).mesh;
+  const stretched: Uint8Array = stretchMesh(straight, { stretch: doubles });
+  void stretched;
   void [x, y, z, single, double, runs, mask, other, depth, input, metres, toBop(alignment).entry.cam_R_m2c];
 }
 
@@ -83,7 +85,7 @@ export function refused(geometry: BufferGeometry): void {
   // @ts-expect-error the size is needed
   toCocoRle({ data: bytes });
   // @ts-expect-error depth is no bytes
-  resizeDepth({ data: bytes, ...size }, size);
+  resizeInput({ depth: { data: bytes, ...size } }, size);
   // @ts-expect-error no such box
   orientedBoundingBox({ positions: floats }, alignment, { box: "smallest" });
   // @ts-expect-error a geometry has no pose

@@ -89,7 +89,7 @@ test("each module loads once, when it is needed, however many calls need it at o
     counts.push(compiled.length);
     await assert.rejects(aligners[0].alignViews({ mesh: tetrahedron, views: [{ ...view, mask }] }), { code: "TOO_FEW_POINTS" });
     await Promise.all(aligners.map((aligner) => aligner.alignScene({ ...view, objects: [{ mask, mesh: tetrahedron }] })));
-    (await aligners[1].track(tetrahedron)).close();
+    (await aligners[1].track(tetrahedron)).dispose();
     counts.push(compiled.length);
     for (let i = 0; i < 2; i++) await readDepth(readFileSync(${JSON.stringify(join(fixtures, "depth-da3.npz"))}));
     counts.push(compiled.length);
@@ -136,7 +136,7 @@ test("a failed load says what to do, and the next one tries again", () => {
     const calls = {
       formats: (aligner) => assert.rejects(aligner.align(bad), { code: "UNSUPPORTED_FORMAT" }),
       registration: estimate,
-      joint: async (aligner) => (await aligner.track(tetrahedron)).close(),
+      joint: async (aligner) => (await aligner.track(tetrahedron)).dispose(),
       depthFiles: (aligner) => assert.rejects(aligner.align({ ...bad, depth: npz }), { code: /^(?!NOT_INITIALISED)/ }),
       splats: (aligner) => assert.rejects(aligner.align({ ...parsed, mesh: splat }), { code: "TOO_FEW_POINTS" }),
     };

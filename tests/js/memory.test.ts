@@ -33,7 +33,7 @@ const aligner = await createAligner();
 const expected = withoutTimes(await aligner.align(input, quick));
 const works = async () => assert.deepEqual(withoutTimes(await aligner.align(input, quick)), expected);
 // Loads the module of scenes, views and videos.
-(await aligner.track(mesh)).close();
+(await aligner.track(mesh)).dispose();
 const names = ["core", "joint"] as const;
 type Name = (typeof names)[number];
 const heap = (name: Name) => [...heaps.values()][names.indexOf(name)] as WebAssembly.Memory;
@@ -63,7 +63,7 @@ test("prepared meshes, trackers and calls that fail leave nothing behind", async
     await aligner.align({ ...input, mesh: prepared }, quick);
     const tracker = await aligner.track(prepared);
     await tracker.next(frame);
-    tracker.close();
+    tracker.dispose();
     prepared.dispose();
     await assert.rejects(aligner.align({ ...input, mask: new Uint8Array(input.mask.length) }), { code: "EMPTY_MASK" });
   };
@@ -92,7 +92,7 @@ test("a heap in which a tracker lives is let go when the tracker is closed", asy
   grow("joint", LARGE);
   assert.equal((await tracker.next(frame)).frame, 1);
   assert.ok(bytesOf("joint") >= LARGE);
-  tracker.close();
+  tracker.dispose();
   await aligner.evaluate(input, truth);
   using again = await aligner.track(mesh);
   assert.deepEqual((await again.next(frame)).matrix, matrix);

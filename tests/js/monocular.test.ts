@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type AlignInput, createAligner, type DepthKind, type Sim3 } from "sim3align";
-import { correctDepth, depthFromRayDistance } from "sim3align/conventions";
+import { correctDepth } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -31,7 +31,10 @@ const relative = (depthKind: DepthKind): AlignInput => ({
 
 test("distances along the rays are the depth that they belong to", async () => {
   const distances = relative("ray-distance");
-  const { data } = depthFromRayDistance({ data: distances.depth as Float32Array, width, height }, camera);
+  const { data } = correctDepth(
+    { data: distances.depth as Float32Array, width, height },
+    { depthKind: "ray-distance", camera },
+  );
   for (const [i, z] of view.depth.entries())
     assert.ok(Math.abs((data[i] ?? 0) - z) <= 1e-6 * z, `${data[i]} is not ${z}`);
   const [rays, depth] = [await here.align(distances, quick), await here.align({ ...input, depth: data }, quick)];

@@ -22,7 +22,7 @@ const target = transformed(cloud, { ...truth, scale: 2 }).map((x, i) => x + 0.01
 
 async function tracked({ mask, mesh, ...frame }: typeof input | typeof brick, options: object): Promise<unknown> {
   using tracker = await aligner.track(mesh, options);
-  return await tracker.next("initial" in options ? frame : { ...frame, mask });
+  return await tracker.next((options as { initial?: object | null }).initial ? frame : { ...frame, mask });
 }
 
 type Method = Exclude<keyof typeof OPTIONS, "alignScene">;
@@ -36,6 +36,23 @@ const calls: Record<Method, (options: object) => Promise<unknown>> = {
   register: (options) => aligner.register(cloud, target, { ransacIterations: 2000, ...options }),
   estimateSim3: (options) => aligner.estimateSim3(cloud, target, pairs, options),
 };
+
+const { mask, mesh: _, ...seen } = brick;
+const scene = { ...seen, objects: [{ mask, mesh: narrow }] };
+const allCalls: Record<keyof typeof OPTIONS, (options: object) => Promise<unknown>> = {
+  ...calls,
+  alignScene: (options) => aligner.alignScene(scene, { ...quick, ...options }),
+};
+
+test("the table has the default of every option: passing it changes nothing", async () => {
+  // Options that the calls of this test set themselves.
+  const set = ["quality", "surfaceSamples", "ransacIterations", "truth"];
+  for (const [method, call] of Object.entries(allCalls) as [keyof typeof OPTIONS, (typeof allCalls)["align"]][]) {
+    const rows = OPTIONS[method].filter(({ name }) => !set.includes(name));
+    const defaults = Object.fromEntries(rows.map(({ name, default: value }) => [name, value]));
+    assert.ok(rows.length > 3 && bits(await call(defaults)) === bits(await call({})), method);
+  }
+});
 
 /** Values other than the defaults; an object has further options that go with the one of its name. */
 const shared = { seed: 5, maxObservedPoints: 300, surfaceSamples: 200 };

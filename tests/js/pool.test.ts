@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Worker } from "node:worker_threads";
-import { type Aligner, type AlignInput, createAligner, type OptionsOf } from "sim3align";
+import { type Aligner, type AlignInput, type AlignOptions, createAligner, type PaperOptions } from "sim3align";
 import { pools } from "../support/aligners.js";
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
@@ -26,7 +26,7 @@ const pairs = Uint32Array.from({ length: 2000 }, (_, i) => Math.floor(i / 2));
 const { mesh: _, mask, ...view } = brick;
 const relative = { ...input, depth: input.depth.map((z) => 1 / z), depthKind: "affine-invariant-disparity" } as const;
 const views = [view, view, view].map((one) => ({ ...one, mask }));
-const poses: OptionsOf<"precise" | "paper", true>[] = [
+const poses: (AlignOptions | PaperOptions)[] = [
   {},
   hard,
   { ...quick, seed: 5, scale: [0.05, 0.2], cameraUp: [0, -1, 0.2], meshUp: [0, 1, 0] },
@@ -160,6 +160,37 @@ for (const [name, [script, workerStartMs, message]] of Object.entries(scripts)) 
     }
   });
 }
+
+test("single calls go before the inputs of a batch that wait for a worker", async () => {
+  using one = await createAligner({ workers: 1 });
+  const done: string[] = [];
+  const note = (name: string) => () => done.push(name);
+  const begun = new Gate();
+  const single = begun.opened.then(() => one.evaluate(input, truth)).then(note("single"));
+  const reported = ({ index }: { index: number }) => index === 0 && begun.open();
+  for await (const { index } of one.alignAll([input, input, input], { ...quick, onProgress: reported })) {
+    note(`input ${index}`)();
+  }
+  await single;
+  assert.deepEqual(done, ["input 0", "single", "input 1", "input 2"]);
+});
+
+test("errors of workers, and of frames, have the stack of the call", async () => {
+  using one = await createAligner({ workers: 1 });
+  const tracker = await one.track(mesh);
+  const callers: Record<string, () => Promise<unknown>> = {
+    alignWrongly: () => one.align({ ...input, depthScale: -1 }),
+    trackWrongly: () => tracker.next({ ...view, camera: { ...view.camera, fx: -1 } }),
+    alignWronglyHere: () => here.align({ ...input, depthScale: -1 }),
+  };
+  for (const [name, call] of Object.entries(callers)) {
+    await assert.rejects(call, ({ stack, message }: Error) => {
+      assert.ok(stack?.startsWith(`Sim3AlignError: ${message}\n`), stack);
+      assert.match(stack ?? "", new RegExp(`${name}.*pool\\.test`));
+      return true;
+    });
+  }
+});
 
 test("disposing ends the workers, and what waits for them", async () => {
   const workers = new Workers();

@@ -1,7 +1,14 @@
 /** Prepared meshes: the same bits in every call, and what becomes of them. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { type AlignInput, type Alignment, createAligner, type OptionsOf, PreparedMesh } from "sim3align";
+import {
+  type AlignInput,
+  type Alignment,
+  type AlignOptions,
+  createAligner,
+  type PaperOptions,
+  PreparedMesh,
+} from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
@@ -15,7 +22,7 @@ after(() => pool.dispose());
 
 const quick = { quality: "fast" } as const;
 const expected = withoutTimes(await here.align(input, quick));
-const choices: OptionsOf<"precise" | "paper", true>[] = [
+const choices: (AlignOptions | PaperOptions)[] = [
   quick,
   { quality: "best" },
   { preset: "paper", surfaceSamples: 3000, ransacIterations: 2000 },

@@ -1,7 +1,7 @@
 /** `sim3align/three` with three.js itself. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { ColorSamples } from "sim3align";
+import type { MeshArrays } from "sim3align";
 import { toFrame } from "sim3align/conventions";
 import {
   applyPinhole,
@@ -151,6 +151,8 @@ test("wrong objects and cameras are refused", async () => {
   ];
   for (const each of refused) await rejectsWith(...each);
 });
+
+type ColorSamples = NonNullable<MeshArrays["samples"]>;
 
 /** The colour at the sample nearest to a point of the surface. */
 function colorNear({ positions, colors }: ColorSamples, point: readonly [number, number, number]): number[] {

@@ -1,4 +1,4 @@
-/** Trackers: with and without workers, in order, corrected, lost, with photos, and closed. */
+/** Trackers: with and without workers, in order, corrected, lost, with photos, and disposed. */
 import assert from "node:assert/strict";
 import { getEventListeners } from "node:events";
 import { after, test } from "node:test";
@@ -74,19 +74,21 @@ test("a video with photos is found the right way round, and stays so", async () 
 for (const [i, aligner] of aligners.entries()) {
   const name = i === 0 ? "without workers" : "with a worker";
 
-  test(`${name}: what is refused leaves the tracker usable, until it is closed`, async () => {
+  test(`${name}: what is refused leaves the tracker usable, until it is disposed`, async () => {
     const tracker = await aligner.track(mesh);
     await rejectsWith(() => tracker.next(unmasked(frames[0])), "INVALID_ARGUMENT mask", /mask/);
     await rejectsWith(() => tracker.next({ ...frames[0], maks: 1 } as never), "INVALID_ARGUMENT maks", /maks/);
+    const input = { ...frames[0], mesh };
+    await rejectsWith(() => tracker.next(input), "INVALID_ARGUMENT mesh", /an input of align\(\).*mesh.*tracker/);
     await assert.rejects(() => tracker.next(frames[0], { signal: AbortSignal.abort(new Error("enough")) }), /enough/);
     assert.equal((await tracker.next(frames[0])).frame, 0);
-    tracker.close();
-    tracker.close();
+    tracker.dispose();
+    tracker.dispose();
     await rejectsWith(() => tracker.next(frames[0]), "DISPOSED aligner");
     assert.ok((await aligner.evaluate({ ...frames[0], mesh } as never, truth)).metrics.iou);
   });
 
-  test(`${name}: a signal ends the opening, or closes the tracker, and is let go with it`, async () => {
+  test(`${name}: a signal ends the opening, or the tracker, and is let go with it`, async () => {
     const [abort, reason] = [new AbortController(), new Error("no longer needed")];
     const opening = aligner.track(mesh, { signal: abort.signal });
     abort.abort(reason);
@@ -94,7 +96,7 @@ for (const [i, aligner] of aligners.entries()) {
     const { signal } = new AbortController();
     const tracker = await aligner.track(mesh, { signal });
     assert.equal(getEventListeners(signal, "abort").length, 1);
-    tracker.close();
+    tracker.dispose();
     assert.equal(getEventListeners(signal, "abort").length, 0);
     const later = new AbortController();
     const open = await aligner.track(mesh, { signal: later.signal });
@@ -103,7 +105,7 @@ for (const [i, aligner] of aligners.entries()) {
   });
 }
 
-test("a frame leaves the thread to others, and ends when its tracker is closed", async () => {
+test("a frame leaves the thread to others, and ends when its tracker is disposed", async () => {
   const tracker = await here.track(mesh, { quality: "best" });
   let isOver = false;
   const first = tracker.next(frames[0]).finally(() => {
@@ -111,7 +113,7 @@ test("a frame leaves the thread to others, and ends when its tracker is closed",
   });
   await new Promise((resolve) => setTimeout(resolve));
   assert.ok(!isOver, "a timer is called before the frame has ended");
-  tracker.close();
+  tracker.dispose();
   await rejectsWith(() => first, "DISPOSED aligner");
 });
 

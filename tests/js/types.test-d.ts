@@ -1,6 +1,5 @@
 /** What the compiler accepts and refuses. It is compiled with the tests, and never run. */
 import {
-  ALIGN_DEFAULTS,
   type Aligner,
   type AlignInput,
   type Alignment,
@@ -8,14 +7,12 @@ import {
   type AlignResult,
   createAligner,
   type ErrorCode,
-  ESTIMATE_SIM3_DEFAULTS,
-  EVALUATE_DEFAULTS,
   type Metrics,
-  PAPER_DEFAULTS,
   type PaperAlignment,
   type PaperOptions,
-  REGISTER_DEFAULTS,
+  type SceneInput,
   Sim3AlignError,
+  type Tracker,
 } from "sim3align";
 
 declare const floats: Float32Array;
@@ -49,17 +46,19 @@ export async function accepted(aligner: Aligner): Promise<void> {
   await aligner.align({} as AlignInput, { scale: "free", initial: { matrix }, quality: "best", workBudget: null });
   await aligner.align({} as AlignInput, { knownExtentM: 0.095, knownExtentAxis: "y" });
   await aligner.align({} as AlignInput, { cameraUp: [0, -1, 0], meshUp: [0, 1, 0], symmetry: [{ axis: [0, 1, 0] }] });
-  const byDefault: Alignment = await aligner.align(input, ALIGN_DEFAULTS);
-  const paperByDefault: PaperAlignment = await aligner.align(input, { ...PAPER_DEFAULTS, seed: 1 });
-  await aligner.evaluate(input, byDefault, EVALUATE_DEFAULTS);
-  await aligner.register(floats, floats, REGISTER_DEFAULTS);
-  await aligner.estimateSim3(floats, floats, new Uint32Array(6), { ...ESTIMATE_SIM3_DEFAULTS, scale: 1 });
-  void paperByDefault;
 
   const bare = await aligner.align(input, { metrics: false, quality: "fast" });
   const none: undefined = bare.metrics;
   const chosen: AlignOptions = { seed: 1 };
-  const perhaps: Metrics | undefined = (await aligner.align(input, chosen)).metrics;
+  const typed: Alignment = await aligner.align(input, chosen);
+  const ofPaper: PaperOptions = { preset: "paper" };
+  const typedOfPaper: PaperAlignment = await aligner.align(input, ofPaper);
+  const without: AlignOptions<false> = { metrics: false };
+  const bareToo: undefined = (await aligner.align(input, without)).metrics;
+  const open: AlignOptions<boolean> = { metrics: Math.random() < 0.5 };
+  const perhaps: Metrics | undefined = (await aligner.align(input, open)).metrics;
+  for await (const { alignment } of aligner.alignAll([input], chosen)) void alignment?.metrics.iou;
+  void [typed, typedOfPaper, bareToo];
   const either: AlignOptions | PaperOptions = chosen as AlignOptions | PaperOptions;
   const any: AlignResult = await aligner.align(input, either);
   void [none, perhaps, any];
@@ -80,18 +79,27 @@ export async function accepted(aligner: Aligner): Promise<void> {
   await aligner.estimateSim3(floats, floats, new Uint32Array(6), { scale: "free" });
   await createAligner({ wasm: new URL("https://example.org/wasm/") });
   await createAligner({ wasm: { core: new Uint8Array(8) } });
+  await createAligner({ createWorker: () => new Worker("worker.js", { type: "module" }) });
   using scoped = await createAligner();
   void scoped;
 }
 
 /** Never called. */
-export async function refused(aligner: Aligner, error: unknown): Promise<void> {
+export async function refused(aligner: Aligner, tracker: Tracker, error: unknown): Promise<void> {
   // @ts-expect-error plain arrays are refused
   await aligner.align({ depth: [1, 2], width: 2, height: 1, mask: bytes, camera, mesh });
   // @ts-expect-error a point map has the depth in it
   await aligner.align({ pointMap: floats, depth: floats, width: 2, height: 2, mask: bytes, mesh });
   // @ts-expect-error misspelt
   await aligner.align({ depht: floats, width: 2, height: 2, mask: bytes, camera, mesh });
+  // @ts-expect-error these are options of results with metrics
+  await aligner.align({} as AlignInput, { metrics: false } satisfies AlignOptions);
+  // @ts-expect-error all objects need the depth map
+  await aligner.alignScene({} as SceneInput, { transfer: true });
+  // @ts-expect-error a tracker has its mesh
+  await tracker.next({ depth: bytes, mask: bytes, camera, mesh });
+  // @ts-expect-error a worker has events
+  await createAligner({ createWorker: () => ({ postMessage() {}, terminate() {} }) });
   // @ts-expect-error no such preset
   await aligner.align({} as AlignInput, { preset: "best" });
   // @ts-expect-error no such quality

@@ -3,16 +3,20 @@
  * and names that stand for values of the reader's own. Each is a global variable in an example.
  */
 import { createAligner } from "sim3align";
-import { resizeCamera, resizeDepth, resizeMask } from "sim3align/conventions";
+import { resizeInput } from "sim3align/conventions";
 import { Object3D, PerspectiveCamera } from "three";
 import { greyJpeg, tiff } from "./exif.js";
 import { glb } from "./files.js";
 import { mesh, truth, view } from "./scene.js";
 
 const size = { width: 640, height: 480 };
-const depth = resizeDepth({ data: view.depth, width: view.width, height: view.height }, size).data;
-const mask = resizeMask({ data: view.mask, width: view.width, height: view.height }, size).data;
-const camera = resizeCamera(view.camera, { fromWidth: view.width, fromHeight: view.height, ...size });
+const old = { width: view.width, height: view.height };
+const resized = resizeInput(
+  { depth: { data: view.depth, ...old }, mask: { data: view.mask, ...old }, camera: view.camera },
+  size,
+);
+const { camera } = resized;
+const [depth, mask] = [resized.depth.data, resized.mask.data];
 const { fx, fy, cx, cy } = camera;
 const { width, height } = size;
 const input = { depth, width, height, mask, camera, mesh };

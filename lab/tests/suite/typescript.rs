@@ -1,4 +1,4 @@
-//! TypeScript's options, results, codes, defaults and table of options are generated from the Rust declarations.
+//! TypeScript's options, results, codes and table of options are generated from the Rust declarations.
 //! `UPDATE=1 cargo test --package sim3align-lab typescript` writes the files after a change.
 
 use std::collections::BTreeMap;
@@ -58,8 +58,6 @@ struct Row {
 struct Call {
     /// Its name in the table of options.
     key: &'static str,
-    /// The prefix of the constant with its defaults.
-    constant: &'static str,
     /// The name of its options' type.
     interface: &'static str,
     doc: &'static str,
@@ -68,23 +66,23 @@ struct Call {
     rows: Vec<Row>,
 }
 
-fn call<T: Options>([key, constant, interface]: [&'static str; 3], preset: Option<&'static str>) -> Call {
+fn call<T: Options>(key: &'static str, interface: &'static str, preset: Option<&'static str>) -> Call {
     let mut options = T::default();
     let docs: Vec<String> = T::FIELDS.iter().map(|(_, doc)| text(doc)).collect();
     let rows =
         options.named_fields().iter().zip(docs).map(|((name, field), doc)| row(name.clone(), doc, field)).collect();
-    Call { key, constant, interface, doc: T::DOC, preset, rows }
+    Call { key, interface, doc: T::DOC, preset, rows }
 }
 
 fn calls() -> [Call; 7] {
     [
-        call::<AlignOptions>(["align", "ALIGN", "AlignOptions"], Some("precise")),
-        call::<PaperOptions>(["paper", "PAPER", "PaperOptions"], Some("paper")),
-        call::<ViewsOptions>(["alignViews", "VIEWS", "ViewsOptions"], None),
-        call::<TrackOptions>(["track", "TRACK", "TrackOptions"], None),
-        call::<EvaluateOptions>(["evaluate", "EVALUATE", "EvaluateOptions"], None),
-        call::<RegisterOptions>(["register", "REGISTER", "RegisterOptions"], None),
-        call::<EstimateSim3Options>(["estimateSim3", "ESTIMATE_SIM3", "EstimateSim3Options"], None),
+        call::<AlignOptions>("align", "AlignOptions", Some("precise")),
+        call::<PaperOptions>("paper", "PaperOptions", Some("paper")),
+        call::<ViewsOptions>("alignViews", "ViewsOptions", None),
+        call::<TrackOptions>("track", "TrackOptions", None),
+        call::<EvaluateOptions>("evaluate", "EvaluateOptions", None),
+        call::<RegisterOptions>("register", "RegisterOptions", None),
+        call::<EstimateSim3Options>("estimateSim3", "EstimateSim3Options", None),
     ]
 }
 
@@ -298,23 +296,6 @@ fn types() -> String {
     HEADER.to_owned() + imports + &types.declarations.join("\n")
 }
 
-fn defaults(call: &Call) -> String {
-    let Call { constant, key, interface, preset, rows, .. } = call;
-    let what = preset.map_or(format!("`{key}`"), |preset| match preset {
-        "precise" => "`align`".into(),
-        _ => format!("`align` with `preset: \"{preset}\"`"),
-    });
-    let mut out = format!("/** Defaults of {what}. */\nexport const {constant}_DEFAULTS = {{\n");
-    if let Some(preset) = preset {
-        let _ = writeln!(out, "  preset: \"{preset}\",");
-    }
-    for Row { name, default, .. } in rows {
-        let _ = writeln!(out, "  {name}: {},", spaced(default));
-    }
-    let _ = writeln!(out, "}} as const satisfies {interface};");
-    out
-}
-
 /// JSON with spaces after its commas.
 fn spaced(value: &Value) -> String {
     value.to_string().replace(',', ", ")
@@ -343,9 +324,25 @@ fn entry(row: &Row, shared: Option<&Vec<String>>) -> String {
     format!("{{ {} }}", parts.join(", "))
 }
 
+/// The rows of `alignScene`: those of `align` for every object, and what the package does with the scene.
+fn scene_rows() -> Vec<Row> {
+    let [align, ..] = calls();
+    let snap = Row {
+        name: "snap".into(),
+        doc: "Whether to move each object that touches something along the normal of the support, so that it touches exactly".into(),
+        kind: "boolean",
+        ts: "boolean".into(),
+        range: String::new(),
+        limits: vec![],
+        default: json!(false),
+    };
+    align.rows.into_iter().filter(|row| row.name != "initial").chain([snap]).collect()
+}
+
 fn options() -> String {
-    let calls = calls();
-    let all: Vec<&Row> = calls.iter().flat_map(|call| &call.rows).collect();
+    let mut tables: Vec<(&str, Vec<Row>)> = calls().into_iter().map(|call| (call.key, call.rows)).collect();
+    tables.insert(2, ("alignScene", scene_rows()));
+    let all: Vec<&Row> = tables.iter().flat_map(|(_, rows)| rows).collect();
     // Options that several calls have, each as the first of them has it.
     let mut shared = BTreeMap::new();
     for row in &all {
@@ -355,20 +352,17 @@ fn options() -> String {
     }
     let constant = |(name, own): (&&str, &Vec<String>)| format!("const {name} = {{ {} }} as const;\n", own.join(", "));
     let constants: String = shared.iter().map(constant).collect();
-    let table = |call: &Call| {
-        let rows = call.rows.iter().map(|row| format!("    {},\n", entry(row, shared.get(&*row.name))));
-        format!("  {}: [\n{}  ],\n", call.key, rows.collect::<String>())
+    let table = |(key, rows): &(&str, Vec<Row>)| {
+        let rows = rows.iter().map(|row| format!("    {},\n", entry(row, shared.get(&*row.name))));
+        format!("  {key}: [\n{}  ],\n", rows.collect::<String>())
     };
     // A call, because bundlers keep an unused object with spreads.
     format!(
-        "{HEADER}import type {{ OptionRow }} from \"../types/options.js\";\n\
-         import type {{ {} }} from \"./types.js\";\n\n{}\n{constants}\n\
-         /** Every option with its kind, range, default and a one-line description. */\n\
+        "{HEADER}import type {{ OptionRow }} from \"../types/options.js\";\n\n{constants}\n\
+         /** Every option of every call, with its kind, range, default and a one-line description. */\n\
          export const OPTIONS: Readonly<Record<{}, readonly OptionRow[]>> = /* @__PURE__ */ (() => ({{\n{}}}))();\n",
-        calls.each_ref().map(|call| call.interface).join(", "),
-        calls.each_ref().map(defaults).join("\n"),
-        calls.each_ref().map(|call| format!("\"{}\"", call.key)).join(" | "),
-        calls.each_ref().map(table).concat(),
+        tables.iter().map(|(key, _)| format!("\"{key}\"")).collect::<Vec<_>>().join(" | "),
+        tables.iter().map(table).collect::<String>(),
     )
 }
 

@@ -29,7 +29,7 @@ import type {
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "../types/results.js";
 import type { SceneInput, SceneOptions, SceneResult } from "../types/scene.js";
 import { checkAttached, plainArgument } from "../values/border.js";
-import { disposed, failure, internalError, Sim3AlignError } from "../values/error.js";
+import { disposed, failure, internalError, Sim3AlignError, withStackOf } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { nextMeshId, PreparedMesh, withArrays } from "../values/prepared-mesh.js";
 import { copied } from "../values/transfer.js";
@@ -121,18 +121,14 @@ export class Aligner {
     input: AlignInput,
     options?: OptionsOf<P, M>,
   ): Promise<AlignResult<P, M>> {
-    const given: CallOptions & { initial?: unknown; onProgress?: unknown; preset?: unknown } = checkedOptions(options);
-    const { initial, onProgress, ...rest } = given;
-    const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
-    const method = rest.preset === "paper" ? "alignPaper" : "align";
-    const result = await this.#run(method, input, coreOptions, (core) => core, { onProgress });
-    return result as AlignResult<P, M>;
+    return this.#align<P, M>(input, options, false);
   }
 
   /**
    * Aligns many inputs, and yields each result when it is ready: `{ index, alignment }`, or `{ index, error }` if an
    * input is invalid; the other inputs continue. Inputs are pulled on demand: at most twice the number of workers (one,
-   * without workers) are in memory at a time. Leaving the loop cancels the running alignments.
+   * without workers) are in memory at a time. Leaving the loop cancels the running alignments. Other calls go before the inputs
+   * that wait for a worker.
    * @example
    * ```ts
    * for await (const { index, alignment, error } of aligner.alignAll(inputs)) console.log(index, alignment ?? error);
@@ -153,7 +149,7 @@ export class Aligner {
       signal: checkedSignal(signal),
       align: (input, index, signal) => {
         const own = onProgress && { onProgress: (progress: Progress) => onProgress({ ...progress, index }) };
-        return this.align<P, M>(input, { ...rest, ...own, signal } as OptionsOf<P, M>);
+        return this.#align<P, M>(input, { ...rest, ...own, signal } as OptionsOf<P, M>, true);
       },
       isOwn: (error): error is Sim3AlignError => error instanceof Sim3AlignError && error.code !== "DISPOSED",
     });
@@ -165,8 +161,8 @@ export class Aligner {
    * taken, how high the ground is. Contact is evidence, not a rule: what hangs, leans or lies on something else stays so.
    * Poses, frames and units are those of `align`; `contact` of each object says what it rests on.
    *
-   * In workers, objects are aligned side by side; the result has the same bits for any number of workers. The depth map
-   * is needed by all objects: `transfer` moves nothing.
+   * In workers, objects are aligned side by side; the result has the same bits for any number of workers. There is no
+   * `transfer`: all objects need the depth map.
    * @example
    * ```ts
    * const { objects, support } = await aligner.alignScene({ depth, camera, objects: [{ name, mask, mesh }] });
@@ -177,20 +173,18 @@ export class Aligner {
   async alignScene(scene: SceneInput, options?: SceneOptions): Promise<SceneResult> {
     this.#checkUsable();
     const given: CallOptions & Record<string, unknown> = checkedOptions(options ?? {});
-    const { signal, transfer = false, onProgress, snap = false, initial, ...rest } = given;
-    if (initial !== undefined) {
-      const remedy = "Pass it as `initial` of an object.";
-      throw failure("UNKNOWN_OPTION", "options.initial", "a pose for all objects", "options of alignScene", remedy);
+    const { signal, onProgress, snap = false, ...rest } = given;
+    for (const [name, remedy] of Object.entries(notOfScenes)) {
+      if (rest[name] === undefined) continue;
+      throw failure("UNKNOWN_OPTION", `options.${name}`, "an option of align", "options of alignScene", remedy);
     }
-    const isReturned = checkedFlag("transfer", transfer);
     const own = plainArgument("input", scene);
     const call = { signal: checkedSignal(signal), progress: new ProgressListener(onProgress), transfer: false };
     const settings = { options: rest, snap: checkedFlag("snap", snap) };
-    const result = await guarded(call, () => {
+    return guarded(call, () => {
       checkSignals(signalsOf(call));
       return this.#inTurn(call, () => alignScene(own, this.#modules, this.#engine, settings, call));
     });
-    return isReturned ? { ...result, input: scene } : result;
   }
 
   /**
@@ -210,7 +204,7 @@ export class Aligner {
 
   /**
    * Opens a tracker, which follows the object of a mesh through the frames of a video. With workers, it has a worker of
-   * its own, until it is closed.
+   * its own, until it is disposed.
    * @throws {@link Sim3AlignError} for an invalid mesh or invalid options
    */
   async track(mesh: MeshInput, options?: TrackOptions): Promise<Tracker> {
@@ -219,10 +213,10 @@ export class Aligner {
     const listened = checkedSignal(signal);
     this.#checkUsable();
     const { release, ...own } = withArrays(plainArgument("input", { mesh }), this.#engine);
-    const closed = (tracker: Tracker) => this.#trackers.delete(tracker);
-    const opening = Tracker.open(this.#dedicated(), own as TrackerMesh, coreOptions, listened, closed);
+    const onDispose = (tracker: Tracker) => this.#trackers.delete(tracker);
+    const opening = Tracker.open(this.#dedicated(), own as TrackerMesh, coreOptions, listened, onDispose);
     const tracker = await opening.finally(release);
-    if (this.#isDisposed) tracker.close();
+    if (this.#isDisposed) tracker.dispose();
     this.#checkUsable();
     this.#trackers.add(tracker);
     return tracker;
@@ -305,7 +299,7 @@ export class Aligner {
   dispose(): void {
     if (this.#isDisposed) return;
     this.#isDisposed = true;
-    for (const tracker of this.#trackers) tracker.close();
+    for (const tracker of this.#trackers) tracker.dispose();
     this.#engine.dispose();
   }
 
@@ -314,20 +308,33 @@ export class Aligner {
     this.dispose();
   }
 
+  async #align<P extends Preset, M extends boolean>(
+    input: AlignInput,
+    options: OptionsOf<P, M> | undefined,
+    isBatched: boolean,
+  ): Promise<AlignResult<P, M>> {
+    const given: CallOptions & { initial?: unknown; onProgress?: unknown; preset?: unknown } = checkedOptions(options);
+    const { initial, onProgress, ...rest } = given;
+    const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
+    const method = rest.preset === "paper" ? "alignPaper" : "align";
+    const result = await this.#run(method, input, coreOptions, (core) => core, { onProgress, isBatched });
+    return result as AlignResult<P, M>;
+  }
+
   /** @param settings the options of the core in the form of the job */
   async #run<M extends Method>(
     method: M,
     data: DataOf<M>,
     { signal, transfer = false, ...options }: CallOptions,
     settings: (options: object) => SettingsOf<M>,
-    { onProgress, meshId }: { onProgress?: unknown; meshId?: number } = {},
+    { onProgress, meshId, isBatched = false }: { onProgress?: unknown; meshId?: number; isBatched?: boolean } = {},
   ): Promise<ResultOf<M>> {
     this.#checkUsable();
     const own = plainArgument("input", data);
     const { release, restored, ...sent } = withArrays(own, this.#engine, cachesMesh(method, own));
     const job = { method, options: settings(options), ...(meshId === undefined ? sent : { ...sent, meshId }) };
     const progress = new ProgressListener(onProgress);
-    const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
+    const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer), isBatched };
     // Arrays that were not moved are returned in the object that the caller passed; a prepared mesh replaces its arrays.
     const returned = (arrays: DataOf<M>) => (arrays === job.data ? data : restored(arrays));
     try {
@@ -358,8 +365,15 @@ export class Aligner {
   }
 }
 
+/** Options of `align` that those of `alignScene` lack, and what to do instead. */
+const notOfScenes = {
+  initial: "Pass it as `initial` of an object.",
+  transfer: "Omit it: all objects need the depth map, which therefore stays with the caller.",
+};
+
 /** Runs a call, which rejects with a {@link Sim3AlignError}, the reason of its signal, or the exception of `onProgress`. */
 async function guarded<T>({ signal, progress }: Call, run: () => Promise<T>): Promise<T> {
+  const begin = new Error();
   try {
     const result = await run();
     checkSignals([progress.failed]);
@@ -368,6 +382,6 @@ async function guarded<T>({ signal, progress }: Call, run: () => Promise<T>): Pr
     if (signal?.aborted && reasonOf(signal) === error) throw error;
     // It came first: the error may be that of the last piece of work.
     checkSignals([progress.failed]);
-    throw error instanceof Sim3AlignError ? error : internalError(error);
+    throw withStackOf(error instanceof Sim3AlignError ? error : internalError(error), begin);
   }
 }

@@ -12,7 +12,7 @@ import type { CallOptions } from "../types/options.js";
 import type { SignalLike } from "../types/platform.js";
 import type { TrackedFrame } from "../types/results.js";
 import { plainArgument } from "../values/border.js";
-import { disposed, internalError, invalidArgument, Sim3AlignError } from "../values/error.js";
+import { disposed, internalError, invalidArgument, Sim3AlignError, withStackOf } from "../values/error.js";
 import { sendableParts } from "../values/transfer.js";
 import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";
 
@@ -42,23 +42,23 @@ let lastTracker = 0;
  * const tracker = await aligner.track(mesh);
  * const first = await tracker.next({ depth, mask, camera });
  * const second = await tracker.next({ depth: nextDepth, camera });
- * tracker.close();
+ * tracker.dispose();
  * ```
  */
 export class Tracker {
   readonly #id: number;
   readonly #own: OwnEngine;
-  readonly #closed: (tracker: Tracker) => void;
+  readonly #onDispose: (tracker: Tracker) => void;
   #last: Promise<unknown> = Promise.resolve();
-  /** Ends the call that runs, between two of its steps, when the tracker is closed. */
+  /** Ends the call that runs, between two of its steps, when the tracker is disposed. */
   readonly #progress = new ProgressListener(undefined);
   /** Ends the connection to the signal. */
   #unfollow = () => {};
 
-  private constructor(id: number, own: OwnEngine, closed: (tracker: Tracker) => void) {
+  private constructor(id: number, own: OwnEngine, onDispose: (tracker: Tracker) => void) {
     this.#id = id;
     this.#own = own;
-    this.#closed = closed;
+    this.#onDispose = onDispose;
   }
 
   /** @internal */
@@ -67,14 +67,14 @@ export class Tracker {
     mesh: TrackerMesh,
     options: object,
     signal: SignalLike | undefined,
-    closed: (tracker: Tracker) => void,
+    onDispose: (tracker: Tracker) => void,
   ): Promise<Tracker> {
     lastTracker += 1;
-    const tracker = new Tracker(lastTracker, own, closed);
+    const tracker = new Tracker(lastTracker, own, onDispose);
     try {
       if (signal !== undefined) {
         checkSignals([signal]);
-        tracker.#unfollow = onAbort(signal, () => tracker.close());
+        tracker.#unfollow = onAbort(signal, () => tracker.dispose());
       }
       await tracker.#inOrder({
         method: "openTracker",
@@ -84,8 +84,8 @@ export class Tracker {
       if (signal !== undefined) checkSignals([signal]);
       return tracker;
     } catch (error) {
-      tracker.close();
-      // An abort closes the tracker, which rejects the call with DISPOSED.
+      tracker.dispose();
+      // An abort ends the tracker, which rejects the call with DISPOSED.
       if (signal !== undefined) checkSignals([signal]);
       throw error;
     }
@@ -98,7 +98,7 @@ export class Tracker {
    * in frames with a mask. The first frame needs a mask, unless `initial` is given.
    * @param options `signal` rejects a call that has not begun; a frame that has begun is tracked to its end
    * @throws {@link Sim3AlignError} for invalid input, `NO_CONSENSUS` if the object is not found in the first frame, and
-   * `DISPOSED` after `close()`; the tracker remains usable. `TRACKER_LOST` if its worker has ended, or if another call has
+   * `DISPOSED` after `dispose()`; the tracker remains usable. `TRACKER_LOST` if its worker has ended, or if another call has
    * exhausted the memory that they share: open another tracker with the last pose as `initial`
    */
   async next(frame: FrameInput, options: CallOptions = {}): Promise<TrackedFrame> {
@@ -130,25 +130,30 @@ export class Tracker {
   }
 
   /** Ends the tracker, and frees its worker. Running and later calls reject with `DISPOSED`. */
-  close(): void {
+  dispose(): void {
     if (this.#progress.failed.aborted) return;
     this.#progress.end(disposed());
     this.#unfollow();
-    this.#closed(this);
+    this.#onDispose(this);
     const own = this.#own;
     // The call that runs, which may be the opening, ends first.
     if (own.isShared) this.#last.then(() => own.engine.closeTracker(this.#id)).catch(() => {});
     else own.engine.dispose();
   }
 
-  /** Closes the tracker at the end of the scope of a `using` declaration. */
+  /** Ends the tracker at the end of the scope of a `using` declaration. */
   [Symbol.dispose](): void {
-    this.close();
+    this.dispose();
   }
 
   /** Runs a job after those before. One that has not begun when the signal aborts is left out. */
   #inOrder<M extends Method>(job: Job<M>, transfer = false, signal?: SignalLike) {
-    const own = this.#last.then(() => this.#run(job, transfer, signal));
+    const begin = new Error();
+    const own = this.#last
+      .then(() => this.#run(job, transfer, signal))
+      .catch((error) => {
+        throw error instanceof Sim3AlignError ? withStackOf(error, begin) : error;
+      });
     this.#last = own.catch(() => {});
     return own;
   }

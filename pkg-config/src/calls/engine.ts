@@ -23,6 +23,8 @@ export interface Call {
   progress: ProgressListener;
   /** Whether the arrays of the job may be moved to the worker. */
   transfer: boolean;
+  /** Whether it is one of a batch, which other calls go before. */
+  isBatched?: boolean;
 }
 
 /** The signals that end a call. */
@@ -73,7 +75,7 @@ export class MainThreadEngine implements Engine {
     checkSignals(signals);
     // Yields first, so that a pending abort is handled before the thread is busy.
     if (call.signal !== undefined) await turn();
-    const held = await heaps.acquire(signals);
+    const held = await heaps.acquire(signals, call.isBatched);
     try {
       checkReady(job, signals);
       return { result: await perform(job, this.#context(call, signals)), data: job.data };

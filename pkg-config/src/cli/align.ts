@@ -14,16 +14,16 @@ import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import {
   type Aligner,
   type AlignInput,
-  type InputInfo,
   OPTIONS,
   type OptionRow,
-  type OptionsOf,
   type PoseErrors,
   type Preset,
   type Sim3,
   type ViewsOptions,
 } from "../index.js";
 import { extensionsOf } from "../input/formats.js";
+import type { OptionsOf } from "../types/options.js";
+import type { InputInfo } from "../types/results.js";
 import { withoutUndefined } from "../values/values.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
 import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
@@ -188,7 +188,8 @@ async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun
   const { input, truth, found } = await task.read();
   caseRun.found = found;
   const options = await alignOptions(flags, name);
-  const alignment = await aligner.align(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
+  const settings = withoutUndefined({ ...options, onProgress: caseRun.onProgress });
+  const alignment = await aligner.align<Preset, boolean>(input, settings);
   return withFiles(alignEntry(alignment, await errorsOf(aligner, input, alignment, truth)), found);
 }
 

@@ -23,13 +23,13 @@ export const bopOptions = [...shared, ...precise].filter(({ name }) =>
 );
 
 /**
- * The results file that is written: `METHOD_DATASET-SPLIT[_NAME].csv`, as the leaderboard reads it.
+ * The results file that is written: `METHOD_DATASET-SPLIT[_SUFFIX].csv`, as the leaderboard reads it.
  * @throws {@link UsageError} for names that would be read as other parts
  */
 export function resultsFile([dataset = ""]: readonly string[], flags: Flags): OutputName[] {
-  const { method = "", csv, split = "", evaluate } = flags;
+  const { method = "", suffix, split = "", evaluate } = flags;
   if (typeof evaluate === "string") return [];
-  for (const [flag, part] of Object.entries({ method, csv })) {
+  for (const [flag, part] of Object.entries({ method, suffix })) {
     if (part !== undefined && !/^[A-Za-z0-9-]+$/.test(part))
       throw new UsageError(
         `--${flag} ${part}: only letters, digits and "-" can be part of the name of a results file.`,
@@ -37,7 +37,7 @@ export function resultsFile([dataset = ""]: readonly string[], flags: Flags): Ou
   }
   const name = `${method}_${basename(resolve(dataset))}-${split.replaceAll("_", "-")}`;
   const isOwn = (beginning: string) => beginning.startsWith(`${RESULTS_HEADER}\n`);
-  return [{ flag: "the results file", path: `${name}${csv === undefined ? "" : `_${csv}`}.csv`, isOwn }];
+  return [{ flag: "the results file", path: `${name}${suffix === undefined ? "" : `_${suffix}`}.csv`, isOwn }];
 }
 
 /** Whether a file begins like the output of --scores or of --json. */
@@ -56,11 +56,9 @@ export async function bopJob(args: readonly string[], flags: Flags, files: RunFi
   const { cases, instances } = await casesOf(dataset, targets, flags, place);
   if (cases.length === 0) throw new UsageError(`${folder}: there is nothing to align; check --targets and --masks.`);
   const results = new BopResults(instances);
-  // The flag names a part of the results file, and no other table.
-  const { csv: _, ...batch } = flags;
   const end = () => files.write(file, results.text());
   return {
-    flags: batch,
+    flags,
     ...caseJob(cases, { ...flags, options: { scale: METRES_PER_UNIT, ...flags.options } }),
     ...whole,
     sinks: [{ add: (name, entry) => results.add(name, entry), end }],

@@ -10,6 +10,7 @@ import {
   batchFlags,
   caseFlags,
   checkNeeds,
+  type Flag,
   type FlagList,
   type Flags,
   filesOf,
@@ -29,7 +30,7 @@ import { pictureFiles } from "./pictures.js";
 import type { CaseKey } from "./record.js";
 import { lockOf } from "./record-lock.js";
 import { type OutputName, RunFiles } from "./run-files.js";
-import { sceneJob, sceneOptions } from "./scene.js";
+import { sceneJob } from "./scene.js";
 import { trackJob } from "./track.js";
 
 /** A command. */
@@ -75,7 +76,11 @@ export const commands: readonly CommandRow[] = [
         `photo (${formatsText("photo")}) with the field of view of the depth map, also without the flag`,
         ofCase,
       ],
-      ["--preset <name>", "method (default precise)", { choices: ["precise", "paper"] }],
+      [
+        "--preset <name>",
+        "method (default precise); --help paper shows the options of paper",
+        { choices: ["precise", "paper"] },
+      ],
       ...pictureFlags,
       ...caseFlags,
       ...optionFlags(shared),
@@ -83,7 +88,7 @@ export const commands: readonly CommandRow[] = [
       "Options of --preset precise:",
       ...optionFlags(precise),
       "Options of --preset paper:",
-      ...optionFlags(paper),
+      ...optionFlags(paper).map(([flag, meaning, facts]): Flag => [flag, meaning, { ...facts, topic: "paper" }]),
     ],
     help: alignHelp,
     prepare: batch(alignJob),
@@ -123,7 +128,6 @@ export const commands: readonly CommandRow[] = [
     flags: [
       ...batchFlags("scene"),
       ...sceneFileFlags,
-      ["--snap", "put objects exactly onto what they touch"],
       [
         "--support <auto|none|file>",
         'what objects stand on: found, nothing, or a JSON file { "normal", "d" }',
@@ -133,8 +137,8 @@ export const commands: readonly CommandRow[] = [
       ["--sam3d", "the folders are outputs of SAM 3D Objects"],
       ...pictureFlags,
       ...caseFlags,
-      "Options of every object:",
-      ...optionFlags(sceneOptions),
+      "Options of alignScene, for every object:",
+      ...optionFlags(OPTIONS.alignScene),
     ],
     help: sceneHelp,
     prepare: batch(sceneJob),
@@ -160,7 +164,7 @@ export const commands: readonly CommandRow[] = [
         "the first part of the name of the results file",
         { default: "sim3align", isIndifferent: true },
       ],
-      ["--csv <name>", "the last part of the name of the results file", { isIndifferent: true }],
+      ["--suffix <name>", "the last part of the name of the results file", { isIndifferent: true }],
       ["--evaluate [file]", "score the results, or only those of a file", ofCase],
       [
         "--scores <file>",

@@ -1,6 +1,8 @@
 /** Details of a single case, for people. */
-import type { DepthCalibration, Evaluation, InputInfo, LayoutErrors, Metrics, PoseErrors, Stretch } from "../index.js";
+import type { LayoutErrors, Stretch } from "../generated/types.js";
+import type { DepthCalibration, Evaluation, Metrics, PoseErrors } from "../index.js";
 import { fixed, type Message, significant } from "../report-page/row.js";
+import type { InputInfo } from "../types/results.js";
 import { isRecord } from "../values/kinds.js";
 import { type AlignEntry, type Entry, isMetric, type ViewsEntry, warningsOf } from "./entry.js";
 import { Lengths, type Pair, pairs } from "./table.js";

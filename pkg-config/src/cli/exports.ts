@@ -3,9 +3,10 @@ import { join } from "node:path";
 import { parseCameraFile } from "../camera/camera-file.js";
 import { correctDepth } from "../conventions/depth.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
-import { stretchGlb, stretchMesh } from "../conventions/stretch.js";
-import { type UprightOptions, uprightGlb, uprightMesh } from "../conventions/upright.js";
-import type { AlignInput, DepthCalibration, SceneInput, SceneResult, Stretch } from "../index.js";
+import { stretchMesh } from "../conventions/stretch.js";
+import { type UprightOptions, uprightMesh } from "../conventions/upright.js";
+import type { Stretch } from "../generated/types.js";
+import type { AlignInput, DepthCalibration, SceneInput, SceneResult } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import { resolveView } from "../input/resolve.js";
 import { fileReaders } from "../modules/readers.js";
@@ -71,10 +72,10 @@ export async function exportedMesh(
   const read = async () => (await readMesh(input, fileReaders, false)).mesh as MeshArrays;
   if (format !== "glb" || bytes === undefined) return exportedArrays(await read(), pose, as);
   const { proportions, upright } = as;
-  const glb = proportions === undefined ? bytes : stretchGlb(bytes, proportions);
+  const glb = proportions === undefined ? bytes : stretchMesh(bytes, proportions);
   if (upright === undefined) return { mesh: glb, transform: withFacts(proportions ?? pose, pose) };
   const stretched = inProportion(await read(), pose, proportions);
-  const straight = uprightGlb(glb, stretched.mesh, stretched.transform, upright);
+  const straight = uprightMesh(stretched.mesh, stretched.transform, { ...upright, glb });
   return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
 }
 

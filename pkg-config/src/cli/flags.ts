@@ -29,6 +29,8 @@ interface FlagSettings {
   isIndifferent?: boolean;
   /** Another flag that it needs, and the name of that flag in the error. */
   needs?: readonly [flag: string, what: string];
+  /** The argument of `--help` that shows it; other flags are then left out. */
+  topic?: string;
 }
 
 /** A flag: its name with the name of its value, its meaning, and its settings. */
@@ -47,7 +49,7 @@ export const withoutTitles = (list: FlagList): Flag[] => list.filter((row) => ty
 type Texts =
   | ("list" | "json" | "jsonl" | "csv" | "report" | "overlay" | "glb" | "sceneGlb" | "mjcf" | "urdf" | "usd" | "scores")
   | ("imageId" | "depth" | "mask" | "mesh" | "transform" | "support" | "models")
-  | ("split" | "masks" | "targets" | "method");
+  | ("split" | "masks" | "targets" | "method" | "suffix");
 
 /** Values of the flags of all commands. */
 export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Partial<Record<Texts, string>>> {
@@ -62,7 +64,6 @@ export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Parti
   readonly camera?: string | { value: CameraInput };
   readonly preset?: Preset;
   readonly options?: Record<string, unknown>;
-  readonly snap?: boolean;
   readonly sam3d?: boolean;
   readonly density?: number;
   readonly parts?: number;
@@ -146,15 +147,18 @@ export const sceneFileFlags: readonly Flag[] = [
 export const caseSettings = ({ depthScale, depthKind, imageId, resizeMask, image }: Flags): ReadCaseOptions =>
   withoutUndefined({ depthScale, depthKind, imageId, resizeMask, image: image === false ? false : undefined });
 
-/** Adds flags to a command. */
-export function addFlags(command: Command, list: FlagList): void {
+/**
+ * Adds flags to a command.
+ * @param topic the argument of `--help`
+ */
+export function addFlags(command: Command, list: FlagList, topic?: string): void {
   for (const row of list) {
     if (typeof row === "string") {
       command.optionsGroup(row);
       continue;
     }
-    const [flag, meaning, { choices, parse, default: value, isRequired = false } = {}] = row;
-    const option = new Option(flag, meaning).makeOptionMandatory(isRequired);
+    const [flag, meaning, { choices, parse, default: value, isRequired = false, topic: of } = {}] = row;
+    const option = new Option(flag, meaning).makeOptionMandatory(isRequired).hideHelp(of !== topic);
     if (choices !== undefined) option.choices(choices);
     if (parse !== undefined) option.argParser(parse);
     if (value !== undefined) option.default(value);

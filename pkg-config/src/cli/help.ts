@@ -221,7 +221,7 @@ Masks
   each object, as many of the best detections are aligned as there are instances; the time of the detections is added.
 
 Output
-  The results file METHOD_DATASET-SPLIT.csv, or METHOD_DATASET-SPLIT_NAME.csv with --csv NAME, in the current folder: scene_id,
+  The results file METHOD_DATASET-SPLIT.csv, or METHOD_DATASET-SPLIT_SUFFIX.csv with --suffix SUFFIX, in the current folder: scene_id,
   im_id, obj_id, score, R, t in millimetres, and the time, which is the sum over the objects of the image. The score is the
   confidence, multiplied by that of the detection. --jsonl, --resume, --json, --workers, --report, --overlay and --glb work
   as those of "align": cases are called SCENE/IMAGE/OBJECT-INSTANCE.
@@ -230,7 +230,7 @@ Output
 
 Examples
   sim3align bop bop/ycbv --split test --jsonl ycbv.jsonl --resume
-  sim3align bop bop/lmo --split test --masks cnos_lmo-test.json --csv cnos --evaluate
+  sim3align bop bop/lmo --split test --masks cnos_lmo-test.json --suffix cnos --evaluate
   sim3align bop bop/tless --split test_primesense --models bop/tless/models_cad
   sim3align bop bop/lmo --split test --evaluate other_lmo-test.csv --scores scores.json
 ${status}`;

@@ -3,7 +3,7 @@
 import { Command, CommanderError } from "commander";
 import { commands, runCommand } from "./commands.js";
 import { UsageError } from "./files.js";
-import { addFlags } from "./flags.js";
+import { addFlags, withoutTitles } from "./flags.js";
 import { programHelp } from "./help.js";
 import { version } from "./record.js";
 import { note } from "./terminal.js";
@@ -13,13 +13,18 @@ const program = new Command("sim3align")
   .version(version)
   .addHelpText("after", programHelp);
 
+/** What the user asks help for, as `paper` in `sim3align align --help paper`. */
+const help = process.argv.findIndex((arg) => arg === "--help" || arg === "-h");
+const topics = commands.flatMap(({ flags }) => withoutTitles(flags).flatMap(([, , facts]) => facts?.topic ?? []));
+const topic = topics.find((one) => help >= 0 && one === process.argv[help + 1]);
+
 for (const row of commands) {
   const command = new Command(row.name)
     .summary(row.summary)
     .description(row.description)
     .argument(...row.argument);
-  addFlags(command, row.flags);
-  command.addHelpText("after", row.help).action(async (args: string | string[], flags) => {
+  addFlags(command, row.flags, topic);
+  command.addHelpText("after", topic === undefined ? row.help : "").action(async (args: string | string[], flags) => {
     if (!(await runCommand(row, [args].flat(), flags))) process.exitCode = 1;
   });
   program.addCommand(command);

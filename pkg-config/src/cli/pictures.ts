@@ -1,10 +1,11 @@
 /** Pictures and posed meshes of cases, and their report. */
 import { join } from "node:path";
-import { exportGlb, placeGlb } from "../conventions/glb.js";
+import { exportGlb } from "../conventions/glb.js";
 import type { UprightOptions } from "../conventions/upright.js";
-import type { AlignInput, InputInfo } from "../index.js";
+import type { AlignInput } from "../index.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
+import type { InputInfo } from "../types/results.js";
 import { withoutUndefined } from "../values/values.js";
 import { alternativesOf, type Entry, posesIn } from "./entry.js";
 import { correctedInput, type ExportedAs, exportedMesh } from "./exports.js";
@@ -105,7 +106,5 @@ async function posed({ mesh }: AlignInput, entry: Entry, isUpright = false): Pro
   const { matrix, proportions, support } = entry as unknown as PosedEntry;
   const upright = isUpright ? withoutUndefined({ support }) : undefined;
   const placed = await exportedMesh(mesh, { matrix }, { proportions, upright });
-  return placed.mesh instanceof Uint8Array
-    ? placeGlb(placed.mesh, placed.transform)
-    : exportGlb(placed.mesh, placed.transform);
+  return exportGlb(placed.mesh, placed.transform);
 }

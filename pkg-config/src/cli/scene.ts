@@ -1,15 +1,8 @@
 /** `sim3align scene`: aligns the objects of scenes. */
 import { join } from "node:path";
 import { read } from "../case-folder.js";
-import {
-  type Aligner,
-  type AlignInput,
-  type Contact,
-  OPTIONS,
-  type OptionRow,
-  type SceneInput,
-  type SceneOptions,
-} from "../index.js";
+import type { Contact } from "../generated/types.js";
+import { type Aligner, type AlignInput, OPTIONS, type SceneInput, type SceneOptions } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
 import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
 import { parsedJson } from "../values/json.js";
@@ -37,9 +30,6 @@ import { optionValues } from "./option-flags.js";
 import type { RunFiles } from "./run-files.js";
 import { headings, Lengths, numeric, pairs, tableLine } from "./table.js";
 import { Style } from "./terminal.js";
-
-/** The options of `align`, for every object; a first pose is that of one. */
-export const sceneOptions: readonly OptionRow[] = OPTIONS.align.filter(({ name }) => name !== "initial");
 
 /** A scene to align. */
 interface SceneToDo extends Omit<FolderToDo, "folder"> {
@@ -105,7 +95,7 @@ async function alignScene(
 ): Promise<Entry> {
   const scene = await readSceneFolder(task.scene, settings);
   caseRun.found = scene.found;
-  const options: SceneOptions = { ...optionValues(flags, sceneOptions), ...withoutUndefined({ snap: flags.snap }) };
+  const options: SceneOptions = optionValues(flags, OPTIONS.alignScene);
   // A scale that is given goes before the first poses of files.
   const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
   const input = { ...scene.input, objects, support } as SceneInput;

@@ -78,6 +78,6 @@ async function trackVideo(
     if (last !== undefined) caseRun.print(...pairs(depthRows(last)));
     return trackEntry(frames, found());
   } finally {
-    tracker.close();
+    tracker.dispose();
   }
 }

@@ -3,11 +3,12 @@
 import type { SignalLike } from "../types/platform.js";
 import { onAnyAbort, reasonOf } from "./on-abort.js";
 
-/** Items, each of which one call has at a time. Calls get them in their order. */
+/** Items, each of which one call has at a time. Calls get them in their order, those of a batch after all others. */
 export class Queue<T> {
   readonly #size: number;
   readonly #idle: T[];
   readonly #waiting: ((item: T) => void)[] = [];
+  readonly #ofBatches: ((item: T) => void)[] = [];
 
   constructor(items: readonly T[]) {
     this.#size = items.length;
@@ -33,7 +34,8 @@ export class Queue<T> {
    * Waits for an item.
    * @throws the reason of the first signal that aborts: a call that waits ends at once
    */
-  acquire(signals: readonly SignalLike[]): Promise<T> {
+  acquire(signals: readonly SignalLike[], isBatched = false): Promise<T> {
+    const waiting = isBatched ? this.#ofBatches : this.#waiting;
     return new Promise((resolve, reject) => {
       for (const signal of signals) if (signal.aborted) return reject(reasonOf(signal));
       const idle = this.#idle.pop();
@@ -44,17 +46,17 @@ export class Queue<T> {
       };
       const giveUp = (reason: unknown) => {
         unfollow();
-        this.#waiting.splice(this.#waiting.indexOf(take), 1);
+        waiting.splice(waiting.indexOf(take), 1);
         reject(reason);
       };
       const unfollow = onAnyAbort(signals, giveUp);
-      this.#waiting.push(take);
+      waiting.push(take);
     });
   }
 
-  /** Gives an item back, to the call that has waited longest. */
+  /** Gives an item back, to the call that has waited longest; to one of a batch if no other call waits. */
   release(item: T): void {
-    const next = this.#waiting.shift();
+    const next = this.#waiting.shift() ?? this.#ofBatches.shift();
     if (next === undefined) this.#idle.push(item);
     else next(item);
   }

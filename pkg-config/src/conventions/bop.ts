@@ -5,14 +5,14 @@ import { type Matrix3, rotationOf } from "./rotation.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
 /** One object of BOP's `scene_gt.json`: camera from model, OpenCV camera frame, models in millimetres. */
-export interface BopPose {
+export type BopPose = {
   /** The rotation: nine numbers, row-major. */
   cam_R_m2c: readonly number[];
   /** The translation, in millimetres. */
   cam_t_m2c: readonly number[];
   /** The id of the model. */
   obj_id?: number;
-}
+};
 
 /**
  * Converts a pose for BOP's `scene_gt.json`. BOP's models are in millimetres and its poses have no scale, so the model

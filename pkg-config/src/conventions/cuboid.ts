@@ -1,15 +1,7 @@
 /** Cuboids for annotation tools. */
 
-import {
-  finiteNumbers,
-  oneOf,
-  optionsOf,
-  positive,
-  type Quaternion,
-  record,
-  type Vector3,
-  vector3,
-} from "../values/values.js";
+import type { Sim3 } from "../input/sim3.js";
+import { finiteNumbers, oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../values/values.js";
 import { type CameraFrame, turnTo } from "./frames.js";
 import type { OrientedBoundingBox } from "./oriented-bounding-box.js";
 import {
@@ -38,13 +30,13 @@ export interface CuboidOptions {
 }
 
 /** A cuboid: x along its length, to the front of the object; y along its width, to the left; z along its height. */
-export interface Cuboid {
+export type Cuboid = {
   /** In metres. */
-  center: Vector3;
+  center: Sim3["translation"];
   /** Length, width and height, along the cuboid's x, y and z, in metres. */
-  size: Vector3;
+  size: Sim3["translation"];
   /** Frame from cuboid: x, y, z, w. */
-  quaternion: Quaternion;
+  quaternion: Sim3["rotation"];
   /**
    * Heading of the front, seen from above, −π to π: 0 points away from the camera, π/2 to its left. For formats whose
    * cuboids rotate about the vertical only. "Above" is relative to the camera, so the camera must be level.
@@ -53,7 +45,7 @@ export interface Cuboid {
   /** Angle between the up directions of cuboid and camera, 0 to π; the yaw does not include it. */
   tiltRad: number;
   frame: CameraFrame;
-}
+};
 
 /**
  * Converts the box around an object to a cuboid for annotation tools.

@@ -4,7 +4,7 @@ import { filledRuns } from "../input/coco-rle.js";
 import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
-import { type ImageSize, type PixelArray, sizeOf } from "../values/pixels.js";
+import { type PixelArray, sizeOf } from "../values/pixels.js";
 import { flattened, whole } from "../values/values.js";
 
 /** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */
@@ -17,29 +17,17 @@ export interface CvatMaskElement {
   height: number | string;
 }
 
-/**
- * Decodes a mask of CVAT: the `points` of a mask shape from its API or SDK (run lengths, then left, top, right and
- * bottom of the box, all inclusive), or a `<mask>` element of its XML.
- *
- * @param mask the `points`, or the attributes of the element
- * @param image the size of the whole image, in pixels
- * @returns the mask of the whole image; 1 is the object
- *
- * @example
- * fromCvatRle([1, 2, 1, 1, 0, 2, 1], { width: 3, height: 2 }).data;    // Uint8Array [0, 0, 1, 0, 1, 0]
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` for runs that do not fill the box, `SIZE_MISMATCH` if the box exceeds
- * the image
- */
-export function fromCvatRle(mask: ArrayLike<number> | CvatMaskElement, image: ImageSize): PixelArray<Uint8Array> {
+/** Decodes the `points` of a mask shape, or a mask element. */
+export function decodedCvat(rle: unknown, image: unknown): PixelArray<Uint8Array> {
   const { width, height } = sizeOf("image", image);
-  const { runs, left, top, boxWidth, boxHeight } = isRecord(mask)
-    ? fromElement(plainArgument("mask", mask))
-    : fromPoints(mask);
+  const { runs, left, top, boxWidth, boxHeight } = isRecord(rle)
+    ? fromElement(plainArgument("rle", rle))
+    : fromPoints(rle);
   if (left + boxWidth > width || top + boxHeight > height) {
     const found = `a box of ${boxWidth} × ${boxHeight} at ${left}, ${top} in ${width} × ${height} pixels`;
-    throw failure("SIZE_MISMATCH", "mask", found, "a box within the image", "Pass the size of the annotated image.");
+    throw failure("SIZE_MISMATCH", "rle", found, "a box within the image", "Pass the size of the annotated image.");
   }
-  const box = filledRuns("mask", runs, boxWidth * boxHeight);
+  const box = filledRuns("rle", runs, boxWidth * boxHeight);
   const data = new Uint8Array(width * height);
   for (let v = 0; v < boxHeight; v++) {
     data.set(box.subarray(v * boxWidth, (v + 1) * boxWidth), (top + v) * width + left);
@@ -59,27 +47,27 @@ function fromPoints(points: unknown): BoxRuns {
   const numbers = flattened(points);
   if (numbers === null) {
     const expected = "[run, run, …, left, top, right, bottom], or { rle, left, top, width, height }";
-    throw failure("INVALID_ARGUMENT", "mask", describe(points), expected, "Pass the points of a mask shape.");
+    throw failure("INVALID_ARGUMENT", "rle", describe(points), expected, "Pass the points of a mask shape.");
   }
   if (numbers.length < 5) {
     const remedy = "Pass the points of a shape of type mask.";
     const expected = "run lengths and the four numbers of the box";
-    throw failure("WRONG_LENGTH", "mask", `${numbers.length} numbers`, expected, remedy);
+    throw failure("WRONG_LENGTH", "rle", `${numbers.length} numbers`, expected, remedy);
   }
   const [left, top, right, bottom] = numbers.splice(-4);
-  const [x, y] = [whole("mask.left", left, 0), whole("mask.top", top, 0)];
+  const [x, y] = [whole("rle.left", left, 0), whole("rle.top", top, 0)];
   // Right and bottom are inclusive.
-  const boxWidth = whole("mask.right", right, x) - x + 1;
-  return { runs: numbers, left: x, top: y, boxWidth, boxHeight: whole("mask.bottom", bottom, y) - y + 1 };
+  const boxWidth = whole("rle.right", right, x) - x + 1;
+  return { runs: numbers, left: x, top: y, boxWidth, boxHeight: whole("rle.bottom", bottom, y) - y + 1 };
 }
 
 function fromElement({ rle, left, top, width, height }: Record<string, unknown>): BoxRuns {
   if (typeof rle !== "string") {
     const remedy = "Pass the attributes of a mask element.";
-    throw failure("INVALID_ARGUMENT", "mask.rle", describe(rle), "a string of comma-separated run lengths", remedy);
+    throw failure("INVALID_ARGUMENT", "rle.rle", describe(rle), "a string of comma-separated run lengths", remedy);
   }
   const number = (name: string, value: unknown, least: number) =>
-    whole(`mask.${name}`, typeof value === "string" && value.trim() !== "" ? Number(value) : value, least);
+    whole(`rle.${name}`, typeof value === "string" && value.trim() !== "" ? Number(value) : value, least);
   return {
     runs: rle.split(",").map(Number),
     left: number("left", left, 0),

@@ -1,6 +1,6 @@
 /** Camera frames of other tools. */
 import type { Sim3, Sim3Like } from "../input/sim3.js";
-import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values/values.js";
+import { oneOf } from "../values/values.js";
 import { type Matrix3, transposed } from "./rotation.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 
@@ -45,6 +45,7 @@ export const inFrame = (argument: string, similarity: Similarity, frame: CameraF
  *
  * @example
  * toFrame(result, "opengl").matrix;    // for three.js, glTF, Blender: diag(1, −1, −1) times the transform
+ * const { translation, rotation, scale } = toFrame(result, "ros");    // position and orientation of a geometry_msgs/Pose
  * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for an unknown frame
  */
 export const toFrame = (transform: Sim3Like, frame: CameraFrame): Sim3 =>
@@ -60,56 +61,3 @@ export const toFrame = (transform: Sim3Like, frame: CameraFrame): Sim3 =>
  */
 export const fromFrame = (transform: Sim3Like, frame: CameraFrame): Sim3 =>
   sim3Of(composed(rotationOnly(transposed(turnTo("frame", frame))), similarityOf(transform)));
-
-/** The pose of a three.js object. */
-export interface ThreePose {
-  /** For `object.matrix.fromArray(…)`, with `object.matrixAutoUpdate = false`. */
-  matrix: number[];
-  /** For `object.position.set(…)`. */
-  position: Vector3;
-  /** For `object.quaternion.set(…)`: x, y, z, w. */
-  quaternion: Quaternion;
-  /** For `object.scale.set(…)`: three equal values. */
-  scale: Vector3;
-}
-
-/**
- * The pose of the mesh as a child of a three.js camera, or in a scene whose camera is at the origin without rotation:
- * OpenGL camera frame, metres. `applyToObject3D` in `sim3align/three` applies it to an object.
- *
- * @example
- * const { position, quaternion, scale } = toThree(result);
- * object.position.set(...position);
- * object.quaternion.set(...quaternion);
- * object.scale.set(...scale);
- * @throws {@link Sim3AlignError} if the transform is not a similarity
- */
-export function toThree(transform: Sim3Like): ThreePose {
-  const { matrix, scale, rotation, translation } = toFrame(transform, "opengl");
-  return { matrix, position: translation, quaternion: rotation, scale: [scale, scale, scale] };
-}
-
-/** A pose in the form of ROS' geometry_msgs/Pose, and the scale, which that message lacks. */
-export interface RosPose {
-  /** Metres. */
-  position: { x: number; y: number; z: number };
-  orientation: { x: number; y: number; z: number; w: number };
-  /** Metres per mesh unit: multiply the mesh by it (`visualization_msgs/Marker.scale`). */
-  scale: number;
-}
-
-/**
- * Converts a transform to a pose for ROS: in the camera's REP-103 body frame (x forward, y left, z up) or, with `frame:
- * "optical"`, in its optical frame (z forward, x right, y down), which is OpenCV's.
- *
- * @example
- * const { position, orientation, scale } = toRos(result);    // header.frame_id: "camera_link"
- * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for another frame
- */
-export function toRos(transform: Sim3Like, options: { frame?: "body" | "optical" } = {}): RosPose {
-  const { frame = "body" } = optionsOf(options, ["frame"]);
-  const isBody = oneOf("options.frame", frame, ["body", "optical"]) === "body";
-  const { rotation, translation, scale } = toFrame(transform, isBody ? "ros" : "opencv");
-  const [[x, y, z], [qx, qy, qz, qw]] = [translation, rotation];
-  return { position: { x, y, z }, orientation: { x: qx, y: qy, z: qz, w: qw }, scale };
-}

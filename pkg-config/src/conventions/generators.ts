@@ -1,16 +1,17 @@
 /** The frames of the files that generators of meshes write. */
+import type { Sim3 } from "../input/sim3.js";
 import type { Vector3 } from "../values/values.js";
 
 /** The frame of a file. */
-export interface GeneratorFrame {
+export type GeneratorFrame = {
   /** The direction that is up, where the generator makes objects upright. */
-  readonly up: Readonly<Vector3>;
+  readonly up: Readonly<Sim3["translation"]>;
   /**
    * The horizontal direction to the camera of the photo; `null` where the generator turns each object as it sees fit.
    * How far the camera looks down is not known.
    */
-  readonly front: Readonly<Vector3> | null;
-}
+  readonly front: Readonly<Sim3["translation"]> | null;
+};
 
 const frame = (up: Vector3, front: Vector3 | null = null): GeneratorFrame => ({ up, front });
 

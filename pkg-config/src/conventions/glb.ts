@@ -1,12 +1,14 @@
-/** Export of placed meshes, and placement of existing GLB files. */
+/** Export of placed meshes as GLB files. */
 
+import { isContent } from "../input/bytes.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import type { MeshArrays } from "../types/inputs.js";
+import { failure } from "../values/error.js";
 import { oneOf, optionsOf } from "../values/values.js";
 import { inFrame } from "./frames.js";
 import { readGlb, writeGlb } from "./glb-file.js";
 import { GltfDocument, objectsOf, shownNodes } from "./gltf-document.js";
-import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
+import { type GltfNode, type GltfNodeOptions, gltfNode } from "./gltf-node.js";
 import { meshOf } from "./mesh.js";
 import { applyToPoints, sim3Of, similarityOf } from "./similarity.js";
 
@@ -17,46 +19,39 @@ export interface GlbOptions extends GltfNodeOptions {
 }
 
 /**
- * Exports a mesh at its pose relative to a camera at the origin, in metres, as a GLB file. The file contains positions
- * and triangles only; {@link placeGlb} keeps the materials of a GLB.
+ * Exports a mesh at its pose relative to a camera at the origin, in metres, as a GLB file. Of arrays, it contains positions
+ * and triangles only. A GLB gets one more node above its scene: materials, textures and animations are kept, nothing is
+ * decoded.
  *
- * @param mesh `positions` and `indices` of the aligned mesh
- * @param transform OpenCV camera from mesh: a result of `align`, whose metrics are kept in the node's extras
+ * @param mesh the aligned mesh: `positions` and `indices`, or the bytes of a GLB
+ * @param transform OpenCV camera from mesh: a result of `align`, whose metrics and confidence are kept in `extras.sim3align`
+ * of the node
  *
  * @example
- * const bytes = exportGlb(mesh, result);
+ * const bytes = exportGlb(generated, await aligner.align({ depth, mask, camera, mesh: generated }));
  * await writeFile("placed.glb", bytes);
- * @throws {@link Sim3AlignError} for an invalid mesh or transform, and `INVALID_OPTION`
+ * @throws {@link Sim3AlignError} for an invalid mesh or transform, `INVALID_OPTION`, `CORRUPT_FILE` for bytes that are not a
+ * GLB, and `UNSUPPORTED_FORMAT` for glTF 1
  */
-export function exportGlb(mesh: MeshArrays, transform: Sim3Like, options: GlbOptions = {}): Uint8Array {
-  const { positions, indices } = meshOf("mesh", mesh);
+export function exportGlb(
+  mesh: MeshArrays | Uint8Array | ArrayBuffer,
+  transform: Sim3Like,
+  options: GlbOptions = {},
+): Uint8Array {
   const { mode = "node", ...ofNode } = optionsOf(options, ["mode", "frame", "metrics", "name"]);
   const isBaked = oneOf("options.mode", mode, ["node", "baked"]) === "baked";
-  const node = toGltfNode(transform, ofNode);
+  const node = gltfNode(transform, ofNode);
+  if (isContent(mesh)) {
+    if (!isBaked) return underNode(mesh, node);
+    const remedy = 'Pass the arrays of the mesh, or omit mode: "node" keeps what else is in the file.';
+    throw failure("INVALID_OPTION", "options.mode", '"baked" for the bytes of a GLB', '"node"', remedy);
+  }
+  const { positions, indices } = meshOf("mesh", mesh);
   const placed = sim3Of(inFrame("options.frame", similarityOf(transform), ofNode.frame ?? "opengl"));
   const document = new GltfDocument();
   const added = document.addMesh({ positions: isBaked ? applyToPoints(placed, positions) : positions, indices });
   const { name, extras } = node;
   return writeGlb(document.finish([document.push("nodes", { ...(isBaked ? { name, extras } : node), mesh: added })]));
-}
-
-/**
- * Places an existing GLB by adding a parent node above its scene. Materials, textures and animations are kept; nothing
- * is decoded.
- *
- * @param glb the bytes of the aligned file
- * @param transform OpenCV camera from mesh: a result of `align` for the same file
- *
- * @example
- * const bytes = placeGlb(generated, await aligner.align({ depth, mask, camera, mesh: generated }));
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` if the bytes are not a GLB, `UNSUPPORTED_FORMAT` for glTF 1
- */
-export function placeGlb(
-  glb: Uint8Array | ArrayBuffer,
-  transform: Sim3Like,
-  options: GltfNodeOptions = {},
-): Uint8Array {
-  return underNode(glb, toGltfNode(transform, options));
 }
 
 /** A GLB with one more node above its scene. */

@@ -6,7 +6,7 @@ import { optionsOf, type Quaternion, text, type Vector3 } from "../values/values
 import { type CameraFrame, inFrame } from "./frames.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
-/** Options of {@link toGltfNode}. */
+/** Options of the node of an exported mesh. */
 export interface GltfNodeOptions {
   /**
    * The parent frame of the node: "opengl", the default, is the frame of glTF cameras; "opencv" keeps the transform
@@ -30,17 +30,8 @@ export interface GltfNode {
   extras: { sim3align: { frame: CameraFrame; metresPerUnit: number; [fact: string]: unknown } };
 }
 
-/**
- * Converts a transform to a glTF node that places the mesh at its pose relative to a camera at the origin. Metrics and
- * confidence, if present, are in `extras.sim3align`.
- *
- * @param transform OpenCV camera from mesh, metres
- *
- * @example
- * gltf.nodes.push({ ...toGltfNode(result), mesh: 0 });
- * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for an unknown frame
- */
-export function toGltfNode(transform: Sim3Like, options: GltfNodeOptions = {}): GltfNode {
+/** The node that places a mesh at its pose relative to a camera at the origin; metrics and confidence are in its extras. */
+export function gltfNode(transform: Sim3Like, options: GltfNodeOptions = {}): GltfNode {
   const { frame = "opengl", metrics, name = "sim3align" } = optionsOf(options, ["frame", "metrics", "name"]);
   const { scale, rotation, translation } = sim3Of(inFrame("options.frame", similarityOf(transform), frame));
   const known = { metrics, ...factsOf(plainArgument("transform", transform), metrics) };

@@ -1,23 +1,11 @@
 /** Brush masks in Label Studio's format: a bit stream of the flattened RGBA pixels. */
 
 import { describe, failure } from "../values/error.js";
-import { type ImageSize, type PixelArray, sizeOf } from "../values/pixels.js";
+import { type PixelArray, sizeOf } from "../values/pixels.js";
 import { flattened } from "../values/values.js";
 
-/**
- * Decodes a brush annotation of Label Studio (`BrushLabels`, `format: "rle"`).
- *
- * @param rle the bytes in `value.rle`
- * @param image the image's size in pixels: the result's `original_width` and `original_height`
- * @returns 1 is the object: pixels whose alpha is not 0
- *
- * @example
- * const { value, original_width: width, original_height: height } = annotation.result[0];
- * const mask = fromLabelStudioRle(value.rle, { width, height });
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` for truncated data, `SIZE_MISMATCH` for data of an image of another
- * size
- */
-export function fromLabelStudioRle(rle: ArrayLike<number>, image: ImageSize): PixelArray<Uint8Array> {
+/** Decodes the bytes of a brush annotation. */
+export function decodedLabelStudio(rle: unknown, image: unknown): PixelArray<Uint8Array> {
   const { width, height } = sizeOf("image", image);
   const bits = new BitReader(bytesOf(rle));
   const count = bits.read(32);

@@ -1,24 +1,33 @@
 /** Bounding boxes of aligned objects, and thereby their dimensions. */
 
-import type { Sim3Like } from "../input/sim3.js";
+import type { Sim3, Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../types/inputs.js";
-import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values/values.js";
+import { oneOf, optionsOf, type Vector3 } from "../values/values.js";
 import { type Mesh, meshOf, triangleCount, vertexAt } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";
 import { identity, type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";
 import { moved, similarityOf } from "./similarity.js";
 
 /** An oriented box around an object, in the OpenCV camera frame. */
-export interface OrientedBoundingBox {
+export type OrientedBoundingBox = {
   /** Side lengths along the box's x, y and z, in metres; for a mesh with y up: width, height, depth. */
-  sizeM: Vector3;
+  sizeM: Sim3["translation"];
   /** The centre, in metres. */
-  centerM: Vector3;
+  centerM: Sim3["translation"];
   /** Rotation from box to camera, as a quaternion x, y, z, w. */
-  rotation: Quaternion;
+  rotation: Sim3["rotation"];
   /** The corners, in metres: from the smallest to the largest x, y, z of the box, with x changing fastest. */
-  corners: [Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3];
-}
+  corners: [
+    Sim3["translation"],
+    Sim3["translation"],
+    Sim3["translation"],
+    Sim3["translation"],
+    Sim3["translation"],
+    Sim3["translation"],
+    Sim3["translation"],
+    Sim3["translation"],
+  ];
+};
 
 /**
  * The metric size of an aligned object, and the box around it.

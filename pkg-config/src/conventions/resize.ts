@@ -1,9 +1,9 @@
 /** Resizes and crops images together with their intrinsics. */
 
 import { pinholeOf, resizedPinhole } from "../camera/pinhole.js";
-import type { CameraInput, PinholeCamera } from "../types/inputs.js";
-import { plainArgument } from "../values/border.js";
+import type { CameraInput } from "../types/inputs.js";
 import { describe, failure } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
 import {
   type DepthPixels,
   depthKinds,
@@ -16,7 +16,7 @@ import {
   pointKinds,
   sizeOf,
 } from "../values/pixels.js";
-import { optionsOf, record, whole } from "../values/values.js";
+import { record, whole } from "../values/values.js";
 
 /** A region of an image, in integer pixels. */
 export interface PixelBox extends ImageSize {
@@ -46,73 +46,85 @@ function sampled<T extends Float32Array | Uint16Array | MaskPixels>(
   return { data: result, width: to.width, height: to.height };
 }
 
-function resized<T extends DepthPixels | MaskPixels>(image: PixelArray<T>, to: unknown): PixelArray<T> {
+function resized<T extends DepthPixels | MaskPixels>(image: PixelArray<T>, to: unknown, channels = 1): PixelArray<T> {
   const size = sizeOf("size", to);
   const column = (u: number) => nearest(u, size.width, image.width);
-  return sampled(image, size, { column, row: (v) => nearest(v, size.height, image.height) });
+  return sampled(image, size, { column, row: (v) => nearest(v, size.height, image.height) }, channels);
 }
 
-/**
- * Resizes a depth map by nearest-neighbour sampling, because interpolation would create flying pixels at every edge.
- * Resize the camera as well: {@link resizeCamera}.
- *
- * @example
- * const small = resizeDepth(depth, { width: 640, height: 480 });
- * @throws {@link Sim3AlignError} for arrays of the wrong type or length, and for sizes below one pixel
- */
-export const resizeDepth = <T extends DepthPixels>(depth: PixelArray<T>, size: ImageSize): PixelArray<T> =>
-  resized(pixelsOf<T>("depth", depth, depthKinds), size);
-
-/**
- * Resizes a mask by nearest-neighbour sampling.
- *
- * @example
- * const mask = resizeMask(maskFromTensor(masks, { index: 0 }), { width: 640, height: 480 });
- * @throws {@link Sim3AlignError} for arrays of the wrong type or length, and for sizes below one pixel
- */
-export const resizeMask = <T extends MaskPixels>(mask: PixelArray<T>, size: ImageSize): PixelArray<T> =>
+/** A mask at another size, by nearest-neighbour sampling. */
+export const resizedMask = <T extends MaskPixels>(mask: PixelArray<T>, size: ImageSize): PixelArray<T> =>
   resized(pixelsOf<T>("mask", mask, maskKinds), size);
 
-/**
- * The intrinsics for a resized image. Pixel centres have integer coordinates, so an image of width w spans −0.5 to w −
- * 0.5, and cx becomes (cx + 0.5)·s − 0.5, not cx·s.
- *
- * @param camera { fx, fy, cx, cy }, { K } or { fovYDeg }, for the image of `fromWidth` × `fromHeight`
- * @param size the old and the new size, in pixels
- *
- * @example
- * resizeCamera({ fx: 600, fy: 600, cx: 319.5, cy: 239.5 }, { fromWidth: 640, fromHeight: 480, width: 320, height: 240 });
- * // { fx: 300, fy: 300, cx: 159.5, cy: 119.5, width: 320, height: 240 }
- * @throws {@link Sim3AlignError} `INVALID_CAMERA`, or for sizes below one pixel
- */
-export function resizeCamera(
-  camera: CameraInput,
-  size: ImageSize & { fromWidth: number; fromHeight: number },
-): PinholeCamera & ImageSize {
-  const sizes = record("size", size, "{ fromWidth, fromHeight, width, height }");
-  const { width, height } = sizeOf("size", sizes);
-  const from = {
-    width: whole("size.fromWidth", sizes.fromWidth, 1),
-    height: whole("size.fromHeight", sizes.fromHeight, 1),
-  };
-  const pinhole = pinholeOf("camera", plainArgument("camera", camera), from);
-  return { ...resizedPinhole(pinhole, from, { width, height }), width, height };
+/** Images and the camera that belong to them; all are optional. */
+export interface ImagesAndCamera {
+  depth?: PixelArray<DepthPixels> | undefined;
+  pointMap?: PixelArray<Float32Array> | undefined;
+  mask?: PixelArray<MaskPixels> | undefined;
+  /** RGB or RGBA. */
+  image?: PixelArray<MaskPixels> | undefined;
+  camera?: CameraInput | undefined;
+}
+
+/** Types and channels of the images of an input. */
+const formatsOf = (
+  image: PixelArray<MaskPixels> | undefined,
+): Record<string, readonly [readonly string[], number]> => ({
+  depth: [depthKinds, 1],
+  pointMap: [pointKinds, 3],
+  mask: [maskKinds, 1],
+  image: [maskKinds, image !== undefined && image.data?.length === 4 * image.width * image.height ? 4 : 3],
+});
+
+/** The images of an input by their names, and the input itself. */
+function imagesIn(input: unknown) {
+  const given = record("input", input, "{ depth, mask, camera }");
+  const { depth, pointMap, mask, image, camera } = given as ImagesAndCamera;
+  const images = Object.entries({ depth, pointMap, mask, image }).filter(([, part]) => part !== undefined);
+  return { given, images, camera, formats: formatsOf(image) };
 }
 
 /**
- * The bounding box of the object in a mask.
+ * Resizes an input, with its intrinsics. Depth, point maps and masks are sampled at the nearest pixel, because interpolated
+ * depth has false points at every edge; they may differ in size. The photo is unchanged, because `align` takes one of any
+ * size, as are all other properties.
  *
- * @param mask non-zero is the object
- * @param options `marginPx`: pixels to add on every side, clipped to the image; 0 by default
+ * Pixel centres have integer coordinates, so an image of width w spans −0.5 to w − 0.5, and cx becomes (cx + 0.5)·s − 0.5,
+ * not cx·s.
+ *
+ * @param input `depth`, `pointMap` and `mask` as `{ data, width, height }`; `camera` with intrinsics for its `width` and
+ * `height` or, without these, for the first of the images
+ * @param size the new size, in pixels
  *
  * @example
- * const box = maskBox(mask, { marginPx: 40 });
- * @throws {@link Sim3AlignError} `EMPTY_MASK` if no pixel is the object
+ * const { mask } = resizeInput({ mask: fromTensor(masks, "mask") }, { width: 640, height: 480 });
+ * resizeInput({ camera: { fx: 600, fy: 600, cx: 319.5, cy: 239.5, width: 640, height: 480 } }, { width: 320, height: 240 });
+ * // { camera: { fx: 300, fy: 300, cx: 159.5, cy: 119.5, width: 320, height: 240 } }
+ * @throws {@link Sim3AlignError} for arrays of the wrong type or length, for sizes below one pixel, and `INVALID_CAMERA`
  */
-export function maskBox(mask: PixelArray<MaskPixels>, options: { marginPx?: number } = {}): PixelBox {
-  const { marginPx = 0 } = optionsOf(options, ["marginPx"]);
-  const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
-  const margin = whole("options.marginPx", marginPx, 0);
+export function resizeInput<T extends ImagesAndCamera>(input: T, size: ImageSize): T {
+  const { given, images, camera, formats } = imagesIn(input);
+  const to = sizeOf("size", size);
+  const changed = { ...given };
+  for (const [name, part] of images) {
+    if (name === "image") continue;
+    const [kinds, channels] = formats[name] as readonly [readonly string[], number];
+    changed[name] = resized(pixelsOf<DepthPixels | MaskPixels>(`input.${name}`, part, kinds, channels), to, channels);
+  }
+  if (camera !== undefined) {
+    const [first] = images;
+    const isSized = isRecord(camera) && camera.width !== undefined;
+    const from =
+      isSized || first === undefined ? sizeOf("input.camera", camera) : sizeOf(`input.${first[0]}`, first[1]);
+    changed.camera = { ...resizedPinhole(pinholeOf("input.camera", camera, from), from, to), ...to };
+  }
+  return changed as unknown as T;
+}
+
+/** The bounding box of the object in a mask, with a margin that is clipped to the image. */
+function maskBox(mask: unknown, marginPx: unknown): PixelBox {
+  const { data, width, height } = pixelsOf<MaskPixels>("input.mask", mask, maskKinds);
+  const margin = whole("box.marginPx", marginPx, 0);
   let [left, top, right, bottom] = [width, height, -1, -1];
   data.forEach((pixel, i) => {
     if (pixel === 0) return;
@@ -121,21 +133,11 @@ export function maskBox(mask: PixelArray<MaskPixels>, options: { marginPx?: numb
     [right, bottom] = [Math.max(right, u), Math.max(bottom, v)];
   });
   if (right < 0) {
-    throw failure("EMPTY_MASK", "mask", "no non-zero pixel", "non-zero pixels", "Pass the mask of the object.");
+    throw failure("EMPTY_MASK", "input.mask", "no non-zero pixel", "non-zero pixels", "Pass the mask of the object.");
   }
   [left, top] = [Math.max(0, left - margin), Math.max(0, top - margin)];
   [right, bottom] = [Math.min(width - 1, right + margin), Math.min(height - 1, bottom + margin)];
   return { left, top, width: right - left + 1, height: bottom - top + 1 };
-}
-
-/** Images and the camera that belong to them; all are optional. */
-export interface CropInput {
-  depth?: PixelArray<DepthPixels> | undefined;
-  pointMap?: PixelArray<Float32Array> | undefined;
-  mask?: PixelArray<MaskPixels> | undefined;
-  /** RGB or RGBA. */
-  image?: PixelArray<MaskPixels> | undefined;
-  camera?: CameraInput | undefined;
 }
 
 /**
@@ -146,19 +148,19 @@ export interface CropInput {
  *
  * @param input `depth`, `mask`, `pointMap` and `image` as `{ data, width, height }`, all of one size; `camera` with
  * intrinsics
- * @param box in pixels of the image; see {@link maskBox}
+ * @param box in pixels of the image; or `{ marginPx }`, for the box around the object in the mask, with a margin of so many
+ * pixels that is clipped to the image
  *
  * @example
- * await aligner.align(cropInput({ depth, mask, camera, mesh }, maskBox(mask, { marginPx: 40 })));
- * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that exceeds them
+ * await aligner.align(cropInput({ depth, mask, camera, mesh }, { marginPx: 40 }));
+ * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that exceeds them; `EMPTY_MASK`
  */
-export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
-  const given = record("input", input, "{ depth, mask, camera }");
-  const { depth, mask, pointMap, image, camera } = given as CropInput;
-  const region = record("box", box, "{ left, top, width, height }");
+export function cropInput<T extends ImagesAndCamera>(input: T, box: PixelBox | { marginPx: number }): T {
+  const { given, images, camera, formats } = imagesIn(input);
+  const named = record("box", box, "{ left, top, width, height }, or { marginPx }");
+  const region = named.marginPx === undefined ? named : { ...maskBox(given.mask, named.marginPx) };
   const { width, height } = sizeOf("box", region);
   const [left, top] = [whole("box.left", region.left, 0), whole("box.top", region.top, 0)];
-  const images = Object.entries({ depth, mask, pointMap, image }).filter(([, part]) => part !== undefined);
   const [first] = images;
   if (first === undefined) {
     throw failure("INVALID_ARGUMENT", "input", describe(input), "depth, mask or pointMap", "Pass the images.");
@@ -168,7 +170,7 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
     const found = sizeOf(`input.${name}`, part);
     if (found.width === size.width && found.height === size.height) continue;
     const expected = `${size.width} × ${size.height}, the size of ${first[0]}`;
-    const remedy = "Resize the images to the same size first: resizeMask, resizeDepth.";
+    const remedy = "Resize the images to the same size first: resizeInput.";
     throw failure("SIZE_MISMATCH", `input.${name}`, `${found.width} × ${found.height} pixels`, expected, remedy);
   }
   if (left + width > size.width || top + height > size.height) {
@@ -177,14 +179,9 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
     throw failure("SIZE_MISMATCH", "box", found, expected, "Keep the box within the image.");
   }
   const source = { column: (u: number) => left + u, row: (v: number) => top + v };
-  const hasAlpha = image?.data?.length === 4 * size.width * size.height;
-  const formats: Record<string, readonly [kinds: readonly string[], channels: number]> = {
-    ...{ depth: [depthKinds, 1], mask: [maskKinds, 1], pointMap: [pointKinds, 3] },
-    image: [maskKinds, hasAlpha ? 4 : 3],
-  };
   const cropped = { ...given };
   for (const [name, part] of images) {
-    const [kinds, channels] = formats[name] as (typeof formats)[string];
+    const [kinds, channels] = formats[name] as readonly [readonly string[], number];
     const pixels = pixelsOf<DepthPixels | MaskPixels>(`input.${name}`, part, kinds, channels);
     cropped[name] = sampled(pixels, { width, height }, source, channels);
   }

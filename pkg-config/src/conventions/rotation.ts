@@ -136,28 +136,5 @@ export function quaternionOf(m: Matrix3): Quaternion {
   return [x / length + 0, y / length + 0, z / length + 0, w / length + 0];
 }
 
-/**
- * Converts a quaternion w, x, y, z (PyTorch3D, Blender, Eigen's constructor, SAM 3D Objects, COLMAP) to x, y, z, w
- * (three.js, glTF, ROS, SciPy, sim3align).
- *
- * @example
- * xyzwFromWxyz([1, 0, 0, 0]);    // [0, 0, 0, 1], the identity
- * @throws {@link Sim3AlignError} for anything but four finite numbers
- */
-export function xyzwFromWxyz(quaternion: ArrayLike<number>): Quaternion {
-  const [w, x, y, z] = finiteNumbers("quaternion", quaternion, 4, "four finite numbers: w, x, y, z") as Quaternion;
-  return [x, y, z, w];
-}
-
-/**
- * Converts a quaternion x, y, z, w (three.js, glTF, ROS, SciPy, sim3align) to w, x, y, z (PyTorch3D, Blender, Eigen's
- * constructor, SAM 3D Objects, COLMAP).
- *
- * @example
- * wxyzFromXyzw([0, 0, 0, 1]);    // [1, 0, 0, 0], the identity
- * @throws {@link Sim3AlignError} for anything but four finite numbers
- */
-export function wxyzFromXyzw(quaternion: ArrayLike<number>): [w: number, x: number, y: number, z: number] {
-  const [x, y, z, w] = finiteNumbers("quaternion", quaternion, 4, "four finite numbers: x, y, z, w") as Quaternion;
-  return [w, x, y, z];
-}
+/** A quaternion x, y, z, w in the order of PyTorch3D, Blender, Eigen's constructor, COLMAP and MuJoCo. */
+export const wFirst = ([x, y, z, w]: Quaternion): [w: number, x: number, y: number, z: number] => [w, x, y, z];

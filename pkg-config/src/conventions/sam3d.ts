@@ -2,18 +2,9 @@
 
 import type { Sim3, Sim3Like } from "../input/sim3.js";
 import { failure } from "../values/error.js";
-import { finiteNumbers, flattened, oneOf, optionsOf, record, type Vector3, vector3 } from "../values/values.js";
+import { finiteNumbers, flattened, oneOf, optionsOf, type Quaternion, record, vector3 } from "../values/values.js";
 import { turnTo } from "./frames.js";
-import {
-  type Matrix3,
-  product,
-  quaternionOf,
-  rotationFromQuaternion,
-  transposed,
-  turned,
-  wxyzFromXyzw,
-  xyzwFromWxyz,
-} from "./rotation.js";
+import { type Matrix3, product, quaternionOf, rotationFromQuaternion, transposed, turned, wFirst } from "./rotation.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
 /** Numbers from a tensor's `tolist()`, with any number of leading dimensions of 1. */
@@ -58,9 +49,10 @@ const zUp = (vertices: Sam3dVertices) => zUpFrom[oneOf("options.vertices", verti
 export function fromSam3d(layout: Sam3dLayout, options: { vertices?: Sam3dVertices } = {}): Sim3 {
   const { vertices = "glb" } = optionsOf(options, ["vertices"]);
   const { scale, rotation, translation } = record("layout", layout, "{ scale, rotation, translation }");
-  const q = xyzwFromWxyz(finiteNumbers("layout.rotation", rotation, 4, "a quaternion: four finite numbers, w first"));
+  const numbers = finiteNumbers("layout.rotation", rotation, 4, "a quaternion: four finite numbers, w first");
+  const [w, x, y, z] = numbers as Quaternion;
   const camera = turnTo("frame", "pytorch3d");
-  const fromZUp = transposed(rotationFromQuaternion("layout.rotation", q));
+  const fromZUp = transposed(rotationFromQuaternion("layout.rotation", [x, y, z, w]));
   return sim3Of({
     scale: uniformScale(scale),
     rotation: product(camera, product(fromZUp, zUp(vertices))),
@@ -93,14 +85,18 @@ function uniformScale(value: unknown): number {
 export function toSam3d(
   transform: Sim3Like,
   options: { vertices?: Sam3dVertices } = {},
-): { scale: Vector3; rotation: [w: number, x: number, y: number, z: number]; translation: Vector3 } {
+): {
+  scale: Sim3["translation"];
+  rotation: [w: number, x: number, y: number, z: number];
+  translation: Sim3["translation"];
+} {
   const { vertices = "glb" } = optionsOf(options, ["vertices"]);
   const { scale, rotation, translation } = similarityOf(transform);
   const camera = turnTo("frame", "pytorch3d");
   const fromZUp = product(product(camera, rotation), transposed(zUp(vertices)));
   return {
     scale: [scale, scale, scale],
-    rotation: wxyzFromXyzw(quaternionOf(transposed(fromZUp))),
+    rotation: wFirst(quaternionOf(transposed(fromZUp))),
     translation: turned(camera, translation),
   };
 }

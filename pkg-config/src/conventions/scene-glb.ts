@@ -7,7 +7,7 @@ import { optionsOf, type Vector3 } from "../values/values.js";
 import { withChildren } from "./glb.js";
 import { readGlb, writeGlb } from "./glb-file.js";
 import { GltfDocument } from "./gltf-document.js";
-import { toGltfNode } from "./gltf-node.js";
+import { gltfNode } from "./gltf-node.js";
 import { meshOf } from "./mesh.js";
 import { Names } from "./names.js";
 import { meanOf, minus, norm, quaternionOf } from "./rotation.js";
@@ -53,7 +53,7 @@ export function exportSceneGlb(objects: readonly SceneGlbObject[], options: Scen
   const centers = parts.map(({ transform }) => similarityOf(transform).translation);
   const { rotation, translation } = sceneFromCamera(support, centers, "y");
   const children = parts.map(({ name, mesh, transform }) => {
-    const node = toGltfNode(transform, { name: names.own(name), frame: "opencv" });
+    const node = gltfNode(transform, { name: names.own(name), frame: "opencv" });
     if (!isRecord(mesh)) return document.push("nodes", withChildren(node, document.add(readGlb(mesh))));
     return document.push("nodes", { ...node, mesh: document.addMesh(meshOf("mesh", mesh)) });
   });

@@ -93,7 +93,7 @@ function gaussianLayout(bytes: Uint8Array): GaussianLayout {
   const [scales, rotation] = [of("scale_0", "scale_1", "scale_2"), of("rot_0", "rot_1", "rot_2", "rot_3")];
   if (name !== "vertex" || position === null || scales === null || rotation === null) {
     const expected = "vertices with float x, y, z, scale_0 to scale_2 and rot_0 to rot_3";
-    throw unsupported("a PLY file without Gaussians", expected, "placeGlb and exportPly are for meshes.");
+    throw unsupported("a PLY file without Gaussians", expected, "exportGlb and exportPly are for meshes.");
   }
   const rest = [...offsets.keys()].filter((property) => property.startsWith("f_rest_")).length;
   const harmonics = of(...Array.from({ length: rest }, (_, i) => `f_rest_${i}`));
@@ -151,7 +151,7 @@ function placePly(bytes: Uint8Array, layout: GaussianLayout, placement: Similari
 function placeRecords(bytes: Uint8Array, placement: Similarity): void {
   if (!isSplatFile(bytes)) {
     const expected = `a PLY file of Gaussians, or a .splat file: ${RECORD_BYTES} bytes for each`;
-    const remedy = "Pass the aligned file; placeGlb and exportPly are for meshes.";
+    const remedy = "Pass the aligned file; exportGlb and exportPly are for meshes.";
     throw unsupported(`${bytes.length} bytes that are neither`, expected, remedy);
   }
   const view = new DataView(bytes.buffer);

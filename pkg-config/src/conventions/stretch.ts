@@ -1,5 +1,6 @@
 /** Meshes in the proportions that an alignment found. */
 
+import { isContent } from "../input/bytes.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { failure } from "../values/error.js";
 import { finiteNumbers, record, type Vector3 } from "../values/values.js";
@@ -21,15 +22,24 @@ const SYMMETRIC = 1e-6;
  * A mesh in other proportions: its vertices times the stretch. It is placed by the transform in `proportions`, with which
  * all exports, boxes and sizes take it.
  *
- * @param mesh the aligned mesh, as arrays
+ * A GLB gets two parent nodes above its scene: a scaling along the axes of the stretch, and the rotation to these. Its
+ * materials, textures and animations are kept; nothing is decoded.
+ *
+ * @param mesh the aligned mesh: arrays, or the bytes of a GLB
  * @param proportions of a result of `align` with `proportions: "axes"` or `"full"`
  *
  * @example
  * const { proportions } = await aligner.align(input, { proportions: "full" });
  * const { sizeM } = orientedBoundingBox(stretchMesh(mesh, proportions), proportions);
- * @throws {@link Sim3AlignError} for an invalid mesh, and `INVALID_ARGUMENT` for a matrix that is not a stretch
+ * @throws {@link Sim3AlignError} for an invalid mesh or GLB, and `INVALID_ARGUMENT` for a matrix that is not a stretch
  */
-export function stretchMesh<M extends MeshArrays>(mesh: M, proportions: StretchLike): M {
+export function stretchMesh<M extends MeshArrays>(mesh: M, proportions: StretchLike): M;
+export function stretchMesh(mesh: Uint8Array | ArrayBuffer, proportions: StretchLike): Uint8Array;
+export function stretchMesh<M extends MeshArrays>(
+  mesh: M | Uint8Array | ArrayBuffer,
+  proportions: StretchLike,
+): M | Uint8Array {
+  if (isContent(mesh)) return stretchedGlb(mesh, stretchOf(proportions));
   meshOf("mesh", mesh);
   const matrix = stretchOf(proportions);
   // Normals turn with the inverse of the transpose.
@@ -37,19 +47,7 @@ export function stretchMesh<M extends MeshArrays>(mesh: M, proportions: StretchL
   return mappedMesh(mesh, (points) => mapped(matrix, points), normals);
 }
 
-/**
- * A GLB in other proportions, by two parent nodes above its scene: a scaling along the axes of the stretch, and the rotation
- * to these. Materials, textures and animations are kept; nothing is decoded. It is placed by the transform in `proportions`.
- *
- * @param glb the bytes of the aligned file
- * @param proportions of a result of `align` for the same file
- *
- * @example
- * const placed = placeGlb(stretchGlb(generated, proportions), proportions);
- * @throws {@link Sim3AlignError} as {@link stretchMesh} and {@link placeGlb}
- */
-export function stretchGlb(glb: Uint8Array | ArrayBuffer, proportions: StretchLike): Uint8Array {
-  const matrix = stretchOf(proportions);
+function stretchedGlb(glb: Uint8Array | ArrayBuffer, matrix: Matrix3): Uint8Array {
   const axes = eigenvectors(matrix);
   const inAxes = underNode(glb, { name: "axes of the stretch", rotation: quaternionOf(transposed(axes)) });
   return underNode(inAxes, { name: "stretch", rotation: quaternionOf(axes), scale: lengthsAlong(matrix, axes) });

@@ -5,7 +5,7 @@ import { describe, failure } from "../values/error.js";
 import { isKind, isRecord, isTypedArray, typedArrayKind } from "../values/kinds.js";
 import { withLive } from "../values/live.js";
 import { checkCount, type PixelArray } from "../values/pixels.js";
-import { flattened, record, whole, wrongKind } from "../values/values.js";
+import { flattened, oneOf, record, whole, wrongKind } from "../values/values.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */
 export interface TensorLike {
@@ -38,6 +38,25 @@ function dimensions(tensor: unknown) {
   return { data, width, height, count };
 }
 
+/** Which of several masks: its index in the tensor, or the score of each, of which the highest wins. */
+export interface MaskChoice {
+  index?: number | undefined;
+  scores?: TensorLike | ArrayLike<number> | undefined;
+}
+
+/**
+ * Extracts a depth map from a tensor: `predicted_depth` of a depth model. With relative models, pass their `depthKind` to
+ * `align`, or the result to `correctDepth`.
+ *
+ * @param tensor floats, height × width, or with leading dimensions of 1
+ * @returns the unchanged values
+ *
+ * @example
+ * const { predicted_depth } = await estimator(image);    // pipeline("depth-estimation", …)
+ * const depth = fromTensor(predicted_depth, "depth");
+ * @throws {@link Sim3AlignError} `EIGHT_BIT_DEPTH` for integers: the `depth` of transformers.js is a visualisation
+ */
+export function fromTensor(tensor: TensorLike, content: "depth"): PixelArray<Float32Array>;
 /**
  * Extracts one mask from a tensor of masks, such as SAM's: the result of `post_process_masks` of transformers.js for
  * one image (bool, 1 × 3 × height × width), or any tensor whose last two dimensions are height and width.
@@ -48,13 +67,20 @@ function dimensions(tensor: unknown) {
  *
  * @example
  * const [masks] = await processor.post_process_masks(pred_masks, original_sizes, reshaped_input_sizes);
- * const mask = maskFromTensor(masks, { scores: iou_scores });
+ * const mask = fromTensor(masks, "mask", { scores: iou_scores });
  * @throws {@link Sim3AlignError} if dimensions and data do not match, or no mask is selected
  */
-export function maskFromTensor(
+export function fromTensor(tensor: TensorLike, content: "mask", choice?: MaskChoice): PixelArray<Uint8Array>;
+export function fromTensor(
   tensor: TensorLike,
-  choice: { index?: number | undefined; scores?: TensorLike | ArrayLike<number> | undefined } = {},
-): PixelArray<Uint8Array> {
+  content: "depth" | "mask",
+  choice: MaskChoice = {},
+): PixelArray<Float32Array> | PixelArray<Uint8Array> {
+  const isDepth = oneOf("content", content, ["depth", "mask"], "INVALID_ARGUMENT") === "depth";
+  return isDepth ? depthFrom(tensor) : maskFrom(tensor, choice);
+}
+
+function maskFrom(tensor: unknown, choice: MaskChoice): PixelArray<Uint8Array> {
   const { index, scores } = withLive("choice", "{ index } or { scores }", () => {
     const { data = choice?.scores } = Object(choice?.scores) as { data?: unknown };
     return record("choice", isRecord(choice) ? { ...choice, scores: data } : choice, "{ index } or { scores }");
@@ -85,20 +111,7 @@ function best(scores: ArrayLike<number>, count: number): number {
   return numbers.indexOf(Math.max(...numbers));
 }
 
-/**
- * Extracts a depth map from a tensor: `predicted_depth` of a model whose depth is in metres (Depth Anything's metric
- * checkpoints, Depth Pro, Metric3D, ZoeDepth). For relative models, whose values are larger for nearer points, pass the
- * result to {@link depthFromDisparity}.
- *
- * @param tensor floats, height × width, or with leading dimensions of 1
- * @returns the unchanged values
- *
- * @example
- * const { predicted_depth } = await estimator(image);    // pipeline("depth-estimation", …)
- * const depth = depthFromTensor(predicted_depth);
- * @throws {@link Sim3AlignError} `EIGHT_BIT_DEPTH` for integers: the `depth` of transformers.js is a visualisation
- */
-export function depthFromTensor(tensor: TensorLike): PixelArray<Float32Array> {
+function depthFrom(tensor: unknown): PixelArray<Float32Array> {
   const { data, width, height, count } = dimensions(tensor);
   if (count !== 1) {
     const remedy = "Pass the map of one image: tensor[0].";

@@ -24,7 +24,7 @@ import {
 import { directionOf } from "./scene-frame.js";
 import { applyToPoints, composed, inverted, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 
-/** Options of {@link uprightMesh} and {@link uprightGlb}. */
+/** Options of {@link uprightMesh}. */
 export interface UprightOptions {
   /** The plane that the object stands on, as `support` of the result of `alignScene`: up is its normal. */
   support?: { normal: ArrayLike<number> } | null | undefined;
@@ -33,14 +33,14 @@ export interface UprightOptions {
 }
 
 /** An object in its own upright frame. */
-export interface Upright<M> {
+export type Upright<M> = {
   /** The mesh in this frame. Its box along the axes is tight, and stands on the origin. */
   mesh: M;
   /** OpenCV camera from the upright frame: every vertex stays where it was. */
   transform: Sim3;
   /** The frame: from the upright frame to that of the given mesh. */
   meshFromUpright: Sim3;
-}
+};
 
 /** Decrease of the area by which a rectangle is turned: round outlines keep the heading of the mesh. */
 const TIGHTER = 0.99;
@@ -51,62 +51,47 @@ const TIGHTER = 0.99;
  * axes are those of the smallest rectangle around the object seen from above, named after the nearest axes of the mesh. The
  * origin is the centre of the bottom of the box. All exports and {@link orientedBoundingBox} take the mesh with its transform.
  *
- * @param mesh the aligned mesh
+ * @param mesh the aligned mesh, as arrays
  * @param transform OpenCV camera from mesh: a result of `align`
+ * @param options with `glb`, the bytes of its file, `mesh` of the result is a GLB: with one more node above the scene, in
+ * which materials, textures and animations are kept, and nothing is decoded
  *
  * @example
  * const straight = uprightMesh(mesh, result, { support });
  * const { sizeM: [width, height, depth] } = orientedBoundingBox(straight.mesh, straight.transform);
  * @throws {@link Sim3AlignError} for an invalid mesh, transform or plane, and `INVALID_OPTION`
  */
+export function uprightMesh(
+  mesh: MeshArrays,
+  transform: Sim3Like,
+  options: UprightOptions & { glb: Uint8Array | ArrayBuffer },
+): Upright<Uint8Array>;
+export function uprightMesh<M extends MeshArrays>(mesh: M, transform: Sim3Like, options?: UprightOptions): Upright<M>;
 export function uprightMesh<M extends MeshArrays>(
   mesh: M,
   transform: Sim3Like,
-  options: UprightOptions = {},
-): Upright<M> {
-  const frame = uprightFrame(mesh, transform, options);
+  options: UprightOptions & { glb?: Uint8Array | ArrayBuffer } = {},
+): Upright<M | Uint8Array> {
+  const { glb, ...ofFrame } = optionsOf(options, ["support", "up", "glb"]);
+  const frame = uprightFrame(mesh, transform, ofFrame);
   const back = sim3Of(inverted(frame));
+  const placed = { transform: sim3Of(composed(similarityOf(transform), frame)), meshFromUpright: sim3Of(frame) };
+  if (glb !== undefined) {
+    const { rotation, translation } = back;
+    return { mesh: underNode(glb, { name: "upright", rotation, translation }), ...placed };
+  }
   const turn = { ...back, scale: 1, translation: [0, 0, 0] as Vector3, matrix: undefined };
   const straight = mappedMesh(
     mesh,
     (points) => applyToPoints(back, points),
     (normals) => applyToPoints(turn, normals),
   );
-  return { mesh: straight, ...placedBy(transform, frame) };
+  return { mesh: straight, ...placed };
 }
-
-/**
- * A GLB in an upright frame of its own, by one more node above its scene; see {@link uprightMesh}. Materials, textures and
- * animations are kept; nothing is decoded.
- *
- * @param glb the bytes of the aligned file
- * @param mesh the same mesh as arrays, which `readMesh` of `sim3align/formats` reads
- * @param transform OpenCV camera from mesh: a result of `align`
- *
- * @example
- * const straight = uprightGlb(file, mesh, result, { support });
- * const placed = placeGlb(straight.mesh, straight.transform);
- * @throws {@link Sim3AlignError} as {@link uprightMesh} and {@link placeGlb}
- */
-export function uprightGlb(
-  glb: Uint8Array | ArrayBuffer,
-  mesh: MeshArrays,
-  transform: Sim3Like,
-  options: UprightOptions = {},
-): Upright<Uint8Array> {
-  const frame = uprightFrame(mesh, transform, options);
-  const { rotation, translation } = sim3Of(inverted(frame));
-  return { mesh: underNode(glb, { name: "upright", rotation, translation }), ...placedBy(transform, frame) };
-}
-
-const placedBy = (transform: Sim3Like, frame: Similarity) => ({
-  transform: sim3Of(composed(similarityOf(transform), frame)),
-  meshFromUpright: sim3Of(frame),
-});
 
 /** The upright frame of a mesh: from it to that of the mesh. */
 function uprightFrame(mesh: MeshArrays, transform: Sim3Like, options: UprightOptions): Similarity {
-  const { support = null, up = "y" } = optionsOf(options, ["support", "up"]);
+  const { support = null, up = "y" } = options;
   const checked = meshOf("mesh", mesh);
   const toMesh = transposed(similarityOf(transform).rotation);
   const axis = oneOf("options.up", up, ["y", "z"]);

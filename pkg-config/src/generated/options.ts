@@ -1,116 +1,8 @@
 // Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.
 
 import type { OptionRow } from "../types/options.js";
-import type { AlignOptions, PaperOptions, ViewsOptions, TrackOptions, EvaluateOptions, RegisterOptions, EstimateSim3Options } from "./types.js";
 
-/** Defaults of `align`. */
-export const ALIGN_DEFAULTS = {
-  preset: "precise",
-  quality: "auto",
-  scale: "free",
-  knownExtentM: null,
-  knownExtentAxis: "longest",
-  symmetry: "auto",
-  cameraUp: null,
-  meshUp: null,
-  initial: null,
-  search: "global",
-  workBudget: null,
-  proportions: "keep",
-  metrics: true,
-  maxObservedPoints: 20000,
-  surfaceSamples: 10000,
-  seed: 0,
-} as const satisfies AlignOptions;
-
-/** Defaults of `align` with `preset: "paper"`. */
-export const PAPER_DEFAULTS = {
-  preset: "paper",
-  seed: 0,
-  maxObservedPoints: 20000,
-  surfaceSamples: 20000,
-  metrics: true,
-  voxelDivisions: 30,
-  fpfhRadiusVoxels: 5,
-  guard: [0.5, 1.5],
-  guardMode: "reject",
-  ransacIterations: 100000,
-  ransacConfidence: 0.999,
-  inlierDistanceVoxels: 1.5,
-  edgeSimilarity: 0.9,
-  hallucinationFilter: true,
-  supportDistanceVoxels: 3,
-  supportAngleDeg: 60,
-  icp: "point-to-plane",
-  lockScale: true,
-  icpIterations: 60,
-} as const satisfies PaperOptions;
-
-/** Defaults of `alignViews`. */
-export const VIEWS_DEFAULTS = {
-  quality: "auto",
-  scale: "free",
-  knownExtentM: null,
-  knownExtentAxis: "longest",
-  symmetry: "auto",
-  proportions: "keep",
-  metrics: true,
-  maxObservedPoints: 20000,
-  surfaceSamples: 10000,
-  seed: 0,
-} as const satisfies ViewsOptions;
-
-/** Defaults of `track`. */
-export const TRACK_DEFAULTS = {
-  quality: "auto",
-  scale: "free",
-  knownExtentM: null,
-  knownExtentAxis: "longest",
-  symmetry: "auto",
-  initial: null,
-  metrics: false,
-  seed: 0,
-} as const satisfies TrackOptions;
-
-/** Defaults of `evaluate`. */
-export const EVALUATE_DEFAULTS = {
-  truth: null,
-  symmetry: "none",
-  layout: true,
-  seed: 0,
-  maxObservedPoints: 20000,
-  surfaceSamples: 10000,
-  measuredPoints: 2048,
-} as const satisfies EvaluateOptions;
-
-/** Defaults of `register`. */
-export const REGISTER_DEFAULTS = {
-  scale: "free",
-  seed: 0,
-  maxPoints: 20000,
-  voxelSize: null,
-  voxelDivisions: null,
-  fpfhRadiusVoxels: 5,
-  ransacIterations: 100000,
-  ransacConfidence: 0.999,
-  inlierDistanceVoxels: 1.5,
-  edgeSimilarity: 0.9,
-  icp: "point-to-plane",
-  icpIterations: 60,
-  workBudget: null,
-} as const satisfies RegisterOptions;
-
-/** Defaults of `estimateSim3`. */
-export const ESTIMATE_SIM3_DEFAULTS = {
-  scale: "free",
-  seed: 0,
-  inlierDistance: null,
-  ransacIterations: 100000,
-  ransacConfidence: 0.999,
-  edgeSimilarity: 0.9,
-  workBudget: null,
-} as const satisfies EstimateSim3Options;
-
+const cameraUp = { name: "cameraUp", kind: "direction", isNullable: true, default: null, summary: "The up direction in the camera's frame, of any length: `[0, -1, 0]` for a level camera" } as const;
 const edgeSimilarity = { name: "edgeSimilarity", kind: "number", min: 0, max: 1, isNullable: false, default: 0.9, summary: "Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched" } as const;
 const fpfhRadiusVoxels = { name: "fpfhRadiusVoxels", kind: "number", min: 1, max: 20, isNullable: false, default: 5, summary: "Radius of the FPFH descriptors, in voxels" } as const;
 const icp = { name: "icp", kind: "choice", choices: ["point-to-plane", "point-to-point", "none"], isNullable: false, default: "point-to-plane", summary: "The distance that ICP minimises, or `\"none\"` for no refinement" } as const;
@@ -120,30 +12,32 @@ const inlierDistanceVoxels = { name: "inlierDistanceVoxels", kind: "number", min
 const knownExtentAxis = { name: "knownExtentAxis", kind: "choice", choices: ["longest", "x", "y", "z"], isNullable: false, default: "longest", summary: "The side of the mesh's bounding box that `knownExtentM` measures" } as const;
 const knownExtentM = { name: "knownExtentM", kind: "number", above: 0, isNullable: true, default: null, summary: "The object's known length along `knownExtentAxis`, in metres" } as const;
 const maxObservedPoints = { name: "maxObservedPoints", kind: "integer", min: 32, max: 1000000, isNullable: false, default: 20000, summary: "Upper bound on the depth readings used for metrics and initial scale" } as const;
+const meshUp = { name: "meshUp", kind: "direction", isNullable: true, default: null, summary: "The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF" } as const;
 const metrics = { name: "metrics", kind: "boolean", isNullable: false, default: true, summary: "Whether to compute `metrics`" } as const;
 const proportions = { name: "proportions", kind: "choice", choices: ["keep", "axes", "full"], isNullable: false, default: "keep", summary: "Whether to fit the proportions of the mesh, which generators get wrong by some per cent: see `proportions` of the result" } as const;
 const quality = { name: "quality", kind: "choice", choices: ["auto", "fast", "balanced", "best"], isNullable: false, default: "auto", summary: "How much work a search does" } as const;
 const ransacConfidence = { name: "ransacConfidence", kind: "number", min: 0, max: 0.999999, isNullable: false, default: 0.999, summary: "RANSAC stops once it has found the best consensus with this probability" } as const;
 const ransacIterations = { name: "ransacIterations", kind: "integer", min: 1, max: 10000000, isNullable: false, default: 100000, summary: "Upper bound on the minimal sets that RANSAC draws" } as const;
 const scale = { name: "scale", kind: "scale", isNullable: false, default: "free", summary: "The scale in metres per mesh unit: `\"free\"`, a known number (1 for a mesh in metres), or bounds `[min, max]`" } as const;
+const search = { name: "search", kind: "choice", choices: ["global", "local"], isNullable: false, default: "global", summary: "Where to search: everywhere, or around `initial` only" } as const;
 const seed = { name: "seed", kind: "integer", min: 0, max: 4294967295, isNullable: false, default: 0, summary: "Seed of all random draws" } as const;
 const surfaceSamples = { name: "surfaceSamples", kind: "integer", min: 100, max: 1000000, isNullable: false, default: 10000, summary: "Number of points sampled on the mesh surface for metrics and initial scale" } as const;
 const symmetry = { name: "symmetry", kind: "symmetry", isNullable: false, default: "auto", summary: "The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`" } as const;
 const voxelDivisions = { name: "voxelDivisions", kind: "number", min: 5, max: 200, isNullable: false, default: 30, summary: "Voxels along the diagonal of the observation's bounding box (the paper compares 20, 30 and 50)" } as const;
 const workBudget = { name: "workBudget", kind: "number", above: 0, isNullable: true, default: null, summary: "An upper bound on the work of the search, in units of about a millisecond on a 2020 laptop" } as const;
 
-/** Every option with its kind, range, default and a one-line description. */
-export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track" | "evaluate" | "register" | "estimateSim3", readonly OptionRow[]>> = /* @__PURE__ */ (() => ({
+/** Every option of every call, with its kind, range, default and a one-line description. */
+export const OPTIONS: Readonly<Record<"align" | "paper" | "alignScene" | "alignViews" | "track" | "evaluate" | "register" | "estimateSim3", readonly OptionRow[]>> = /* @__PURE__ */ (() => ({
   align: [
     quality,
     scale,
     knownExtentM,
     knownExtentAxis,
     symmetry,
-    { name: "cameraUp", kind: "direction", isNullable: true, default: null, summary: "The up direction in the camera's frame, of any length: `[0, -1, 0]` for a level camera" },
-    { name: "meshUp", kind: "direction", isNullable: true, default: null, summary: "The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF" },
+    cameraUp,
+    meshUp,
     initial,
-    { name: "search", kind: "choice", choices: ["global", "local"], isNullable: false, default: "global", summary: "Where to search: everywhere, or around `initial` only" },
+    search,
     workBudget,
     proportions,
     metrics,
@@ -170,6 +64,23 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track"
     icp,
     { name: "lockScale", kind: "boolean", isNullable: false, default: true, summary: "Whether ICP leaves the scale as RANSAC found it (§3.3)" },
     icpIterations,
+  ],
+  alignScene: [
+    quality,
+    scale,
+    knownExtentM,
+    knownExtentAxis,
+    symmetry,
+    cameraUp,
+    meshUp,
+    search,
+    workBudget,
+    proportions,
+    metrics,
+    maxObservedPoints,
+    surfaceSamples,
+    seed,
+    { name: "snap", kind: "boolean", isNullable: false, default: false, summary: "Whether to move each object that touches something along the normal of the support, so that it touches exactly" },
   ],
   alignViews: [
     quality,

@@ -12,6 +12,10 @@ export type Bytes = Uint8Array | Uint8ClampedArray;
 /** Whether the value is an array of bytes. */
 export const isBytes = (value: unknown): value is Bytes => isTypedArray(value, "Uint8Array", "Uint8ClampedArray");
 
+/** Whether the value is the content of a file, and no object with arrays. */
+export const isContent = (value: unknown): value is Uint8Array | ArrayBuffer =>
+  ArrayBuffer.isView(value) || isBuffer(value);
+
 /**
  * The bytes of a file, or `null`. Cannot distinguish a file from pixels in a `Uint8Array`.
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for memory that is detached, and `FILE_NOT_FOUND` if a `Blob` or a `File` cannot be read

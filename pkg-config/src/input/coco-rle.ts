@@ -1,7 +1,6 @@
 /** COCO's run-length encoding of masks: column-major runs, starting with background. */
 
 import type { CocoRle } from "../types/inputs.js";
-import { plainArgument } from "../values/border.js";
 import { describe, failure, type Sim3AlignError } from "../values/error.js";
 import { type JsonFile, numbersIn, parsedJson } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
@@ -44,19 +43,7 @@ export function toCocoRle(mask: PixelArray<MaskPixels>, options: { compressed?: 
   return { size: [height, width], counts: compressed ? compress(counts) : counts };
 }
 
-/**
- * Decodes a mask in COCO's run-length encoding, compressed or not.
- *
- * `align` accepts the encoding as `mask` directly; use this function to get the pixels.
- * @returns 1 is the object
- *
- * @example
- * fromCocoRle({ size: [2, 2], counts: [1, 3] }).data;    // Uint8Array [0, 1, 1, 1]
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` if the runs do not add up to the image size
- */
-export const fromCocoRle = (rle: CocoRle): PixelArray<Uint8Array> => decodedRle("rle", plainArgument("rle", rle));
-
-/** Like {@link fromCocoRle}; `argument` is the name of the encoding in errors. */
+/** Decodes a mask, compressed or not; `argument` is the name of the encoding in errors. */
 export function decodedRle(argument: string, rle: unknown): PixelArray<Uint8Array> {
   const { size, counts } = part(argument, rle, "{ size: [height, width], counts }");
   const [height, width] = finiteNumbers(`${argument}.size`, size, 2, "[height, width]") as [number, number];

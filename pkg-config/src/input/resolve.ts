@@ -15,6 +15,8 @@ import { type Resolved, readView, viewProperties } from "./view.js";
 const frameProperties = [...viewProperties, "mask", "resizeMask"];
 
 const spelling = "Check the spelling. Options belong in the second argument.";
+const oneMesh =
+  "This is an input of align(). Omit its mesh: frames have that of their tracker, views the one beside them.";
 
 /**
  * Resolves the input of `align` and `evaluate`. Readers are loaded only if a file needs them.
@@ -45,7 +47,7 @@ export async function resolveFrame(
   more: readonly string[] = [],
 ): Promise<Resolved<CoreFrame>> {
   const given = part("frame", frame, "{ depth, camera, mask? }");
-  checkNames("", given, [...frameProperties, ...more], spelling);
+  checkNames("", given, [...frameProperties, ...more], given.mesh === undefined ? spelling : oneMesh);
   return frameOf(given, readers, given.mask !== undefined && given.mask !== null);
 }
 

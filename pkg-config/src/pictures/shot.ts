@@ -1,7 +1,7 @@
 /** A shot: an observation and a mesh, decoded for pictures of a pose. */
 
 import type { Pinhole } from "../camera/pinhole.js";
-import { resizeMask } from "../conventions/resize.js";
+import { resizedMask } from "../conventions/resize.js";
 import { resolveInput } from "../input/resolve.js";
 import type { Photo } from "../modules/core-input.js";
 import { coreModule } from "../modules/modules.js";
@@ -36,7 +36,7 @@ export class Shot {
     const scale = Number(core.depthScale ?? (depth instanceof Uint16Array ? 0.001 : 1));
     const metres = Float32Array.from(depth, (z) => (z > 0 && Number.isFinite(z) ? z * scale : 0));
     const given = { data: mask, width: core.maskWidth ?? width, height: core.maskHeight ?? height };
-    const { data: inside } = resizeMask(given, { width, height });
+    const { data: inside } = resizedMask(given, { width, height });
     return new Shot(metres, width, height, core.camera as Pinhole, inside, image, mesh);
   }
 

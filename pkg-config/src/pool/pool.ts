@@ -40,7 +40,7 @@ export class WorkerPool implements Engine {
   async run<M extends Method>(job: Job<M>, call: Call): Promise<Outcome<M>> {
     const signals = [this.#ended.signal, ...signalsOf(call)];
     this.#broker.recall();
-    const slot = await this.#queue.acquire(signals);
+    const slot = await this.#queue.acquire(signals, call.isBatched);
     const stop = (reason: unknown) => {
       slot.last.end(reason);
       if (!this.#ended.signal.aborted) slot.hire();

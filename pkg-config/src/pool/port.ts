@@ -1,11 +1,9 @@
 /** One interface for browser workers and Node worker threads. */
 
-import type { CreateWorker, WorkerLike } from "../types/platform.js";
-import { failure } from "../values/error.js";
+import type { CreateWorker, NodeWorkerLike, WebWorkerLike, WorkerLike } from "../types/platform.js";
+import { failure, messageOf } from "../values/error.js";
 import { startedFromAnywhere } from "./cross-origin.js";
 import type { ToWorker } from "./messages.js";
-
-type NodeWorker = import("node:worker_threads").Worker;
 
 /** The pool's end of the connection to a worker. */
 export interface Port {
@@ -24,20 +22,20 @@ export interface PortEvents {
 
 /** Connects to a worker. */
 export function portOf(worker: WorkerLike, { onMessage, onFailure }: PortEvents): Port {
-  const node = "on" in worker ? (worker as NodeWorker) : undefined;
+  const node = "on" in worker ? (worker as NodeWorkerLike) : undefined;
   const unreadable = () => onFailure("a message that could not be read");
   if (node !== undefined) {
     node.on("message", onMessage);
-    node.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
+    node.on("error", (error) => onFailure(messageOf(error)));
     node.on("messageerror", unreadable);
     node.on("exit", (code) => onFailure(`termination with exit code ${code}`));
     node.unref?.();
   } else {
-    const web = worker as Worker;
+    const web = worker as WebWorkerLike;
     web.addEventListener("message", ({ data }) => onMessage(data));
     web.addEventListener("error", (event) => {
       // Otherwise, error handlers of the page would report it as unhandled.
-      event.preventDefault();
+      event.preventDefault?.();
       onFailure(event.message || "a script that could not be loaded");
     });
     web.addEventListener("messageerror", unreadable);

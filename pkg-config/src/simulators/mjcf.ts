@@ -1,5 +1,5 @@
 /** Scenes as MJCF, the format of MuJoCo. */
-import { wxyzFromXyzw } from "../conventions/rotation.js";
+import { wFirst } from "../conventions/rotation.js";
 import { type ExportedBody, exportedScene, meshFiles, overlappingPairs, spaced, viewRotation } from "./exported.js";
 import type { SimulatorScene } from "./scene.js";
 
@@ -26,7 +26,7 @@ export function toMjcf(scene: SimulatorScene): Record<string, string> {
     world.push(`<geom name="ground" type="plane" size="2 2 0.05" material="ground"/>`);
   }
   if (camera !== null) {
-    const quaternion = wxyzFromXyzw(viewRotation(camera));
+    const quaternion = wFirst(viewRotation(camera));
     world.push(
       `<camera name="camera" pos="${spaced(camera.position)}" quat="${spaced(quaternion)}" fovy="${spaced([camera.fovYDeg])}" resolution="${Math.round(camera.width)} ${Math.round(camera.height)}"/>`,
     );
@@ -34,7 +34,7 @@ export function toMjcf(scene: SimulatorScene): Record<string, string> {
   world.push(...bodies.flatMap(bodyLines));
   const excluded = overlappingPairs(bodies).map(([one, other]) => `<exclude body1="${one}" body2="${other}"/>`);
   const found = bodies.map(({ name, found: { position, rotation } }) => {
-    const pose = spaced([...position, ...wxyzFromXyzw(rotation)]);
+    const pose = spaced([...position, ...wFirst(rotation)]);
     return `<numeric name="${name}_found" size="7" data="${pose}"/>`;
   });
   const text = `<mujoco model="scene">
@@ -60,8 +60,8 @@ ${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>
 
 function bodyLines(body: ExportedBody): string[] {
   const { name, position, rotation, isFixed, parts, color } = body;
-  const pose = `pos="${spaced(position)}" quat="${spaced(wxyzFromXyzw(rotation))}"`;
-  const inertial = `<inertial pos="${spaced(body.centerOfMass)}" quat="${spaced(wxyzFromXyzw(body.principalAxes))}" mass="${spaced([body.mass])}" diaginertia="${spaced(body.principalMoments)}"/>`;
+  const pose = `pos="${spaced(position)}" quat="${spaced(wFirst(rotation))}"`;
+  const inertial = `<inertial pos="${spaced(body.centerOfMass)}" quat="${spaced(wFirst(body.principalAxes))}" mass="${spaced([body.mass])}" diaginertia="${spaced(body.principalMoments)}"/>`;
   return [
     `<body name="${name}" ${pose}>`,
     ...(isFixed ? [] : ["  <freejoint/>"]),

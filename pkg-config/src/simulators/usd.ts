@@ -1,13 +1,14 @@
 /** Scenes as USD, with the schemas of UsdPhysics. */
 import { bounds } from "../conventions/mesh.js";
-import { wxyzFromXyzw } from "../conventions/rotation.js";
+import { wFirst } from "../conventions/rotation.js";
 import { lightOf } from "../input/colors.js";
+import type { Quaternion } from "../values/values.js";
 import { type ExportedBody, exportedScene, spaced, viewRotation } from "./exported.js";
 import type { SimulatorScene } from "./scene.js";
 
 const tuple = (numbers: ArrayLike<number>) => `(${spaced(numbers).replaceAll(" ", ", ")})`;
 /** Quaternions of USD begin with w. */
-const quaternion = (xyzw: ArrayLike<number>) => tuple(wxyzFromXyzw(xyzw));
+const quaternion = (xyzw: Quaternion) => tuple(wFirst(xyzw));
 
 /** Reach of the ground, metres, and its colour. */
 const REACH = 5;
@@ -104,7 +105,7 @@ ${indented([mesh("surface", body.mesh, color, [], []), ...colliders].join("\n\n"
 const applied = (schemas: readonly string[]) =>
   schemas.length === 0 ? "" : ` (\n    prepend apiSchemas = [${schemas.map((s) => `"${s}"`).join(", ")}]\n)`;
 
-const placement = (position: ArrayLike<number>, rotation: ArrayLike<number>) =>
+const placement = (position: ArrayLike<number>, rotation: Quaternion) =>
   `    double3 xformOp:translate = ${tuple(position)}
     quatd xformOp:orient = ${quaternion(rotation)}
     uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]`;

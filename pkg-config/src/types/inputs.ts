@@ -46,7 +46,7 @@ export interface CocoRle {
  * The mask of the object, row-major; non-zero is the object.
  *
  * - `Uint8Array` of the depth map's size, one byte per pixel;
- * - `{ data, width, height }`, for a mask of another size (see `resizeMask`);
+ * - `{ data, width, height }`, for a mask of another size (see the property `resizeMask`);
  * - the bytes of a mask file (PNG, NPY, COCO RLE or JPEG), detected by their signature;
  * - COCO RLE, as an object.
  */

@@ -64,30 +64,38 @@ interface AlignCallOptions extends CallOptions {
  * await aligner.align(input, { initial: { scale, rotation, translation }, search: "local" });
  * ```
  */
-export interface AlignOptions extends Core.AlignOptions, AlignCallOptions {}
+export interface AlignOptions<M extends boolean = true> extends Core.AlignOptions, AlignCallOptions {
+  /** Whether to compute `metrics`; `AlignOptions<false>` are options without. Default `true`. */
+  metrics?: M | undefined;
+}
 
-/** Options of `Aligner.align` with `preset: "paper"`. */
-export interface PaperOptions extends Core.PaperOptions, AlignCallOptions {}
+/** Options of `Aligner.align` with `preset: "paper"`; `PaperOptions<false>` are options with `metrics: false`. */
+export interface PaperOptions<M extends boolean = true> extends Core.PaperOptions, AlignCallOptions {
+  /** Whether to compute `metrics`. Default `true`. */
+  metrics?: M | undefined;
+}
 
 /** Options of `Aligner.align`: `preset` and `metrics` determine the type of the result. */
-export type OptionsOf<P extends Core.Preset, M extends boolean> = { precise: AlignOptions; paper: PaperOptions }[P] & {
+export type OptionsOf<P extends Core.Preset, M extends boolean> = {
+  precise: AlignOptions<M>;
+  paper: PaperOptions<M>;
+}[P] & {
   preset?: P | undefined;
   metrics?: M | undefined;
 };
 
 /** Options of `Aligner.alignAll`: those of `align`, for every input. */
-export type AlignAllOptions<P extends Core.Preset = "precise", M extends boolean = boolean> = {
-  precise: Core.AlignOptions;
-  paper: Core.PaperOptions;
-}[P] &
-  CallOptions & {
-    preset?: P | undefined;
-    metrics?: M | undefined;
-    /** Yields results in the order of the inputs instead of the order of completion. Default `false`. */
-    ordered?: boolean | undefined;
-    /** Like `onProgress` of `align`, with the index of the input. */
-    onProgress?: ((progress: Progress & { index: number }) => void) | undefined;
-  };
+export type AlignAllOptions<P extends Core.Preset = "precise", M extends boolean = true> = {
+  precise: Omit<AlignOptions<M>, "onProgress">;
+  paper: Omit<PaperOptions<M>, "onProgress">;
+}[P] & {
+  preset?: P | undefined;
+  metrics?: M | undefined;
+  /** Yields results in the order of the inputs instead of the order of completion. Default `false`. */
+  ordered?: boolean | undefined;
+  /** Like `onProgress` of `align`, with the index of the input. */
+  onProgress?: ((progress: Progress & { index: number }) => void) | undefined;
+};
 
 /** Options of `Aligner.alignViews`. */
 export interface ViewsOptions extends Core.ViewsOptions, AlignCallOptions {}

@@ -35,11 +35,33 @@ export type WasmSource = string | object;
 /** The source of a WebAssembly module, or a function that returns one on demand. */
 export type LazySource = WasmSource | (() => WasmSource | Promise<WasmSource>);
 
-/** A worker: a `Worker` of browsers, Deno and Bun, or one of Node's `worker_threads`. */
-export interface WorkerLike {
+/** What all workers have. */
+interface AnyWorker {
   postMessage(message: unknown, transfer: ArrayBuffer[]): void;
   terminate(): unknown;
 }
+
+/** An event of a `Worker`: a message has `data`, an error `message`. */
+export interface WorkerEvent {
+  readonly data?: unknown;
+  readonly message?: string;
+  preventDefault?(): void;
+}
+
+/** A `Worker` of browsers, Deno and Bun. */
+export interface WebWorkerLike extends AnyWorker {
+  addEventListener(type: "message" | "error" | "messageerror", listener: (event: WorkerEvent) => void): unknown;
+}
+
+/** A worker of Node's `worker_threads`. */
+export interface NodeWorkerLike extends AnyWorker {
+  on(event: "message" | "error" | "messageerror" | "exit", listener: (value: unknown) => void): unknown;
+  ref?(): unknown;
+  unref?(): unknown;
+}
+
+/** A worker: a `Worker` of browsers, Deno and Bun, or one of Node's `worker_threads`. */
+export type WorkerLike = WebWorkerLike | NodeWorkerLike;
 
 /** Creates a worker that runs `worker.js` of this package. */
 export type CreateWorker = () => WorkerLike;

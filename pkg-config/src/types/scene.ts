@@ -49,7 +49,7 @@ export type SceneInput = DepthView & {
 };
 
 /** Options of `Aligner.alignScene`: those of `align`, for every object. */
-export interface SceneOptions extends Omit<AlignOptions, "onProgress" | "initial"> {
+export interface SceneOptions extends Omit<AlignOptions<boolean>, "onProgress" | "initial" | "transfer"> {
   /**
    * Moves each object that touches something along the normal of the support, so that it touches it exactly. The
    * pose says so; the metrics are those of the pose before. Default `false`.
@@ -84,7 +84,7 @@ export interface Support extends Plane {
 }
 
 /** Measures of a whole scene. */
-export interface SceneMetrics {
+export type SceneMetrics = {
   /** Number of aligned objects. */
   aligned: number;
   /** Number of these that rest on the support or on another object. */
@@ -93,7 +93,7 @@ export interface SceneMetrics {
   medianGapM: number | null;
   /** Mean share of an object's volume that is inside others, 0 to 1. */
   sharedVolume: number;
-}
+};
 
 /** The result of `alignScene`. */
 export interface SceneResult extends InputInfo {
@@ -105,6 +105,4 @@ export interface SceneResult extends InputInfo {
   metrics: SceneMetrics;
   /** Conditions that concern the view; those of an object are its own. */
   warnings: Core.Warning[];
-  /** With `transfer: true`: the input. */
-  input?: SceneInput;
 }

@@ -124,6 +124,16 @@ export function isCoded(error: unknown): error is ErrorParts {
 /** Removes `input.` from the name of an argument: errors name the properties of the input. */
 export const withoutInput = (argument: string) => argument.replace(/^input\./, "");
 
+/**
+ * Gives an error the stack of the call that it rejects. Its own one begins at a message of a worker, or at a timer.
+ * @param call an error that was created where the call was made
+ */
+export function withStackOf(error: Sim3AlignError, { stack }: Error): Sim3AlignError {
+  // Engines other than V8 write no message into a stack.
+  if (typeof stack === "string") error.stack = stack.replace(/^Error(?=\n)/, () => `${error}`);
+  return error;
+}
+
 /** The error for a trap inside WebAssembly, which no input should cause. */
 export function internalError(cause: unknown): Sim3AlignError {
   const remedy = "This is a bug in sim3align: please report it with the input. The next call uses a new instance.";

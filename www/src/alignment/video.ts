@@ -75,7 +75,7 @@ const isHeld = (index: number) => frameWorks.peek()[index]?.verdict != null;
 /** Forgets the video, for another scene. */
 function closeVideo(): void {
   stopTracking();
-  tracker?.close();
+  tracker?.dispose();
   tracker = null;
   video.value = null;
   framePoses.value = [];
@@ -160,7 +160,7 @@ const maskOf = (frame: Inputs, object: ObjectModel) => (frame.objects[0]?.mask =
 export const trackAll = () =>
   run(async (opened, first, signal) => {
     const started = performance.now();
-    tracker?.close();
+    tracker?.dispose();
     // A pose that a person has set in the first frame is where tracking begins.
     const { source, transform } = first.pose.peek();
     const initial = frameIndex.peek() === 0 && source === "hand" ? transform : null;

@@ -1,8 +1,6 @@
-/** Defines `<sim3-align>`. */
-import { Sim3AlignElement } from "./element.js";
+/** `sim3align/element`: `<sim3-align>` with a copy of three.js. */
+import { takeThreeFrom } from "../view3d/three-source.js";
 
-export { Sim3AlignElement };
+export * from "./define.js";
 
-// On servers, where a page is rendered, there are no elements.
-const elements = globalThis.customElements as CustomElementRegistry | undefined;
-if (elements?.get("sim3-align") === undefined) elements?.define("sim3-align", Sim3AlignElement);
+takeThreeFrom(() => import("../view3d/three.js"));

@@ -1,5 +1,5 @@
 /** Writers of results, in formats that other programs read. */
-import { exportGlb, exportPly, exportSceneGlb, placeGlb, toBop, toRowMajor } from "sim3align/conventions";
+import { exportGlb, exportPly, exportSceneGlb, toBop, toRowMajor } from "sim3align/conventions";
 import { videoWork } from "../alignment/video.js";
 import { sceneResult, videoResult } from "../session/results.js";
 import type { ObjectModel } from "../state/object-model.js";
@@ -38,7 +38,7 @@ export function bopText({ objects }: Scene): string {
 /** The mesh at its pose and metric scale. A GLB keeps its materials. */
 export function glbBytes({ pose, mesh, glb }: ObjectModel): Uint8Array {
   const { transform } = pose.value;
-  return glb === null ? exportGlb(mesh, transform) : placeGlb(glb, transform);
+  return exportGlb(glb ?? mesh, transform);
 }
 
 /** All placed objects in one GLB, in metres, y up; on the ground at y = 0 if the support is known. */

@@ -1,6 +1,6 @@
 /** Intrinsics of an image of another size: by how much they have to be scaled. */
 import { doubtOfSize } from "sim3align/camera/pinhole";
-import type { ImageSize } from "sim3align/conventions";
+import type { ImageSize } from "sim3align/values/pixels";
 import type { CameraSource } from "../state/inputs.js";
 import type { Scene } from "../state/scene.js";
 

@@ -1,9 +1,9 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
 import { depthOfRays } from "sim3align/camera/ray-distance";
-import type { ImageSize } from "sim3align/conventions";
 import { type DepthImage, type ReadDepthOptions, readCamera, readExif } from "sim3align/formats";
 import { foundCamera } from "sim3align/input/lens";
+import type { ImageSize } from "sim3align/values/pixels";
 import { corrected, provisional } from "../state/calibration.js";
 import type { NamedFile } from "../state/inputs.js";
 import type { RawView } from "../state/raw-view.js";

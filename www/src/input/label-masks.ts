@@ -1,5 +1,5 @@
 /** Masks from the values of label maps, and from the annotations of COCO files. */
-import { fromCocoRle } from "sim3align/conventions";
+import { decodedRle } from "sim3align/input/coco-rle";
 import type { MaskSource, NamedFile } from "../state/inputs.js";
 import { once } from "../state/once.js";
 import { extension, stem } from "./files.js";
@@ -133,7 +133,7 @@ function annotationMask({ images, annotations }: Coco, index: number): ReadMask 
   if (annotation === undefined || image === undefined) throw new Error("The annotation is no longer in the file.");
   const { segmentation } = annotation;
   if (!Array.isArray(segmentation)) {
-    const { data, width, height } = fromCocoRle(segmentation as Parameters<typeof fromCocoRle>[0]);
+    const { data, width, height } = decodedRle("segmentation", segmentation);
     return { data: Uint8Array.from(data), width, height };
   }
   return polygonMask(segmentation as number[][], image.width, image.height);

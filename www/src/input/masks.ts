@@ -1,6 +1,6 @@
 /** Reads masks. */
 import { Sim3AlignError } from "sim3align";
-import { resizeMask } from "sim3align/conventions";
+import { resizedMask } from "sim3align/conventions/resize";
 import type { MaskSource, NamedFile } from "../state/inputs.js";
 import { once } from "../state/once.js";
 import { extension } from "./files.js";
@@ -31,7 +31,7 @@ async function markedBy(source: MaskSource): Promise<ReadMask> {
 /** The mask at the size of the depth map. */
 export function atSize(mask: ReadMask, width: number, height: number, resize: boolean): Uint8Array {
   if (mask.width === width && mask.height === height) return mask.data;
-  if (resize) return resizeMask(mask, { width, height }).data as Uint8Array;
+  if (resize) return resizedMask(mask, { width, height }).data;
   throw new Sim3AlignError({
     code: "SIZE_MISMATCH",
     argument: "mask",

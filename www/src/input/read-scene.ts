@@ -1,7 +1,7 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
 import type { DepthKind, MeshArrays, PixelArray } from "sim3align";
-import type { ImageSize } from "sim3align/conventions";
 import { type CameraFile, type MeshFromFile, readCamera, readPose } from "sim3align/formats";
+import type { ImageSize } from "sim3align/values/pixels";
 import type { CameraSource, Field, Inputs, NamedFile, TruthSource } from "../state/inputs.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { RawView } from "../state/raw-view.js";

@@ -5,7 +5,8 @@
  * `loadModels` of `examples/06-transformersjs` returns.
  */
 import type { DepthKind } from "sim3align";
-import { depthFromTensor, maskFromTensor, type TensorLike } from "sim3align/conventions";
+import { fromTensor } from "sim3align/conventions";
+import type { TensorLike } from "sim3align/conventions/tensor";
 
 /** What a model returns, as transformers.js does; a host may leave out the depth or the mask. */
 export interface Seen {
@@ -39,9 +40,9 @@ interface Found {
 export async function seenBy(model: PhotoModel, photo: Uint8Array, place: readonly [number, number]): Promise<Found> {
   const seen = await model.see(new Blob([photo as Uint8Array<ArrayBuffer>]), place);
   const { predicted_depth, depthKind = "metric", masks, iou_scores } = seen;
-  const found = masks && maskFromTensor(masks, iou_scores === undefined ? {} : { scores: iou_scores });
+  const found = masks && fromTensor(masks, "mask", iou_scores === undefined ? {} : { scores: iou_scores });
   return {
-    depth: predicted_depth === undefined ? null : depthFromTensor(predicted_depth),
+    depth: predicted_depth === undefined ? null : fromTensor(predicted_depth, "depth"),
     depthKind,
     mask: found === undefined ? null : { ...found, data: Uint8Array.from(found.data) },
   };

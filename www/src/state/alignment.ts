@@ -1,5 +1,5 @@
 /** The results of alignments. */
-import type { Alignment, Contact, PaperAlignment } from "sim3align";
+import type { Alignment, PaperAlignment, SceneAlignment } from "sim3align";
 
 /** What a person must check, however sure the search is: see {@link doubtOf}. */
 export type Doubt = "size" | "turn";
@@ -19,7 +19,7 @@ export function doubtOf(alignment: AnyAlignment | null): Doubt | null {
 
 /** The result of an alignment, with any preset. The result of a scene also says what the object rests on. */
 export type AnyAlignment = (PreciseAlignment | Omit<PaperAlignment, "input">) & {
-  readonly contact?: Contact;
+  readonly contact?: SceneAlignment["contact"];
 };
 
 /** The result with the preset `precise`. */

@@ -1,6 +1,6 @@
 /** Options of an alignment that the page offers. */
 import { signal } from "@preact/signals";
-import { ALIGN_DEFAULTS, type AlignOptions, PAPER_DEFAULTS, type PaperOptions, type Quality } from "sim3align";
+import type { AlignOptions, PaperOptions, Quality } from "sim3align";
 import type { ElementOptions } from "../element/sim3-align.js";
 import type { ObjectModel } from "./object-model.js";
 
@@ -10,20 +10,21 @@ export type CallOptions = Omit<AlignOptions, "metrics" | "onProgress" | "signal"
 /** The state of the form. `null` is an empty field. */
 export type Options = ElementOptions;
 
-export const defaultOptions: Options = {
-  preset: ALIGN_DEFAULTS.preset,
-  quality: ALIGN_DEFAULTS.quality,
-  scaleMin: null,
-  scaleMax: null,
-  up: "unknown",
-  symmetry: ALIGN_DEFAULTS.symmetry,
-  seed: ALIGN_DEFAULTS.seed,
-};
-
 /** Facts of the package's option table, inserted by the build: importing all of it would add 2 kB to the script. */
 declare const OPTION_TABLE: {
   readonly quality: readonly Quality[];
   readonly maxSeed: number;
+  readonly defaults: Pick<Options, "quality" | "symmetry" | "seed">;
+};
+
+export const defaultOptions: Options = {
+  preset: "precise",
+  quality: OPTION_TABLE.defaults.quality,
+  scaleMin: null,
+  scaleMax: null,
+  up: "unknown",
+  symmetry: OPTION_TABLE.defaults.symmetry,
+  seed: OPTION_TABLE.defaults.seed,
 };
 
 /** The options that are chosen from a list. */
@@ -31,7 +32,7 @@ type ChoiceName = "preset" | "quality" | "up" | "symmetry";
 
 /** The values of these options. */
 export const choices: { readonly [K in ChoiceName]: readonly Options[K][] } = {
-  preset: [ALIGN_DEFAULTS.preset, PAPER_DEFAULTS.preset],
+  preset: ["precise", "paper"],
   quality: OPTION_TABLE.quality,
   up: ["unknown", "y", "z"],
   symmetry: ["auto", "none"],

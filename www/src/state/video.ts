@@ -1,6 +1,6 @@
 /** The video: frames with one object, and its tracked poses. */
 import { signal } from "@preact/signals";
-import type { DepthCalibration, Sim3, TrackState } from "sim3align";
+import type { DepthCalibration, Sim3, TrackedFrame } from "sim3align";
 import type { Inputs } from "./inputs.js";
 import type { ObjectWork } from "./object-work.js";
 
@@ -9,7 +9,7 @@ export interface FramePose {
   readonly transform: Sim3;
   /** Null for a pose that a person has set, or that was changed with it. */
   readonly confidence: number | null;
-  readonly state: TrackState;
+  readonly state: TrackedFrame["state"];
   /** Whether a person has set it. */
   readonly isCorrected: boolean;
   /** In whose depth the pose is, of frames whose depth is not fully known. */

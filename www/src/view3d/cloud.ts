@@ -1,29 +1,26 @@
 /** The point cloud: all points of a depth map in one draw call, as squares of an adjustable size. */
+import type { Node, PerspectiveCamera } from "three/webgpu";
+import { type Points, pointsOf, type Rgb, tonesOf } from "./points.js";
+import { release } from "./release.js";
 import {
   attribute,
-  cameraProjectionMatrix,
-  colorSpaceToWorking,
-  float,
-  modelViewMatrix,
-  positionGeometry,
-  uniform,
-  vec2,
-  vec4,
-  vertexIndex,
-} from "three/tsl";
-import {
   BufferAttribute,
   BufferGeometry,
   Color,
+  cameraProjectionMatrix,
+  colorSpaceToWorking,
+  float,
   Mesh,
-  type Node,
+  modelViewMatrix,
   NodeMaterial,
-  type PerspectiveCamera,
+  positionGeometry,
   SRGBColorSpace,
+  uniform,
   Vector2,
-} from "three/webgpu";
-import { type Points, pointsOf, type Rgb, tonesOf } from "./points.js";
-import { release } from "./release.js";
+  vec2,
+  vec4,
+  vertexIndex,
+} from "./three.js";
 import type { ObjectInput, SceneInput } from "./types.js";
 
 /** Share of the object's colour in the colour of its points; with a photo, its own colours stay. */

@@ -1,7 +1,8 @@
 /** The gizmo: handles that move, rotate or scale a model. */
-import { TransformControls } from "three/addons/controls/TransformControls.js";
+
 import type { PerspectiveCamera, Scene, Vector3 } from "three/webgpu";
 import type { Model } from "./model.js";
+import { TransformControls } from "./three.js";
 import type { GizmoMode, GizmoSettings } from "./types.js";
 
 /** Largest scale factor of one drag, up or down, so that a slip does not lose the mesh. */

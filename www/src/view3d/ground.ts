@@ -1,15 +1,15 @@
 /** The image behind the meshes, seen from the depth camera: the photo, or the depth map in colours. */
+import type { BufferGeometry } from "three/webgpu";
+import { geometryOf, imageCorners } from "./lines.js";
 import {
   BufferAttribute,
-  type BufferGeometry,
   DataTexture,
   DoubleSide,
   LinearFilter,
   Mesh,
   MeshBasicMaterial,
   SRGBColorSpace,
-} from "three/webgpu";
-import { geometryOf, imageCorners } from "./lines.js";
+} from "./three.js";
 import type { SceneInput } from "./types.js";
 
 /** A rectangle that covers exactly the image of the depth camera. */

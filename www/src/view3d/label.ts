@@ -1,5 +1,6 @@
 /** Pictures that face the viewer, in one size at every distance and visible through meshes: labels of lengths, and a mark. */
-import { CanvasTexture, type PerspectiveCamera, Sprite, SpriteMaterial, Vector3 } from "three/webgpu";
+import type { PerspectiveCamera } from "three/webgpu";
+import { CanvasTexture, Sprite, SpriteMaterial, Vector3 } from "./three.js";
 
 function spriteOf(canvas: HTMLCanvasElement, renderOrder: number): Sprite {
   const map = new CanvasTexture(canvas);

@@ -1,13 +1,6 @@
 /** Lines of one colour in the OpenCV camera frame: the frustum of a depth camera, and the ground. */
-import {
-  BufferAttribute,
-  BufferGeometry,
-  type Color,
-  LineBasicMaterial,
-  type LineBasicMaterialParameters,
-  LineSegments,
-  Vector3,
-} from "three/webgpu";
+import type { Color, LineBasicMaterialParameters } from "three/webgpu";
+import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments, Vector3 } from "./three.js";
 import type { PlaneInput, SceneInput } from "./types.js";
 
 export type Lines = LineSegments<BufferGeometry, LineBasicMaterial>;

@@ -1,8 +1,9 @@
 /** Lines with their lengths: the sides of a bounding box, or the distance of two points. */
-import { type ColorRepresentation, Group, type Sprite, type Vector3 } from "three/webgpu";
+import type { ColorRepresentation, Sprite, Vector3 } from "three/webgpu";
 import { labelOf, lengthText } from "./label.js";
 import { geometryOf, linesOf } from "./lines.js";
 import { release } from "./release.js";
+import { Group } from "./three.js";
 
 /** A line, and where its length is written; OpenCV camera frame, metres. */
 export interface Measure {

@@ -1,7 +1,8 @@
 /** A mesh in the view, with its materials and its pose. */
+
 import { applyToObject3D } from "sim3align/three";
-import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
-import { normalLocal, positionLocal, uniform } from "three/tsl";
+import type { Intersection, Material, Object3D, Raycaster } from "three/webgpu";
+import { matrixOf, type Pose, poseOf, shifted } from "./pose.js";
 import {
   BackSide,
   Box3,
@@ -9,17 +10,16 @@ import {
   BufferGeometry,
   Color,
   DoubleSide,
+  GLTFLoader,
   Group,
-  type Intersection,
-  type Material,
   Mesh,
   MeshBasicNodeMaterial,
   MeshStandardMaterial,
-  type Object3D,
-  type Raycaster,
+  normalLocal,
+  positionLocal,
+  uniform,
   Vector3,
-} from "three/webgpu";
-import { matrixOf, type Pose, poseOf, shifted } from "./pose.js";
+} from "./three.js";
 import type { Display, Matrix, ObjectInput } from "./types.js";
 
 const white = new Color(0xffffff);

@@ -1,7 +1,8 @@
 /** Finds the mesh or point under the pointer. */
-import { type Group, Matrix4, type PerspectiveCamera, Raycaster, Vector2 } from "three/webgpu";
+import type { Group, PerspectiveCamera } from "three/webgpu";
 import type { Cloud } from "./cloud.js";
 import type { Model } from "./model.js";
+import { Matrix4, Raycaster, Vector2 } from "./three.js";
 import type { SceneInput } from "./types.js";
 
 /** Radius around the pointer in which points are picked, in CSS pixels. */

@@ -1,7 +1,8 @@
 /** Small views from above, from the side and from the front, in which the selected object is moved and turned. */
-import { OrthographicCamera, type Quaternion, Vector3 } from "three/webgpu";
+import type { Quaternion } from "three/webgpu";
 import type { Model } from "./model.js";
 import type { Stage } from "./stage.js";
+import { OrthographicCamera, Vector3 } from "./three.js";
 import type { PlaneInput } from "./types.js";
 
 /** The views: what they show rightwards, upwards and towards the viewer, as signed axes 1 to 3: right, up, to the camera. */

@@ -1,6 +1,7 @@
 /** Similarities in terms of three.js, and their interpolation. */
+
 import { toSim3 } from "sim3align/conventions";
-import { Matrix4, Quaternion, Vector3 } from "three/webgpu";
+import { Matrix4, Quaternion, Vector3 } from "./three.js";
 import type { Matrix } from "./types.js";
 
 /** A similarity. */

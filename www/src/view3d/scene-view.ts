@@ -1,5 +1,5 @@
 /** The 3D view: point cloud, meshes, gizmo and viewpoint. */
-import { Group, HemisphereLight, Sphere, Vector3 } from "three/webgpu";
+
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { cropOf } from "./crop.js";
@@ -18,6 +18,7 @@ import { Sizes } from "./sizes.js";
 import { Stage } from "./stage.js";
 import { Surroundings } from "./surroundings.js";
 import { colours } from "./theme.js";
+import { Group, HemisphereLight, Sphere, Vector3 } from "./three.js";
 import type {
   Animation,
   Display,

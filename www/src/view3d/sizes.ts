@@ -1,8 +1,9 @@
 /** The dimension lines of all objects. */
-import { type Group, type PerspectiveCamera, type Sprite, Vector3 } from "three/webgpu";
+import type { Group, PerspectiveCamera, Sprite } from "three/webgpu";
 import { spreadLabels } from "./label.js";
 import { type Measure, Measures } from "./measures.js";
 import type { Model } from "./model.js";
+import { Vector3 } from "./three.js";
 
 /** Of up to this many objects, those that are not selected show their longest sides; of more, the selected one alone is measured. */
 const FEW = 3;

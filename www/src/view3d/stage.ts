@@ -1,6 +1,7 @@
 /** A canvas that fills its host, and its renderer. It draws on demand. */
-import { type Color, type OrthographicCamera, type PerspectiveCamera, Scene, WebGPURenderer } from "three/webgpu";
+import type { Color, OrthographicCamera, PerspectiveCamera } from "three/webgpu";
 import { isPresentable } from "./presentable.js";
+import { Scene, WebGPURenderer } from "./three.js";
 
 /** Higher ratios take longer without a visible gain. */
 const maxPixelRatio = 2;

@@ -1,5 +1,5 @@
 /** Colours of the 3D view. */
-import { Color } from "three/webgpu";
+import { Color } from "./three.js";
 
 interface Theme {
   background: string;

@@ -1,7 +1,7 @@
 /** The viewpoint: exactly the depth camera, or an orbit around a target. */
+
 import { applyPinhole } from "sim3align/three";
-import { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import { DirectionalLight, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "three/webgpu";
+import { DirectionalLight, OrbitControls, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "./three.js";
 import type { Look, SceneInput } from "./types.js";
 
 /** Viewpoints as angles from the depth camera in degrees: to the right, and up. */

@@ -7,6 +7,7 @@ import { type Pose, tightBoundsOf } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import type { SceneView } from "../view3d/scene-view.js";
+import { loadThree } from "../view3d/three-source.js";
 import type { ObjectInput } from "../view3d/types.js";
 
 /** Duration of the animation from one pose to the next. */
@@ -19,6 +20,7 @@ export async function mountSpace(workspace: Workspace, host: HTMLElement, signal
   let dragged: { object: ObjectModel; from: Pose } | undefined;
   try {
     // three.js is larger than the rest of the page, so it loads last.
+    await loadThree();
     const { SceneView } = await import("../view3d/scene-view.js");
     const view = await SceneView.create(
       host,
