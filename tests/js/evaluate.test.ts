@@ -10,9 +10,9 @@ const perfect = await aligner.evaluate(input, truth, { truth });
 test("the truth scores as a perfect pose", () => {
   const { metrics, errors, layout, warnings } = perfect;
   assert.ok((metrics.iou ?? 0) > 0.99 && (metrics.boundaryF ?? 0) > 0.99, JSON.stringify(metrics));
-  assert.ok((metrics.centerDriftPx ?? 9) < 0.1 && (metrics.depthMaeMm ?? 9) < 0.01, JSON.stringify(metrics));
+  assert.ok((metrics.centerDriftPx ?? 9) < 0.1 && (metrics.depthMaeM ?? 9) < 1e-5, JSON.stringify(metrics));
   assert.ok(errors !== null && errors.scaleError < 1e-9 && errors.rotationErrorDeg < 1e-3);
-  assert.ok(errors.translationErrorM < 1e-9 && errors.addSMm < 1e-3, JSON.stringify(errors));
+  assert.ok(errors.translationErrorM < 1e-9 && errors.addSM < 1e-6, JSON.stringify(errors));
   assert.ok(layout?.isFound && layout.isCadAligned && layout.icpRotationDeg < 0.01 && layout.addSRelative < 1e-5);
   assert.ok(Math.abs(layout.boxIou - 1) < 1e-9);
   assert.deepEqual(warnings, []);

@@ -75,7 +75,7 @@ export const TRACK_DEFAULTS = {
 /** Defaults of `evaluate`. */
 export const EVALUATE_DEFAULTS = {
   truth: null,
-  symmetry: "none",
+  symmetry: "auto",
   layout: true,
   seed: 0,
   maxObservedPoints: 20000,
@@ -195,7 +195,7 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignViews" | "track"
   ],
   evaluate: [
     { name: "truth", kind: "transform", isNullable: true, default: null, summary: "The known transform, camera from mesh, that `errors` compares with" },
-    { ...symmetry, default: "none", summary: "The object's symmetry: the rotation error is the smallest over it" },
+    { ...symmetry, summary: "The object's symmetry: the rotation error is the smallest over it" },
     { name: "layout", kind: "boolean", isNullable: false, default: true, summary: "Whether to compute `layout` if `truth` is given" },
     seed,
     { ...maxObservedPoints, summary: "Upper bound on the depth readings used" },
