@@ -54,7 +54,8 @@ test("a report has a page without links to elsewhere, and a row and pictures for
   const json = results("report.json");
   for (const row of rows) {
     const [name = "", part] = row.name.split("/");
-    const entry = part === undefined ? json[name] : json[name].views.find((view: { name: string }) => view.name === part);
+    const entry =
+      part === undefined ? json[name] : json[name].views.find((view: { name: string }) => view.name === part);
     if (name === "broken") {
       assert.deepEqual([row.error?.code, row.folder], [entry.error.code, undefined]);
       continue;

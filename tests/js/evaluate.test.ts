@@ -1,8 +1,8 @@
 /** `evaluate` on poses whose score is known. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createAligner, EVALUATE_DEFAULTS, type Metrics } from "sim3align";
-import { columnMajor, input, truth } from "../support/scene.js";
+import { createAligner, EVALUATE_DEFAULTS, type EvaluateOptions, type Metrics } from "sim3align";
+import { brick, columnMajor, input, product, truth } from "../support/scene.js";
 
 const aligner = await createAligner();
 const perfect = await aligner.evaluate(input, truth, { truth });
@@ -27,11 +27,20 @@ test("without a truth there are no errors, and no layout where it is not wanted"
   assert.deepEqual([layout, others], [null, expected]);
 });
 
+test("half turns of a brick are the same pose, unless it is declared to have no symmetry", async () => {
+  const turned = { ...truth, rotation: product(truth.rotation, [0, 0, 1, 0]) };
+  const errorOf = async (options: EvaluateOptions) =>
+    (await aligner.evaluate(brick, turned, { truth, layout: false, ...options })).errors?.rotationErrorDeg ??
+    Number.NaN;
+  assert.ok((await errorOf({})) < 1e-3 && (await errorOf({ symmetry: "none" })) > 179);
+});
+
 /** Whether metrics are the same but for the rounding of a transform in another form. */
 function assertSame(found: Metrics, expected: Metrics): void {
   for (const [name, value] of Object.entries(expected)) {
     const other = found[name as keyof Metrics];
-    assert.ok(Math.abs((other ?? Number.NaN) - (value ?? Number.NaN)) < 1e-6, `${name}: ${other}, not ${value}`);
+    const tolerance = name.endsWith("M") ? 1e-9 : 1e-6;
+    assert.ok(Math.abs((other ?? Number.NaN) - (value ?? Number.NaN)) < tolerance, `${name}: ${other}, not ${value}`);
   }
 }
 

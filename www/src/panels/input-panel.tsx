@@ -24,7 +24,7 @@ export function InputPanel() {
   const source = whole?.cameraSource === "estimate" ? "estimated" : (whole?.cameraSource ?? "–");
   const rows = [
     ["Depth map", depth === null ? "–" : baseName(depth.path)],
-    ["Unit", whole === null ? "–" : unitText(whole)],
+    ["Unit", whole === null ? "–" : unitOf(whole)],
     [
       "Camera",
       camera === null ? source : camera.kind === "file" ? baseName(camera.file.path) : unknownCamera[camera.kind],
