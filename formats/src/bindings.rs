@@ -7,7 +7,7 @@ use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use crate::colored_mesh::ColoredMesh;
-use crate::depth::{DepthImage, DepthReadOptions};
+use crate::depth::{DepthImage, DepthReadOptions, DepthUnit};
 use crate::guard::{MAX_BUFFER_BYTES, too_large};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
@@ -137,8 +137,10 @@ pub fn depth_options(options: &JsValue) -> Result<(DepthReadOptions, DepthKind)>
 pub fn depth_image(depth: &DepthImage) -> JsValue {
     let data = Float32Array::from(depth.values.data()).into();
     let (width, height) = (depth.values.width() as f64, depth.values.height() as f64);
-    let mut properties =
-        vec![("data", data), ("width", width.into()), ("height", height.into()), ("unit", depth.unit.as_str().into())];
+    let DepthUnit { metres, source, is_assumed } = &depth.unit;
+    let metres = metres.map_or(JsValue::NULL, JsValue::from);
+    let unit = object(&[("metres", metres), ("source", source.as_str().into()), ("isAssumed", (*is_assumed).into())]);
+    let mut properties = vec![("data", data), ("width", width.into()), ("height", height.into()), ("unit", unit)];
     if let Some(camera) = &depth.camera {
         let numbers = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)];
         properties.push(("camera", object(&numbers.map(|(name, number)| (name, number.into())))));

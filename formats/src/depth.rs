@@ -1,7 +1,7 @@
 //! Depth map files: PNG and `.npy`, and those that depth models and renderers write: `.npz`, `.exr`, `.tiff` and `.pfm`.
 
 use crate::depth_image::Stored;
-pub use crate::depth_image::{DEFAULT_DEPTH_SCALE, DepthImage, DepthReadOptions};
+pub use crate::depth_image::{DEFAULT_DEPTH_SCALE, DepthImage, DepthReadOptions, DepthUnit};
 use crate::guard::{beginning, unsupported};
 use crate::npy::{self, Kind, NpyImage};
 use crate::png::{self, PngInfo};

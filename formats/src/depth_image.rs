@@ -27,8 +27,33 @@ pub struct DepthImage {
     pub values: Image<f32>,
     /// The camera in the file, in pixels of the depth map.
     pub camera: Option<Pinhole>,
-    /// The unit of the values in the file and why it was taken: `metres (float values, assumed)`, `0.0002 m (depthScale)`.
-    pub unit: String,
+    /// The unit of the values in the file.
+    pub unit: DepthUnit,
+}
+
+/// The unit of the values of a depth map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DepthUnit {
+    /// Metres per unit; `None` for values whose unit is unknown, or that are no lengths.
+    pub metres: Option<f64>,
+    /// Where the unit comes from: `depthScale`, `camera file`, `16-bit integers`; the kind of depth without metres.
+    pub source: String,
+    /// Whether nothing states the unit.
+    pub is_assumed: bool,
+}
+
+impl DepthUnit {
+    fn known(metres: f64, source: &str) -> Self {
+        Self { metres: Some(metres), source: source.into(), is_assumed: false }
+    }
+
+    fn assumed(metres: f64, source: String) -> Self {
+        Self { metres: Some(metres), source, is_assumed: true }
+    }
+
+    fn unknown(kind: DepthKind) -> Self {
+        Self { metres: None, source: kind.name().into(), is_assumed: false }
+    }
 }
 
 /// The numbers of a depth file, as its reader passes them on.
@@ -61,11 +86,11 @@ impl Stored {
         Ok(DepthImage { values, camera: None, unit })
     }
 
-    /// The factor of a value, and its unit for people. The values of affine-invariant kinds have no unit.
-    fn unit(&self, options: &DepthReadOptions, kind: DepthKind) -> Result<(f64, String)> {
-        let checked = |scale: f64, source: &str| {
+    /// The factor of a value, and its unit. The values of affine-invariant kinds have no factor.
+    fn unit(&self, options: &DepthReadOptions, kind: DepthKind) -> Result<(f64, DepthUnit)> {
+        let checked = |scale: f64| {
             if scale.is_finite() && scale > 0.0 {
-                return Ok((scale, format!("{} m ({source})", number(scale))));
+                return Ok(scale);
             }
             Err(Error::new(
                 ErrorCode::InvalidOption,
@@ -77,15 +102,16 @@ impl Stored {
         };
         let Self { bits, is_integer, .. } = *self;
         match (kind, options.depth_scale) {
-            (DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity, _) => {
-                Ok((1.0, format!("none ({})", kind.name())))
-            }
-            (_, Some(scale)) => checked(scale, "depthScale"),
-            (DepthKind::ScaleInvariant, None) => Ok((1.0, format!("unknown ({})", kind.name()))),
-            (DepthKind::Metric, None) if !is_integer => Ok((1.0, "metres (float values, assumed)".into())),
+            (DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity, _)
+            | (DepthKind::ScaleInvariant, None) => Ok((1.0, DepthUnit::unknown(kind))),
+            (DepthKind::ScaleInvariant, Some(scale)) => Ok((checked(scale)?, DepthUnit::unknown(kind))),
+            (DepthKind::Metric, Some(scale)) => Ok((checked(scale)?, DepthUnit::known(scale, "depthScale"))),
+            (DepthKind::Metric, None) if !is_integer => Ok((1.0, DepthUnit::assumed(1.0, "float values".into()))),
             (DepthKind::Metric, None) => match options.integer_depth_scale {
-                Some(scale) => checked(scale, "camera file"),
-                None => checked(DEFAULT_DEPTH_SCALE, &format!("{bits}-bit integers, assumed")),
+                Some(scale) => Ok((checked(scale)?, DepthUnit::known(scale, "camera file"))),
+                None => {
+                    Ok((DEFAULT_DEPTH_SCALE, DepthUnit::assumed(DEFAULT_DEPTH_SCALE, format!("{bits}-bit integers"))))
+                }
             },
         }
     }

@@ -72,11 +72,11 @@ const columns = [
   ["boundaryF", "boundary F ↑", 3, true],
   ["centerDriftPx", "drift px ↓", 1, false],
   ["iou", "IoU ↑", 3, true],
-  ["chamferMm", "Chamfer mm ↓", 1, false],
-  ["uniChamferMm", "UniChamfer mm ↓", 1, false],
+  ["chamferM", "Chamfer mm ↓", 1, false],
+  ["uniChamferM", "UniChamfer mm ↓", 1, false],
   ["fitness", "fitness ↑", 3, true],
   ["normalConsistency", "normals ↑", 3, true],
-  ["depthMaeMm", "depth MAE mm ↓", 1, false],
+  ["depthMaeM", "depth MAE mm ↓", 1, false],
 ];
 const head = ["", ...columns.map(([, title]) => title), "strict %", "loose %", "scale %", "rotation °", "transl. %"];
 head.push("collapsed %", "clamped %", "s", "n");
@@ -84,7 +84,9 @@ head.push("collapsed %", "clamped %", "s", "n");
 /** Means and medians of metrics. @param {readonly (Record<string, number | null> | null | undefined)[]} all */
 const metricCells = (all) =>
   columns.map(([key, , digits, isShare]) => {
-    const values = all.flatMap((metrics) => metrics?.[key] ?? (isShare ? 0 : []));
+    // Lengths are in metres; the table has millimetres.
+    const factor = key.endsWith("M") ? 1000 : 1;
+    const values = all.flatMap((metrics) => metrics?.[key] ?? (isShare ? 0 : [])).map((value) => factor * value);
     return `${fixed(mean(values), digits)} (${fixed(median(values), digits)})`;
   });
 

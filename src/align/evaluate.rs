@@ -25,8 +25,8 @@ options! {
         /// The known transform, camera from mesh, that `errors` compares with.
         truth: Option<Similarity> = None, Transform;
         /// The object's symmetry: the rotation error is the smallest over it. `"auto"` finds it on the surface of the
-        /// mesh.
-        symmetry: Symmetry = Symmetry::None, Symmetry;
+        /// mesh, once for all calls with the mesh.
+        symmetry: Symmetry = Symmetry::Auto, Symmetry;
         /// Whether to compute `layout` if `truth` is given. Calls that leave it out are several times faster.
         layout: bool = true, Flag;
         /// Seed of all random draws. The same input and seed give the same bits.
@@ -136,7 +136,8 @@ pub fn evaluate_prepared(
     let mut warnings = warnings::about_observation(observation);
     warnings.extend(warnings::about_mesh(&prepared.left_out()));
     let compared = options.truth.map(|truth| {
-        let comparison = PoseComparison::new(mesh, camera_from_mesh, &truth, &options.symmetry)?;
+        let symmetry = prepared.symmetry(&options.symmetry)?;
+        let comparison = PoseComparison::new(mesh, camera_from_mesh, &truth, &symmetry)?;
         let errors = comparison.errors()?;
         let layout = options.layout.then(|| LayoutErrors::of(&comparison, &errors)).transpose()?;
         Ok((errors, layout))

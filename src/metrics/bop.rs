@@ -134,15 +134,15 @@ pub struct BopModel<'a> {
 pub struct BopErrors {
     /// Visible Surface Discrepancy, 0 to 1, for each misalignment tolerance: .05, .1 … .5 of the diameter.
     pub vsd: [f64; TAUS],
-    /// Maximum Symmetry-Aware Surface Distance, millimetres.
-    pub mssd_mm: f64,
+    /// Maximum Symmetry-Aware Surface Distance, metres.
+    pub mssd_m: f64,
     /// Maximum Symmetry-Aware Projection Distance, pixels; `null` if a vertex is not in front of the camera.
     pub mspd_px: Option<f64>,
-    /// ADD: mean distance between the same vertices under both poses, millimetres.
-    pub add_mm: f64,
+    /// ADD: mean distance between the same vertices under both poses, metres.
+    pub add_m: f64,
     /// ADD-S, also called ADI: mean distance from the vertices under the true pose to the nearest vertices under the
-    /// estimated pose, millimetres.
-    pub add_s_mm: f64,
+    /// estimated pose, metres.
+    pub add_s_m: f64,
 }
 
 /// The errors of each estimate relative to each true pose, estimate by estimate. All poses are camera from model, in
@@ -181,10 +181,10 @@ pub fn bop_errors(
             let pair = Pair { points: &points, estimate, truth };
             errors.push(BopErrors {
                 vsd: vsd(&scene, drawn_estimate, drawn_truth, model.diameter_m),
-                mssd_mm: 1000.0 * pair.mssd(model.symmetries),
+                mssd_m: pair.mssd(model.symmetries),
                 mspd_px: Some(pair.mspd(model.symmetries, camera)).filter(|px| px.is_finite()),
-                add_mm: 1000.0 * pair.add(),
-                add_s_mm: 1000.0 * pair.add_s(&tree),
+                add_m: pair.add(),
+                add_s_m: pair.add_s(&tree),
             });
         }
     }

@@ -67,7 +67,7 @@ impl LayoutErrors {
         let box_of = |pose| OrientedBox::of(bounds, pose);
         let back = comparison.mean_distance(estimate, truth)?;
         let diameter = diameter(samples);
-        let add_s_relative = 0.5 * (errors.add_s_mm / 1000.0 + back) / (diameter * truth.scale);
+        let add_s_relative = 0.5 * (errors.add_s_m + back) / (diameter * truth.scale);
         Ok(Self {
             box_iou: box_of(estimate).iou(&box_of(truth)),
             icp_rotation_deg: icp_rotation(comparison, diameter).to_degrees(),

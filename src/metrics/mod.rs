@@ -49,18 +49,18 @@ pub struct Metrics {
     /// Intersection over union of mask and rendered silhouette, 0 to 1, higher is better; 0 where nothing is
     /// rendered or nothing overlaps.
     pub iou: Option<f64>,
-    /// Mean of the two directional mean distances between observed points and surface, millimetres. The surface's
+    /// Mean of the two directional mean distances between observed points and surface, metres. The surface's
     /// unseen side counts, so that it is above 0 at the true pose too.
-    pub chamfer_mm: Option<f64>,
-    /// Mean distance from the observed points to the surface, millimetres.
-    pub uni_chamfer_mm: Option<f64>,
+    pub chamfer_m: Option<f64>,
+    /// Mean distance from the observed points to the surface, metres.
+    pub uni_chamfer_m: Option<f64>,
     /// Share of the observed points within 5 % of their box diagonal of the surface, 0 to 1.
     pub fitness: Option<f64>,
     /// Mean |n·n′| of an observed point's normal and that of the nearest triangle, 0 to 1; random directions
     /// give 0.5. `null` where no point has a normal.
     pub normal_consistency: Option<f64>,
-    /// Mean |rendered − observed| depth over the mask's pixels that have both, millimetres; `null` where none has.
-    pub depth_mae_mm: Option<f64>,
+    /// Mean |rendered − observed| depth over the mask's pixels that have both, metres; `null` where none has.
+    pub depth_mae_m: Option<f64>,
     /// Correlation of the mesh's colours with the photo inside the mask, without the shading that normals explain, −1 to
     /// 1, higher is better; absent where the mesh or the photo has no colours. Not of the paper.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -106,17 +106,17 @@ pub fn score(
     for (pixel, z) in silhouette.data_mut().iter_mut().zip(rasteriser.depth()) {
         *pixel = u8::from(*z > 0.0);
     }
-    let millimetres = |metres: Option<f64>| metres.map(|m| 1000.0 * m).filter(|m| m.is_finite());
+    let finite = |metres: Option<f64>| metres.filter(|m| m.is_finite());
     let chamfer = agreement.points_to_surface.zip(agreement.surface_to_points).map(|(to, from)| 0.5 * (to + from));
     Ok(Metrics {
         boundary_f: Some(silhouette::boundary_f(&mask, &silhouette, boundary_tolerance_px(image[0], image[1]))),
         center_drift_px: silhouette::center_drift_px(&mask, &silhouette),
         iou: Some(silhouette::iou(&mask, &silhouette)),
-        chamfer_mm: millimetres(chamfer),
-        uni_chamfer_mm: millimetres(agreement.points_to_surface),
+        chamfer_m: finite(chamfer),
+        uni_chamfer_m: finite(agreement.points_to_surface),
         fitness: agreement.fitness,
         normal_consistency: agreement.normal_consistency,
-        depth_mae_mm: millimetres(depth_mae(&depth, &mask, rasteriser.depth())),
+        depth_mae_m: finite(depth_mae(&depth, &mask, rasteriser.depth())),
         color_agreement: None,
     })
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::searchable;
 use super::surface::Mean;
-use super::symmetry::Symmetry;
+use super::symmetry::{Symmetry, SymmetryGroup};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
@@ -32,9 +32,9 @@ pub struct PoseErrors {
     /// The translation error relative to the diameter of the object: the diagonal of the mesh's bounding box × the true
     /// scale.
     pub translation_error_relative: f64,
-    /// ADD-S, millimetres: mean distance of surface points under the true pose to the surface under the estimated pose
+    /// ADD-S, metres: mean distance of surface points under the true pose to the surface under the estimated pose
     /// (Hinterstoisser et al. 2012, §4.2, with the exact surface instead of its points).
-    pub add_s_mm: f64,
+    pub add_s_m: f64,
 }
 
 /// The errors of `estimate` relative to the true pose `truth`, both camera from mesh. Among the equivalent true poses
@@ -44,7 +44,7 @@ pub struct PoseErrors {
 /// [`ErrorCode::DegenerateMesh`] for a mesh without area, [`ErrorCode::InvalidTransform`] if the distance
 /// between the two overflows f32, and those of [`Symmetry::group`].
 pub fn pose_errors(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symmetry: &Symmetry) -> Result<PoseErrors> {
-    PoseComparison::new(mesh, estimate, truth, symmetry)?.errors()
+    PoseComparison::new(mesh, estimate, truth, &symmetry.group(mesh)?)?.errors()
 }
 
 /// An estimate next to the equivalent true pose that is nearest to it, with the surface of the mesh.
@@ -65,11 +65,11 @@ impl PoseComparison {
     /// Compares poses of a mesh, both camera from mesh.
     ///
     /// # Errors
-    /// [`ErrorCode::DegenerateMesh`] for a mesh without area, and those of [`Symmetry::group`].
-    pub fn new(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symmetry: &Symmetry) -> Result<Self> {
+    /// [`ErrorCode::DegenerateMesh`] for a mesh without area.
+    pub fn new(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symmetry: &SymmetryGroup) -> Result<Self> {
         let samples = sample_surface(mesh, SAMPLES, 0)?.points;
         let relative = UnitQuaternion::from_rotation_matrix(&(truth.rotation.inverse() * estimate.rotation));
-        let rotation = symmetry.group(mesh)?.nearest(&relative);
+        let rotation = symmetry.nearest(&relative);
 
         // Mesh from mesh: the symmetry rotation about the centroid of the surface.
         let centroid = SurfaceMoments::of(mesh).centroid;
@@ -100,7 +100,7 @@ impl PoseComparison {
             rotation_error_deg: truth.rotation_angle_to(estimate).to_degrees(),
             translation_error_m,
             translation_error_relative: translation_error_m / (self.diagonal * truth.scale),
-            add_s_mm: 1000.0 * self.mean_distance(truth, estimate)?,
+            add_s_m: self.mean_distance(truth, estimate)?,
         })
     }
 

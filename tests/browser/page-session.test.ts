@@ -72,7 +72,7 @@ test("a project is saved and opened as one file, with every scene, decision and 
   assert.deepEqual([first?.[1]?.decision, first?.[1]?.source], ["corrected", "hand"]);
   assert.deepEqual([second?.[1]?.decision, second?.[1]?.source], [null, "aligned"]);
   assert.deepEqual(second?.[1]?.files, { mask: "IMG_002--b/mask.png", mesh: "IMG_002--b/mesh.obj" });
-  assert.match(second?.[0]?.depthUnit ?? "", /metres \(float values, assumed\)/);
+  assert.deepEqual(second?.[0]?.depthUnit, { metres: 1, source: "float values", isAssumed: true });
 
   // In a browser that knows nothing of it.
   const other = await page.context().browser()?.newContext();
@@ -95,7 +95,7 @@ interface Entry {
   decision?: string | null;
   source?: string;
   files?: object;
-  depthUnit?: string;
+  depthUnit?: object;
 }
 type Results = Record<string, Record<string, Entry>>;
 

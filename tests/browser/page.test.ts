@@ -23,7 +23,7 @@ test("the page aligns its sample, as the library does", async (opened, page) => 
   const quality = (await page.inputValue("#effort")) as "fast" | "balanced";
   const { metrics, confidence } = await (await createAligner()).align(sample, { quality });
   assert.equal(await opened.metric("iou"), metrics.iou);
-  assert.equal(await opened.metric("depthMaeMm"), metrics.depthMaeMm);
+  assert.equal(await opened.metric("depthMaeM"), metrics.depthMaeM);
   assert.match((await page.textContent("#confidence")) ?? "", new RegExp(`^${Math.round(100 * confidence)} %`));
   assert.equal((await opened.dimensions()).length, 3);
   assert.match((await page.textContent("#errors")) ?? "", /scale [\d.]+ %/);

@@ -203,7 +203,7 @@ pub fn evaluate(e: &mut Entropy<'_>) -> Checked {
         let m = &found.metrics;
         let shares = [m.boundary_f, m.iou, m.fitness, m.normal_consistency];
         shares.into_iter().flatten().try_for_each(|value| share("metric", value))?;
-        let lengths = [m.center_drift_px, m.chamfer_mm, m.uni_chamfer_mm, m.depth_mae_mm];
+        let lengths = [m.center_drift_px, m.chamfer_m, m.uni_chamfer_m, m.depth_mae_m];
         let is_length = |x: f64| require(x.is_finite() && x >= 0.0, || format!("a length of {x}"));
         lengths.into_iter().flatten().try_for_each(is_length)
     })

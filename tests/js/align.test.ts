@@ -27,8 +27,8 @@ test("a result has every promised part, in its range, and survives JSON", () => 
   assert.deepEqual(Object.keys(deviations).sort(), ["distanceM", "lateralM", "rotationDeg", "scale"]);
   for (const [name, value] of Object.entries(deviations)) assert.ok(value >= 0, `${name}: ${value}`);
   assert.deepEqual(codesOf(reference.warnings), []);
-  const names = ["boundaryF", "centerDriftPx", "chamferMm", "depthMaeMm", "fitness", "iou", "normalConsistency"];
-  assert.deepEqual(Object.keys(metrics).sort(), [...names, "uniChamferMm"]);
+  const names = ["boundaryF", "centerDriftPx", "chamferM", "depthMaeM", "fitness", "iou", "normalConsistency"];
+  assert.deepEqual(Object.keys(metrics).sort(), [...names, "uniChamferM"]);
   for (const name of ["boundaryF", "iou", "fitness", "normalConsistency"] as const) {
     assert.ok((metrics[name] ?? 0) > 0.8 && (metrics[name] ?? 2) <= 1, name);
   }

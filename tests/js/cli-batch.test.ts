@@ -91,7 +91,7 @@ test("names are printed without control characters, and are no formulas in CSV; 
 /** The entries of a record by case, without times. */
 function entriesOf(path: string): { case: string; path: string }[] {
   const entries = casesOf(path).map((line) => JSON.parse(line));
-  for (const entry of entries) delete entry.timingsMs;
+  for (const entry of entries) delete entry.diagnostics?.timingsMs;
   return entries.sort((x, y) => (x.case < y.case ? -1 : 1));
 }
 
@@ -117,10 +117,10 @@ test("--jsonl has a line for each case, the entry of --json; --csv its numbers",
   assert.match(read("whole.csv"), /^case,error,confidence,.*\n(.*\n)*"x, ""y""",FILE_NOT_FOUND,/);
   for (const row of rows.filter(([name]) => name?.length === 1)) {
     const cells = Object.fromEntries(head.map((heading, i) => [heading, row[i]]));
-    const { scale, confidence, translation, quaternion, metrics, errors, alternatives } = json[cells.case ?? ""];
+    const { scale, confidence, translation, rotation, metrics, errors, alternatives } = json[cells.case ?? ""];
     const { txM, tyM, tzM, qw, iou, rotationErrorDeg } = cells;
     const found = [txM, tyM, tzM, qw, cells.scale, cells.confidence, iou, rotationErrorDeg, cells.alternatives];
-    const expected = [...translation, quaternion[3], scale, confidence, metrics.iou, errors.rotationErrorDeg];
+    const expected = [...translation, rotation[3], scale, confidence, metrics.iou, errors.rotationErrorDeg];
     assert.deepEqual(found.map(Number), [...expected, alternatives.length]);
   }
 });

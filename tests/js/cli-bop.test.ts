@@ -40,7 +40,8 @@ test("the errors and scores of a file are those of the official toolkit", () => 
     for (const [place, own] of Object.entries(pose.errors)) {
       const expected = official.get(idOf(pose, place));
       assert.ok(expected !== undefined, idOf(pose, place));
-      for (const name of ["mssdMm", "mspdPx", "addMm", "addSMm"]) near(own[name], expected[name] as number, 1e-3, name);
+      for (const name of ["mssdM", "addM", "addSM"]) near(own[name], expected[name] as number, 1e-6, name);
+      near(own.mspdPx, expected.mspdPx as number, 1e-3, "mspdPx");
       for (const [i, value] of expected.vsd.entries()) near(own.vsd[i], value, 1e-3, `VSD ${i}`);
       compared += 1;
     }

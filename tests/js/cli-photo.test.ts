@@ -61,9 +61,10 @@ test("the photo gives the focal length: as an argument, by --image, and in a cas
   const { cameraSource, depthCalibration, depthUnit, warnings } = found;
   assert.match(cameraSource, /^EXIF: /);
   const { depthKind, isMetric } = depthCalibration;
-  assert.deepEqual([depthUnit, depthKind, isMetric, warnings], ["metres (float values, assumed)", "metric", true, []]);
+  const unit = { metres: 1, source: "float values", isAssumed: true };
+  assert.deepEqual([depthUnit, depthKind, isMetric, warnings], [unit, "metric", true, []]);
   assert.ok(Math.abs(depthCalibration.camera.fx / camera.fx - 1) < 0.05, `${depthCalibration.camera.fx}`);
-  assert.ok(Math.abs(found.scale / truth.scale - 1) < 0.05 && turnBetween(found.quaternion, truth.rotation) < 5);
+  assert.ok(Math.abs(found.scale / truth.scale - 1) < 0.05 && turnBetween(found.rotation, truth.rotation) < 5);
   succeeds(`align --depth taken/depth.npy ${parts} --image taken/rgb.jpg --json flag.json`);
   succeeds("align taken --json folder.json --quality fast");
   for (const other of [results("flag.json").mesh, results("folder.json").taken]) {
@@ -84,7 +85,7 @@ test("relative depth has no unit, and none is printed, until --known-extent make
     const { [name]: entry } = results("r.json");
     // Errors against metres cannot be measured.
     assert.deepEqual([entry.depthCalibration.isMetric, "errors" in entry], [false, false]);
-    assert.ok(turnBetween(entry.quaternion, truth.rotation) < 6);
+    assert.ok(turnBetween(entry.rotation, truth.rotation) < 6);
   }
   const { stdout } = succeeds(`align relative --json k.json ${relative} --known-extent ${extentM}`);
   assert.match(stdout, /scale s +[\d.]+ m per mesh unit\n/);
@@ -107,7 +108,7 @@ test("a batch of relative depth: columns of metres are empty, and pictures are i
   for (const row of rows) {
     const cells = row.split(",");
     const of = Object.fromEntries(head.split(",").map((column, i) => [column, cells[i]]));
-    assert.deepEqual([of.isMetric, of.txM, of.chamferMm, of.depthMaeMm], ["false", "", "", ""]);
+    assert.deepEqual([of.isMetric, of.txM, of.chamferM, of.depthMaeM], ["false", "", "", ""]);
     assert.ok(Number(of.scale) > 0 && Number(of.iou) > 0.9 && Number(of.timeMs) > 0);
   }
 });

@@ -27,7 +27,7 @@ interface Report {
   rows: { name: string; folder?: string; confidence: number | null; iou: number; error?: { code: string } }[];
   details: Record<
     string,
-    { matrix: number[]; limitMm: number; isPhoto: boolean; space: { triangles: string; points: string } }
+    { matrix: number[]; limitM: number; isPhoto: boolean; space: { triangles: string; points: string } }
   >;
 }
 
@@ -54,14 +54,15 @@ test("a report has a page without links to elsewhere, and a row and pictures for
   const json = results("report.json");
   for (const row of rows) {
     const [name = "", part] = row.name.split("/");
-    const entry = part === undefined ? json[name] : json[name].frames[part];
+    const entry =
+      part === undefined ? json[name] : json[name].views.find((view: { name: string }) => view.name === part);
     if (name === "broken") {
       assert.deepEqual([row.error?.code, row.folder], [entry.error.code, undefined]);
       continue;
     }
     assert.deepEqual([row.confidence, row.iou], [entry.confidence, entry.metrics.iou], row.name);
-    const { matrix, limitMm, space, isPhoto } = details[row.folder as string] as Report["details"][""];
-    assert.ok(limitMm > 0 && space.triangles.length > 100 && space.points.length > 100);
+    const { matrix, limitM, space, isPhoto } = details[row.folder as string] as Report["details"][""];
+    assert.ok(limitM > 0 && space.triangles.length > 100 && space.points.length > 100);
     assert.deepEqual([Array.from(matrix), isPhoto], [entry.matrix, name === "Photo"]);
     const pictures = readdirSync(join(folder, "report", "cases", row.folder as string));
     for (const file of ["ground", "mask", "mesh", "outlines", "residual", "thumbnail"]) {

@@ -24,13 +24,13 @@ test("a scene folder gives JSON, a table, lengths in the proportions that were f
   const { stdout } = succeeds(`scene table ${flags}`);
   assert.match(stdout, /table: support n = .*thing-0.*support.*thing-2/s);
   const { table } = results("s.json");
-  assert.deepEqual(Object.keys(table.objects), names);
   assert.deepEqual(table.inputs["objects/thing-0/mask.png"], { as: "mask", reading: "values of 1" });
   const lines = stdout.split("\n");
   for (const [i, pose] of poses.entries()) {
-    const { scale, matrix, rotation, confidence, errors, contact, proportions } = table.objects[`thing-${i}`];
+    const { name, scale, matrix, rotation, confidence, errors, contact, proportions } = table.objects[i];
     assert.ok(Math.abs(scale / pose.scale - 1) < 0.05 && errors.scaleError < 0.05 && confidence >= 0);
-    assert.deepEqual([matrix.length, rotation.length, contact.restsOn], [16, 3, i < 2 ? "support" : null]);
+    const rests = i < 2 ? "support" : null;
+    assert.deepEqual([name, matrix.length, rotation.length, contact.restsOn], [names[i], 16, 4, rests]);
     const sides = [0, 1, 2].map((k) => {
       const [sizeMm, percent] = [1000 * proportions.sizeM[k], 100 * proportions.uncertainty[k]];
       return `${"xyz"[k]} ${sizeMm.toFixed(1)} mm ± ${percent.toFixed(1)} %`;
@@ -51,7 +51,7 @@ test("the support and one scale for all objects are options; a scene that cannot
   assert.match(stdout, /no-depth: FILE_NOT_FOUND/);
   const { "no-depth": failed, table } = results("f.json");
   assert.deepEqual([failed.error.code, table.support], ["FILE_NOT_FOUND", null]);
-  for (const name of names) assert.ok(Math.abs(table.objects[name].scale - 0.06) < 1e-12, name);
+  for (const { name, scale } of table.objects) assert.ok(Math.abs(scale - 0.06) < 1e-12, name);
   succeeds("scene table --quality fast --support plane.json --json p.json");
   assert.equal(results("p.json").table.support.confidence, 1);
 });
@@ -80,8 +80,8 @@ test("an image of BOP is a scene", () => {
   }
   succeeds("scene", scene, "--quality", "fast", "--json", "b.json");
   const { objects } = results("b.json")["000007/000003"];
-  assert.deepEqual(Object.keys(objects), ["1-0", "2-1"]);
-  for (const id of ["1-0", "2-1"]) assert.ok(objects[id].errors.scaleError < 0.05);
+  for (const [i, name] of ["1-0", "2-1"].entries())
+    assert.ok(objects[i].name === name && objects[i].errors.scaleError < 0.05);
 });
 
 test("an output of SAM 3D is a scene; a scale goes before its placements, and simulators need metres", async () => {
@@ -91,14 +91,15 @@ test("an output of SAM 3D is a scene; a scale goes before its placements, and si
   writeCase("sam3d", sam3dFiles(tableView, objects));
   succeeds("scene --sam3d sam3d --depth-kind metric --quality fast --scene-glb o.glb --json o.json");
   for (const [i, { pose }] of objects.entries()) {
-    const found = results("o.json").sam3d.objects[`thing-${i}`];
+    const found = results("o.json").sam3d.objects[i];
     assert.ok(Math.abs(found.scale / pose.scale - 1) < 0.05, `${found.scale}`);
     assertNear(found.translation, pose.translation, "place", 0.01);
   }
   await assertValid(bytes("o.glb"));
   const scale = poses[0]?.scale ?? 1;
   succeeds(`scene --sam3d sam3d --quality fast --scale ${1.01 * scale},${2 * scale} --json g.json`);
-  assert.equal(results("g.json").sam3d.depthUnit, "unknown (scale-invariant)");
+  const unit = { metres: null, source: "scale-invariant", isAssumed: false };
+  assert.deepEqual(results("g.json").sam3d.depthUnit, unit);
   refusesUsage({ "scene --sam3d sam3d --usd w.usda": /--depth-kind metric/ });
 });
 

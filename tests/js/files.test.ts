@@ -7,6 +7,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import type { PinholeCamera } from "sim3align";
 import {
+  type DepthImage,
   type Exif,
   externalResources,
   focalFromExif,
@@ -23,17 +24,19 @@ import { cocoRle, fixture, gltfJson, npy, obj, png } from "../support/files.js";
 import { mesh } from "../support/scene.js";
 
 const relative = { depthKind: "affine-invariant-disparity" } as const;
-const FLOATS = "metres (float values, assumed)";
+type Unit = DepthImage["unit"];
+const unitOf = (metres: number | null, source: string, isAssumed = false): Unit => ({ metres, source, isAssumed });
+const FLOATS = unitOf(1, "float values", true);
 
 /** What `tests/fixtures` holds: the kind of depth map, its size and unit, and its camera; or the fault. */
 const depthFixtures: Record<
   string,
-  [size: string, unit: string, fx?: number | undefined, options?: ReadDepthOptions] | [fault: string]
+  [size: string, unit: Unit, fx?: number | undefined, options?: ReadDepthOptions] | [fault: string]
 > = {
-  "depth-16-pillow.png": ["7 × 5", "0.0001 m (camera file)", undefined, { integerDepthScale: 0.0001 }],
-  "depth-uint16.tiff": ["37 × 23", "0.0002 m (depthScale)", undefined, { depthScale: 0.0002 }],
+  "depth-16-pillow.png": ["7 × 5", unitOf(0.0001, "camera file"), undefined, { integerDepthScale: 0.0001 }],
+  "depth-uint16.tiff": ["37 × 23", unitOf(0.0002, "depthScale"), undefined, { depthScale: 0.0002 }],
   "depth-da3.npz": ["37 × 23", FLOATS, 40],
-  "depth-disparity.npz": ["37 × 23", "none (affine-invariant-disparity)", undefined, relative],
+  "depth-disparity.npz": ["37 × 23", unitOf(null, "affine-invariant-disparity"), undefined, relative],
   "depth-disparity.npz as metres": ["UNSUPPORTED_FORMAT"],
   "depth-8.png": ["EIGHT_BIT_DEPTH"],
 };
@@ -50,7 +53,7 @@ test("depth maps of every library: size, values, unit and camera, or the code of
     const isCamera = fx === undefined ? camera === undefined : Math.abs((camera?.fx ?? 0) / fx - 1) < 1e-6;
     assert.ok(isCamera, `${name}: ${camera?.fx}`);
     // 0.5 + 0.01 u + 0.1 v metres in the small files; 1.5 + 0.02 u + 0.01 v and a millimetre of noise in the others.
-    if (unit.startsWith("none")) continue;
+    if (unit.metres === null) continue;
     const value = width === 7 ? 0.5 + 0.01 * 6 + 0.1 * 4 : 1.5 + 0.02 * 36 + 0.01 * 22;
     const scale = options?.integerDepthScale === undefined ? 1 : 0.1;
     assert.ok(Math.abs((data.at(-1) ?? 0) / scale - value) < 0.0021, `${name}: ${data.at(-1)}`);
@@ -63,7 +66,7 @@ interface Expected {
   data: (number | null)[];
   width: number;
   height: number;
-  unit: string;
+  unit: Unit;
   camera?: PinholeCamera;
   /** Of angles, whose functions differ in their last bits. */
   cameraTolerance?: number;
@@ -109,7 +112,7 @@ test("kinds of depth: what their values mean", async () => {
   }
   const picture = png(Uint8Array.of(0, 7, 255, 1), 2, 2);
   const { data, unit } = await readDepth(picture, relative);
-  assert.deepEqual([...data, unit], [0, 7, 255, 1, "none (affine-invariant-disparity)"]);
+  assert.deepEqual([...data, unit], [0, 7, 255, 1, unitOf(null, "affine-invariant-disparity")]);
   const eightBit = { code: "EIGHT_BIT_DEPTH", argument: "depth", message: /depthKind "affine-invariant-disparity"/ };
   await assert.rejects(readDepth(picture), eightBit);
   const unknown = { code: "INVALID_OPTION", argument: "options.depthKind", message: /"scale-invariant"/ };

@@ -38,7 +38,8 @@ test("distances along the rays are the depth that they belong to", async () => {
   for (const [i, z] of view.depth.entries())
     assert.ok(Math.abs((data[i] ?? 0) - z) <= 1e-6 * z, `${data[i]} is not ${z}`);
   const [rays, depth] = [await here.align(distances, quick), await here.align({ ...input, depth: data }, quick)];
-  assert.deepEqual([rays.matrix, rays.depthUnit], [depth.matrix, "metres (float values, assumed)"]);
+  const unit = { metres: 1, source: "float values", isAssumed: true };
+  assert.deepEqual([rays.matrix, rays.depthUnit], [depth.matrix, unit]);
   assert.equal(rays.depthCalibration, undefined);
 });
 
@@ -66,7 +67,7 @@ test("relative depth: the pose, and the shift that makes the depth map true to s
   const at = (i: number) => (corrected[i] ?? 0) / (view.depth[i] ?? 0);
   const ratio = at(0) / at(mask.indexOf(1));
   assert.ok(Math.abs(Math.log(ratio)) < 3 * uncertainty.shift + 0.05, `${ratio}`);
-  assert.equal(found.depthUnit, "none (affine-invariant-disparity)");
+  assert.deepEqual(found.depthUnit, { metres: null, source: "affine-invariant-disparity", isAssumed: false });
 });
 
 test("the pose and the metrics are those in the corrected map", async () => {

@@ -215,7 +215,7 @@ fn the_paper_finds_a_clean_object_near_its_pose() {
     let near = |a: Option<f64>, b: Option<f64>, by: f64| (a.unwrap() - b.unwrap()).abs() < by;
     let (found, again) = (result.metrics.unwrap(), scored.metrics);
     assert!(near(again.normal_consistency, found.normal_consistency, 2e-3), "{again:?}, {found:?}");
-    assert!(near(again.iou, found.iou, 1e-9) && near(again.chamfer_mm, found.chamfer_mm, 1e-6), "{again:?}, {found:?}");
+    assert!(near(again.iou, found.iou, 1e-9) && near(again.chamfer_m, found.chamfer_m, 1e-9), "{again:?}, {found:?}");
     assert!(found.iou.unwrap() > 0.7, "{found:?}");
     let common = result.diagnostics.common;
     assert!(!common.collapsed && !common.clamped && result.warnings.is_empty(), "{:?}", result.warnings);

@@ -33,11 +33,11 @@ fn the_true_pose_is_perfect() {
     for (name, mesh, consistency) in [("egg", egg, 0.995), ("box", cuboid(Vec3::new(1.0, 0.7, 0.5)), 0.96)] {
         let m = score(&observe(&mesh, 0.0), &mesh, &pose());
         assert_eq!((m.iou, m.boundary_f, m.center_drift_px), (Some(1.0), Some(1.0), Some(0.0)), "{name}");
-        assert_eq!((m.depth_mae_mm, m.fitness), (Some(0.0), Some(1.0)), "{name}");
-        assert!(m.uni_chamfer_mm.unwrap() < 1e-3, "{name}: {m:?}");
+        assert_eq!((m.depth_mae_m, m.fitness), (Some(0.0), Some(1.0)), "{name}");
+        assert!(m.uni_chamfer_m.unwrap() < 1e-6, "{name}: {m:?}");
         assert!(m.normal_consistency.unwrap() > consistency, "{name}: {m:?}");
         // The far side is not seen: the two-sided distance cannot vanish.
-        assert!(m.chamfer_mm.unwrap() > 5.0, "{name}: {m:?}");
+        assert!(m.chamfer_m.unwrap() > 0.005, "{name}: {m:?}");
     }
 }
 
@@ -54,8 +54,8 @@ fn means_over_a_sample_are_those_over_all_points() {
         let of = |measured| evaluate(&noisy, &mesh, &pose, &Sampling { measured, ..Sampling::default() }).unwrap();
         let (some, all) = (of(Sampling::default().measured), of(usize::MAX));
         for (what, metric) in [
-            ("chamfer", (|m: &Metrics| m.chamfer_mm) as fn(&Metrics) -> Option<f64>),
-            ("uni_chamfer", |m| m.uni_chamfer_mm),
+            ("chamfer", (|m: &Metrics| m.chamfer_m) as fn(&Metrics) -> Option<f64>),
+            ("uni_chamfer", |m| m.uni_chamfer_m),
             ("fitness", |m| m.fitness),
             ("normals", |m| m.normal_consistency),
         ] {
@@ -72,10 +72,10 @@ fn a_pose_out_of_sight_gives_null_or_zero() {
     let at = |x: f64, z: f64| Similarity { translation: Vector3::new(x, 0.0, z), ..pose() };
     let behind = score(&observation, &mesh, &at(0.0, -0.8));
     assert_eq!((behind.iou, behind.boundary_f), (Some(0.0), Some(0.0)));
-    assert_eq!((behind.center_drift_px, behind.depth_mae_mm, behind.fitness), (None, None, Some(0.0)));
-    assert!(behind.uni_chamfer_mm.unwrap() > 1000.0);
+    assert_eq!((behind.center_drift_px, behind.depth_mae_m, behind.fitness), (None, None, Some(0.0)));
+    assert!(behind.uni_chamfer_m.unwrap() > 1.0);
     let json = serde_json::to_value(behind).unwrap();
-    assert!(json["centerDriftPx"].is_null() && json["depthMaeMm"].is_null(), "{json}");
+    assert!(json["centerDriftPx"].is_null() && json["depthMaeM"].is_null(), "{json}");
     assert!(score(&observation, &mesh, &at(0.25, 0.8)).center_drift_px.unwrap() > 40.0);
 }
 
@@ -86,12 +86,12 @@ fn only_readings_inside_the_mask_count() {
     // A hole in the depth and a wrong reading outside the mask change nothing in the error.
     let middle = (HEIGHT / 2) * WIDTH + WIDTH / 2;
     let holed = with_depth(&full, |i, z| if i == 0 { 0.1 } else { z * f32::from(u8::from(i != middle)) });
-    assert_eq!(score(&holed.unwrap(), &mesh, &pose()).depth_mae_mm, Some(0.0));
+    assert_eq!(score(&holed.unwrap(), &mesh, &pose()).depth_mae_m, Some(0.0));
     // A mask with half of the object: what is rendered beyond it has no say.
     let mut mask = full.mask().clone();
     mask.data_mut().iter_mut().enumerate().for_each(|(i, m)| *m *= u8::from(i % WIDTH < WIDTH / 2));
     let half = score(&Observation::new(full.depth().clone(), mask, full.camera()).unwrap(), &mesh, &pose());
-    assert_eq!((half.depth_mae_mm, half.fitness), (Some(0.0), Some(1.0)));
+    assert_eq!((half.depth_mae_m, half.fitness), (Some(0.0), Some(1.0)));
     assert!((0.3..0.6).contains(&half.iou.unwrap()), "{half:?}");
 }
 

@@ -110,7 +110,7 @@ const PRECISE: &[Effect<AlignOptions, Alignment, SearchCounts>] = &[
     ("seed", |t| {
         // The search draws nothing at random; the clouds of the metrics are other ones.
         let other = t.with(|o| o.seed = 3);
-        let chamfer = |found: &Alignment| found.metrics.as_ref().unwrap().chamfer_mm;
+        let chamfer = |found: &Alignment| found.metrics.as_ref().unwrap().chamfer_m;
         other.camera_from_mesh == t.usual.camera_from_mesh && chamfer(&other) != chamfer(&t.usual)
     }),
     ("maxObservedPoints", |t| t.count(|o| o.max_observed_points = 333).target_points == 333),

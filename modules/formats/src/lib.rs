@@ -93,8 +93,8 @@ export interface DepthImage {
   data: Float32Array;
   width: number;
   height: number;
-  /** The unit of the values in the file. */
-  unit: string;
+  /** The unit of the values in the file; `metres` is null without one. */
+  unit: { metres: number | null; source: string; isAssumed: boolean };
   /** The camera in the file, in pixels. */
   camera?: { fx: number; fy: number; cx: number; cy: number };
 }

@@ -98,6 +98,12 @@ export function checkedSignal(signal: unknown): SignalLike | undefined {
 /** Upper limit of the number of workers. */
 export const MAX_WORKERS = 64;
 
+/** Upper limit of "auto", because each worker holds a copy of its input. */
+const MAX_AUTO = 8;
+
+/** The number of workers that "auto" stands for on a machine with so many cores. */
+export const autoWorkers = (cores: number): number => Math.min(Math.max(cores - 1, 1), MAX_AUTO);
+
 /** The number of workers. */
 export function checkedWorkers(workers: unknown = 0): number | "auto" {
   const isCount = Number.isInteger(workers) && (workers as number) >= 0 && (workers as number) <= MAX_WORKERS;

@@ -37,6 +37,7 @@ import { withoutUndefined } from "../values/values.js";
 import { alignAll } from "./align-all.js";
 import {
   type AlignerOptions,
+  autoWorkers,
   type BundledAssets,
   checkedAlignerOptions,
   checkedFactory,
@@ -47,9 +48,6 @@ import {
   checkedWorkers,
 } from "./aligner-options.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
-
-/** Upper limit of "auto", because each worker holds a copy of its input. */
-const MAX_AUTO = 8;
 
 /**
  * Loads the core module and creates an aligner. The module is loaded once and shared by all aligners; only the `wasm`
@@ -99,7 +97,7 @@ export class Aligner {
       return new Aligner(core, modules, engine, () => ({ engine, isShared: true }));
     }
     const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
-    const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
+    const size = workers === "auto" ? autoWorkers(factory.cores) : workers;
     const compiled = (name: ModuleName) => wasmModules[name].compile(wasm[name]);
     const setup = { create: factory.create, startMs, compiled };
     // A pool disposes its engine of the main thread: each has one of its own.

@@ -177,9 +177,9 @@ export async function bopModels(folder: string, places: readonly string[]): Prom
   throw fileNotFound("models", `no folder of models at ${folder}`, "models beside the scene, or --models");
 }
 
-/** An entry of `models_info.json`, in millimetres. */
+/** An entry of `models_info.json`; its symmetries are in millimetres, as the model. */
 export interface BopModelInfo {
-  diameterMm: number;
+  diameterM: number;
   /** Discrete symmetries: 16 numbers each, row by row. */
   discrete: Float64Array;
   /** Axes of revolution: direction and a point on the axis, six numbers each. */
@@ -272,7 +272,7 @@ function infoOf(id: string, entry: unknown): BopModelInfo {
   };
   const axis = (row: unknown) => (isRecord(row) ? [row.axis, row.offset] : null);
   return {
-    diameterMm: diameter,
+    diameterM: METRES_PER_UNIT * diameter,
     discrete: numbers(symmetries_discrete, "symmetries_discrete", 16),
     continuous: numbers(symmetries_continuous, "symmetries_continuous", 6, axis),
   };

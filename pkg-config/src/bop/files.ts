@@ -98,9 +98,9 @@ export interface BopInstance extends BopPlace {
 
 /** The properties of an entry that a results file needs. */
 interface PoseEntry {
-  timingsMs?: { total: number };
-  confidence?: number | null;
-  rotation?: number[][];
+  diagnostics?: { timingsMs: { total: number } };
+  confidence?: number;
+  rotationMatrix?: number[][];
   translation?: number[];
 }
 
@@ -116,15 +116,15 @@ export class BopResults {
     const instance = this.instances.get(name);
     if (instance === undefined) return;
     const { sceneId, imageId, objectId, detectionScore, detectionSeconds } = instance;
-    const { timingsMs, confidence, rotation, translation } = entry as PoseEntry;
+    const { diagnostics, confidence, rotationMatrix, translation } = entry as PoseEntry;
     const seconds = this.#seconds.get(imageKey(instance)) ?? detectionSeconds;
-    this.#seconds.set(imageKey(instance), seconds + (timingsMs?.total ?? 0) / 1000);
+    this.#seconds.set(imageKey(instance), seconds + (diagnostics?.timingsMs.total ?? 0) / 1000);
     // A case that failed has no pose.
-    if (rotation === undefined || translation === undefined) return;
+    if (rotationMatrix === undefined || translation === undefined) return;
     const score = (confidence ?? 1) * detectionScore;
     // Other scales than that of millimetres change the unit of the model, not of the scene.
     const millimetres = translation.map((x) => 1000 * x);
-    const cells = [sceneId, imageId, objectId, score, rotation.flat().join(" "), millimetres.join(" ")];
+    const cells = [sceneId, imageId, objectId, score, rotationMatrix.flat().join(" "), millimetres.join(" ")];
     this.#rows.set(name, cells.join(","));
   }
 

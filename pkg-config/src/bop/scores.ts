@@ -8,15 +8,7 @@ import type { CoreFrame } from "../modules/core-input.js";
 import { registrationModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
 import { oncePerKey } from "../values/values.js";
-import {
-  type BopDataset,
-  type BopPlace,
-  type BopTarget,
-  imageKey,
-  METRES_PER_UNIT,
-  readBopModel,
-  targetKey,
-} from "./dataset.js";
+import { type BopDataset, type BopPlace, type BopTarget, imageKey, readBopModel, targetKey } from "./dataset.js";
 import type { BopResult } from "./files.js";
 
 /** The models in a folder by their ids, each read once: arrays in millimetres, and the warnings of the reader. */
@@ -84,9 +76,9 @@ export async function evaluateBop(
     const estimates = best(byTarget.get(targetKey(target)) ?? [], count);
     const entries = scene.posesIn(imageId);
     const truths = all.map((place) => fromBop(entries[place] as (typeof entries)[number]));
-    const { diameterMm, discrete, continuous } = model;
+    const { diameterM, discrete, continuous } = model;
     const mesh = await modelOf(objectId);
-    const given = { ...frame, mesh, diameterM: METRES_PER_UNIT * diameterMm, discrete, continuous };
+    const given = { ...frame, mesh, diameterM, discrete, continuous };
     const found = estimates.map(({ pose }) => pose);
     const errors = registrar.call((module) => module.bopErrors(given, found, truths));
     const byEstimate = estimates.map((_, i) => errors.slice(i * truths.length, (i + 1) * truths.length));
@@ -95,7 +87,7 @@ export async function evaluateBop(
       poses.push({ ...place, score, errors: byPlace });
     }
     const isTarget = all.map((_, i) => i < count);
-    measured.push({ objectId, imageWidth: Number(frame.width), diameterMm, isTarget, estimates: byEstimate });
+    measured.push({ objectId, imageWidth: Number(frame.width), diameterM, isTarget, estimates: byEstimate });
   }
   const objects = grouped(measured, ({ objectId }) => objectId);
   return {
@@ -125,7 +117,7 @@ const ADD_SHARE = 0.1;
 interface ObjectErrors {
   objectId: number;
   imageWidth: number;
-  diameterMm: number;
+  diameterM: number;
   /** Whether each true pose is to be found; the others may be matched by none. */
   isTarget: readonly boolean[];
   /** The errors of each estimate relative to each true pose; the estimate with the highest score first. */
@@ -161,7 +153,7 @@ function scoresOf(objects: readonly ObjectErrors[]): BopScores {
   const average = (value: Value, thresholds: readonly number[]) => mean(thresholds.map((th) => recall(value, th)));
   const or = (value: number) => (targets === 0 ? null : value);
   const vsd = mean(SHARES.map((_, tau) => average((errors) => errors.vsd[tau] ?? 1, SHARES)));
-  const mssd = average((errors, { diameterMm }) => errors.mssdMm / diameterMm, SHARES);
+  const mssd = average((errors, { diameterM }) => errors.mssdM / diameterM, SHARES);
   const toPixels = (object: ObjectErrors) => PIXELS_WIDTH / object.imageWidth;
   const mspd = average((e, object) => (e.mspdPx ?? Number.POSITIVE_INFINITY) * toPixels(object), PIXELS);
   return {
@@ -169,8 +161,8 @@ function scoresOf(objects: readonly ObjectErrors[]): BopScores {
     vsd: or(vsd),
     mssd: or(mssd),
     mspd: or(mspd),
-    add: or(recall((errors, { diameterMm }) => errors.addMm / diameterMm, ADD_SHARE)),
-    addS: or(recall((errors, { diameterMm }) => errors.addSMm / diameterMm, ADD_SHARE)),
+    add: or(recall((errors, { diameterM }) => errors.addM / diameterM, ADD_SHARE)),
+    addS: or(recall((errors, { diameterM }) => errors.addSM / diameterM, ADD_SHARE)),
     targets,
     estimates: objects.reduce((sum, { estimates }) => sum + estimates.length, 0),
   };

@@ -1,14 +1,10 @@
 /** Notes on the files of an input, and their warnings, in its result. */
 import type { Warning } from "../generated/types.js";
-import type { InputInfo, InputNotes } from "../types/results.js";
+import type { InputNotes } from "../types/results.js";
 import { fromOrigin } from "./origin.js";
 
 /** The readings of the files of a view. */
 export const sourcesOf = ({ warnings: _, colors: __, origin: ___, ...sources }: InputNotes) => sources;
-
-/** Whether nothing states the unit of the depth. */
-export const isAssumed = ({ depthUnit }: Pick<InputInfo, "depthUnit">): boolean =>
-  depthUnit?.endsWith("assumed)") === true;
 
 /** Confidence below which a pose is in doubt. */
 export const DOUBT = 0.5;
@@ -27,7 +23,7 @@ export function withNotes<T extends { warnings: Warning[]; confidence?: number |
 ): T {
   const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
   // Of a unit that is stated, no size is doubtful.
-  const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || isAssumed(notes));
+  const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || notes.depthUnit?.isAssumed === true);
   const hasLabels = notes.maskReading?.endsWith(": labels") === true && (result.confidence ?? 0) < DOUBT;
   const warnings = [...notes.warnings, ...(hasLabels ? [labels] : []), ...ofColors, ...ofCore];
   return { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };

@@ -121,7 +121,7 @@ function hasTruth(folder: string): boolean {
   }
 }
 
-const metrics = ["iou", "boundaryF", "centerDriftPx", "chamferMm", "fitness", "depthMaeMm"] as const;
+const metrics = ["iou", "boundaryF", "centerDriftPx", "chamferM", "fitness", "depthMaeM"] as const;
 const errors = ["scaleError", "rotationErrorDeg", "translationErrorM", "translationErrorRelative"] as const;
 
 /** The columns of several evaluations. */
@@ -155,7 +155,7 @@ export function caseJob(tasks: readonly CaseToDo[], flags: Flags): Job<CaseToDo>
 }
 
 const details = (name: string, entry: Entry, style: Style) =>
-  "frames" in entry
+  "views" in entry
     ? viewsDetails(name, entry as unknown as ViewsEntry, style)
     : alignDetails(name, entry as unknown as AlignEntry, style);
 

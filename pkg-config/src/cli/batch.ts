@@ -1,6 +1,6 @@
 /** Runs a batch of cases and records each result. A batch can be interrupted and resumed. */
 import { availableParallelism } from "node:os";
-import { MAX_WORKERS } from "../aligner/aligner-options.js";
+import { autoWorkers, MAX_WORKERS } from "../aligner/aligner-options.js";
 import { listed } from "../case-files.js";
 import type { FoundFiles } from "../case-folder.js";
 import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
@@ -229,7 +229,7 @@ async function runCases<T extends CaseKey>(
   const left = flags.resume ? await resume() : tasks;
   const { workers = "auto" } = flags;
   // A single case is done on this thread, unless the flags ask for workers.
-  const wanted = workers === "auto" ? (isOnly ? 0 : availableParallelism()) : workers;
+  const wanted = workers === "auto" ? (isOnly ? 0 : autoWorkers(availableParallelism())) : workers;
   const size = Math.min(wanted, isOnly ? MAX_WORKERS : left.length, MAX_WORKERS);
   const stop = onInterruption(interrupt);
   let aligner: Aligner | undefined;

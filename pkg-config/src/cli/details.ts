@@ -1,9 +1,9 @@
 /** Details of a single case, for people. */
 import type { LayoutErrors, Stretch } from "../generated/types.js";
-import type { DepthCalibration, Evaluation, Metrics, PoseErrors } from "../index.js";
+import type { Alignment, DepthCalibration, Evaluation, Metrics, PaperAlignment, PoseErrors } from "../index.js";
+import { unitText } from "../input/depth-kinds.js";
 import { fixed, type Message, significant } from "../report-page/row.js";
 import type { InputInfo } from "../types/results.js";
-import { isRecord } from "../values/kinds.js";
 import { type AlignEntry, type Entry, isMetric, type ViewsEntry, warningsOf } from "./entry.js";
 import { Lengths, type Pair, pairs } from "./table.js";
 import type { Style } from "./terminal.js";
@@ -23,10 +23,10 @@ function warningSection(warnings: readonly Message[], style: Style): string[] {
 
 /** Details of an aligned case. */
 export function alignDetails(name: string, entry: AlignEntry, style: Style): string[] {
-  const { scale, quaternion, rotation, translation, confidence, metrics, errors, diagnostics, timingsMs } = entry;
+  const { scale, rotation, rotationMatrix, translation, metrics, errors, diagnostics } = entry;
   const lengths = new Lengths(isMetric(entry));
   const matrixRow = (i: 0 | 1 | 2) =>
-    [...rotation[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
+    [...rotationMatrix[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
   const { scaleRatio, initialScale } = diagnostics;
   return [
     style.bold(`${name}: camera from mesh, x_cam = s·R·p + t`),
@@ -34,11 +34,11 @@ export function alignDetails(name: string, entry: AlignEntry, style: Style): str
       ["scale s", `${significant(scale, 6)} ${lengths.unit} per mesh unit`],
       ["scale ratio", `${fixed(scaleRatio, 4)} of the initial ${significant(initialScale, 6)}`],
       ["translation t", `${numbers(translation, 6, "  ")} ${lengths.unit}`],
-      ["rotation R", `${numbers(quaternion, 6, "  ")} (quaternion x y z w)`],
+      ["rotation R", `${numbers(rotation, 6, "  ")} (quaternion x y z w)`],
       ["matrix (s·R | t)", matrixRow(0)],
       ["", matrixRow(1)],
       ["", matrixRow(2)],
-      ...(confidence === null ? refinement(entry, lengths) : certainty(entry, lengths)),
+      ...("confidence" in entry ? certainty(entry, lengths) : refinement(entry.diagnostics, lengths)),
       ...proportionsRows(entry, lengths),
       ...depthRows(entry),
     ]),
@@ -46,25 +46,25 @@ export function alignDetails(name: string, entry: AlignEntry, style: Style): str
     ...errorsSection(errors, lengths, style),
     ...section(
       "Stages",
-      Object.entries(timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`]),
+      Object.entries(diagnostics.timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`]),
       style,
     ),
-    ...section("Counts", countRows(entry), style),
+    ...section("Counts", countRows(diagnostics), style),
     ...warningSection(entry.warnings, style),
   ];
 }
 
 /** The outcome of the refinement of preset `paper`. */
-function refinement({ diagnostics }: AlignEntry, lengths: Lengths): Pair[] {
-  if (!("residualM" in diagnostics)) return [];
-  const { converged, residualM } = diagnostics;
-  const residual = lengths.millimetres(1000 * residualM, 3);
+function refinement({ converged, residualM }: PaperAlignment["diagnostics"], lengths: Lengths): Pair[] {
+  const residual = lengths.small(residualM, 3);
   return [["refinement", `${converged ? "converged" : "did not converge"}, residual ${residual}`]];
 }
 
 /** Confidence, alternatives and uncertainty. */
-function certainty({ confidence, alternatives, uncertainty, diagnostics }: AlignEntry, lengths: Lengths): Pair[] {
-  const score = "score" in diagnostics ? diagnostics.score : null;
+function certainty(
+  { confidence, alternatives, uncertainty, diagnostics: { score } }: Omit<Alignment, "metrics">,
+  lengths: Lengths,
+): Pair[] {
   const others = alternatives.map((other) => `${fixed(other.turnDeg, 0)}° (score ${fixed(other.score, 3)})`);
   const rows: Pair[] = [
     ["confidence", `${fixed(confidence, 2)}, score ${fixed(score, 3)}`],
@@ -73,12 +73,12 @@ function certainty({ confidence, alternatives, uncertainty, diagnostics }: Align
   if (uncertainty === null) return rows;
   const { scale, rotationDeg, rotationAxis, lateralM, distanceM } = uncertainty;
   const turn = `rotation ${fixed(rotationDeg, 1)}° about ${numbers(rotationAxis, 2, " ")}`;
-  const [lateral, distance] = [lateralM, distanceM].map((length) => lengths.millimetres(1000 * length, 1));
+  const [lateral, distance] = [lateralM, distanceM].map((length) => lengths.small(length, 1));
   const text = `scale ${percent(scale, 1)}, ${turn}, ${lateral} lateral, ${distance} in distance`;
   return [...rows, ["uncertainty", text]];
 }
 
-function countRows({ diagnostics: { counts } }: AlignEntry): Pair[] {
+function countRows({ counts }: AlignEntry["diagnostics"]): Pair[] {
   const points: Pair = ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`];
   if ("renders" in counts) return [points, ["renders", String(counts.renders)]];
   return [
@@ -93,19 +93,16 @@ function countRows({ diagnostics: { counts } }: AlignEntry): Pair[] {
 
 /** Details of a case of several views. */
 export function viewsDetails(name: string, entry: ViewsEntry, style: Style): string[] {
-  const { scale, world, confidence, uncertainty, diagnostics } = entry;
-  const frames = Object.entries(entry.frames);
+  const { scale, rotation, translation, world, views, confidence, uncertainty, diagnostics } = entry;
   const place = world === "given" ? "world" : "camera of the first view that is used";
-  const used = frames.find(([, { role }]) => role === "used") ?? frames[0];
-  const pose = "matrix" in entry ? entry : (used?.[1] as ViewsEntry["frames"][string]);
   const lengths = new Lengths(isMetric(entry));
-  const view = ([frame, { role, confidence: certain, metrics, errors, ...input }]: (typeof frames)[number]): Pair[] => {
+  const view = ({ name, role, confidence: certain, metrics, errors, ...input }: (typeof views)[number]): Pair[] => {
     const error =
       errors === undefined
         ? ""
         : `, errors: scale ${percent(errors.scaleError, 2)}, rotation ${fixed(errors.rotationErrorDeg, 2)}°, translation ${percent(errors.translationErrorRelative, 2)}`;
     return [
-      [frame, `${role}, confidence ${fixed(certain, 2)}, IoU ${fixed(metrics?.iou, 3)}${error}`],
+      [name, `${role}, confidence ${fixed(certain, 2)}, IoU ${fixed(metrics?.iou, 3)}${error}`],
       ...depthRows(input).map(([row, value]): Pair => ["", `${row}: ${value}`]),
     ];
   };
@@ -114,22 +111,22 @@ export function viewsDetails(name: string, entry: ViewsEntry, style: Style): str
     style.bold(`${name}: ${place} from mesh, x = s·R·p + t`),
     ...pairs([
       ["scale s", `${significant(scale, 6)} ${lengths.unit} per mesh unit${sd}`],
-      ["translation t", `${numbers(pose.translation, 6, "  ")} ${lengths.unit}`],
-      ["rotation R", `${numbers(pose.quaternion, 6, "  ")} (quaternion x y z w)`],
+      ["translation t", `${numbers(translation, 6, "  ")} ${lengths.unit}`],
+      ["rotation R", `${numbers(rotation, 6, "  ")} (quaternion x y z w)`],
       ["confidence", `${fixed(confidence, 2)}, score ${fixed(diagnostics.score, 3)}`],
       ...proportionsRows(entry, lengths),
     ]),
-    ...section("Views", frames.flatMap(view), style),
-    ...warningSection([...entry.warnings, ...frames.flatMap(([, each]) => each.warnings)], style),
+    ...section("Views", views.flatMap(view), style),
+    ...warningSection([...entry.warnings, ...views.flatMap((each) => each.warnings)], style),
   ];
 }
 
 /** An entry of views for a table: its metrics are the means over the views that have them. */
 export function withMeans(entry: Entry): Entry {
-  const { frames } = entry;
-  if (!isRecord(frames)) return entry;
+  const { views } = entry;
+  if (!Array.isArray(views)) return entry;
   const sums = new Map<string, { sum: number; count: number }>();
-  for (const { metrics } of Object.values(frames) as { metrics?: Entry }[]) {
+  for (const { metrics } of views as { metrics?: Entry }[]) {
     for (const [name, value] of Object.entries(metrics ?? {})) {
       const { sum, count } = sums.get(name) ?? { sum: 0, count: 0 };
       if (typeof value === "number") sums.set(name, { sum: sum + value, count: count + 1 });
@@ -161,24 +158,24 @@ function metricsSection(metrics: Metrics | undefined, lengths: Lengths, style: S
     ["silhouette IoU", fixed(metrics.iou, 4)],
     ["boundary F", fixed(metrics.boundaryF, 4)],
     ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`],
-    ["Chamfer", `${lengths.millimetres(metrics.chamferMm, 3)} (both directions)`],
-    ["uni-Chamfer", `${lengths.millimetres(metrics.uniChamferMm, 3)} (observed to surface)`],
+    ["Chamfer", `${lengths.small(metrics.chamferM, 3)} (both directions)`],
+    ["uni-Chamfer", `${lengths.small(metrics.uniChamferM, 3)} (observed to surface)`],
     ["fitness", fixed(metrics.fitness, 4)],
     ["normal consistency", fixed(metrics.normalConsistency, 4)],
-    ["depth MAE", lengths.millimetres(metrics.depthMaeMm, 3)],
+    ["depth MAE", lengths.small(metrics.depthMaeM, 3)],
   ];
   return section("Metrics", rows, style);
 }
 
 function errorsSection(errors: PoseErrors | null | undefined, lengths: Lengths, style: Style): string[] {
   if (errors === null || errors === undefined) return [];
-  const { scaleError, rotationErrorDeg, translationErrorM, translationErrorRelative, addSMm } = errors;
-  const shift = `${lengths.millimetres(1000 * translationErrorM, 2)}, ${percent(translationErrorRelative, 2)}`;
+  const { scaleError, rotationErrorDeg, translationErrorM, translationErrorRelative, addSM } = errors;
+  const shift = `${lengths.small(translationErrorM, 2)}, ${percent(translationErrorRelative, 2)}`;
   const rows: Pair[] = [
     ["scale", percent(scaleError, 2)],
     ["rotation", `${fixed(rotationErrorDeg, 2)}°`],
     ["translation", `${shift} of the diameter`],
-    ["ADD-S", lengths.millimetres(addSMm, 2)],
+    ["ADD-S", lengths.small(addSM, 2)],
   ];
   return section("Errors (compared with gt.json)", rows, style);
 }
@@ -201,14 +198,14 @@ export function proportionsRows(alignment: object, lengths: Lengths): Pair[] {
   if (proportions === undefined) return [];
   const { sizeM, uncertainty } = proportions;
   const sides = sizeM.map(
-    (size, k) => `${"xyz"[k]} ${lengths.millimetres(1000 * size, 1)} ± ${percent(uncertainty[k as 0] ?? 0, 1)}`,
+    (size, k) => `${"xyz"[k]} ${lengths.small(size, 1)} ± ${percent(uncertainty[k as 0] ?? 0, 1)}`,
   );
   return [["in proportion", sides.join(", ")]];
 }
 
 /** The readings of depth and camera: the unit of the depth, its calibration, and where the camera comes from. */
 export function depthRows({ depthUnit, cameraSource, depthCalibration }: InputInfo): Pair[] {
-  const rows: Pair[] = depthUnit === undefined ? [] : [["depth unit", depthUnit]];
+  const rows: Pair[] = depthUnit === undefined ? [] : [["depth unit", unitText(depthUnit)]];
   if (depthCalibration !== undefined)
     rows.push(
       ["depth", depthText(depthCalibration)],

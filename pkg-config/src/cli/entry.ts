@@ -1,10 +1,10 @@
 /** The JSON entry of a case: the model of a result for files, tables, pictures and reports. */
 
 import { join } from "node:path";
-import { isAssumed } from "../calls/notes.js";
 import { listed } from "../case-files.js";
 import type { FoundFiles, FrameOnDisk } from "../case-folder.js";
-import type { AlignResult, PoseErrors, SceneResult, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
+import type { AlignResult, PoseErrors, SceneResult, ViewsAlignment } from "../index.js";
+import { unitText } from "../input/depth-kinds.js";
 import type { Message, Row } from "../report-page/row.js";
 import type { InputInfo } from "../types/results.js";
 import { describe, failure, Sim3AlignError } from "../values/error.js";
@@ -41,11 +41,12 @@ export function failureEntry(thrown: unknown, found?: FoundFiles): FailureEntry 
 export function withFiles<T extends Entry>(entry: T, found: FoundFiles | undefined): T {
   if (found === undefined) return entry;
   const { depthUnit: unit, maskReading, imageReading, cameraSource: source = "" } = entry as InputInfo;
-  const objects = Object.entries((entry.objects ?? {}) as Record<string, InputInfo>);
   const facts: Record<string, object> = {
     depth: { unit, camera: source === "depth file" ? source : undefined },
     mask: { reading: maskReading },
-    ...Object.fromEntries(objects.map(([name, own]) => [`objects/${name}/mask`, { reading: own.maskReading }])),
+    ...Object.fromEntries(
+      (partsOf(entry) ?? []).map(([name, own]) => [`objects/${name}/mask`, { reading: own.maskReading }]),
+    ),
     image: { reading: imageReading, camera: source.startsWith("EXIF") ? source : undefined },
   };
   const inputs: Record<string, object> = {};
@@ -58,11 +59,10 @@ export function withFiles<T extends Entry>(entry: T, found: FoundFiles | undefin
 
 /** Remarks on the inputs of a case, a line each: unread files, assumptions, and lengths without a unit. */
 export function intakeLines(entry: Entry): string[] {
-  const { frames, objects = frames } = entry;
-  const all: [string, Entry][] = [["", entry], ...Object.entries((objects ?? {}) as Record<string, Entry>)];
+  const all: [string, Entry][] = [["", entry], ...(partsOf(entry) ?? [])];
   const unread = all.flatMap(([part, { unread }]) => ((unread ?? []) as string[]).map((name) => join(part, name)));
-  const assumed = all.flatMap(([, { depthUnit, cameraSource }]) => [
-    ...(isAssumed({ depthUnit } as InputInfo) ? [`depth unit ${String(depthUnit).replace(", assumed", "")}`] : []),
+  const assumed = (all as [string, InputInfo][]).flatMap(([, { depthUnit, cameraSource }]) => [
+    ...(depthUnit?.isAssumed ? [`depth unit ${unitText({ ...depthUnit, isAssumed: false })}`] : []),
     ...(cameraSource === "estimate" ? ["focal length"] : []),
   ]);
   return [
@@ -81,103 +81,60 @@ function asSim3AlignError(error: unknown): Sim3AlignError {
 
 export const isFailure = (entry: Entry): entry is FailureEntry => isRecord(entry.error);
 
-/** The transform and other properties of a pose. */
-function poseEntry<T extends Sim3>({ scale, rotation, rotationMatrix, translation, matrix, ...rest }: T) {
-  return { scale, rotation: rotationMatrix, translation, matrix, quaternion: rotation, ...rest };
-}
-
-const transformOf = ({ scale, rotation, rotationMatrix, translation, matrix }: Sim3): Sim3 => ({
-  ...{ scale, rotation, rotationMatrix, translation, matrix },
-});
-
-/** The readings of the files. */
-export const inputEntry = ({ depthUnit, cameraSource, maskReading, imageReading, depthCalibration }: InputInfo) =>
-  withoutUndefined({ depthUnit, cameraSource, maskReading, imageReading, depthCalibration }) as InputInfo;
+/** The errors relative to the true pose, if it is known. */
+const withErrors = (errors: PoseErrors | null | undefined): { errors?: PoseErrors } =>
+  errors === null || errors === undefined ? {} : { errors };
 
 export type AlignEntry = ReturnType<typeof alignEntry>;
 
-/**
- * The entry of an aligned case. Its properties do not depend on the preset.
- * @param errors relative to the true pose, if it is known
- */
-export function alignEntry(alignment: Omit<AlignResult, "input">, errors: PoseErrors | null) {
-  const { metrics, warnings } = alignment;
-  const { timingsMs, ...diagnostics } = alignment.diagnostics;
-  type Certain = Pick<
-    AlignResult<"precise">,
-    "confidence" | "turnConfidence" | "alternatives" | "uncertainty" | "proportions"
-  >;
-  const certain = alignment as Partial<Certain>;
-  const { confidence = null, turnConfidence = null, alternatives = [], uncertainty = null, proportions } = certain;
-  return {
-    ...poseEntry(transformOf(alignment)),
-    ...{ confidence, turnConfidence, alternatives: alternatives.map(poseEntry), uncertainty },
-    ...(proportions === undefined ? {} : { proportions: poseEntry(proportions) }),
-    ...(metrics === undefined ? {} : { metrics }),
-    ...{ warnings, ...inputEntry(alignment), timingsMs, diagnostics },
-    ...(errors === null ? {} : { errors }),
-  };
-}
+/** The entry of an aligned case: the result, and its errors. */
+export const alignEntry = (alignment: AlignResult, errors: PoseErrors | null) => ({
+  ...alignment,
+  ...withErrors(errors),
+});
 
 export type ViewsEntry = ReturnType<typeof viewsEntry>;
 
-/** The entry of several views: the pose in the world, if the camera poses are known, and that in each frame. */
-export function viewsEntry(
+/** The entry of several views: the result, with the names, errors and files of the frames. */
+export const viewsEntry = (
   alignment: ViewsAlignment,
   frames: readonly Pick<FrameOnDisk, "name" | "found">[],
-  errors: (PoseErrors | null)[],
-) {
-  const { scale, world, confidence, alternatives, uncertainty, proportions, warnings } = alignment;
-  const { timingsMs, ...diagnostics } = alignment.diagnostics;
-  const views = alignment.views.map(({ camera, ...view }, k) => {
-    const rest = errors[k] ?? null;
-    const entry = { ...poseEntry(view), camera: poseEntry(camera), ...(rest === null ? {} : { errors: rest }) };
-    return withFiles(entry, frames[k]?.found);
-  });
-  return {
-    // Without camera poses, there is no world: the poses are those of the frames.
-    ...(world === "given" ? poseEntry(transformOf(alignment)) : { scale }),
-    ...{ world, confidence, alternatives: alternatives.map(poseEntry), uncertainty },
-    ...(proportions === undefined ? {} : { proportions: poseEntry(proportions) }),
-    ...{ frames: Object.fromEntries(frames.map(({ name }, k) => [name, views[k] as (typeof views)[number]])) },
-    ...{ warnings, timingsMs, diagnostics },
-  };
-}
-
-/** The entry of a frame of a video. */
-export const frameEntry = (tracked: TrackedFrame) => poseEntry(tracked);
-
-/** The entry of a video, with the frames so far. */
-export function trackEntry(frames: ReadonlyMap<string, Entry>, found: FoundFiles) {
-  const poses = [...frames.values()].filter((entry) => !isFailure(entry));
-  return withFiles({ scale: poses.at(-1)?.scale ?? null, frames: Object.fromEntries(frames) }, found);
-}
+  errors: readonly (PoseErrors | null)[],
+) => ({
+  ...alignment,
+  views: alignment.views.map((view, k) => {
+    const { name = `${k}`, found } = frames[k] ?? {};
+    return withFiles({ name, ...view, ...withErrors(errors[k]) }, found);
+  }),
+});
 
 export type SceneEntry = ReturnType<typeof sceneEntry>;
 
-/** The entry of a scene. */
-export function sceneEntry(result: SceneResult, errors: readonly (PoseErrors | null)[]) {
-  const { support, metrics, warnings } = result;
-  const objects = result.objects.map((object, i) => {
-    const entry =
-      object.error === undefined
-        ? { ...alignEntry(object, errors[i] ?? null), contact: object.contact }
-        : failureEntry(object.error);
-    return [object.name ?? `${i}`, entry] as const;
-  });
-  return { objects: Object.fromEntries(objects), support, metrics, warnings, ...inputEntry(result) };
+/** The entry of a scene: the result, with the errors of the objects. */
+export const sceneEntry = (result: SceneResult, errors: readonly (PoseErrors | null)[]) => ({
+  ...result,
+  objects: result.objects.map((object, i) =>
+    object.error === undefined ? { ...object, ...withErrors(errors[i]) } : { ...object, ...failureEntry(object.error) },
+  ),
+});
+
+/**
+ * The parts of an entry by their names: the frames of calls that take one each, the views of a case, or the objects of a scene.
+ */
+function partsOf({ frames, views, objects }: Entry): [name: string, entry: Entry][] | undefined {
+  if (isRecord(frames)) return Object.entries(frames) as [string, Entry][];
+  const parts = views ?? objects;
+  return Array.isArray(parts) ? parts.map((part: Entry, k) => [String(part.name ?? k), part]) : undefined;
 }
 
-/** The poses in an entry: those of its frames or objects, otherwise the entry itself. */
+/** The poses in an entry: those of its parts, otherwise the entry itself. */
 export function posesIn(name: string, entry: Entry): { name: string; entry: Entry }[] {
-  const { frames, objects = frames, ...rest } = entry;
-  if (!isRecord(objects)) return [{ name, entry: rest }];
+  const parts = partsOf(entry);
+  if (parts === undefined) return [{ name, entry }];
   // The objects of a scene are in one depth map.
-  const { depthCalibration, support } = rest;
-  return Object.entries(objects).map(([part, pose]) => ({
-    name: `${name}/${part}`,
-    entry: { ...withoutUndefined({ depthCalibration, support }), ...(pose as Entry) },
-  }));
+  const { depthUnit, depthCalibration, support } = entry;
+  const whole = withoutUndefined({ depthUnit, depthCalibration, support });
+  return parts.map(([part, pose]) => ({ name: `${name}/${part}`, entry: { ...whole, ...pose } }));
 }
 
 /** The codes of the errors of an entry, or of its frames or objects. */
@@ -192,10 +149,10 @@ export const alternativesOf = ({ alternatives }: Entry): Entry[] =>
 
 /** Whether the lengths of a result, or of its entry, are metres. */
 export function isMetric(result: object): boolean {
-  const { depthCalibration, frames, views = frames, ...rest } = result as Entry;
-  if (isRecord(depthCalibration)) return depthCalibration.isMetric !== false;
+  const { depthCalibration, depthUnit, frames, views = frames } = result as InputInfo & Entry;
+  if (depthCalibration !== undefined) return depthCalibration.isMetric;
   if (typeof views === "object" && views !== null) return Object.values(views).every(isMetric);
-  return rest.isMetric !== false;
+  return depthUnit?.metres !== null;
 }
 
 /** Follows property names and indices into a JSON value. */
@@ -219,12 +176,12 @@ export const rowFields: readonly (readonly [name: string, read: (entry: Entry) =
   ["alternatives", ({ alternatives }) => (Array.isArray(alternatives) ? alternatives.length : undefined)],
   ["isMetric", (entry) => ("error" in entry ? undefined : isMetric(entry))],
   ["scale", at("scale")],
-  ...["qx", "qy", "qz", "qw"].map((name, i) => [name, at("quaternion", i)] as const),
+  ...["qx", "qy", "qz", "qw"].map((name, i) => [name, at("rotation", i)] as const),
   ...["txM", "tyM", "tzM"].map((name, i) => [name, at("translation", i)] as const),
   ...within("diagnostics", "initialScale", "scaleRatio"),
-  ...within("metrics", "iou", "boundaryF", "centerDriftPx", "chamferMm", "uniChamferMm", "fitness"),
-  ...within("metrics", "normalConsistency", "depthMaeMm"),
-  ...within("errors", "scaleError", "rotationErrorDeg", "translationErrorM", "translationErrorRelative", "addSMm"),
+  ...within("metrics", "iou", "boundaryF", "centerDriftPx", "chamferM", "uniChamferM", "fitness"),
+  ...within("metrics", "normalConsistency", "depthMaeM"),
+  ...within("errors", "scaleError", "rotationErrorDeg", "translationErrorM", "translationErrorRelative", "addSM"),
   [
     "warnings",
     (entry) =>
@@ -234,7 +191,7 @@ export const rowFields: readonly (readonly [name: string, read: (entry: Entry) =
             .join(" ")
         : undefined,
   ],
-  ["timeMs", at("timingsMs", "total")],
+  ["timeMs", at("diagnostics", "timingsMs", "total")],
 ];
 
 /** The row of an entry in a table. */

@@ -20,7 +20,7 @@ export const evaluateOptions: readonly OptionRow[] = OPTIONS.evaluate.filter(
 /** The job of a command line: the metrics of each case, or of each of its frames with a mask. */
 export async function evaluateJob(args: readonly string[], flags: Flags): Promise<Job<FolderToDo>> {
   const tasks = await foldersToDo(caseKind, args, flags.list);
-  const { transform = "gt", depthKind = "metric" } = flags;
+  const { transform = "gt" } = flags;
   const options = optionValues(flags, evaluateOptions);
   const row = caseTable(
     tasks.map(({ name }) => name),
@@ -38,7 +38,7 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
           const matrix =
             transform === "gt" ? truth?.transform.matrix : await readTransform("transform", transform, name, frame);
           const evaluation = await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...options, ...target });
-          return withFiles({ ...evaluation, ...(depthKind === "metric" ? {} : { isMetric: false }) }, found);
+          return withFiles({ ...evaluation }, found);
         };
         const entry = await evaluate().catch((error) => failureEntry(error, found));
         if (frame === undefined) return entry;

@@ -87,7 +87,7 @@ export const recordFlags = (noun: string): Flag[] => [
   ],
   [
     "--workers <n|auto>",
-    `${noun}s at a time (1 to 64; default auto: one per core)`,
+    `${noun}s at a time (1 to 64; default auto: one less than the number of cores, 1 to 8)`,
     { parse: workers, isIndifferent: true },
   ],
 ];

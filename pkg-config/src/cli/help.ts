@@ -33,7 +33,7 @@ are the same. Files that are not read are named at the end.`;
 const conventions = `
 Frames and units
   x_cam = s·R·p_mesh + t. The camera looks along +z, x is right, y is down (OpenCV); metres. Pixel centres are at
-  whole numbers. "matrix" is column-major (three.js, glTF), "rotation" row-major, "quaternion" x, y, z, w.`;
+  whole numbers. "matrix" is column-major (three.js, glTF), "rotation" a quaternion x, y, z, w, "rotationMatrix" its rows.`;
 
 const kinds = `
 Depth of models
@@ -43,7 +43,7 @@ ${Object.entries(depthKinds)
   .join("\n")}
   Factor and shift are estimated with the pose. Lengths are then metric only if one is known: --known-extent, or a number
   as --scale. Otherwise they are in units of their own, also in JSON and in GLB files, and "depthCalibration" of the JSON
-  entry has { "isMetric": false }; columns in metres and millimetres are empty, and errors against gt.json are not measured.`;
+  entry has { "isMetric": false }; columns in metres are empty, and errors against gt.json are not measured.`;
 
 const transformFile = `
 A transform file is JSON with
@@ -98,14 +98,11 @@ Output
   IoU, boundary F, centre drift, Chamfer distance, fitness, depth error and time; with gt.json also the errors against
   it. A single case is shown in detail. The confidence is the probability that the pose is right, 0 to 1. An alternative
   is another pose that explains the observation nearly as well.
-  --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, turnConfidence, alternatives,
-  uncertainty, proportions, metrics, warnings, depthUnit, cameraSource, depthCalibration, timingsMs, diagnostics, inputs,
-  unread } }; proportions, cameraSource and depthCalibration where there are any. inputs has what each file was read as:
-  { "depth.png": { as: "depth", unit }, "mask.png": { as: "mask", reading }, … }; unread names the others. A case that
-  failed has { error: { code, argument, found, expected, remedy, message } }. With --preset paper, confidences and uncertainty are null and alternatives is empty.
-  A case with frames has { scale, rotation, translation, …, frames: { "<frame>": { scale, rotation, translation, …,
-  confidence, role, camera } } }: its own pose is world from mesh, if the camera poses are known; those of the frames are
-  camera from mesh.
+  --json writes { "<case>": the result of align() of the API }, with errors against gt.json; inputs, what each file was read
+  as: { "depth.png": { as: "depth", unit }, "mask.png": { as: "mask", reading }, … }; and unread, the names of the others. A
+  case that failed has { error: { code, argument, found, expected, remedy, message } }. A case with frames has the result of
+  alignViews(): its own pose is world from mesh, if the camera poses are known; each of views, with the name of its frame,
+  has the pose camera from mesh.
   --csv writes the columns ${columns}.
   --report writes a folder with index.html, which a browser opens from disk: a table to sort and filter, and for each case
   its picture with mask, mesh and depth difference, its alternatives, and a view in 3D. Cases with frames have a row per frame.
@@ -135,9 +132,8 @@ ${kinds}
 
 Output
   A row per frame: state, confidence, scale and its standard deviation, and time.
-  --json writes { "<video>": { scale, frames: { "<frame>": { scale, rotation, translation, matrix, quaternion, state,
-  confidence, depthUnit, depthCalibration, … } } } }; a frame that failed has { error }. The scale of the video is the last one. A single video is written
-  after each frame, several when each ends. --csv has a row per frame, VIDEO/FRAME.
+  --json writes { "<video>": { frames: { "<frame>": the result of next() of the API } } }, with inputs and unread; a frame
+  that failed has { error }. A single video is written after each frame, several when each ends. --csv has a row per frame, VIDEO/FRAME.
 ${batches("video", "a mesh")}
 
 Examples
@@ -151,13 +147,13 @@ ${conventions}
 
 Depth of models
   Metrics need a camera and depth without an unknown shift: --depth-kind is metric, or scale-invariant (times an unknown
-  factor). Transforms of scale-invariant depth are in its unit, and lengths are printed as "units"; columns in metres and
-  millimetres are empty.
+  factor). Transforms of scale-invariant depth are in its unit, and lengths are printed as "units"; columns in metres are
+  empty.
 ${transformFile}
 
 Output
   A row per case, or per frame of a case with frames that have a mask; a single case in detail. --json writes
-  { "<case>": { metrics, errors, layout, warnings, diagnostics } }, or { frames: { "<frame>": the same } }.
+  { "<case>": the result of evaluate() of the API }, or { frames: { "<frame>": the same } }, with inputs and unread.
 ${batches("case", "a mesh")}
 
 Examples
@@ -186,9 +182,8 @@ ${kinds}
 Output
   A row per object: confidence, scale, what it rests on, gap, shared volume, silhouette IoU; with gt.json also the errors
   against it. With --proportions, its lengths in the proportions found are below.
-  --json writes { "<scene>": { "objects": { "<object>": as a case of "align --json", with "contact" },
-  "support": { "normal", "d", "confidence" } | null, "metrics", "warnings",
-  "depthUnit", "cameraSource", "depthCalibration" } }; a scene that failed has { "error" }.
+  --json writes { "<scene>": the result of alignScene() of the API }, with errors of the objects, inputs and unread; a scene
+  or an object that failed has { error }.
   --csv has a row per object, SCENE/OBJECT. --report, --overlay and --glb write pictures and posed meshes of each object, see "sim3align align --help".
   --scene-glb writes the scene of a single folder: nodes by name, materials and textures, the camera, and the support as
   ground, y up, in metres.

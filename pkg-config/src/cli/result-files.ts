@@ -46,7 +46,7 @@ export const isCsv = (beginning: string) => beginning.startsWith(`${csvHeadings.
 
 /**
  * A row for each case, or for each frame or object of one, after a row of headings (RFC 4180 with line feeds). What a case
- * lacks is empty, as are metres and millimetres of lengths without a unit.
+ * lacks is empty, as are metres of lengths without a unit.
  */
 export class CsvFile implements EntrySink {
   #head = [csvHeadings.join(",")];

@@ -1,7 +1,6 @@
 /** `sim3align scene`: aligns the objects of scenes. */
 import { join } from "node:path";
 import { read } from "../case-folder.js";
-import type { Contact } from "../generated/types.js";
 import { type Aligner, type AlignInput, OPTIONS, type SceneInput, type SceneOptions } from "../index.js";
 import { cellOf, fixed } from "../report-page/row.js";
 import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
@@ -10,18 +9,7 @@ import { withoutUndefined } from "../values/values.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
 import { depthRows, proportionsRows, warningLine } from "./details.js";
-import {
-  type AlignEntry,
-  type Entry,
-  inputEntry,
-  isFailure,
-  isMetric,
-  rowOf,
-  type SceneEntry,
-  sceneEntry,
-  warningsOf,
-  withFiles,
-} from "./entry.js";
+import { type Entry, isMetric, rowOf, type SceneEntry, sceneEntry, warningsOf, withFiles } from "./entry.js";
 import { writeSceneFiles } from "./exports.js";
 import { isFile, UsageError } from "./files.js";
 import { caseSettings, type Flags, filesOf, sceneFileFlags } from "./flags.js";
@@ -100,15 +88,15 @@ async function alignScene(
   const objects = scene.input.objects.map((object) => ({ ...object, ...(options.scale && { initial: undefined }) }));
   const input = { ...scene.input, objects, support } as SceneInput;
   const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress: caseRun.onProgress }));
-  const read = inputEntry(result);
+  const { depthUnit, depthCalibration } = result;
+  const depth = withoutUndefined({ depthUnit, depthCalibration });
   const errors = result.objects.map((object, i) => {
     const own = scene.input.objects[i];
     if (object.error !== undefined || own === undefined) return null;
-    return errorsOf(aligner, inputOf(scene.input, own), { ...object, ...read }, scene.truths[i]);
+    return errorsOf(aligner, inputOf(scene.input, own), { ...object, ...depth }, scene.truths[i]);
   });
   const entry = withFiles(sceneEntry(result, await Promise.all(errors)), scene.found);
-  const names = result.objects.map(({ name }, i) => name ?? `${i}`);
-  caseRun.print(...linesOf(task.name, entry, names));
+  caseRun.print(...linesOf(task.name, entry));
   await caseRun.make(async () => caseRun.print(...(await writeSceneFiles(scene, result, flags, files))));
   return entry;
 }
@@ -134,18 +122,19 @@ const columns = [
 ];
 
 /** A table of the objects, in the order of their indices. */
-function linesOf(name: string, entry: SceneEntry, names: readonly string[]): string[] {
-  const { support, warnings } = entry;
+function linesOf(name: string, entry: SceneEntry): string[] {
+  const { objects, support, warnings } = entry;
+  const names = objects.map((object, i) => object.name ?? `${i}`);
   const lengths = new Lengths(isMetric(entry));
   const plane =
     support === null
       ? "no support"
       : `support n = ${support.normal.map((x) => fixed(x, 4)).join(" ")}, d = ${fixed(support.d, 4)} ${lengths.unit}`;
   const plain = new Style({ isTTY: false });
-  const rows = names.flatMap((object) => {
-    const own = entry.objects[object] as Entry;
-    if (isFailure(own)) return failedLines(object, own, plain);
-    const { contact, scale, ...aligned } = own as unknown as AlignEntry & { contact: Contact };
+  const rows = objects.flatMap((own, i) => {
+    const object = names[i] as string;
+    if (own.error !== undefined) return failedLines(object, own, plain);
+    const { contact, scale } = own;
     const { restsOn, gapM, sharedVolume } = contact;
     const row = rowOf(own);
     const cells = [
@@ -157,7 +146,7 @@ function linesOf(name: string, entry: SceneEntry, names: readonly string[]): str
         cellOf(row, fact),
       ),
     ];
-    return [tableLine(columns, cells), ...pairs(proportionsRows(aligned, lengths))];
+    return [tableLine(columns, cells), ...pairs(proportionsRows(own, lengths))];
   });
   const notes = warningsOf({ warnings }).map((warning) => warningLine(warning, plain));
   return [`${name}: ${plane}`, ...pairs(depthRows(entry)), headings(columns), ...rows, ...notes];

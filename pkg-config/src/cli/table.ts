@@ -76,9 +76,9 @@ export class Lengths {
     return this.isMetric ? "m" : "units";
   }
 
-  /** A length with its unit; one of millimetres has three more decimals without them. */
-  millimetres(mm: number | null | undefined, digits: number): string {
-    if (mm === null || mm === undefined) return fixed(mm, digits);
-    return this.isMetric ? `${fixed(mm, digits)} mm` : `${fixed(mm / 1000, digits + 3)} ${this.unit}`;
+  /** A small length of this many metres, in millimetres; without a unit, it has three more decimals. */
+  small(length: number | null | undefined, digits: number): string {
+    if (length === null || length === undefined) return fixed(length, digits);
+    return this.isMetric ? `${fixed(1000 * length, digits)} mm` : `${fixed(length, digits + 3)} ${this.unit}`;
   }
 }

@@ -4,7 +4,7 @@ import { type Aligner, OPTIONS, type TrackedFrame, type TrackOptions } from "../
 import { fixed, significant } from "../report-page/row.js";
 import type { CaseRun, Job } from "./batch.js";
 import { depthRows } from "./details.js";
-import { type Entry, failureEntry, frameEntry, trackEntry, withFiles } from "./entry.js";
+import { type Entry, failureEntry, withFiles } from "./entry.js";
 import { UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
@@ -42,6 +42,7 @@ async function trackVideo(
   try {
     caseRun.print(caseRun.style.bold(name), headings(columns));
     const frames = new Map<string, Entry>();
+    const entry = () => withFiles({ frames: Object.fromEntries(frames) }, found());
     // How the last frame was read stands for the others.
     let last: TrackedFrame | undefined;
     let next: ReturnType<typeof read> | undefined;
@@ -64,19 +65,19 @@ async function trackVideo(
         }
         last = await tracking;
         const { state, confidence, scale, scaleSd } = last;
-        frames.set(frame, withFiles(frameEntry(last), own));
+        frames.set(frame, withFiles({ ...last }, own));
         cells = [state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2)];
       } catch (error) {
         const failed = failureEntry(error, own);
         frames.set(frame, failed);
         cells = [failed.error.code, "–", "–", "–"];
       }
-      caseRun.partial(trackEntry(frames, found()));
+      caseRun.partial(entry());
       caseRun.print(tableLine(columns, [frame, ...cells, fixed(performance.now() - began, 0)]));
       if (caseRun.isClosed()) break;
     }
     if (last !== undefined) caseRun.print(...pairs(depthRows(last)));
-    return trackEntry(frames, found());
+    return entry();
   } finally {
     tracker.dispose();
   }

@@ -27,8 +27,8 @@ export async function readTransform(
   const json = await jsonIn(path, argument);
   const invalid = (found: string, expected: string) => failure("INVALID_TRANSFORM", argument, found, expected, remedy);
   const own = entryOf(json, name, invalid);
-  const { frames } = own as Readonly<Record<string, unknown>>;
-  const entry = frame !== undefined && isRecord(frames) ? entryOf(frames, frame, invalid) : own;
+  const frames = frame === undefined ? undefined : framesOf(own);
+  const entry = frame === undefined || frames === undefined ? own : entryOf(frames, frame, invalid);
   const pose = parsePoseFile(argument, entry);
   if (pose === null) throw invalid("a file without a known pose", "a transform");
   return Array.from(pose.transform.matrix);
@@ -61,4 +61,11 @@ function entryOf(json: unknown, name: string, invalid: (found: string, expected:
     `an object with ${Object.keys(json).slice(0, 12).join(", ") || "nothing"}`,
     `a transform, or an entry for ${name}`,
   );
+}
+
+/** The poses of the frames in an entry, by their names: of several views, or of a video. */
+function framesOf(entry: object): object | undefined {
+  const { frames, views } = entry as Readonly<Record<string, unknown>>;
+  if (!Array.isArray(views)) return isRecord(frames) ? frames : undefined;
+  return Object.fromEntries(views.map((view) => [String(view?.name), view]));
 }

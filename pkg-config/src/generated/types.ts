@@ -207,8 +207,8 @@ export interface EvaluateOptions extends Pick<AlignOptions, "seed">, Pick<PaperO
   /** The known transform, camera from mesh, that `errors` compares with. Default `null`. */
   truth?: Sim3Like | null | undefined;
   /**
-   * The object's symmetry: the rotation error is the smallest over it. `"auto"` finds it on the surface of the mesh.
-   * Default `"none"`.
+   * The object's symmetry: the rotation error is the smallest over it. `"auto"` finds it on the surface of the mesh,
+   * once for all calls with the mesh. Default `"auto"`.
    */
   symmetry?: SymmetryOption | undefined;
   /**
@@ -351,12 +351,12 @@ export type Metrics = {
    */
   iou: number | null;
   /**
-   * Mean of the two directional mean distances between observed points and surface, millimetres. The surface's unseen
+   * Mean of the two directional mean distances between observed points and surface, metres. The surface's unseen
    * side counts, so that it is above 0 at the true pose too.
    */
-  chamferMm: number | null;
-  /** Mean distance from the observed points to the surface, millimetres. */
-  uniChamferMm: number | null;
+  chamferM: number | null;
+  /** Mean distance from the observed points to the surface, metres. */
+  uniChamferM: number | null;
   /** Share of the observed points within 5 % of their box diagonal of the surface, 0 to 1. */
   fitness: number | null;
   /**
@@ -364,8 +364,8 @@ export type Metrics = {
    * `null` where no point has a normal.
    */
   normalConsistency: number | null;
-  /** Mean |rendered − observed| depth over the mask's pixels that have both, millimetres; `null` where none has. */
-  depthMaeMm: number | null;
+  /** Mean |rendered − observed| depth over the mask's pixels that have both, metres; `null` where none has. */
+  depthMaeM: number | null;
   /**
    * Correlation of the mesh's colours with the photo inside the mask, without the shading that normals explain, −1 to
    * 1, higher is better; absent where the mesh or the photo has no colours. Not of the paper.
@@ -390,10 +390,10 @@ export type PoseErrors = {
    */
   translationErrorRelative: number;
   /**
-   * ADD-S, millimetres: mean distance of surface points under the true pose to the surface under the estimated pose
+   * ADD-S, metres: mean distance of surface points under the true pose to the surface under the estimated pose
    * (Hinterstoisser et al. 2012, §4.2, with the exact surface instead of its points).
    */
-  addSMm: number;
+  addSM: number;
 };
 
 /** Errors of layout of an estimate relative to the true pose, up to the symmetry of the object as the pose errors. */
@@ -428,17 +428,17 @@ export type LayoutErrors = {
 export type BopErrors = {
   /** Visible Surface Discrepancy, 0 to 1, for each misalignment tolerance: .05, .1 … .5 of the diameter. */
   vsd: [number, number, number, number, number, number, number, number, number, number];
-  /** Maximum Symmetry-Aware Surface Distance, millimetres. */
-  mssdMm: number;
+  /** Maximum Symmetry-Aware Surface Distance, metres. */
+  mssdM: number;
   /** Maximum Symmetry-Aware Projection Distance, pixels; `null` if a vertex is not in front of the camera. */
   mspdPx: number | null;
-  /** ADD: mean distance between the same vertices under both poses, millimetres. */
-  addMm: number;
+  /** ADD: mean distance between the same vertices under both poses, metres. */
+  addM: number;
   /**
    * ADD-S, also called ADI: mean distance from the vertices under the true pose to the nearest vertices under the
-   * estimated pose, millimetres.
+   * estimated pose, metres.
    */
-  addSMm: number;
+  addSM: number;
 };
 
 /** Sizes of the problem and of the search. */

@@ -1,5 +1,5 @@
 /** Descriptions of the kinds of depth for documents and user interfaces. */
-import type { DepthKind } from "../types/inputs.js";
+import type { DepthImage, DepthKind } from "../types/inputs.js";
 
 /** A kind of depth. */
 interface KindOfDepth {
@@ -42,3 +42,9 @@ export const depthKinds: { readonly [K in DepthKind]: KindOfDepth } = {
 
 /** The unit of metric depth about which nothing else is known. */
 export const defaultUnits = "floats are metres, integers (16-bit PNG) millimetres";
+
+/** The unit of a depth map for people: `0.001 m (16-bit integers, assumed)`. */
+export function unitText({ metres, source, isAssumed }: DepthImage["unit"]): string {
+  const unit = metres === null ? "unknown" : metres === 1 ? "metres" : `${metres} m`;
+  return `${unit} (${source}${isAssumed ? ", assumed" : ""})`;
+}

@@ -2,7 +2,7 @@
 
 import type { Pinhole } from "../camera/pinhole.js";
 import type { FileReaders } from "../modules/readers.js";
-import type { DepthImage, ReadDepthOptions } from "../types/inputs.js";
+import type { DepthImage, DepthKind, ReadDepthOptions } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/values.js";
@@ -18,12 +18,15 @@ export interface SizedArray<T> {
 
 type DepthArray = Float32Array | Uint16Array;
 
+/** Metres per unit of integer depth of which nothing else is known. */
+export const DEFAULT_SCALE = 0.001;
+
 /** A depth map for the core, with the camera and the unit in its file. */
 export interface ReadDepth extends SizedArray<DepthArray> {
   /** The camera in the file. */
   camera?: Pinhole;
-  /** The unit of the values, and why it was taken, for people. */
-  unit: string;
+  /** The unit of the values. */
+  unit: DepthImage["unit"];
 }
 
 const depthForms = () =>
@@ -68,16 +71,21 @@ export async function readDepth(
 }
 
 /** The unit of an array, in the words of the readers of files. */
-function unitOf(data: DepthArray, { depthKind = "metric", depthScale, integerDepthScale }: ReadDepthOptions): string {
-  if (isAffineInvariant(depthKind)) return `none (${depthKind})`;
+function unitOf(
+  data: DepthArray,
+  { depthKind = "metric", depthScale, integerDepthScale }: ReadDepthOptions,
+): DepthImage["unit"] {
+  if (isAffineInvariant(depthKind) || depthKind === "scale-invariant") return unknownUnit(depthKind);
   // The core refuses anything else than a number.
-  if (typeof depthScale === "number") return `${depthScale} m (depthScale)`;
-  if (depthKind === "scale-invariant") return `unknown (${depthKind})`;
-  if (isFloats(data)) return "metres (float values, assumed)";
+  if (typeof depthScale === "number") return { metres: depthScale, source: "depthScale", isAssumed: false };
+  if (isFloats(data)) return { metres: 1, source: "float values", isAssumed: true };
   return typeof integerDepthScale === "number"
-    ? `${integerDepthScale} m (camera file)`
-    : "0.001 m (16-bit integers, assumed)";
+    ? { metres: integerDepthScale, source: "camera file", isAssumed: false }
+    : { metres: DEFAULT_SCALE, source: "16-bit integers", isAssumed: true };
 }
+
+/** The unit of values of a kind that has none. */
+export const unknownUnit = (depthKind: DepthKind) => ({ metres: null, source: depthKind, isAssumed: false });
 
 /** Signatures of the files of depth models: NPZ (also without an array), OpenEXR, TIFF and PFM. */
 const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "Pf\n", "PF\n"];

@@ -2,12 +2,13 @@
 import { depthOfRays } from "../camera/ray-distance.js";
 import type { CoreInput, CoreView } from "../modules/core-input.js";
 import type { FileReaders } from "../modules/readers.js";
+import type { DepthImage } from "../types/inputs.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { oneOf, withoutUndefined } from "../values/values.js";
 import { cameraOf, type ResolvedCamera } from "./camera.js";
-import { checkSides, readDepth, readPointMap, type SizedArray } from "./depth.js";
+import { checkSides, DEFAULT_SCALE, readDepth, readPointMap, type SizedArray, unknownUnit } from "./depth.js";
 import { depthKindNames, isAffineInvariant } from "./formats.js";
 import { type ReadPhoto, readPhoto, readPhotoExif } from "./photo.js";
 
@@ -16,9 +17,6 @@ export interface Resolved<T> {
   core: T;
   notes: InputNotes;
 }
-
-/** Metres per unit of integer depth of which nothing else is known. */
-const DEFAULT_SCALE = 0.001;
 
 /** The properties of a view. */
 export const viewProperties: readonly string[] = [
@@ -90,7 +88,8 @@ async function pointMapView(
   const camera = await cameraOf(input);
   // Intrinsics that were not given are fitted to the point map.
   const resolved = camera.isGiven ? camera.resolve(sides.width, sides.height) : { camera: undefined, warnings: [] };
-  return viewOf(read, sides, photo, resolved, isMetric ? "metres (point map)" : `unknown (${depthKind})`);
+  const unit = isMetric ? { metres: 1, source: "point map", isAssumed: false } : unknownUnit(depthKind);
+  return viewOf(read, sides, photo, resolved, unit);
 }
 
 function viewOf(
@@ -98,7 +97,7 @@ function viewOf(
   { width, height }: Omit<SizedArray<unknown>, "data">,
   { image, imageReading }: ReadPhoto,
   { camera, focalDeviation, source, warnings }: ResolvedCamera,
-  depthUnit: string,
+  depthUnit: DepthImage["unit"],
 ): Resolved<CoreView> {
   const view = withoutUndefined({ ...depth, width, height, image, camera, focalDeviation });
   const notes = { warnings, colors: [], depthUnit, ...withoutUndefined({ cameraSource: source, imageReading }) };

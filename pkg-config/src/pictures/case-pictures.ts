@@ -20,8 +20,8 @@ type Matrix = readonly number[];
 export interface CasePictures {
   /** PNG files by name. */
   files: Record<string, Uint8Array>;
-  /** The difference of depth whose colour is saturated, millimetres. */
-  limitMm: number;
+  /** The difference of depth whose colour is saturated, metres. */
+  limitM: number;
   isPhoto: boolean;
   space: SpaceJson;
 }
@@ -56,7 +56,7 @@ export async function drawCase(shot: Shot, pose: Matrix, alternatives: readonly 
   );
   return {
     files: Object.fromEntries(await Promise.all(encoded)),
-    limitMm: 1000 * limitM,
+    limitM,
     isPhoto: shot.photo !== undefined,
     space: spaceOf(shot, pose, { view, measured, picture: seen }),
   };

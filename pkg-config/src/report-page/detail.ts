@@ -105,19 +105,19 @@ export class Detail {
     body: HTMLElement,
     row: ReportRow,
     folder: string,
-    { limitMm, isPhoto, alternatives, matrix, space }: ReportDetails,
+    { limitM, isPhoto, alternatives, matrix, space }: ReportDetails,
   ): void {
     // The unit of lengths that are not metric is unknown.
-    const length = (mm: number | null | undefined, digits: number) =>
-      row.isMetric ? `${fixed(mm, digits)} mm` : `${fixed(mm && mm / 1000, digits + 3)} units`;
+    const length = (metres: number | null | undefined, digits: number) =>
+      row.isMetric ? `${fixed(metres && 1000 * metres, digits)} mm` : `${fixed(metres, digits + 3)} units`;
     const legend = element(
       "p",
       { class: "legend" },
       `Over the ${isPhoto ? "photo" : "depth map"}: `,
       element("span", { class: "key mesh" }, "mesh"),
       element("span", { class: "key mask" }, "mask"),
-      element("span", { class: "key near" }, `mesh ${length(limitMm, 0)} nearer`),
-      element("span", { class: "key far" }, `${length(limitMm, 0)} farther`),
+      element("span", { class: "key near" }, `mesh ${length(limitM, 0)} nearer`),
+      element("span", { class: "key far" }, `${length(limitM, 0)} farther`),
     );
     const canvas = element("canvas", {
       width: 440,
@@ -149,8 +149,8 @@ export class Detail {
       ["Scale", `${significant(row.scale, 6)} ${row.isMetric ? "m" : "units"} per mesh unit`],
       ["Silhouette IoU", fixed(row.iou, 4)],
       ["Boundary F", fixed(row.boundaryF, 4)],
-      ["Depth difference", length(row.depthMaeMm, 2)],
-      ["Chamfer distance", length(row.chamferMm, 2)],
+      ["Depth difference", length(row.depthMaeM, 2)],
+      ["Chamfer distance", length(row.chamferM, 2)],
     ];
     const entries = numbers.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]);
     const rows = [0, 1, 2, 3].map((i) =>

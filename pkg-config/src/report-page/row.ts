@@ -31,10 +31,10 @@ export const columns = {
   iou: { short: "IoU", heading: "IoU", title: "Overlap of silhouette and mask", digits: 3 },
   boundaryF: { short: "bound. F", heading: "Boundary F", title: "Agreement of the outlines", digits: 3 },
   centerDriftPx: { short: "drift px", digits: 1 },
-  chamferMm: { short: "Chamfer mm", digits: 2 },
+  chamferM: { short: "Chamfer mm", digits: 2, factor: 1000 },
   fitness: { short: "fitness", digits: 3 },
-  depthMaeMm: {
-    ...{ short: "MAE mm", heading: "Depth, mm", digits: 2 },
+  depthMaeM: {
+    ...{ short: "MAE mm", heading: "Depth, mm", digits: 2, factor: 1000 },
     title: "Mean absolute difference of depth, if it is metric",
   },
   scaleError: { short: "Δscale %", heading: "Δ scale, %", title: truth, digits: 1, factor: 100 },
@@ -82,8 +82,8 @@ export interface ReportHost {
   details: Record<string, ReportDetails>;
 }
 
-/** Whether a number is one of metres or millimetres. */
-export const isLength = (name: string) => /M(m)?$/.test(name);
+/** Whether a number is one of metres. */
+export const isLength = (name: string) => name.endsWith("M");
 
 /** The value in a column; `null` for lengths without a unit, and for missing values. */
 export function numberIn(row: Row, name: ColumnName): number | null {

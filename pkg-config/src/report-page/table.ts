@@ -25,7 +25,7 @@ const warnings: PageColumn = { id: "warnings", heading: "Warnings", text: codesO
 
 /** The columns of a report. Errors have columns only if a row has a true pose. */
 function columnsOf(rows: readonly ReportRow[]): PageColumn[] {
-  const metrics = (["alternatives", "scale", "iou", "boundaryF", "depthMaeMm"] as const).map(number);
+  const metrics = (["alternatives", "scale", "iou", "boundaryF", "depthMaeM"] as const).map(number);
   const errors = (["scaleError", "rotationErrorDeg", "translationErrorRelative"] as const).map(number);
   const hasTruth = rows.some((row) => typeof row.scaleError === "number");
   return [number("confidence"), name, ...metrics, ...(hasTruth ? errors : []), warnings, number("timeMs")];

@@ -299,8 +299,18 @@ export interface ReadDepthOptions {
  * `"metric"`, the values are those of the file; for the affine-invariant kinds, "no reading" is NaN.
  */
 export interface DepthImage extends PixelArray<Float32Array> {
-  /** The unit of the values in the file, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
-  unit: string;
+  /** The unit of the values in the file. */
+  unit: {
+    /** Metres per unit; `null` for values whose unit is unknown, or that are no lengths. */
+    metres: number | null;
+    /**
+     * Where the unit comes from: `"depthScale"`, `"camera file"`, `"point map"`, `"float values"`, `"16-bit integers"`; without
+     * metres, the kind of depth.
+     */
+    source: string;
+    /** Whether nothing states the unit. */
+    isAssumed: boolean;
+  };
   /** The camera in the file, in pixels of the depth map: from its intrinsics, its focal length or its field of view. */
   camera?: PinholeCamera;
 }

@@ -5,12 +5,12 @@
 
 import type * as Core from "../generated/types.js";
 import type { Sim3AlignError } from "../values/error.js";
-import type { AlignInput, FrameInput, ViewsInput } from "./inputs.js";
+import type { AlignInput, DepthImage, FrameInput, ViewsInput } from "./inputs.js";
 
 /** How the depth map and the camera of a view were read. */
 export interface InputInfo {
-  /** The unit of the depth, and why it was taken: `"0.001 m (16-bit integers, assumed)"`. */
-  depthUnit?: string;
+  /** The unit of the depth. */
+  depthUnit?: DepthImage["unit"];
   /** Where the intrinsics come from, if they were not given: `"depth file"`, `"EXIF: …"`, or `"estimate"`. */
   cameraSource?: string;
   /** Which values of the mask file are the object: `"values of 127.5 or more, of 0 to 255"`. */

@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::check_shape;
 use crate::geometry::surface_colors::SurfaceColors;
+use crate::metrics::symmetry::{Symmetry, SymmetryGroup};
 use crate::precise::observation::resolution::{FINE, GRIDS, Grid};
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
@@ -25,6 +26,8 @@ pub struct PreparedMesh<'a> {
     colors: Option<SurfaceColors>,
     trimmed_colors: OnceCell<SurfaceColors>,
     is_checked: Cell<bool>,
+    /// The symmetry of its surface, on first use.
+    symmetry: OnceCell<Rc<SymmetryGroup>>,
     /// By number of triangles, which depends on the quality.
     pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
     /// The mesh without what looks like a ground plate, on first use; `None` for one from which a plate is taken already.
@@ -59,7 +62,8 @@ impl<'a> PreparedMesh<'a> {
 
     fn with(whole: Cow<'a, Mesh>, trimmed: OnceCell<Option<Trimmed>>, plates: Option<OnceCell<Box<Plate>>>) -> Self {
         let (is_checked, pyramids, trimmed_colors) = (Cell::new(false), RefCell::default(), OnceCell::new());
-        Self { whole, trimmed, colors: None, trimmed_colors, is_checked, pyramids, plates }
+        let symmetry = OnceCell::new();
+        Self { whole, trimmed, colors: None, trimmed_colors, is_checked, symmetry, pyramids, plates }
     }
 
     /// The mesh with the colours of its surface, or without any.
@@ -126,6 +130,21 @@ impl<'a> PreparedMesh<'a> {
     /// given, take part only then.
     pub fn has_one_form(&self, grids: &[Grid; GRIDS]) -> bool {
         self.left_out().ground == 0.0 && self.without_plate(grids).is_none()
+    }
+
+    /// The rotations that this symmetry of the object makes equal.
+    ///
+    /// # Errors
+    /// As [`Symmetry::group`].
+    pub fn symmetry(&self, symmetry: &Symmetry) -> Result<Rc<SymmetryGroup>> {
+        if *symmetry != Symmetry::Auto {
+            return symmetry.group(self.mesh()).map(Rc::new);
+        }
+        if let Some(known) = self.symmetry.get() {
+            return Ok(Rc::clone(known));
+        }
+        let found = Rc::new(symmetry.group(self.mesh())?);
+        Ok(Rc::clone(self.symmetry.get_or_init(|| found)))
     }
 
     /// Checks that the surface encloses a volume.

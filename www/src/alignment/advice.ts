@@ -1,5 +1,6 @@
 /** The cause of a result that is not right, and what helps: what the package warns of, and what the page measures. An unknown cause is not guessed. */
 import type { DepthKind, Metrics, WarningCode } from "sim3align";
+import { unitText } from "sim3align/input/depth-kinds";
 import { otherSize, scaled } from "../input/camera-size.js";
 import { type Evidence, evidenceOf } from "../pictures/evidence.js";
 import { type Inputs, withInverted } from "../state/inputs.js";
@@ -58,7 +59,7 @@ interface Findings extends Evidence {
   warnings: readonly WarningCode[];
   depthKind: DepthKind;
   isMetric: boolean;
-  depthUnit: string;
+  depthUnit: Scene["depthUnit"];
   camera: Scene["camera"];
   /** By how much the image to which the intrinsics seem to belong is smaller; null if they seem to be those of this one. */
   cameraFactor: number | null;
@@ -123,8 +124,7 @@ const [USUAL_SIZE_M, USUAL_DISTANCE_M] = [
 
 /** The units in which the object would have a usual size. */
 function otherUnits({ depthUnit, distanceM, extentM }: Findings): Remedy[] {
-  // The unit of floats is written as a word.
-  const present = Number.parseFloat(depthUnit) || 1;
+  const present = depthUnit.metres ?? 1;
   const isIn = (m: number, [least, most]: readonly [number, number]) => m >= least && m <= most;
   return units.flatMap(([unit, title]) => {
     const factor = unit / present;
@@ -223,7 +223,7 @@ const rows: readonly Row[] = [
     codes: ["DEPTH_LOOKS_LIKE_MILLIMETRES", "DEPTH_LOOKS_TOO_SMALL", "SIZE_DOUBTFUL"],
     test: has("DEPTH_LOOKS_LIKE_MILLIMETRES", "DEPTH_LOOKS_TOO_SMALL", "SIZE_DOUBTFUL"),
     text: ({ depthUnit, distanceM, extentM }) =>
-      `Is it really ${centimetres(extentM)} cm across and ${depth(distanceM, null)} away? The depth map does not state its unit; it was read in ${depthUnit}.`,
+      `Is it really ${centimetres(extentM)} cm across and ${depth(distanceM, null)} away? The depth map does not state its unit; it was read in ${unitText(depthUnit)}.`,
     remedies: (of) => [...otherUnits(of), choose("unit")],
   },
   {

@@ -194,7 +194,7 @@ export const poseOf = (alignment: AnyAlignment, source: PoseSource): Pose => ({
 
 /** The package gets a depth map in metres: only the page knows whether its file has stated a unit. */
 function withoutStated<T extends AnyAlignment>(alignment: T, { depthUnit }: Scene): T {
-  if (depthUnit.endsWith("assumed)")) return alignment;
+  if (depthUnit.isAssumed) return alignment;
   return { ...alignment, warnings: alignment.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL") };
 }
 

@@ -91,13 +91,13 @@ function inUnit(alignment: AnyAlignment, factor: number): AnyAlignment {
     ...compose(unitOf(factor), of),
   });
   const { contact, metrics, ...of } = alignment;
-  const { depthMaeMm, uniChamferMm, chamferMm } = metrics;
+  const { depthMaeM, uniChamferM, chamferM } = metrics;
   const length = (value: number | null) => value && value * factor;
   return {
     ...scaled(of as AnyAlignment),
     metrics: {
       ...metrics,
-      ...{ depthMaeMm: length(depthMaeMm), uniChamferMm: length(uniChamferMm), chamferMm: length(chamferMm) },
+      ...{ depthMaeM: length(depthMaeM), uniChamferM: length(uniChamferM), chamferM: length(chamferM) },
     },
     ...("alternatives" in of ? { alternatives: of.alternatives.map(scaled) } : {}),
     ...("uncertainty" in of && of.uncertainty

@@ -60,10 +60,14 @@ async function depthOf({
     throw new Error(`depth has ${depth.length} values; expected width × height, ${width} × ${height}.`);
   }
   const isMetric = depthKind === "metric";
-  const scale = depthScale ?? (isMetric && depth instanceof Uint16Array ? 0.001 : 1);
+  const isInteger = depth instanceof Uint16Array;
+  const scale = depthScale ?? (isMetric && isInteger ? 0.001 : 1);
   const data = Float32Array.from(depth, (z) => z * scale);
-  const unit = !isMetric ? "unknown" : scale === 1 ? "metres" : `${scale} m`;
-  return { data, width, height, depthKind, unit: depthScale === undefined && isMetric ? `${unit} (assumed)` : unit };
+  const assumed = isInteger ? "16-bit integers" : "float values";
+  const unit = isMetric
+    ? { metres: scale, source: depthScale === undefined ? assumed : "depthScale", isAssumed: depthScale === undefined }
+    : { metres: null, source: depthKind, isAssumed: false };
+  return { data, width, height, depthKind, unit };
 }
 
 async function objectOf(

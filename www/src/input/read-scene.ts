@@ -37,7 +37,7 @@ export interface Reading {
   /** What is to be calibrated. */
   raw: RawView | null;
   depthKind: DepthKind;
-  depthUnit: string;
+  depthUnit: Scene["depthUnit"] | null;
   camera: Scene["camera"] | null;
   /** Where the camera comes from, if none was given. */
   cameraSource: string | null;
@@ -157,7 +157,7 @@ export async function readInputs(
     depth: view && read && { data: view.depthM, width: read.width, height: read.height },
     raw: view?.raw ?? null,
     depthKind: read?.depthKind ?? "metric",
-    depthUnit: read?.unit ?? "",
+    depthUnit: read?.unit ?? null,
     camera: camera?.camera ?? null,
     cameraSource: camera?.source ?? null,
     focalUncertainty: camera?.focalUncertainty ?? 0,
@@ -168,7 +168,7 @@ export async function readInputs(
 /** The scene, or null while a part is missing. A frame of a video may lack its mask. */
 export function sceneOf(inputs: Inputs, reading: SceneReading, isFrame = false): Scene | null {
   const { depth, camera, photo, objects, raw, depthUnit, cameraSource, warnings } = reading;
-  if (depth === null || camera === null) return null;
+  if (depth === null || depthUnit === null || camera === null) return null;
   const models: ObjectModel[] = [];
   for (const [i, { mask: ownMask, mesh, glb, truth, initial }] of objects.entries()) {
     const mask = ownMask ?? (isFrame && inputs.objects[i]?.mask === null ? new Uint8Array(depth.data.length) : null);

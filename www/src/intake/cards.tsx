@@ -1,7 +1,7 @@
 /** The cards of the view: depth map, photo, camera. */
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
-import { depthKinds } from "sim3align/input/depth-kinds";
+import { depthKinds, unitText } from "sim3align/input/depth-kinds";
 import { depthKindNames, extensionsOf, type FileKind } from "sim3align/input/formats";
 import { type Draft, draftInputs } from "../input/draft.js";
 import { baseName } from "../input/files.js";
@@ -89,7 +89,7 @@ const kinds = depthKindNames.map((kind) => [kind, depthKinds[kind].title] as con
 
 export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
   const { depth: file, depthScale, depthKind } = draftInputs(open);
-  const { depth = null, depthKind: read = "metric", depthUnit = "" } = open.reading ?? {};
+  const { depth = null, depthKind: read = "metric", depthUnit = null } = open.reading ?? {};
   const kind = depthKind ?? read;
   const range = useMemo(() => (depth === null ? null : depthRange(depth.data)), [depth]);
   const image = useImage(ground, depth);
@@ -133,7 +133,8 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
         </label>
       )}
       <p class="quiet" id="depth-unit">
-        {depth !== null && (kind === "metric" ? `Unit: ${depthUnit}` : "No unit: sizes are relative to one another.")}
+        {depthUnit !== null &&
+          (kind === "metric" ? `Unit: ${unitText(depthUnit)}` : "No unit: sizes are relative to one another.")}
       </p>
     </Card>
   );

@@ -1,4 +1,5 @@
 /** The input files of the scene that is shown. */
+import { unitText } from "sim3align/input/depth-kinds";
 import { baseName } from "../input/files.js";
 import { editInputs } from "../opening/open.js";
 import { page } from "../state/page.js";
@@ -23,7 +24,7 @@ export function InputPanel() {
   const source = whole?.cameraSource === "estimate" ? "estimated" : (whole?.cameraSource ?? "–");
   const rows = [
     ["Depth map", depth === null ? "–" : baseName(depth.path)],
-    ["Unit", whole === null ? "–" : unitText(whole)],
+    ["Unit", whole === null ? "–" : unitOf(whole)],
     [
       "Camera",
       camera === null ? source : camera.kind === "file" ? baseName(camera.file.path) : unknownCamera[camera.kind],
@@ -36,7 +37,7 @@ export function InputPanel() {
       <summary>
         <h2>Files</h2>
         {/* A wrong unit makes every size wrong, so it is said at all times. */}
-        {whole !== null && <span class="quiet">Unit: {unitText(whole)}</span>}
+        {whole !== null && <span class="quiet">Unit: {unitOf(whole)}</span>}
       </summary>
       {whole !== null && (
         <>
@@ -70,7 +71,7 @@ export function InputPanel() {
 }
 
 /** The unit of the depth map, in plain words. */
-function unitText({ depthUnit, raw }: Scene): string {
-  if (raw === null || raw.depthKind === "metric") return depthUnit;
+function unitOf({ depthUnit, raw }: Scene): string {
+  if (raw === null || raw.depthKind === "metric") return unitText(depthUnit);
   return unit.value === null ? "from a known size" : "none: sizes are relative";
 }

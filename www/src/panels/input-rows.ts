@@ -1,5 +1,5 @@
 /** What the depth map and the camera of a scene were taken to be, in plain words. */
-import { depthKinds } from "sim3align/input/depth-kinds";
+import { depthKinds, unitText } from "sim3align/input/depth-kinds";
 import type { Scene } from "../state/scene.js";
 import { percent, significant } from "../ui/format.js";
 
@@ -25,7 +25,7 @@ export function inputRows({
   const shifted = kind.startsWith("affine") && calibration !== null;
   const unit = isMetric ? "in metres by a known size" : "no unit: sizes are relative to one another";
   const depth = [
-    ...(kind === "metric" ? [`Unit: ${depthUnit}`] : [depthKinds[kind].title, unit]),
+    ...(kind === "metric" ? [`Unit: ${unitText(depthUnit)}`] : [depthKinds[kind].title, unit]),
     ...(shifted
       ? [`shift ${significant(shift, 3)}; the distance is known to${within(uncertainty.shift) || " ± 0 %"}`]
       : []),

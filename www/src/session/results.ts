@@ -12,12 +12,9 @@ import type { VideoWork } from "../state/video.js";
 
 const { options } = page;
 
-export const plain = ({ matrix, scale, rotationMatrix, rotation, translation }: Sim3) => ({
-  scale,
-  rotation: rotationMatrix,
-  quaternion: rotation,
-  translation,
-  matrix,
+/** The transform of a pose. */
+const transformOf = ({ scale, rotation, rotationMatrix, translation, matrix }: Sim3): Sim3 => ({
+  ...{ scale, rotation, rotationMatrix, translation, matrix },
 });
 
 /** A unique key for an object: its name, with a number if several objects have the same name. */
@@ -47,7 +44,7 @@ function jsonEntry(object: ObjectModel, unit: number | null, given: Inputs["obje
   const { transform, source } = pose.value;
   const sides = [...box.value.sizeM];
   return {
-    ...plain(transform),
+    ...transformOf(transform),
     source,
     decision: decisionOf(verdict.value, source),
     comment: comment.value,
@@ -56,13 +53,13 @@ function jsonEntry(object: ObjectModel, unit: number | null, given: Inputs["obje
     ...(unit === null ? { sizeM: sides } : { relativeSize: sides.map((side) => side / unit) }),
     confidence,
     metrics: unit === null ? metrics.value : withoutLengths(metrics.value),
-    alternatives: precise?.alternatives.map(plain) ?? [],
+    alternatives: precise?.alternatives.map(transformOf) ?? [],
   };
 }
 
 /** The metrics that are no lengths. */
 const withoutLengths = (metrics: Metrics | null) =>
-  metrics && Object.fromEntries(Object.entries(metrics).filter(([name]) => !name.endsWith("Mm")));
+  metrics && Object.fromEntries(Object.entries(metrics).filter(([name]) => !name.endsWith("M")));
 
 /** What `sceneResult` returns. */
 export type SceneResult = Record<string, object>;
@@ -83,12 +80,12 @@ export function videoResult(frames: readonly Inputs[], { framePoses, frameWorks 
     const held = verdict === "accepted" && work !== null ? toSim3(work.matrix) : pose?.transform;
     if (held === undefined) return [name, null];
     const { confidence = null, state = "lost" } = pose ?? {};
-    return [name, { ...plain(held), confidence, state, decision: decisionOf(verdict, source), comment }];
+    return [name, { ...transformOf(held), confidence, state, decision: decisionOf(verdict, source), comment }];
   });
   return { frames: Object.fromEntries(entries) };
 }
 
-function about(scene: Scene, { depth, depthScale, name }: Inputs) {
+function about(scene: Scene, { depth, name }: Inputs) {
   const { camera, calibration, cameraSource, depthUnit, height, width } = scene;
   const units = isMetric(scene) ? "metres" : "unknown";
   return {
@@ -99,7 +96,6 @@ function about(scene: Scene, { depth, depthScale, name }: Inputs) {
     camera: { ...camera, width, height },
     ...(cameraSource === null ? {} : { cameraSource }),
     depthUnit,
-    isUnitGiven: depthScale !== null,
     ...(calibration === null ? {} : { depthCalibration: calibration }),
     options: options.value,
   };

@@ -1,6 +1,7 @@
 /** The scene: a depth map with its camera, an optional photo, and the objects in it. */
 import { batch, computed, signal } from "@preact/signals";
 import type { DepthCalibration, Support } from "sim3align";
+import type { DepthImage } from "sim3align/formats";
 import type { ObjectModel } from "./object-model.js";
 import { type Intrinsics, isMetric, type RawView } from "./raw-view.js";
 import { visibleExtent } from "./visible-extent.js";
@@ -21,8 +22,8 @@ export interface Scene {
   readonly raw: RawView | null;
   /** What such a view was taken to be in the last alignment of the whole scene, in whose depth the poses are. */
   readonly calibration: DepthCalibration | null;
-  /** The unit of the depth map, and why it was taken. */
-  readonly depthUnit: string;
+  /** The unit of the depth map. */
+  readonly depthUnit: DepthImage["unit"];
   /** Where the camera comes from, if none was given. */
   readonly cameraSource: string | null;
   /** Warnings of the file readers and of the calibration. */

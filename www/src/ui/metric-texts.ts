@@ -2,22 +2,22 @@
 import { percent, significant, small, type Unit } from "./format.js";
 import type { MetricText } from "./texts.js";
 
-const mm = (value: number, unit: Unit) => small(value / 1000, unit, 3);
+const length = (value: number, unit: Unit) => small(value, unit, 3);
 
 export const metricTexts: readonly MetricText[] = [
   {
-    name: "depthMaeMm",
+    name: "depthMaeM",
     title: "Depth MAE",
     better: "lower",
     about: "Mean absolute difference between rendered and measured depth, inside the mask.",
-    show: mm,
+    show: length,
   },
   {
-    name: "uniChamferMm",
+    name: "uniChamferM",
     title: "UniChamfer",
     better: "lower",
     about: "Mean distance from the measured points to the mesh (one-way chamfer distance).",
-    show: mm,
+    show: length,
   },
   {
     name: "boundaryF",
@@ -28,11 +28,11 @@ export const metricTexts: readonly MetricText[] = [
     show: percent,
   },
   {
-    name: "chamferMm",
+    name: "chamferM",
     title: "Chamfer",
     better: "lower",
     about: "Chamfer distance in both directions. Includes the unseen side, so it is never 0.",
-    show: mm,
+    show: length,
   },
   {
     name: "fitness",
