@@ -82,16 +82,16 @@ pub fn alignments_have_these_bits() {
     let request = Request::new(quick()).unwrap();
     let (scan, paper) = (shapes::observe(&shapes::body(), 1.0), PaperOptions::default());
     check(&[
-        ("by shape", 0x9c7a_3c49_a52b_2c32, of(Ok(solve(&AlignOptions::default())))),
-        ("noise and an occluder", 0xe321_c820_af1a_f5f9, of(align(&noisy(), &body(), &quick(), &mut Silent))),
-        ("a pose, bounds and up", 0x1c06_c718_c4e2_4fcd, of(Ok(solve(&given)))),
-        ("a large image", 0x15bf_788f_3e81_baa6, of(align(&large, &body(), &quick(), &mut Silent))),
-        ("a doubtful pose", 0x6214_b925_c9f5_82c6, of(align(&seen, &carton(), &quick(), &mut Silent))),
-        ("an inner shell", 0x6b2a_6eb7_e7da_63b6, of(align(&seen, &hollow, &quick(), &mut Silent))),
-        ("proportions", 0x7c52_407f_eac2_31b0, of(Ok(solve(&stretched)))),
-        ("a symmetric mesh", 0x3beb_2e56_4cde_83a1, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
-        ("colour", 0xfeda_d360_8325_09af, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
-        ("paper", 0x87ef_adba_2f1e_ca57, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
+        ("by shape", 0x9b7d_78fd_32af_6d65, of(Ok(solve(&AlignOptions::default())))),
+        ("noise and an occluder", 0x7ec5_12f7_aafb_0409, of(align(&noisy(), &body(), &quick(), &mut Silent))),
+        ("a pose, bounds and up", 0xa643_2c57_bb78_6995, of(Ok(solve(&given)))),
+        ("a large image", 0x2017_97c0_02d7_5dc7, of(align(&large, &body(), &quick(), &mut Silent))),
+        ("a doubtful pose", 0x2a6b_559c_c0af_1a7a, of(align(&seen, &carton(), &quick(), &mut Silent))),
+        ("an inner shell", 0x03f0_b9f3_e00a_1cd9, of(align(&seen, &hollow, &quick(), &mut Silent))),
+        ("proportions", 0x0c6f_1872_2cee_f108, of(Ok(solve(&stretched)))),
+        ("a symmetric mesh", 0x615e_63c1_1ba2_3e03, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
+        ("colour", 0x1896_4ea2_29d6_b000, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
+        ("paper", 0x2917_7a90_187b_87ba, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
     ]);
 }
 
@@ -106,9 +106,9 @@ pub fn errors_have_these_bits() {
     let symmetries = symmetry_transformations(&[], &[]).unwrap();
     let model = BopModel { mesh: &mesh, diameter_m: 0.2, symmetries: &symmetries };
     check(&[
-        ("evaluate", 0x2a71_bda2_04df_d29b, of(evaluate(&seen, &mesh, &pose, &options))),
-        ("evaluate, a lemon", 0x41dc_8d80_216b_5a7d, of(evaluate(&observe(&lemon, &truth()), &lemon, &pose, &options))),
-        ("BOP", 0x58fe_20fb_4029_9ea1, of(bop_errors(&model, seen.depth(), &seen.camera(), &[pose], &[truth()]))),
+        ("evaluate", 0xd775_63cf_53c0_c487, of(evaluate(&seen, &mesh, &pose, &options))),
+        ("evaluate, a lemon", 0x2ff4_7631_8664_4ffe, of(evaluate(&observe(&lemon, &truth()), &lemon, &pose, &options))),
+        ("BOP", 0x8602_dfe1_2ad0_4c5a, of(bop_errors(&model, seen.depth(), &seen.camera(), &[pose], &[truth()]))),
     ]);
 }
 

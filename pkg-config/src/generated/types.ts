@@ -351,8 +351,8 @@ export type Metrics = {
    */
   iou: number | null;
   /**
-   * Mean of the two directional mean distances between observed points and surface, metres. The surface's unseen
-   * side counts, so that it is above 0 at the true pose too.
+   * Mean of the two directional mean distances between observed points and surface, metres. The surface's unseen side
+   * counts, so that it is above 0 at the true pose too.
    */
   chamferM: number | null;
   /** Mean distance from the observed points to the surface, metres. */
