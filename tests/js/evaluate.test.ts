@@ -1,7 +1,7 @@
 /** `evaluate` on poses whose score is known. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createAligner, type EvaluateOptions, type Metrics, OPTIONS } from "sim3align";
+import { createAligner, type EvaluateOptions, type Metrics } from "sim3align";
 import { brick, columnMajor, input, product, truth } from "../support/scene.js";
 
 const aligner = await createAligner();
