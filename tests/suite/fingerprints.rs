@@ -82,7 +82,7 @@ pub fn alignments_have_these_bits() {
     let request = Request::new(quick()).unwrap();
     let (scan, paper) = (shapes::observe(&shapes::body(), 1.0), PaperOptions::default());
     check(&[
-        ("by shape", 0x9b7d_78fd_32af_6d65, of(Ok(solve(&AlignOptions::default())))),
+        ("by shape", 0xb89a_e558_450a_0f6f, of(Ok(solve(&AlignOptions::default())))),
         ("noise and an occluder", 0x7ec5_12f7_aafb_0409, of(align(&noisy(), &body(), &quick(), &mut Silent))),
         ("a pose, bounds and up", 0xa643_2c57_bb78_6995, of(Ok(solve(&given)))),
         ("a large image", 0x2017_97c0_02d7_5dc7, of(align(&large, &body(), &quick(), &mut Silent))),
