@@ -14,7 +14,7 @@ import type { FramePose, VideoWork } from "../state/video.js";
 import type { Workspace } from "../state/workspace.js";
 
 /** The version of the format. Other versions are not read. */
-const VERSION = 1;
+const VERSION = 2;
 
 /** The name of the session in a file. */
 export const SESSION_FILE = "sim3align-session.json";

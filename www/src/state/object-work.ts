@@ -10,8 +10,6 @@ export interface ObjectWork {
   source: PoseSource;
   alternative?: number | undefined;
   verdict?: Verdict | null;
-  /** In place of the verdict, as 1.0.0-rc.1 has stored it. */
-  isAccepted?: boolean;
   comment?: string;
   isShown: boolean;
   isLocked: boolean;
@@ -31,8 +29,7 @@ export function stateOf(object: ObjectModel): ObjectWork {
 }
 
 /** The decision that was stored. */
-export const verdictOf = (state: ObjectWork | null): Verdict | null =>
-  state?.verdict ?? (state?.isAccepted === true ? "accepted" : null);
+export const verdictOf = (state: ObjectWork | null): Verdict | null => state?.verdict ?? null;
 
 /** Gives an object the pose, the decision and the settings that were stored. */
 export function applyToObject(state: ObjectWork, object: ObjectModel): void {
