@@ -10,11 +10,9 @@ use super::problem::Search;
 use super::ranking::{Found, best_of, distinct_up_to};
 use super::recipe::{FINE, MIN_ROTATIONS, ROUNDS, Round, Task};
 use super::tasks::{Outcome, RoundTasks};
-use crate::geometry::order;
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed};
-use crate::precise::drawing::equivalence::Equivalence;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::observation::anchors::Anchor;
 
@@ -29,8 +27,8 @@ pub const ELSEWHERE: f64 = 0.5;
 /// sure, the 11 with a rival led by at most 0.08, and 8 % led by less than this.
 const DECIDED: f32 = 0.15;
 
-/// Quantile of the scores of a search below which rotations near them are left out of the next one.
-const HOPELESS: f64 = 0.75;
+/// Of this many rotations of a search, the next one follows the best.
+const HOPEFUL: usize = 4;
 
 /// Rotation by which a search may refine a pose of another one, radians.
 const SAME: f64 = 0.25;
@@ -61,8 +59,8 @@ pub struct Rounds {
     best: Vec<Found>,
     /// Candidates of the ranking round other than turns of the best one.
     unturned: Vec<CropPose>,
-    /// The rotations of the first round, each with its best score.
-    tried: Vec<(DQuat, f32)>,
+    /// The best pose of each rotation of the first round, best first.
+    tried: Vec<Found>,
     /// See [`Self::is_contested`].
     lead: Option<f32>,
 }
@@ -116,16 +114,20 @@ impl Rounds {
         false
     }
 
-    /// Leaves out rotations of the grid that are near those of `previous` whose scores were low.
+    /// Leaves out the rotations of the grid that are nearest to those of `previous` that are not among its best.
     pub fn follow(&mut self, previous: &Self) {
-        let scores = previous.tried.iter().map(|(_, score)| *score);
-        let Some(least) = order::quantile(scores, HOPELESS) else { return };
-        let count = self.search.settings.rotations();
-        let near = |rotation: &DQuat| {
-            let cosine = |tried: &&(DQuat, f32)| tried.0.dot(*rotation).abs();
-            previous.tried.iter().max_by(|a, b| cosine(a).total_cmp(&cosine(b)))
+        let hopeful = previous.tried.len() / HOPEFUL;
+        let is_promising = |rotation: &DQuat| {
+            let (mut nearest, mut most) = (0, 0.0);
+            for (i, tried) in previous.tried.iter().enumerate() {
+                let cosine = tried.pose.rotation.dot(*rotation).abs();
+                if cosine > most {
+                    (nearest, most) = (i, cosine);
+                }
+            }
+            nearest < hopeful
         };
-        let is_promising = |rotation: &DQuat| near(rotation).is_some_and(|(_, score)| *score >= least);
+        let count = self.search.settings.rotations();
         self.rotations = (0..count).map(|i| super_fibonacci(i, count)).filter(is_promising).collect();
     }
 
@@ -242,20 +244,11 @@ impl Rounds {
     fn rotate_less(&mut self, work: u64, allowance: u64) -> Round {
         let rotations = (self.tasks() as u64 * allowance / work.max(1)) as usize;
         let rotations = rotations.max(MIN_ROTATIONS);
-        let mut place = 0;
-        let of_list = self.rotations.len();
-        self.rotations.retain(|_| {
-            place += rotations;
-            (place - rotations) / of_list < place / of_list
-        });
+        let list = &self.rotations;
+        self.rotations = (0..rotations).filter_map(|i| list.get(i * list.len() / rotations).copied()).collect();
         let round = &mut self.search.settings.rounds[self.index];
         round.work = rotations;
         *round
-    }
-
-    /// A rotation of the first round, whose grid has `count`.
-    fn rotation(&self, index: usize, count: usize) -> DQuat {
-        self.rotations.get(index).copied().unwrap_or_else(|| super_fibonacci(index, count))
     }
 
     /// Selects the poses of the next round.
@@ -264,14 +257,19 @@ impl Rounds {
         self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
         let best = core::mem::replace(&mut self.best, best_of(&outcomes, 1));
         if round.task == Task::Rotate {
-            let rotations = outcomes.chunks(self.anchors.len()).enumerate();
-            let best_of_all = |of: &[Found]| of.iter().map(|f| f.score.total).fold(f32::NEG_INFINITY, f32::max);
-            self.tried = rotations.map(|(i, of)| (self.rotation(i, round.work), best_of_all(of))).collect();
+            for of_rotation in outcomes.chunks(self.anchors.len()) {
+                self.tried.extend(best_of(of_rotation, 1));
+            }
+            self.tried = best_of(&self.tried, outcomes.len());
         }
         if round.task == Task::Refine {
             // Around an initial pose alone, nothing is known of poses elsewhere.
-            let lead = if best.is_empty() { 0.0 } else { lead(equivalence, &outcomes) };
-            self.lead.get_or_insert(lead);
+            let apart = distinct_up_to(equivalence, outcomes.clone(), 2, ELSEWHERE);
+            let lead = match apart.as_slice() {
+                [best, other] => best.score.total - other.score.total,
+                _ => f32::INFINITY,
+            };
+            self.lead.get_or_insert(if best.is_empty() { 0.0 } else { lead });
         }
         match round.task {
             Task::Turn => {
@@ -331,14 +329,6 @@ impl Rounds {
         let best = self.found.first().or(self.best.first())?;
         Some((best.pose.similarity(&self.search.mesh.frame), f64::from(best.score.total)))
     }
-}
-
-/// The score by which the best of these leads all those elsewhere.
-fn lead(equivalence: &Equivalence, found: &[Found]) -> f32 {
-    let Some(best) = best_of(found, 1).pop() else { return 0.0 };
-    let is_elsewhere = |f: &&Found| equivalence.angle(best.pose.rotation, f.pose.rotation) > ELSEWHERE;
-    let leads = found.iter().filter(is_elsewhere).map(|f| best.score.total - f.score.total);
-    leads.fold(f32::INFINITY, f32::min)
 }
 
 fn poses_of(found: &[Found]) -> Vec<CropPose> {
