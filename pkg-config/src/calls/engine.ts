@@ -23,7 +23,7 @@ export interface Call {
   progress: ProgressListener;
   /** Whether the arrays of the job may be moved to the worker. */
   transfer: boolean;
-  /** Whether it is one of a batch, which other calls go before. */
+  /** Whether the call belongs to a batch: other calls go first. */
   isBatched?: boolean;
 }
 

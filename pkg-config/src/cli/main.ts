@@ -13,7 +13,7 @@ const program = new Command("sim3align")
   .version(version)
   .addHelpText("after", programHelp);
 
-/** What the user asks help for, as `paper` in `sim3align align --help paper`. */
+/** The topic of `--help`, such as `paper` in `sim3align align --help paper`. */
 const help = process.argv.findIndex((arg) => arg === "--help" || arg === "-h");
 const topics = commands.flatMap(({ flags }) => withoutTitles(flags).flatMap(([, , facts]) => facts?.topic ?? []));
 const topic = topics.find((one) => help >= 0 && one === process.argv[help + 1]);

@@ -9,7 +9,7 @@ import { finite, oneOf, positive, record } from "../values/values.js";
 /** See `src/calibrate/calibration.rs`. */
 const FARTHEST = 1e3;
 
-/** What turns the values of a depth map into depth: `depthCalibration` of a result, or facts of a camera. */
+/** How to convert the values of a depth map to depth: `depthCalibration` of a result, or facts of a camera. */
 export interface DepthCorrection {
   depthKind: DepthKind;
   /** Above 0; 1 by default. */

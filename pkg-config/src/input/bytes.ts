@@ -12,7 +12,7 @@ export type Bytes = Uint8Array | Uint8ClampedArray;
 /** Whether the value is an array of bytes. */
 export const isBytes = (value: unknown): value is Bytes => isTypedArray(value, "Uint8Array", "Uint8ClampedArray");
 
-/** Whether the value is the content of a file, and no object with arrays. */
+/** Whether the value is the content of a file, rather than an object with arrays. */
 export const isContent = (value: unknown): value is Uint8Array | ArrayBuffer =>
   ArrayBuffer.isView(value) || isBuffer(value);
 

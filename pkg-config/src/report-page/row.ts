@@ -82,7 +82,7 @@ export interface ReportHost {
   details: Record<string, ReportDetails>;
 }
 
-/** Whether a number is one of metres. */
+/** Whether the name is that of a length, in metres. */
 export const isLength = (name: string) => name.endsWith("M");
 
 /** The value in a column; `null` for lengths without a unit, and for missing values. */

@@ -23,11 +23,11 @@ const UNSURE: f32 = 0.5;
 
 /// Rotation from the best pose from which on a pose is elsewhere, radians.
 pub const ELSEWHERE: f64 = 0.5;
-/// Lead over all poses elsewhere from which on the best pose has no rival. Of 660 searches that were
-/// sure, the 11 with a rival led by at most 0.08, and 8 % led by less than this.
+/// Lead over all poses elsewhere from which on the best pose has no rival. Of 660 sure searches, the 11 with a rival led by
+/// at most 0.08, and 8 % by less than this.
 const DECIDED: f32 = 0.15;
 
-/// Of this many rotations of a search, the next one follows the best.
+/// The best of this many rotations are followed by the next search.
 const HOPEFUL: usize = 4;
 
 /// Rotation by which a search may refine a pose of another one, radians.
@@ -114,7 +114,7 @@ impl Rounds {
         false
     }
 
-    /// Leaves out the rotations of the grid that are nearest to those of `previous` that are not among its best.
+    /// Keeps the rotations of the grid whose nearest rotation in the first round of `previous` was among its best.
     pub fn follow(&mut self, previous: &Self) {
         let hopeful = previous.tried.len() / HOPEFUL;
         let is_promising = |rotation: &DQuat| {
@@ -262,14 +262,14 @@ impl Rounds {
             }
             self.tried = best_of(&self.tried, outcomes.len());
         }
-        if round.task == Task::Refine {
-            // Around an initial pose alone, nothing is known of poses elsewhere.
-            let apart = distinct_up_to(equivalence, outcomes.clone(), 2, ELSEWHERE);
-            let lead = match apart.as_slice() {
+        if round.task == Task::Refine && self.lead.is_none() {
+            let lead = match distinct_up_to(equivalence, outcomes.clone(), 2, ELSEWHERE).as_slice() {
+                // Around an initial pose alone, nothing is known of poses elsewhere.
+                _ if best.is_empty() => 0.0,
                 [best, other] => best.score.total - other.score.total,
                 _ => f32::INFINITY,
             };
-            self.lead.get_or_insert(if best.is_empty() { 0.0 } else { lead });
+            self.lead = Some(lead);
         }
         match round.task {
             Task::Turn => {
