@@ -75,6 +75,9 @@ impl Trimmed {
                 *share += part.area / all;
             }
         }
+        if !is_left_out.contains(&true) {
+            return None;
+        }
         Self::split(mesh, left_out, &|triangle| is_left_out[parts.of_triangle(mesh.triangles()[triangle])])
     }
 
