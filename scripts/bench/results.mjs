@@ -15,6 +15,7 @@ import { attempt } from "../lib/run.mjs";
  * @property {boolean | null} loose
  * @property {readonly [scale: number, rotationDeg: number, place: number | null] | null} errors
  * @property {number | null} [confidence]
+ * @property {number | null} [scaleSd] standard deviation of the scale, relative
  * @property {number | null} [ms]
  * @property {Record<string, number> | null} [work] counts: `Counts` of `geometry/src/counts.rs`
  * @property {Metrics | null} [metrics]

@@ -11,6 +11,7 @@ import { fixed, mean, median, percent, share } from "../bench/table.mjs";
  * @property {number} loose
  * @property {readonly (number | null)[]} medians of the errors of scale, rotation (degrees) and place, of the answered cases
  * @property {readonly (readonly [n: number, strict: number])[]} bins of the confidence, from 0 to 1
+ * @property {number | null} covered share of the sizes of confident poses that are within their 90 % interval
  * @property {number | null} ms median
  * @property {number | null} work mean number of renders
  * @property {number | null} iou mean
@@ -44,12 +45,22 @@ export const summaries = (set, results) =>
       loose: rounded(share(of.map(({ loose }) => loose === true))),
       medians: [0, 1, 2].map((i) => reduced(median, ({ errors }) => errors?.[i])),
       bins: binsOf(of),
+      covered: reduced(mean, isCovered),
       ms: reduced(median, ({ ms }) => ms),
       work: reduced(mean, ({ work }) => work?.renders),
       iou: reduced(mean, ({ metrics }) => metrics?.iou),
       truthIou: reduced(mean, ({ truthMetrics }) => truthMetrics?.iou),
     };
   });
+
+/** Standard deviations on either side of a mean that hold 90 % of a normal distribution. */
+const WITHIN_90 = 1.645;
+
+/** 1 for a size within its interval, 0 beyond; null without one, or without confidence. @param {ResultRow} result */
+function isCovered({ confidence, errors, scaleSd }) {
+  if (confidence == null || confidence < 0.9 || errors == null || scaleSd == null) return null;
+  return (errors[0] ?? 0) <= WITHIN_90 * scaleSd ? 1 : 0;
+}
 
 /** Poses, and right ones, by tenths of the confidence; none without confidences. @param {readonly ResultRow[]} results */
 function binsOf(results) {
@@ -77,6 +88,7 @@ const columns = [
   ["rotation °", ({ medians }) => fixed(medians[1], 2)],
   ["place %", ({ medians }) => two(medians[2])],
   ["≥ .9: right of", ({ bins }) => (bins.length === 0 ? "–" : `${bins.at(-1)?.[1]} of ${bins.at(-1)?.[0]}`)],
+  ["≥ .9: size in its 90 % interval, %", ({ covered }) => (covered == null ? "–" : percent(covered))],
   ["IoU, truth's", ({ iou, truthIou }) => (iou === null ? "–" : `${fixed(iou, 3)}, ${fixed(truthIou, 3)}`)],
   ["ms", ({ ms }) => fixed(ms)],
 ];

@@ -3,7 +3,7 @@
 use glam::DQuat;
 
 use crate::geometry::rotations::angle_between;
-use crate::views::common_size::{DEPTH_ERROR, SizeEvidence, pooled};
+use crate::views::common_size::{DEPTH_ERROR, SizeEvidence, pooled, shape_error};
 
 /// Angle between the directions from which frames count as different evidence, radians.
 const APART: f64 = 0.12;
@@ -42,7 +42,9 @@ impl Size {
     /// The standard deviation with the errors that all frames share: those of the mesh and of the sensor; 0 before the first
     /// evidence, or of a fixed size.
     pub fn deviation(&self) -> f64 {
-        self.value().map_or(0.0, |(_, sd)| if self.known.is_some() { sd } else { together(sd, DEPTH_ERROR) })
+        let shared =
+            together(DEPTH_ERROR, shape_error(self.frames.iter().map(|(_, evidence)| evidence.depth_agreement)));
+        self.value().map_or(0.0, |(_, sd)| if self.known.is_some() { sd } else { together(sd, shared) })
     }
 
     fn evidence(&self) -> Option<(f64, f64)> {

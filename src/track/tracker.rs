@@ -187,7 +187,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.usual = None;
             self.lead = Lead { margin: f64::from(NOISE), turn_certainty: 1.0 };
             self.certain = self.last.map(|pose| pose.rotation);
-            let evidence = SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0 };
+            let evidence =
+                SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0, depth_agreement: 1.0 };
             self.size.correct(fixed.rotation, evidence);
         }
         Ok(changed)

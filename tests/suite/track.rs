@@ -60,6 +60,24 @@ fn a_known_size_stays_and_an_initial_pose_needs_no_mask() {
 }
 
 #[wasm_bindgen_test]
+fn the_deviation_of_the_size_covers_wrong_proportions_of_the_mesh() {
+    let [of_true, of_flat] = [1.0, 0.85].map(|height| {
+        let mesh = body();
+        let positions = mesh.positions().iter().map(|p| Vec3::new(p.x, p.y, height * p.z)).collect();
+        let mesh = Mesh::new(positions, mesh.triangles().to_vec()).unwrap();
+        let mut tracker = Tracker::new(PreparedMesh::new(mesh), TrackOptions::default()).unwrap();
+        let found = [0, 2, 4, 6].map(|k| tracker.next(&frame(k), &mut Silent).unwrap());
+        let error = (found[3].camera_from_mesh.scale / truth().scale).ln().abs();
+        (found[3].scale_sd, error)
+    });
+    assert!(of_true.0 < 0.01, "deviation {}", of_true.0);
+    assert!(of_flat.0 > 2.0 * of_true.0, "deviations {} and {}", of_flat.0, of_true.0);
+    for (sd, error) in [of_true, of_flat] {
+        assert!(error < 2.0 * sd, "an error of {error} with a deviation of {sd}");
+    }
+}
+
+#[wasm_bindgen_test]
 fn an_object_that_is_gone_is_lost_and_found_again() {
     let mut tracker = tracker(TrackOptions::default());
     let states = [0, 1, 2, 3, 4, 5].map(|k| {

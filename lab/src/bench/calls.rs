@@ -235,7 +235,8 @@ fn views(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
             continue;
         }
         let warnings = codes(&found.warnings);
-        let result = ResultRow { confidence: Some(view.confidence), ms, work, warnings, ..blank(case, k, 0) };
+        let scale_sd = found.uncertainty.as_ref().map(|found| found.scale);
+        let result = ResultRow { confidence: Some(view.confidence), scale_sd, ms, work, warnings, ..blank(case, k, 0) };
         results.push(judged(result, object, frame, 0, &similarity(&view.camera_from_mesh)?));
     }
     Ok(results)
@@ -265,7 +266,7 @@ fn track(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
             }
         };
         if frame.visible >= SHOWN {
-            let result = ResultRow { confidence: Some(found.confidence), ..result };
+            let result = ResultRow { confidence: Some(found.confidence), scale_sd: Some(found.scale_sd), ..result };
             results.push(judged(result, object, frame, 0, &similarity(&found.camera_from_mesh)?));
         }
     }

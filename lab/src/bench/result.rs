@@ -45,6 +45,8 @@ pub struct ResultRow {
     pub confidence: Option<f64>,
     /// Probability that the turn of a symmetric shape is right.
     pub turn_confidence: Option<f64>,
+    /// Standard deviation of the scale, relative, as the call reports it.
+    pub scale_sd: Option<f64>,
     /// CPU time of the call, which a busy machine changes little, milliseconds.
     pub ms: Option<f64>,
     /// Counts of the work of the call.
@@ -106,6 +108,7 @@ impl ResultRow {
         Self {
             confidence: Some(*confidence),
             turn_confidence: *turn_confidence,
+            scale_sd: uncertainty.as_ref().map(|found| found.scale),
             features: Some(Features {
                 score: diagnostics.score,
                 terms: [terms.overlap, terms.depth, terms.outline],
