@@ -1,8 +1,10 @@
 /** Nothing is lost: the scene, hand work and decisions survive a reload, and are saved and opened as one file. */
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { strFromU8, unzipSync } from "fflate";
-import { drop, dropFolder, files, inFolder } from "../support/page-files.js";
-import { PATIENCE, pageTests, SitePage } from "../support/site.js";
+import { drop, dropFolder, type Files, files, inFolder } from "../support/page-files.js";
+import { PATIENCE, pageTests, SitePage, siteDir } from "../support/site.js";
 
 const test = pageTests();
 
@@ -56,6 +58,25 @@ test("a reload restores the scene, the pose and the decision; unstored work asks
   await page.locator('main[data-scene="Table"]').waitFor(PATIENCE);
   await page.reload();
   await opened.shows("Table");
+});
+
+test("the ground that objects stand on is known again after a reload", async (opened, page) => {
+  const desk = (name: string) => Uint8Array.from(readFileSync(join(siteDir, "samples", "desk", name)));
+  const own: Files = { "depth.png": desk("depth.png"), "camera.json": desk("camera.json") };
+  for (const object of ["animal", "box", "teapot"]) {
+    own[`mask-${object}.png`] = desk(`${object}/mask.png`);
+    own[`mesh-${object}.glb`] = desk(`${object}/mesh.glb`);
+  }
+  await drop(opened, own);
+  await opened.shows("Own files");
+  await page.click("#align-all");
+  await page.locator(".sides", { hasText: "width × depth × height" }).waitFor(PATIENCE);
+  const before = await opened.dimensions();
+  await opened.kept();
+  await page.reload();
+  await page.locator('main[data-scene="Own files"]').waitFor(PATIENCE);
+  await page.locator(".sides", { hasText: "width × depth × height" }).waitFor(PATIENCE);
+  assert.deepEqual(await opened.dimensions(), before);
 });
 
 test("a project is saved and opened as one file, with every scene, decision and name", async (opened, page) => {

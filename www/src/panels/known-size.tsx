@@ -8,6 +8,7 @@ import { centimetres, orDash, percent } from "../ui/format.js";
 import { useWorkspace } from "../ui/workspace.js";
 
 const edges = ["Longest edge", "Middle edge", "Shortest edge"] as const;
+const choices = edges.map((title, i) => [`${i}`, title] as const);
 
 /** The edges of the smallest box, longest first, as the lines of the 3D view show them. */
 const edgesOf = (object: ObjectModel | null) => [...(object?.box.value.sizeM ?? [0, 0, 0])].sort((a, b) => b - a);
@@ -28,9 +29,6 @@ export function KnownSize({ object, id }: KnownSizeProps) {
   const isMetric = workspace.unit.value === null;
   // Without a result, there is nothing yet that a length could be compared with.
   const isReady = object !== null && (isMetric || object.isPlaced) && !workspace.isRunning.value;
-  const choices = edges.map(
-    (title, i) => [`${i}`, isMetric ? `${title}: ${centimetres(lengthsM[i] ?? 0)} cm` : title] as const,
-  );
 
   const apply = async (field: HTMLInputElement) => {
     const wantedM = field.valueAsNumber / 100;

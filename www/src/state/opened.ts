@@ -38,7 +38,11 @@ export interface Foreign {
 }
 
 /** The state of what is opened. */
-export function openedState({ scene }: SceneState, { layers, setLayer }: DisplayState, { announce }: StatusState) {
+export function openedState(
+  { scene, support }: SceneState,
+  { layers, setLayer }: DisplayState,
+  { announce }: StatusState,
+) {
   /** The inputs of the scene that is shown, or of the sample that is being read. */
   const inputs = signal<Inputs>(noInputs);
   const isReading = signal(false);
@@ -67,6 +71,7 @@ export function openedState({ scene }: SceneState, { layers, setLayer }: Display
     batch(() => {
       isReading.value = false;
       inputs.value = own;
+      support.value = null;
       scene.value = opened;
       if (isListed) enlist([own]);
       const base = opened.rgba === null ? "depth" : "photo";
@@ -80,10 +85,12 @@ export function openedState({ scene }: SceneState, { layers, setLayer }: Display
     const index = whole?.objects.indexOf(object) ?? -1;
     if (whole === null || index < 0) return;
     const without = <T>(list: readonly T[]) => list.filter((_, i) => i !== index);
+    const plane = support.peek();
     show(
       { ...whole, sample: null, objects: without(whole.objects) },
       { ...from, sample: null, objects: without(from.objects) },
     );
+    support.value = plane;
     announce(`Removed ${object.name}.`);
   }
 

@@ -3,7 +3,7 @@ import { computed, signal } from "@preact/signals";
 import type { SceneState } from "./scene.js";
 
 /** The state of the alignments of a scene. */
-export function runningState({ objects, support }: SceneState) {
+export function runningState({ objects }: SceneState) {
   /** Aborts the alignment that is running; null while there is none. */
   const controller = signal<AbortController | null>(null);
 
@@ -24,8 +24,6 @@ export function runningState({ objects, support }: SceneState) {
   objects.subscribe(() => {
     cancel();
     controller.value = null;
-    // The support is that of the previous scene.
-    support.value = null;
   });
 
   return { controller, isRunning, fraction, cancel };

@@ -1,5 +1,6 @@
 /** Pictures that face the viewer, in one size at every distance and visible through meshes: labels of lengths, and a mark. */
 import type { PerspectiveCamera } from "three/webgpu";
+import { depth, size, type Unit } from "../ui/format.js";
 import { CanvasTexture, Sprite, SpriteMaterial, Vector3 } from "./three.js";
 
 function spriteOf(canvas: HTMLCanvasElement, renderOrder: number): Sprite {
@@ -12,11 +13,9 @@ function spriteOf(canvas: HTMLCanvasElement, renderOrder: number): Sprite {
 /** The height of a label in CSS pixels, with some space around its text. */
 const LABEL_PX = 28;
 
-/** A length in centimetres, or metres from one metre on; or, with a `unit`, as a multiple of it. */
-export function lengthText(m: number, unit: number | null): string {
-  if (unit !== null) return (m / unit).toFixed(2);
-  return m >= 1 ? `${m.toFixed(2)} m` : `${(100 * m).toFixed(m < 0.1 ? 2 : 1)} cm`;
-}
+/** A length in centimetres, or metres from one metre on; or, with a `unit`, as a multiple of it. `largestM` is the largest beside it. */
+export const lengthText = (m: number, unit: Unit, largestM: number): string =>
+  unit === null && m >= 1 ? depth(m, unit) : size(m, unit, largestM);
 
 /** A text. */
 export function labelOf(text: string): Sprite {

@@ -35,8 +35,9 @@ export class Measures {
     this.lines.geometry.dispose();
     this.lines.geometry = geometryOf(positions);
     for (const label of this.labels.splice(measures.length)) release(label);
-    for (const [i, { from, to, label }] of measures.entries())
-      this.labelAt(i, lengthText(from.distanceTo(to), unit)).position.copy(label);
+    const lengths = measures.map(({ from, to }) => from.distanceTo(to));
+    for (const [i, { label }] of measures.entries())
+      this.labelAt(i, lengthText(lengths[i] ?? 0, unit, Math.max(...lengths))).position.copy(label);
   }
 
   private labelAt(i: number, text: string): Sprite {
