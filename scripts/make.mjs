@@ -9,6 +9,7 @@ import { buildSite } from "./lib/site.mjs";
 import { script, step } from "./lib/step.mjs";
 import { writeTables } from "./lib/tables.mjs";
 import { buildWasm } from "./lib/wasm.mjs";
+import { writeFigures } from "./record/documents.mjs";
 
 /** @type {Record<string, () => Promise<unknown>>} */
 const makers = {
@@ -25,6 +26,7 @@ const makers = {
     await step("TypeScript declarations", () => run("cargo", declarations, { env: { UPDATE: "1" } }));
     await npmPackages();
     await step("tables of formats", writeTables);
+    await step("figures of the record", async () => writeFigures());
     await buildPackage();
     await step("API report", writeApiReport);
     await step("third-party notices", writeNotice);

@@ -7,6 +7,7 @@ import { nodeProgram, run } from "../lib/run.mjs";
 import { setUp, wasmTarget } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
 import { checkTables } from "../lib/tables.mjs";
+import { checkFigures } from "../record/documents.mjs";
 import { checkCodes, checkDocuments } from "./documents.mjs";
 
 /** Crates of the workspace besides the aligner. */
@@ -35,6 +36,7 @@ export async function lint() {
     ),
     ["links and commands of the documents", checkDocuments],
     ["formats in documents and comments", checkTables],
+    ["figures of the record in documents", async () => checkFigures()],
     ["codes of the guide on errors", checkCodes],
     ["commands start before any package is installed", checkCommands],
     ["all Rust tests are in test programs", checkTests],
