@@ -26,7 +26,7 @@ const makers = {
     await step("TypeScript declarations", () => run("cargo", declarations, { env: { UPDATE: "1" } }));
     await npmPackages();
     await step("tables of formats", writeTables);
-    await step("figures of the record", async () => writeFigures());
+    await step("figures of the record", writeFigures);
     await buildPackage();
     await step("API report", writeApiReport);
     await step("third-party notices", writeNotice);

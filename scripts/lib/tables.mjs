@@ -1,7 +1,7 @@
 /** Writes the lists of file formats, file names and depth kinds in documents and comments from the package's tables. */
-import { readFileSync, writeFileSync } from "node:fs";
 import { filesBelow } from "./cache.mjs";
-import { at, repository } from "./paths.mjs";
+import { at } from "./paths.mjs";
+import { holdUpToDate, rewrite } from "./rewrite.mjs";
 
 const types = at("pkg-config", "src", "types", "inputs.ts");
 const files = () => [
@@ -64,25 +64,8 @@ async function update() {
   };
 }
 
-/** The files that are out of date, with their new texts. */
-async function outdated() {
-  const updated = await update();
-  return files().flatMap((path) => {
-    const text = readFileSync(path, "utf8");
-    const now = updated(text);
-    return now === text ? [] : [{ path, now }];
-  });
-}
-
-export async function writeTables() {
-  for (const { path, now } of await outdated()) writeFileSync(path, now);
-}
+export const writeTables = async () => rewrite(files(), await update());
 
 /** @throws if a document or a comment disagrees with the tables */
-export async function checkTables() {
-  const paths = (await outdated()).map(({ path }) => path.slice(repository.length + 1));
-  if (paths.length > 0)
-    throw new Error(
-      `${paths.join(", ")} disagree with pkg-config/src/input/formats.ts or depth-kinds.ts. Remedy: npm run update.`,
-    );
-}
+export const checkTables = async () =>
+  holdUpToDate(files(), await update(), "pkg-config/src/input/formats.ts or depth-kinds.ts");

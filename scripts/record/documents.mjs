@@ -1,7 +1,7 @@
 /** The figures of the record in documents: rows of tables with its columns, by their first cell, and the table of confidences. */
-import { readFileSync, writeFileSync } from "node:fs";
 import { filesBelow } from "../lib/cache.mjs";
-import { at, repository } from "../lib/paths.mjs";
+import { at } from "../lib/paths.mjs";
+import { holdUpToDate, rewrite } from "../lib/rewrite.mjs";
 import { history } from "./history.mjs";
 import { cellsOf, head, reliability } from "./summary.mjs";
 
@@ -46,23 +46,7 @@ function update() {
   };
 }
 
-/** The documents that are out of date, with their new texts. */
-function outdated() {
-  const updated = update();
-  return files().flatMap((path) => {
-    const text = readFileSync(path, "utf8");
-    const now = updated(text);
-    return now === text ? [] : [{ path, now }];
-  });
-}
-
-export function writeFigures() {
-  for (const { path, now } of outdated()) writeFileSync(path, now);
-}
+export const writeFigures = async () => rewrite(files(), update());
 
 /** @throws if a document disagrees with the last whole record */
-export function checkFigures() {
-  const paths = outdated().map(({ path }) => path.slice(repository.length + 1));
-  if (paths.length > 0)
-    throw new Error(`${paths.join(", ")} disagree with docs/record/history.jsonl. Remedy: npm run update.`);
-}
+export const checkFigures = async () => holdUpToDate(files(), update(), "docs/record/history.jsonl");

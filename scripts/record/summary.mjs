@@ -102,8 +102,8 @@ export const cellsOf = (row) => columns.map(([, cell]) => cell(row));
 const pooled = ["general", "sensors", "colors", "surplus", "scenes", "arranged", "views", "monocular"];
 
 /**
- * How far a confidence can be trusted: poses by confidence, in all rows of some sets, but for that in which the photo is withheld
- * which tells turns apart.
+ * How far a confidence can be trusted: poses by confidence, in all rows of some sets but the one without the photo, which alone
+ * tells some turns apart.
  * @param {readonly Summary[]} rows
  * @returns {(string | number)[][]} cells: confidence, poses, right ones in per cent
  */

@@ -36,7 +36,7 @@ export async function lint() {
     ),
     ["links and commands of the documents", checkDocuments],
     ["formats in documents and comments", checkTables],
-    ["figures of the record in documents", async () => checkFigures()],
+    ["figures of the record in documents", checkFigures],
     ["codes of the guide on errors", checkCodes],
     ["commands start before any package is installed", checkCommands],
     ["all Rust tests are in test programs", checkTests],

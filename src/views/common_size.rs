@@ -127,6 +127,11 @@ pub fn shape_error(depth_agreements: impl Iterator<Item = f64>) -> f64 {
     if count > 0.0 { SHAPE_ERROR * (sum / count).max(0.0).sqrt() } else { 0.0 }
 }
 
+/// The standard deviation of a size together with [`shape_error`]; 0 stays, which is that of a given size.
+pub fn with_shape_error(sd: f64, depth_agreements: impl Iterator<Item = f64>) -> f64 {
+    if sd > 0.0 { libm::hypot(sd, shape_error(depth_agreements)) } else { 0.0 }
+}
+
 /// The weighted mean of the logarithms of the scale, and its standard deviation; `None` without evidence.
 pub fn mean(evidence: impl Iterator<Item = SizeEvidence> + Clone) -> Option<(f64, f64)> {
     let weight: f64 = evidence.clone().map(|e| e.weight()).sum();

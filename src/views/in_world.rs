@@ -4,7 +4,7 @@ use std::rc::Rc;
 
 use super::View;
 use super::by_color::Photos;
-use super::common_size::shape_error;
+use super::common_size::with_shape_error;
 use super::joint::JointScore;
 use super::predicted_mask::with_predicted_mask;
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
@@ -167,7 +167,7 @@ fn summary(
         verdict;
     let first = used.parts.first().ok_or_else(no_candidate)?;
     let seen = roles.iter().zip(&shown).filter(|(role, _)| **role == ViewRole::Used);
-    let shared = shape_error(seen.map(|(_, score)| f64::from(score.depth)));
+    let depths = seen.map(|(_, score)| f64::from(score.depth));
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
         let world_from_camera = cameras[k].world_from_camera();
@@ -190,7 +190,7 @@ fn summary(
         alternatives: alternatives.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
         proportions: None,
         uncertainty: conditioning.map(|own| WorldUncertainty {
-            scale: if own.scale > 0.0 { libm::hypot(own.scale, shared) } else { 0.0 },
+            scale: with_shape_error(own.scale, depths),
             rotation_deg: own.rotation.0.to_degrees(),
             rotation_axis: own.rotation.1.to_array(),
             free_axis: first.search.equivalence.free_axis(best.pose.rotation).map(|axis| axis.to_array()),

@@ -1,6 +1,6 @@
 //! Unrelated views, without camera poses: one size for all of them, and a pose in each.
 
-use super::common_size::{SILHOUETTE_ERROR, SizeEvidence, common_size, mean, refine_at, shape_error};
+use super::common_size::{SILHOUETTE_ERROR, SizeEvidence, common_size, mean, refine_at, with_shape_error};
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
 use super::searched_view::SearchedView;
 use super::summary::{Summary, SummaryView};
@@ -167,9 +167,8 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
         })
         .collect();
     let free_axis = searched[first].rounds.search.equivalence.free_axis(common.views[first].0.pose.rotation);
-    let shared = shape_error(used().map(|view| f64::from(view.score.depth)));
     let uncertainty = conditioned[first].map(|own| WorldUncertainty {
-        scale: if common.sd > 0.0 { libm::hypot(common.sd, shared) } else { 0.0 },
+        scale: with_shape_error(common.sd, used().map(|view| f64::from(view.score.depth))),
         rotation_deg: own.rotation.0.to_degrees(),
         rotation_axis: own.rotation.1.to_array(),
         free_axis: free_axis.map(|axis| axis.to_array()),
