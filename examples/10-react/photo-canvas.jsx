@@ -1,4 +1,4 @@
-import { Canvas } from "@react-three/fiber";
+import { Canvas, useThree } from "@react-three/fiber";
 import { useLayoutEffect, useMemo } from "react";
 import { applyPinhole, applyToObject3D } from "sim3align/three";
 import { PerspectiveCamera } from "three";
@@ -22,7 +22,7 @@ export function PhotoCanvas({ camera: { fx, fy, cx, cy }, width, height, photo =
     // The canvas has the aspect ratio of the image, at any size.
     <div className="photo" style={{ aspectRatio: `${width} / ${height}` }}>
       {photo !== null && <img src={photo} alt="" style={{ ...over, inlineSize: "100%" }} />}
-      <Canvas camera={camera} gl={{ preserveDrawingBuffer: true }} style={over}>
+      <Canvas camera={camera} frameloop="demand" gl={{ preserveDrawingBuffer: true }} style={over}>
         {children}
       </Canvas>
     </div>
@@ -31,6 +31,10 @@ export function PhotoCanvas({ camera: { fx, fy, cx, cy }, width, height, photo =
 
 /** A three.js object at the pose of a result. Its parent is the scene, whose origin is the camera. */
 export function Placed({ object, pose }) {
-  useLayoutEffect(() => applyToObject3D(object, pose), [object, pose]);
+  const invalidate = useThree((state) => state.invalidate);
+  useLayoutEffect(() => {
+    applyToObject3D(object, pose);
+    invalidate();
+  }, [object, pose, invalidate]);
   return <primitive object={object} />;
 }

@@ -59,7 +59,7 @@ async function colours(page: Page, address: string): Promise<[red: number, blue:
       [canvas.width, canvas.height] = [width, height];
       const context = canvas.getContext("2d") as CanvasRenderingContext2D;
       context.drawImage(image, 0, 0, width, height);
-      return Array.from(context.getImageData(0, 0, width, height).data);
+      return context.getImageData(0, 0, width, height).data;
     },
     [address, mask.width, mask.height] as const,
   );
