@@ -10,7 +10,7 @@ use wide::f32x4;
 use super::cloud::Bounds;
 use super::counts;
 use super::kd_nodes::{Division, Node, Query};
-use super::order::{pack, select_smallest, value_of};
+use super::order::{pack, select_smallest};
 use super::pauses::Pauses;
 
 /// Points of a leaf whose distances are computed at once.
@@ -192,22 +192,21 @@ pub struct GroupSearch<'a> {
     tree: &'a KdTree,
     points: &'a [Vec3],
     k: usize,
-    radius: f32,
     found: Vec<Neighbor>,
     near: Vec<(Vec3, u32)>,
     keys: Vec<u64>,
 }
 
 impl<'a> GroupSearch<'a> {
-    /// A search for the `k` nearest neighbours within `radius`; the tree was built from the points.
-    pub fn new(tree: &'a KdTree, points: &'a [Vec3], k: usize, radius: f32) -> Self {
-        Self { tree, points, k, radius, found: Vec::new(), near: Vec::new(), keys: Vec::new() }
+    /// A search for the `k` nearest neighbours; the tree was built from the points.
+    pub fn new(tree: &'a KdTree, points: &'a [Vec3], k: usize) -> Self {
+        Self { tree, points, k, found: Vec::new(), near: Vec::new(), keys: Vec::new() }
     }
 
     /// Calls `visit` for every point of a group with its index and its nearest neighbours, itself included. These are keys of
     /// squared distance and index (see [`pack`]), in an unspecified but reproducible order.
     pub fn visit(&mut self, group: &[(Vec3, u32)], visit: &mut impl FnMut(u32, &[u64])) {
-        let Self { tree, points, k, radius, found, near, keys } = self;
+        let Self { tree, points, k, found, near, keys } = self;
         let members = || group.iter().map(|(point, _)| *point);
         let Some(center) = Bounds::of(&members().collect::<Vec<_>>()).map(|b| b.center()) else { return };
         let spread = members().map(|q| q.distance(center)).fold(0.0, f32::max);
@@ -218,7 +217,6 @@ impl<'a> GroupSearch<'a> {
         if let [(_, index)] = group {
             keys.clear();
             keys.extend(found.iter().map(|n| pack(n.distance_squared, n.index)));
-            keys.retain(|key| value_of(*key) <= *radius * *radius);
             return visit(*index, keys);
         }
         // Of points that coincide with the centre, there may be many more.
@@ -228,7 +226,7 @@ impl<'a> GroupSearch<'a> {
         near.clear();
         near.extend(found.iter().filter_map(|n| Some((*points.get(n.index as usize)?, n.index))));
         for &(query, index) in group {
-            let enough = ((reach + query.distance(center)) * (1.0 + ROUNDING)).min(*radius);
+            let enough = (reach + query.distance(center)) * (1.0 + ROUNDING);
             let limit = enough * enough;
             // Writes every key and overwrites the rejected ones: half are rejected at random, so that a branch
             // would be mispredicted.

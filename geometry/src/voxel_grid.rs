@@ -9,7 +9,7 @@ use super::pauses::{Pauses, finished};
 /// Limit on the cells along an axis; points beyond are assigned to the last one. 2²¹ cells of 1 mm span two kilometres.
 const MAX_CELLS: u32 = (1 << 21) - 1;
 
-/// Rounds of [`voxel_size_leaving`], and the minimum growth of the voxels per round: a thousandfold in total.
+/// Rounds of [`voxel_size_leaving`], and the minimum growth of the voxels per round: at least 6.6-fold in total.
 const MAX_ROUNDS: usize = 64;
 const MIN_GROWTH: f32 = 1.03;
 

@@ -58,6 +58,11 @@ export type { Exif, ExternalResources } from "./wasm/formats.js";
 export interface MeshFromFile {
   /** Interleaved x, y, z. */
   positions: Float32Array;
+  /**
+   * What was subtracted from the coordinates of the file, if these are far from zero, as in a map: 32-bit numbers would not
+   * resolve them. Poses of these arrays are relative to it.
+   */
+  origin?: [number, number, number];
   /** Three vertex indices per triangle. */
   indices: Uint32Array;
   /** The colours of the surface, from vertices, materials and textures, if the file has any that can be read. */

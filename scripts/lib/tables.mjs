@@ -1,7 +1,11 @@
-/** Writes the lists of file formats, file names and depth kinds in documents and comments from the package's tables. */
+/**
+ * Writes the lists of file formats, file names and depth kinds in documents and comments from the package's tables, and the
+ * limits of the modules' sizes.
+ */
 import { filesBelow } from "./cache.mjs";
 import { at } from "./paths.mjs";
 import { holdUpToDate, rewrite } from "./rewrite.mjs";
+import { wasmModules } from "./wasm.mjs";
 
 const types = at("pkg-config", "src", "types", "inputs.ts");
 const files = () => [
@@ -54,6 +58,12 @@ async function update() {
       const wanted = formatsText(kind.toLowerCase());
       return list.replace(/\s+(\* )?/g, " ") === wanted ? all : `${before}${wanted}`;
     });
+    // Such as "The splats module, at most 62 kB".
+    now = now.replace(/(?<=\bthe ([\w-]+)(?: readers| module)?(?:,| is) at most )[\d.]+(?= kB)/gi, (old, title) => {
+      const name = title.toLowerCase() === "file" ? "formats" : title.toLowerCase();
+      const budget = wasmModules.find((one) => one.name === name)?.budget;
+      return budget === undefined ? old : `${Math.ceil(budget / 1000)}`;
+    });
     for (const [head, rows] of Object.entries(lists)) {
       const [before = "", after] = now.split(head);
       if (after === undefined) continue;
@@ -68,4 +78,4 @@ export const writeTables = async () => rewrite(files(), await update());
 
 /** @throws if a document or a comment disagrees with the tables */
 export const checkTables = async () =>
-  holdUpToDate(files(), await update(), "pkg-config/src/input/formats.ts or depth-kinds.ts");
+  holdUpToDate(files(), await update(), "pkg-config/src/input/formats.ts, depth-kinds.ts or scripts/lib/wasm.mjs");

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::pinhole::Pinhole;
 
-/// Largest depth that a disparity stands for, relative to the scale: a shift may put what is far behind infinity.
+/// Largest depth that a disparity stands for, in the unit of the result: a shift may put what is far behind infinity.
 const FARTHEST: f64 = 1e3;
 
 /// The numbers that make a depth map and a camera of a raw view.
@@ -26,10 +26,12 @@ impl Default for Calibration {
 }
 
 impl Calibration {
-    /// The depth of a value.
+    /// The depth of a value; not a number for one that is no reading.
     pub fn depth(&self, kind: DepthKind, value: f64) -> f64 {
         let Self { scale, shift, .. } = *self;
         match kind {
+            // The maximum of a number and what is none is the number.
+            _ if !value.is_finite() => f64::NAN,
             DepthKind::Metric | DepthKind::ScaleInvariant => value * scale,
             DepthKind::AffineInvariant => (value + shift) * scale,
             DepthKind::AffineInvariantDisparity => scale / (value + shift).max(scale / FARTHEST),

@@ -18,7 +18,7 @@ use crate::geometry::curve::along_curve;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::sample_surface;
-use normals::{Estimation, Neighborhood, Orientation};
+use normals::{Estimation, Orientation};
 use observation::Observation;
 use sample::Sampling;
 
@@ -65,8 +65,7 @@ impl Evidence {
 
     fn with_normals(mut self, normals: Normals) -> Self {
         let points = &self.observed.points;
-        let neighborhood = Neighborhood::nearest(NORMAL_NEIGHBORS);
-        let mut estimation = Estimation::new(points, &self.tree, neighborhood, Orientation::TowardsCamera);
+        let mut estimation = Estimation::new(points, &self.tree, NORMAL_NEIGHBORS, Orientation::TowardsCamera);
         match normals {
             Normals::All => self.tree.groups().for_each(|group| estimation.add(group)),
             Normals::Measured => {

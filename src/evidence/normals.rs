@@ -14,22 +14,6 @@ const COLLINEAR: f64 = 1e-8;
 const NORMAL: f64 = 2e-3;
 const OF_MEDIAN: f64 = 3e-5;
 
-/// The neighbourhood of a point: the nearest `max_neighbors` points within `radius`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Neighborhood {
-    /// Maximum number of neighbours, including the point itself.
-    pub max_neighbors: usize,
-    /// Maximum distance, in the unit of the points; may be infinite.
-    pub radius: f32,
-}
-
-impl Neighborhood {
-    /// The nearest `max_neighbors`, at any distance.
-    pub fn nearest(max_neighbors: usize) -> Self {
-        Self { max_neighbors, radius: f32::INFINITY }
-    }
-}
-
 /// The orientation of normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Orientation {
@@ -43,11 +27,11 @@ pub enum Orientation {
 pub async fn paused_normals(
     points: &[Vec3],
     tree: &KdTree,
-    neighborhood: Neighborhood,
+    neighbors: usize,
     orientation: Orientation,
     pauses: &Pauses,
 ) -> Vec<Vec3> {
-    let mut estimation = Estimation::new(points, tree, neighborhood, orientation);
+    let mut estimation = Estimation::new(points, tree, neighbors, orientation);
     for group in tree.groups() {
         estimation.add(group);
         pauses.point(NORMAL * group.len() as f64).await;
@@ -67,10 +51,9 @@ pub struct Estimation<'a> {
 }
 
 impl<'a> Estimation<'a> {
-    /// No normals so far. `tree` is the search tree over the points.
-    pub fn new(points: &'a [Vec3], tree: &'a KdTree, neighborhood: Neighborhood, orientation: Orientation) -> Self {
-        let Neighborhood { max_neighbors, radius } = neighborhood;
-        let search = GroupSearch::new(tree, points, max_neighbors, radius);
+    /// No normals so far. `tree` is the search tree over the points; `neighbors` counts the point itself.
+    pub fn new(points: &'a [Vec3], tree: &'a KdTree, neighbors: usize, orientation: Orientation) -> Self {
+        let search = GroupSearch::new(tree, points, neighbors);
         Self { points, search, orientation, normals: vec![Vec3::ZERO; points.len()] }
     }
 
@@ -98,8 +81,7 @@ pub async fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usiz
         pauses.point(OF_MEDIAN * points.len() as f64).await;
     }
     let tree = KdTree::paused(points, pauses).await;
-    let neighborhood = Neighborhood::nearest(neighbors);
-    paused_normals(points, &tree, neighborhood, Orientation::AwayFrom(center), pauses).await
+    paused_normals(points, &tree, neighbors, Orientation::AwayFrom(center), pauses).await
 }
 
 /// The unit eigenvector of the smallest eigenvalue, or zero if the neighbours do not span a plane. Sums are relative to

@@ -98,7 +98,8 @@ impl Face {
             let from = &polygon[if i == 0 { polygon.len() } else { i } - 1];
             let (before, after) = (self.height(from), self.height(to));
             if (before > near) != (after > near) {
-                kept.push(from.lerp(to, before / (before - after)));
+                // Both may be a little outside.
+                kept.push(from.lerp(to, (before / (before - after)).clamp(0.0, 1.0)));
             }
             if after <= near {
                 kept.push(*to);

@@ -19,8 +19,7 @@ choices! {
         Fast = "fast",
         /// The same work for every input.
         Balanced = "balanced",
-        /// More rotations and candidates, among them the pose of the paper's method: about four times the time of
-        /// `balanced`.
+        /// More rotations and candidates: about four times the time of `balanced`.
         Best = "best",
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::evidence::normals::{Neighborhood, Orientation, paused_normals};
+use crate::evidence::normals::{Orientation, paused_normals};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::voxel_grid::paused_downsample;
@@ -38,8 +38,7 @@ impl GridCloud {
     /// of density and noise. The mean normals of the cells determine the orientation.
     async fn with_smooth_normals(mut cloud: Cloud, pauses: &Pauses) -> Self {
         let tree = KdTree::paused(&cloud.points, pauses).await;
-        let neighborhood = Neighborhood::nearest(NORMAL_NEIGHBORS);
-        let normals = paused_normals(&cloud.points, &tree, neighborhood, Orientation::TowardsCamera, pauses).await;
+        let normals = paused_normals(&cloud.points, &tree, NORMAL_NEIGHBORS, Orientation::TowardsCamera, pauses).await;
         for (own, smooth) in cloud.normals.iter_mut().zip(normals) {
             if smooth != Vec3::ZERO {
                 *own = if own.dot(smooth) < 0.0 { -smooth } else { smooth };

@@ -31,8 +31,6 @@ pub enum IcpMetric {
 pub struct IcpSettings {
     /// The distance to minimise.
     pub metric: IcpMetric,
-    /// Whether residuals have Tukey's biweights; `false` weights all pairs equally, as in classical ICP.
-    pub robust: bool,
     /// Whether ŝ is kept (the scale lock of the paper).
     pub lock_scale: bool,
     /// Bounds of the scale if it is not locked.
@@ -137,11 +135,10 @@ impl Residuals {
             Some(Residual { source: s.source as usize, landed, target: point, normal, value, weight: 1.0 })
         };
         let mut residuals: Vec<Residual> = support.iter().filter_map(residual).collect();
-        if settings.robust {
-            let values: Vec<f64> = residuals.iter().map(|r| r.value).collect();
-            for (residual, weight) in residuals.iter_mut().zip(biweights(&values, ROUNDING)) {
-                residual.weight = weight;
-            }
+        // Tukey's biweights, where classical ICP weights all pairs equally.
+        let values: Vec<f64> = residuals.iter().map(|r| r.value).collect();
+        for (residual, weight) in residuals.iter_mut().zip(biweights(&values, ROUNDING)) {
+            residual.weight = weight;
         }
         Self(residuals)
     }

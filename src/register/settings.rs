@@ -72,7 +72,6 @@ impl RegistrationSettings {
     pub(super) fn icp_on_grid(&self) -> Option<IcpSettings> {
         Some(IcpSettings {
             metric: self.icp?,
-            robust: true,
             lock_scale: self.lock_scale,
             scale_bounds: self.ransac.guard.map(|g| [g.min, g.max]),
             max_iterations: self.icp_iterations,

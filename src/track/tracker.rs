@@ -115,7 +115,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             state: TrackState::Lost,
             usual: None,
             certain: None,
-            lead: Lead { margin: 0.0, turn_certainty: 1.0 },
+            lead: Lead { margin: 0.0, certainty_of_color: 1.0 },
             history: History::default(),
         })
     }
@@ -185,7 +185,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.last = self.history.last();
             self.state = TrackState::Tracking;
             self.usual = None;
-            self.lead = Lead { margin: f64::from(NOISE), turn_certainty: 1.0 };
+            self.lead = Lead { margin: f64::from(NOISE), certainty_of_color: 1.0 };
             self.certain = self.last.map(|pose| pose.rotation);
             let evidence =
                 SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0, depth_agreement: 1.0 };
@@ -346,7 +346,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
-            sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
+            sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.certainty_of_color
         };
         let camera_from_mesh = pose.similarity(&self.tracked.pyramid.frame);
         let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };

@@ -25,6 +25,7 @@ const usage: Record<string, Record<string, RegExp>> = {
     "aling blob": /unknown command/,
     "align cases": /but holds some\. Pass 'cases\/\*\*'/,
     "align z*": /z\*: no folder matches the pattern/,
+    "align [z-a]*": /\[z-a\]\*: not a pattern/,
     "track empty": /frame_/,
     "align --list nowhere.txt": /--list nowhere\.txt: the list cannot be read: ENOENT/,
     "align --list empty.txt": /--list: empty\.txt names no case folder/,

@@ -131,6 +131,21 @@ test("a cropped input is the same scene: half a pixel more would show", async ()
   assert.ok((metrics.centerDriftPx ?? 9) < 0.05, JSON.stringify(metrics));
 });
 
+test("a camera keeps what it states besides, and its own size is that of its intrinsics", () => {
+  const others = { depthScale: 0.1, focalUncertainty: 0.05 };
+  const half = { width: width / 2, height: height / 2 };
+  const twice = {
+    ...resizeInput({ camera: { ...camera, width, height } }, { width: 2 * width, height: 2 * height }).camera,
+  };
+  const region = { left: 3, top: 2, width: 50, height: 40 };
+  const cropped = cropInput({ depth, camera }, region).camera as PinholeCamera;
+  assert.deepEqual(cropInput({ depth, camera: { ...twice, ...others } }, region).camera, { ...cropped, ...others });
+  assert.deepEqual(resizeInput({ depth, camera: { ...camera, ...others } }, half).camera, {
+    ...resizeInput({ depth, camera }, half).camera,
+    ...others,
+  });
+});
+
 test("a crop holds the pixels of its box, of the photo too, and everything else of the input", () => {
   const size = { width: 4, height: 3 };
   const points = { data: Float32Array.from({ length: 36 }, (_, i) => i), ...size };

@@ -1,16 +1,27 @@
 /** Every form of depth, mask, camera, mesh and photo gives the result that plain typed arrays give. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type AlignInput, type CameraFileInput, createAligner, type Evaluation, type MeshArrays } from "sim3align";
+import {
+  type AlignInput,
+  type Alignment,
+  type CameraFileInput,
+  createAligner,
+  type Evaluation,
+  type MeshArrays,
+  type SceneInput,
+} from "sim3align";
 import { readMesh } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
 import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
+import { assertNear } from "../support/random.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 import { deflated, zip } from "../support/zip.js";
 
 const { width, height, depth, mask, camera } = view;
 const aligner = await createAligner();
 const plain = { depth: { data: depth, width, height }, mask, camera, mesh };
+
+type Stretch = NonNullable<Alignment["proportions"]>;
 
 /** The result without how the files were read, which tells the forms apart. */
 async function evaluated(changes: object): Promise<Evaluation> {
@@ -250,21 +261,42 @@ test("a mesh at the coordinates of a map has the pose of its file", async () => 
     (_, i) => `f ${Array.from(indices.slice(3 * i, 3 * i + 3), (k) => k + 1).join(" ")}`,
   );
   const file = new TextEncoder().encode([...lines, ...faces].join("\n"));
-  const quick = { quality: "fast" } as const;
+  const quick = { quality: "fast", proportions: "full" } as const;
   const near = await aligner.align({ ...plain, mesh } as AlignInput, quick);
   const found = await aligner.align({ ...plain, mesh: file } as AlignInput, quick);
+  assert.ok(found.proportions !== undefined && near.proportions !== undefined);
   const at = (matrix: readonly number[], point: readonly number[]) =>
     [0, 1, 2].map((row) => [0, 1, 2, 3].reduce((sum, k) => sum + (matrix[4 * k + row] ?? 0) * (point[k] ?? 1), 0));
-  for (const point of [positions.subarray(0, 3), positions.subarray(300, 303)]) {
-    const expected = at(near.matrix, [...point]);
-    const placed = at(
-      found.matrix,
-      Array.from(point, (x, axis) => x + (east[axis] ?? 0)),
-    );
-    for (const [axis, x] of expected.entries())
-      assert.ok(Math.abs((placed[axis] ?? 0) - x) < 2e-3, `${placed}, ${expected}`);
-  }
+  const points = [positions.subarray(0, 3), positions.subarray(300, 303)];
+  /** That the mesh is placed as the near one is, whose coordinates are less by an origin. */
+  const isPlaced = (matrix: readonly number[], origin: readonly number[], stretches: (Stretch | null)[] = []) => {
+    const stretched = ({ stretch }: Stretch, point: readonly number[]) =>
+      stretch.map((row) => row.reduce((sum, x, k) => sum + x * (point[k] ?? 0), 0));
+    for (const point of points) {
+      const moved = Array.from(point, (x, axis) => x + (origin[axis] ?? 0));
+      const [of, own] = stretches;
+      const expected = at((own ?? near).matrix, own ? stretched(own, [...point]) : [...point]);
+      assertNear(at(matrix, of ? stretched(of, moved) : moved), expected, "placed", 2e-3);
+    }
+  };
+  isPlaced(found.matrix, east);
+  isPlaced(found.proportions.matrix, east, [found.proportions, near.proportions]);
   assert.ok(Math.abs(found.scale / near.scale - 1) < 5e-3);
+  const { mask, ...seen } = plain;
+  const start = { search: "local", initial: { matrix: found.matrix } } as const;
+  for (const known of [{}, start]) {
+    const scene = { ...seen, objects: [{ mask, mesh: file, ...known }] } as SceneInput;
+    const [object] = (await aligner.alignScene(scene, { quality: "fast" })).objects;
+    assert.ok(object !== undefined && object.error === undefined, object?.error?.message);
+    isPlaced(object.matrix, east);
+  }
+  // Poses of what was read are of its arrays, from which the origin is subtracted.
+  const read = await readMesh(file);
+  const ofArrays = await aligner.align({ ...plain, mesh: read } as AlignInput, quick);
+  isPlaced(
+    ofArrays.matrix,
+    east.map((x, axis) => x - (read.origin?.[axis] ?? 0)),
+  );
   // The pose is that of the file in arguments, too.
   const { metrics } = await aligner.evaluate({ ...plain, mesh: file } as AlignInput, found);
   assert.ok((metrics.iou ?? 0) > 0.95, `${metrics.iou}`);

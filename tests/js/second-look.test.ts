@@ -21,6 +21,23 @@ test("a mesh that is mirrored is named", async () => {
   }
 });
 
+test("an abort at any time ends the call, also during the second look", async () => {
+  const positions = mesh.positions.map((x, i) => (i % 3 === 0 ? -x : x));
+  const ofMirrored = { ...input, mesh: { ...mesh, positions } };
+  for (let last = 1; ; last += 3) {
+    let count = 0;
+    const { signal } = new AbortController();
+    Object.defineProperty(signal, "aborted", { get: () => ++count > last });
+    Object.defineProperty(signal, "reason", { value: "over" });
+    const outcome = await aligner.align(ofMirrored, { quality: "fast", signal }).then(
+      () => "done",
+      (error) => error,
+    );
+    assert.equal(outcome, count > last ? "over" : "done", `${count} checks, aborted after ${last}`);
+    if (outcome === "done") return;
+  }
+});
+
 test("textures that are upside down are named if the photo agrees with them turned", async () => {
   const { mesh: box, frameAt } = printedBox();
   const { frame, image } = frameAt(35);

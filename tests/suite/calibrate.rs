@@ -1,6 +1,7 @@
 //! Calibration of views: the shift, the scale and the focal length that an image was made with are found again.
 
 use sim3align::align::align;
+use sim3align::calibrate::calibration::Calibration;
 use sim3align::calibrate::frames::{RawFrame, Sequence, calibrate_views};
 use sim3align::calibrate::raw_view::{Focal, RawView};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
@@ -174,5 +175,20 @@ fn the_confidence_counts_how_well_the_relief_is_known() {
         assert_eq!(estimated.camera_from_mesh, measured.camera_from_mesh);
         let most = (1.0 - (deviation / 0.43) * (deviation / 0.43)).max(0.0);
         assert!((estimated.confidence / measured.confidence - most).abs() < 1e-9, "{deviation}: {most}");
+    }
+}
+
+#[wasm_bindgen_test]
+fn values_that_are_no_readings_have_no_depth() {
+    let seen = observe(&body(), &truth());
+    for kind in [DepthKind::ScaleInvariant, DepthKind::AffineInvariant, DepthKind::AffineInvariantDisparity] {
+        let RawView { values, camera, focal, .. } = raw(&seen, kind, Focal::Known, 1.0);
+        let none = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY];
+        let holes = values.data().iter().enumerate().map(|(i, value)| none.get(i % 7).unwrap_or(value));
+        let values = Image::new("depth", values.width(), values.height(), holes.copied().collect()).unwrap();
+        let depth = RawView { values, kind, camera, focal }.depth(&Calibration::default()).unwrap();
+        for (i, z) in depth.data().iter().enumerate() {
+            assert_eq!(*z > 0.0, i % 7 >= none.len(), "{kind:?}: pixel {i} has depth {z}");
+        }
     }
 }

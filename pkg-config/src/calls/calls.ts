@@ -133,7 +133,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const result = await then.search("alignViews", { ...read, views }, options);
       const ofView = (view: ViewAlignment, k: number) =>
         withNotes(withCalibration(view, calibrated[k]), notes[k] as InputNotes);
-      return { ...fromOrigin({ ...result, views: [] }, read.mesh.origin), views: result.views.map(ofView) };
+      return { ...fromOrigin({ ...result, views: [] }, read.mesh.fileOrigin), views: result.views.map(ofView) };
     },
   },
   calibrate: {
@@ -145,7 +145,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
         const mesh = await readCoreMesh(object.mesh, context.modules, false).catch((error) => {
           if (!isOfInput(error)) throw error;
         });
-        if (mesh) read.push({ ...object, mesh: mesh.mesh });
+        if (mesh) read.push({ ...object, mesh: mesh.mesh, options: toOrigin(object.options, mesh.mesh.fileOrigin) });
       }
       const input = { ...view, objects: read };
       return context.task("joint", input, (j) => j.beginCalibrate(input, context.listener));
@@ -156,7 +156,9 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     async run({ data, options, meshId }, context) {
       const isColored = data.image !== undefined;
       const read = await readCoreMesh(data.mesh, context.modules, isColored, meshId);
-      const placed = await context.search("place", { ...data, mesh: read.mesh }, options);
+      const { fileOrigin: origin } = read.mesh;
+      const found = await context.search("place", { ...data, mesh: read.mesh }, toOrigin(options, origin));
+      const placed = { ...found, ...withoutUndefined({ origin }) };
       if (placed.alignment === undefined) return placed;
       // The view belongs to the scene, which reports what its files say.
       const notes = withMesh({ core: data, notes: { warnings: [], colors: [] } }, read);
@@ -168,7 +170,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     async run({ data, options: { tracker, settings }, meshId }, context) {
       // Any frame may have a photo.
       const { mesh } = await readCoreMesh(data.mesh, context.modules, true, meshId);
-      if (mesh.origin !== undefined) throw farMesh(mesh.origin);
+      if (mesh.fileOrigin !== undefined) throw farMesh(mesh.fileOrigin);
       const joint = await context.modules.joint();
       joint.callWith("input", { mesh }, (j) => {
         j.openTracker(tracker, { mesh }, settings);
@@ -219,7 +221,7 @@ export function perform<M extends Method>(job: Job<M>, context: JobContext): Pro
 export const moduleOf = (method: Method): ModuleName => calls[method].module;
 
 /** The modules that cache prepared meshes, each its own copy. */
-export const meshCaches = ["core", "joint"] as const;
+const meshCaches = ["core", "joint"] as const;
 
 /** Whether a call takes its prepared mesh from the cache of its module: that of the core is not that of calibration. */
 export const cachesMesh = (method: Method, data: unknown): boolean =>

@@ -95,9 +95,11 @@ export class JobContext {
     ];
   }
 
-  /** The same job without progress. */
+  /** The same job without progress and helpers: these have the input of its first search. */
   quiet(): JobContext {
-    return new JobContext(this.modules, this.scheduler, undefined);
+    const { scheduler } = this;
+    const alone = { sliceMs: scheduler.sliceMs, check: () => scheduler.check(), turn: () => scheduler.turn() };
+    return new JobContext(this.modules, alone, undefined);
   }
 
   /** Calls a module with an input. */

@@ -78,7 +78,10 @@ export class MainThreadEngine implements Engine {
     const held = await heaps.acquire(signals, call.isBatched);
     try {
       checkReady(job, signals);
-      return { result: await perform(job, this.#context(call, signals)), data: job.data };
+      const result = await perform(job, this.#context(call, signals));
+      // A call may go on without a part that an abort has ended.
+      checkSignals(signals);
+      return { result, data: job.data };
     } finally {
       releaseHeaps(held);
     }

@@ -20,14 +20,25 @@ export function toOrigin<T>(value: T, origin: Origin | undefined): T {
 }
 
 function relocated(value: unknown, origin: Origin, sign: 1 | -1): unknown {
-  if (Array.isArray(value)) return isMatrix(value) ? movedMatrix(value, origin, sign) : each(value, origin, sign);
+  if (Array.isArray(value)) {
+    return isMatrix(value) ? movedMatrix(value, product(value, origin), sign) : each(value, origin, sign);
+  }
   if (!isRecord(value)) return value;
-  const { scale, rotation, rotationMatrix, translation, matrix } = value;
+  const { scale, rotation, rotationMatrix, translation, matrix, stretch } = value;
   const moved = Object.fromEntries(Object.entries(value).map(([name, part]) => [name, relocated(part, origin, sign)]));
   const columns = isMatrix(matrix) ? matrix : columnsOf(scale, rotationMatrix ?? rotation);
   if (columns === undefined || !Array.isArray(translation)) return moved;
-  const offset = product(columns, origin);
-  return { ...moved, translation: translation.map((t, axis) => t + sign * (offset[axis] as number)) };
+  // In other proportions, s·R·S·(p − o) + t.
+  const rows = Array.isArray(stretch) ? (stretch as Origin[]) : undefined;
+  const offset = product(
+    columns,
+    rows?.map((row) => row.reduce((sum, x, k) => sum + x * (origin[k] ?? 0), 0)) ?? origin,
+  );
+  return {
+    ...moved,
+    ...(isMatrix(matrix) ? { matrix: movedMatrix(matrix, offset, sign) } : {}),
+    translation: translation.map((t, axis) => t + sign * (offset[axis] as number)),
+  };
 }
 
 const each = (values: readonly unknown[], origin: Origin, sign: 1 | -1) =>
@@ -43,8 +54,7 @@ const product = (matrix: readonly number[], [x = 0, y = 0, z = 0]: Origin) =>
     return a * x + b * y + c * z;
   });
 
-function movedMatrix(matrix: readonly number[], origin: Origin, sign: 1 | -1): number[] {
-  const offset = product(matrix, origin);
+function movedMatrix(matrix: readonly number[], offset: readonly number[], sign: 1 | -1): number[] {
   return matrix.map((number, i) => number + (i >= 12 && i < 15 ? sign * (offset[i - 12] as number) : 0));
 }
 

@@ -143,6 +143,8 @@ async function runCases<T extends CaseKey>(
     });
   /** Adds the cases that were done before, and returns the others. */
   const resume = async (): Promise<T[]> => {
+    // Without all of these, the files of the batch would hold less than before: they stay as they are.
+    const stop = onInterruption(() => output.discard());
     const resumed = new Set<T>();
     let recorded = 0;
     for await (const { task, name, entry } of output.resumed(tasks)) {
@@ -155,6 +157,7 @@ async function runCases<T extends CaseKey>(
       const [error] = count(name, entry);
       if (error !== undefined) failedBefore.push(`${name} (${error})`);
     }
+    stop();
     if (recorded > 0) note(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
     return tasks.filter((task) => !resumed.has(task));
   };

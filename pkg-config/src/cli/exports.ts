@@ -1,5 +1,7 @@
 /** Inputs and meshes in the lengths of a result; files of posed meshes, of scenes, and of scenes for simulators. */
+
 import { join } from "node:path";
+import { toOrigin } from "../calls/origin.js";
 import { parseCameraFile } from "../camera/camera-file.js";
 import { correctDepth } from "../conventions/depth.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
@@ -19,6 +21,7 @@ import { toUsd } from "../simulators/usd.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import type { MeshArrays, MeshInput } from "../types/inputs.js";
 import { isRecord } from "../values/kinds.js";
+import type { CoreMesh } from "../values/prepared-mesh.js";
 import { withoutUndefined } from "../values/values.js";
 import type { Flags } from "./flags.js";
 import type { RunFiles } from "./run-files.js";
@@ -52,12 +55,14 @@ export interface ExportedAs {
 }
 
 /** Arrays, for an export. `pose` is the result, whose facts are kept. */
-export function exportedArrays<M extends MeshArrays>(
+function exportedArrays<M extends MeshArrays>(
   mesh: M,
   pose: Sim3Like,
   { proportions, upright }: ExportedAs,
 ): ExportedMesh<M> {
-  const own = inProportion(mesh, pose, proportions);
+  // The result is of the mesh in its file.
+  const { fileOrigin } = mesh as Pick<CoreMesh, "fileOrigin">;
+  const own = inProportion(mesh, toOrigin(pose, fileOrigin), toOrigin(proportions, fileOrigin));
   const straight = upright === undefined ? own : uprightMesh(own.mesh, own.transform, upright);
   return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
 }
@@ -74,7 +79,9 @@ export async function exportedMesh(
   const { proportions, upright } = as;
   const glb = proportions === undefined ? bytes : stretchMesh(bytes, proportions);
   if (upright === undefined) return { mesh: glb, transform: withFacts(proportions ?? pose, pose) };
-  const stretched = inProportion(await read(), pose, proportions);
+  const arrays = await read();
+  if ("fileOrigin" in arrays) return exportedArrays(arrays, pose, as);
+  const stretched = inProportion(arrays, pose, proportions);
   const straight = uprightMesh(stretched.mesh, stretched.transform, { ...upright, glb });
   return { mesh: straight.mesh, transform: withFacts(straight.transform, pose) };
 }

@@ -2,7 +2,7 @@
 import { type Dirent, existsSync, readdirSync, realpathSync, statSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { naturally } from "../values/order.js";
-import { statOf } from "./files.js";
+import { statOf, UsageError } from "./files.js";
 
 /** Whether a path has characters of patterns. */
 export const isPattern = (path: string): boolean => /[*?]|\[.+\]|\{.+\}/s.test(path);
@@ -55,7 +55,11 @@ function expressionOf(part: string): RegExp {
     if (characters === undefined) return character.replace(/[\\^$.*+?()[\]{}|/]/, "\\$&");
     return `[${not === "" ? "" : "^"}${characters.replace(/[\\\]^[]/g, "\\$&")}]`;
   });
-  return new RegExp(`^${part.startsWith(".") ? "" : "(?!\\.)"}${source}$`, "u");
+  try {
+    return new RegExp(`^${part.startsWith(".") ? "" : "(?!\\.)"}${source}$`, "u");
+  } catch {
+    throw new UsageError(`${part}: not a pattern. Write ranges in ascending order, such as [a-z].`);
+  }
 }
 
 /** The names of the folders in a folder; links are followed, but for those to a folder above, which have no end. */

@@ -126,7 +126,7 @@ pre { font-size: 12px; background: #f6f7f9; padding: 8px; border-radius: 5px; ov
 `;
 
 /** The page: style and script are in it; rows and details are scripts beside it. */
-export async function reportHtml(title: string): Promise<string> {
+async function reportHtml(title: string): Promise<string> {
   const script = await readFile(new URL("../report-page.js", import.meta.url), "utf8");
   return `<!doctype html>
 <html lang="en">

@@ -39,8 +39,9 @@ function parse(text: string, argument: string, path: string): unknown {
   try {
     if (!/^\{"(?:case|sim3align)":/.test(text)) return JSON.parse(text);
     const lines = text.split("\n").filter((line) => line.trim() !== "" && !/^\{"sim3align":/.test(line));
+    // Of a case that a record has twice, the first line counts, as for --resume.
     return Object.fromEntries(
-      lines.map((line) => {
+      lines.reverse().map((line) => {
         const { case: name, ...entry } = JSON.parse(line) as { case: string };
         return [name, entry];
       }),

@@ -25,7 +25,7 @@ const turns: Readonly<Record<CameraFrame, Matrix3>> = {
 };
 
 /** The names of the frames. */
-export const cameraFrames = Object.keys(turns) as readonly CameraFrame[];
+const cameraFrames = Object.keys(turns) as readonly CameraFrame[];
 
 const rotationOnly = (rotation: Matrix3): Similarity => ({ scale: 1, rotation, translation: [0, 0, 0] });
 

@@ -17,7 +17,7 @@ const frame = (up: Vector3, front: Vector3 | null = null): GeneratorFrame => ({ 
 
 /**
  * Which way is up, and which way is the camera, in the files that generators write, their meshes and their 3D Gaussians: SAM 3D Objects (`sam3d`), TRELLIS,
- * Hunyuan3D-2, TripoSR (`run.py`), InstantMesh (`run.py`) and Stable Fast 3D (`sf3d`). The guide "Meshes of generators"
+ * Hunyuan3D-2, TripoSR (`run.py`), InstantMesh (`run.py`) and Stable Fast 3D (`sf3d`). The guide "Scenes, and outputs of generators"
  * has the source of each.
  *
  * @example

@@ -7,7 +7,7 @@
 const RESERVED = /^(world|ground|camera|light|physics|scene|load|view|support|con|prn|aux|nul|(com|lpt)\d)$/;
 
 /** Letters, digits and underscores, beginning with no digit: every format takes these. */
-export const identifier = (name: string): string => name.replace(/[^A-Za-z0-9]+/g, "_").replace(/^(?=\d|$)/, "_");
+const identifier = (name: string): string => name.replace(/[^A-Za-z0-9]+/g, "_").replace(/^(?=\d|$)/, "_");
 
 /** Gives each thing in the files of a scene a name of its own. Names that differ in case only are the same to some systems. */
 export class Names {

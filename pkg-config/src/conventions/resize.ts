@@ -1,6 +1,6 @@
 /** Resizes and crops images together with their intrinsics. */
 
-import { pinholeOf, resizedPinhole } from "../camera/pinhole.js";
+import { type Pinhole, pinholeOf, resizedPinhole } from "../camera/pinhole.js";
 import type { CameraInput } from "../types/inputs.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
@@ -113,12 +113,20 @@ export function resizeInput<T extends ImagesAndCamera>(input: T, size: ImageSize
   }
   if (camera !== undefined) {
     const [first] = images;
-    const isSized = isRecord(camera) && camera.width !== undefined;
-    const from =
-      isSized || first === undefined ? sizeOf("input.camera", camera) : sizeOf(`input.${first[0]}`, first[1]);
-    changed.camera = { ...resizedPinhole(pinholeOf("input.camera", camera, from), from, to), ...to };
+    const isOwn = hasSize(camera) || first === undefined;
+    const from = isOwn ? sizeOf("input.camera", camera) : sizeOf(`input.${first[0]}`, first[1]);
+    changed.camera = withIntrinsics(camera, resizedPinhole(pinholeOf("input.camera", camera, from), from, to), to);
   }
   return changed as unknown as T;
+}
+
+/** Whether a camera has the size of the image that its intrinsics belong to. */
+const hasSize = (camera: unknown): boolean => isRecord(camera) && camera.width !== undefined;
+
+/** A camera with other intrinsics for an image of this size, and all else that it states, such as the unit of depth. */
+function withIntrinsics(camera: CameraInput, intrinsics: Pinhole, size: ImageSize): CameraInput {
+  const { K: _, fovYDeg: __, ...others } = camera as unknown as Record<string, unknown>;
+  return { ...others, ...intrinsics, width: size.width, height: size.height } as CameraInput;
 }
 
 /** The bounding box of the object in a mask, with a margin that is clipped to the image. */
@@ -147,7 +155,7 @@ function maskBox(mask: unknown, marginPx: unknown): PixelBox {
  * Leave a margin around the object: if a mask touches the image border, the object is assumed to continue beyond it.
  *
  * @param input `depth`, `mask`, `pointMap` and `image` as `{ data, width, height }`, all of one size; `camera` with
- * intrinsics
+ * intrinsics for its `width` and `height` or, without these, for that size
  * @param box in pixels of the image; or `{ marginPx }`, for the box around the object in the mask, with a margin of so many
  * pixels that is clipped to the image
  *
@@ -186,8 +194,9 @@ export function cropInput<T extends ImagesAndCamera>(input: T, box: PixelBox | {
     cropped[name] = sampled(pixels, { width, height }, source, channels);
   }
   if (camera !== undefined) {
-    const { fx, fy, cx, cy } = pinholeOf("input.camera", camera, size);
-    cropped.camera = { fx, fy, cx: cx - left, cy: cy - top, width, height };
+    const from = hasSize(camera) ? sizeOf("input.camera", camera) : size;
+    const whole = resizedPinhole(pinholeOf("input.camera", camera, from), from, size);
+    cropped.camera = withIntrinsics(camera, { ...whole, cx: whole.cx - left, cy: whole.cy - top }, { width, height });
   }
   return cropped as unknown as T;
 }

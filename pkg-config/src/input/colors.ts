@@ -1,6 +1,7 @@
 /** Converts colours to what the core takes: sRGB-encoded red, green and blue, a byte each. */
 
 import type { Photo } from "../modules/core-input.js";
+import { isTypedArray } from "../values/kinds.js";
 import { nearest } from "../values/pixels.js";
 
 /** Arrays of colours: whole numbers from 0 to 255, or floats from 0 to 1. */
@@ -14,8 +15,8 @@ const MAX_PHOTO_PIXELS = 1 << 21;
 
 /** The colours without their alpha. */
 export function rgbOf(colors: ColorArray, channels: number, space: ColorSpace = "srgb"): Uint8Array {
-  if (channels === 3 && space === "srgb" && colors instanceof Uint8Array) return colors;
-  const encode = encoder(colors instanceof Float32Array, space);
+  if (channels === 3 && space === "srgb" && isTypedArray<Uint8Array>(colors, "Uint8Array")) return colors;
+  const encode = encoder(isTypedArray(colors, "Float32Array"), space);
   const count = colors.length / channels;
   const rgb = new Uint8Array(3 * count);
   for (let i = 0; i < count; i++) {

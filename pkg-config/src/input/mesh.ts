@@ -67,8 +67,9 @@ export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: 
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = { ...withoutUndefined({ format, resources }), colors: withColors };
   const read = await decodeMesh("mesh", bytes, options, readers, ofMesh);
-  const { warnings, ...found } = read;
-  return { mesh: found, warnings };
+  const { warnings, origin, ...found } = read;
+  // Poses are of the mesh that the caller passed: that of a file keeps its coordinates.
+  return { mesh: { ...found, ...withoutUndefined({ fileOrigin: origin }) }, warnings };
 }
 
 /**
@@ -95,7 +96,7 @@ function arrays({ positions, indices, ...more }: Record<string, unknown>, withCo
   }
   // Checked in any case: whether colours are wrong must not depend on the photo.
   const colors = colorsOf(more, positions.length / 3);
-  const origin = Array.isArray(more.origin) ? { origin: more.origin as number[] } : {};
+  const origin = Array.isArray(more.fileOrigin) ? { fileOrigin: more.fileOrigin as number[] } : {};
   const copies = typeof more.copies === "number" ? { copies: more.copies } : {};
   const found = { positions, ...origin, ...copies, ...(withColors ? colors : {}) };
   if (indices === undefined || indices === null) return found;

@@ -115,7 +115,7 @@ export const withMesh = (
   ...notes,
   warnings: [...notes.warnings, ...(mesh.copies === undefined ? [] : [holdsCopies(mesh.copies)])],
   ...(core.image === undefined ? {} : { colors: warnings }),
-  ...withoutUndefined({ origin: mesh.origin }),
+  ...withoutUndefined({ origin: mesh.fileOrigin }),
 });
 
 /** Rejects misspelt properties, which would otherwise be ignored. */

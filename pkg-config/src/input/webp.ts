@@ -1,5 +1,6 @@
 /** WebP images, which a module of their own decodes. */
 import type { FileReaders } from "../modules/readers.js";
+import { isTypedArray } from "../values/kinds.js";
 import type { PixelArray } from "../values/pixels.js";
 
 /** The readers of images. */
@@ -23,7 +24,9 @@ export async function imageDecoder(
   own: DecodeImage | undefined,
   { webp }: Pick<FileReaders, "webp">,
 ): Promise<DecodeImage | undefined> {
-  const files = [...Object.values(resources ?? {}), bytes].filter((file) => file instanceof Uint8Array);
+  const files = [...Object.values(resources ?? {}), bytes].filter((file) =>
+    isTypedArray<Uint8Array>(file, "Uint8Array"),
+  );
   if (!files.some((file) => isWebp(file) || mentionsWebp(file))) return own;
   const module = await webp();
   return (image) => (isWebp(image) ? module.call((decoder) => decoder.decodeWebp(image, true)) : own?.(image));

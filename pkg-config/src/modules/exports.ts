@@ -190,6 +190,8 @@ export interface Placed {
   placement: Uint8Array;
   /** The result, in the last round. */
   alignment?: Alignment;
+  /** The origin of its mesh, which its placement is relative to. */
+  origin?: readonly number[];
 }
 
 /** The poses of the objects of a scene, `null` for one that could not be aligned, and what they stand on. */

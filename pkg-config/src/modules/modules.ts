@@ -14,7 +14,7 @@ export const coreModule = /* @__PURE__ */ new WasmModule<Core>(
   () => coreGlue,
 );
 
-export const jointModule = /* @__PURE__ */ new WasmModule<Joint>(
+const jointModule = /* @__PURE__ */ new WasmModule<Joint>(
   "joint",
   () => new URL("../wasm/joint_bg.wasm", import.meta.url),
   () => import("../wasm/joint.js"),

@@ -1,5 +1,6 @@
 /** A shot: an observation and a mesh, decoded for pictures of a pose. */
 
+import { toOrigin } from "../calls/origin.js";
 import type { Pinhole } from "../camera/pinhole.js";
 import { resizedMask } from "../conventions/resize.js";
 import { resolveInput } from "../input/resolve.js";
@@ -7,6 +8,7 @@ import type { Photo } from "../modules/core-input.js";
 import { coreModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
 import type { AlignInput } from "../types/inputs.js";
+import { isTypedArray } from "../values/kinds.js";
 import type { MaskPixels } from "../values/pixels.js";
 import { type CoreMesh, nextMeshId } from "../values/prepared-mesh.js";
 import type { View } from "./view.js";
@@ -33,7 +35,7 @@ export class Shot {
     const { core } = await resolveInput(input, fileReaders, nextMeshId());
     const { depth = new Float32Array(), mask, mesh, image } = core;
     const [width, height] = [Number(core.width), Number(core.height)];
-    const scale = Number(core.depthScale ?? (depth instanceof Uint16Array ? 0.001 : 1));
+    const scale = Number(core.depthScale ?? (isTypedArray(depth, "Uint16Array") ? 0.001 : 1));
     const metres = Float32Array.from(depth, (z) => (z > 0 && Number.isFinite(z) ? z * scale : 0));
     const given = { data: mask, width: core.maskWidth ?? width, height: core.maskHeight ?? height };
     const { data: inside } = resizedMask(given, { width, height });
@@ -45,8 +47,13 @@ export class Shot {
     const core = await coreModule.load();
     const { width, height } = view;
     return core.call((c) =>
-      c.renderDepth({ mesh: this.mesh, width, height, camera: view.camera(this.camera) }, matrix),
+      c.renderDepth({ mesh: this.mesh, width, height, camera: view.camera(this.camera) }, this.ofArrays(matrix)),
     );
+  }
+
+  /** The matrix that places the arrays of the mesh, of one that places the mesh in its file. */
+  ofArrays(matrix: readonly number[]): readonly number[] {
+    return toOrigin([...matrix], this.mesh.fileOrigin);
   }
 
   /** Frees what the core keeps of the mesh. */

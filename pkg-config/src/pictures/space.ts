@@ -56,10 +56,11 @@ export function spaceOf(shot: Shot, matrix: readonly number[], seen: Seen): Spac
 }
 
 /** The posed mesh with one vertex per occupied cell of a grid: the mean of the vertices in it. */
-function simplified({ mesh }: Shot, matrix: readonly number[]): { vertices: Float64Array; triangles: Uint16Array } {
+function simplified(shot: Shot, matrix: readonly number[]): { vertices: Float64Array; triangles: Uint16Array } {
+  const { mesh } = shot;
   const { positions } = mesh;
   const indices = mesh.indices ?? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i);
-  const pose = similarityOf({ matrix });
+  const pose = similarityOf({ matrix: shot.ofArrays(matrix) });
   const { min: low, max: high } = bounds(positions);
   const side = Math.max(...high.map((x, axis) => x - (low[axis] as number)), 1e-30) / CELLS;
   const vertexOfCell = new Map<number, number>();

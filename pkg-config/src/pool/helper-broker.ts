@@ -63,14 +63,17 @@ export class HelperBroker {
 
   async #help(slot: Slot, longJob: LongJob, helper: Slot): Promise<void> {
     const isRunning = () => this.#longJobs.get(slot) === longJob;
+    // While it waited, it may have been called back, or the job may have ended.
+    const isWanted = () => longJob.helpers.has(helper) && isRunning();
     let place: number | undefined;
     const { job } = longJob;
     const module = moduleOf(job.method);
     try {
       const modules = new Map([[module, await this.compiled(module)]]);
+      // After the pool has ended, nothing would end a new worker.
+      if (!isWanted()) return;
       await helper.hire().ready();
-      // While it started, it may have been called back, or the job may have ended.
-      if (!longJob.helpers.has(helper) || !isRunning()) return;
+      if (!isWanted()) return;
       const { port1, port2 } = new MessageChannel();
       place = longJob.count++;
       slot.last.tell({ type: "helper", helper: place, port: port1 }, [port1]);

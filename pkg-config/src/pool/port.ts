@@ -61,7 +61,7 @@ export interface WorkerFactory {
  */
 export async function workerFactory(script?: string, createWorker?: CreateWorker): Promise<WorkerFactory> {
   if (typeof Worker === "function" || createWorker !== undefined) {
-    const cores = globalThis.navigator?.hardwareConcurrency ?? 2;
+    const cores = globalThis.navigator?.hardwareConcurrency ?? (await coresOfNode());
     return { create: createWorker ?? (script === undefined ? fromFile : fromScript(script)), cores };
   }
   try {
@@ -77,6 +77,15 @@ export async function workerFactory(script?: string, createWorker?: CreateWorker
     throw failure("WORKER_FAILED", "workers", "an environment without workers", expected, remedy, cause);
   }
 }
+
+/** The number of cores in Node, whose versions before 21 have no `navigator`. */
+const coresOfNode = async (): Promise<number> => {
+  try {
+    return ((await nodeModule("node:os")) as typeof import("node:os")).availableParallelism();
+  } catch {
+    return 2;
+  }
+};
 
 /** The script as a file of the package: bundlers do not recognise this form. */
 const scriptUrl = () => new URL("../worker.js", String(import.meta.url));

@@ -2,6 +2,7 @@
 import { inCalibration, isRaw } from "../calls/calibrate.js";
 import { type Call, type Engine, signalsOf } from "../calls/engine.js";
 import { withNotes } from "../calls/notes.js";
+import { fromOrigin } from "../calls/origin.js";
 import { ProgressListener } from "../calls/progress.js";
 import { checkSignals, onAnyAbort } from "../concurrency/on-abort.js";
 import { coreSim3, type Sim3 } from "../input/sim3.js";
@@ -69,7 +70,7 @@ function resultOf(scene: ReadScene, placed: readonly PlacedOrError[], arrangemen
     const named = withoutUndefined({ name });
     if (of instanceof Sim3AlignError) return { ...named, error: of };
     // Contacts may have moved the pose.
-    const aligned = { ...named, ...of.alignment, ...arrangement.objects[i] };
+    const aligned = { ...named, ...of.alignment, ...fromOrigin(arrangement.objects[i], of.origin) };
     const moved = { ...aligned, ...withoutUndefined({ maskReading }) } as SceneAlignment;
     const { proportions } = moved;
     const before = of.alignment?.translation;

@@ -1,4 +1,4 @@
-/** The output of SAM 3D Objects as the files of a scene. The guide "Meshes of generators" describes the folder. */
+/** The output of SAM 3D Objects as the files of a scene. The guide "Scenes, and outputs of generators" describes the folder. */
 import type { CaseFiles, ReadCaseOptions } from "../case-files.js";
 import { isNoInput, namesOf, partOf } from "../case-names.js";
 import { fromSam3d } from "../conventions/sam3d.js";
@@ -157,7 +157,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
 }
 
 function missing(argument: string, found: string, expected: string): Sim3AlignError {
-  const remedy = 'See "sim3align scene --help", or the guide "Meshes of generators", for the layout.';
+  const remedy = 'See "sim3align scene --help", or the guide "Scenes, and outputs of generators", for the layout.';
   return failure("FILE_NOT_FOUND", argument, found, expected, remedy);
 }
 

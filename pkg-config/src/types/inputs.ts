@@ -58,7 +58,7 @@ export type MaskInput =
   | BlobLike
   | CocoRle;
 
-/** The size of the image that the intrinsics belong to. It must match the depth map. */
+/** The size of the image that the intrinsics belong to, by default that of the depth map. Others are scaled to it. */
 interface CameraSize {
   /** Width in pixels. */
   width?: number | undefined;

@@ -13,8 +13,8 @@ export interface CoreMesh {
   colors?: Uint8Array;
   /** Colours at points of the surface, instead. */
   samples?: ColorSamples;
-  /** What a reader has subtracted from the coordinates of the file; see `origin.ts`. */
-  origin?: readonly number[];
+  /** What was subtracted from the coordinates of the file that the caller passed; see `origin.ts`. */
+  fileOrigin?: readonly number[];
   /** How many copies of one mesh the file places. */
   copies?: number;
   /** The id under which the core caches the mesh. If it is cached, the arrays are not read. */
@@ -63,7 +63,8 @@ export class PreparedMesh {
   }
 
   /**
-   * Frees the mesh on this thread, and in each worker with its next call. Later calls with it reject with `DISPOSED`.
+   * Frees the mesh on this thread, and in each worker with its next call; trackers that began with it keep their copy. Later calls
+   * with it reject with `DISPOSED`.
    */
   dispose(): void {
     const state = states.get(this);

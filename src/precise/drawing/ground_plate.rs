@@ -1,7 +1,7 @@
 //! Ground plate: a piece of the ground that a generator took for a part of the object which stands on it.
 //!
 //! Table tops, lamp feet and screens have the same form. This only finds what may be such a plate: whether it is one, the
-//! image decides (see [`shown`](crate::precise::search::shown)).
+//! image decides (see [`plate`](crate::precise::search::plate)).
 
 use glam::{DMat3, DVec3, Vec3};
 

@@ -30,12 +30,9 @@ impl Anchor {
 
 /// The hypotheses for a grid: the unchanged box, a slightly larger one and, if it is cut, boxes extended towards the
 /// cut.
-pub fn anchors(grid: &CropGrid, occlusion: bool) -> Vec<Anchor> {
+pub fn anchors(grid: &CropGrid) -> Vec<Anchor> {
     let plain = |zoom| Anchor { zoom, ..Anchor::AS_IT_IS };
     let mut anchors = vec![plain(1.0), plain(1.12)];
-    if !occlusion {
-        return anchors;
-    }
     let sides = cut_sides(grid);
     if sides.is_empty() {
         return anchors;

@@ -136,7 +136,7 @@ impl Search {
 
     /// Sizes and positions tried for each rotation.
     pub fn anchors(&self) -> Vec<Anchor> {
-        if self.settings.anchors { anchors(self.grid(COARSE), self.settings.occlusion) } else { vec![Anchor::AS_IT_IS] }
+        anchors(self.grid(COARSE))
     }
 
     /// Makes all grids.

@@ -140,10 +140,6 @@ pub struct SearchSettings {
     pub grids: [Grid; GRIDS],
     /// Weights of the score's terms.
     pub weights: Weights,
-    /// Whether occluders hide the mesh, and the mesh may extend beyond cut masks.
-    pub occlusion: bool,
-    /// Whether sizes and positions other than those of the mask's box are tried.
-    pub anchors: bool,
     /// Whether refinement keeps the scale of the rotation grid.
     pub lock_scale: bool,
     /// Number of the best poses that are turned.
@@ -160,8 +156,6 @@ impl From<Effort> for SearchSettings {
             rounds: rounds(effort),
             grids: grids(effort),
             weights: Weights::default(),
-            occlusion: true,
-            anchors: true,
             lock_scale: false,
             turned: TURNED[effort as usize],
             max_load: MAX_LOAD[0],
@@ -238,11 +232,10 @@ impl SearchSettings {
         let Grid { depth_error, outline, .. } = self.grids[grid];
         let mut weights = self.weights;
         weights.outline *= outline;
-        let occluder_m = clean.occluder_m();
         Scoring {
             weights,
             depth_m: (depth_error * clean.diagonal_m) as f32,
-            occluder_m: if self.occlusion { occluder_m as f32 } else { f32::INFINITY },
+            occluder_m: clean.occluder_m() as f32,
             outline_cells: OUTLINE_CELLS,
         }
     }
