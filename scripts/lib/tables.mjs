@@ -60,7 +60,7 @@ async function update() {
     });
     // Such as "The splats module, at most 62 kB".
     now = now.replace(/(?<=\bthe ([\w-]+)(?: readers| module)?(?:,| is) at most )[\d.]+(?= kB)/gi, (old, title) => {
-      const name = title.toLowerCase() === "file" ? "formats" : title.toLowerCase();
+      const name = title.toLowerCase().replace("file", "formats");
       const budget = wasmModules.find((one) => one.name === name)?.budget;
       return budget === undefined ? old : `${Math.ceil(budget / 1000)}`;
     });

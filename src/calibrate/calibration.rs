@@ -30,7 +30,7 @@ impl Calibration {
     pub fn depth(&self, kind: DepthKind, value: f64) -> f64 {
         let Self { scale, shift, .. } = *self;
         match kind {
-            // The maximum of a number and what is none is the number.
+            // `f64::max` below would ignore it.
             _ if !value.is_finite() => f64::NAN,
             DepthKind::Metric | DepthKind::ScaleInvariant => value * scale,
             DepthKind::AffineInvariant => (value + shift) * scale,

@@ -103,7 +103,7 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
     let mut views: Vec<SummaryView> = Vec::new();
     let mut conditioned: Vec<Option<Conditioning>> = Vec::new();
-    let mut least: Option<f64> = None;
+    let mut least: f64 = 1.0;
     for (view, (found, agrees)) in searched.iter().zip(&common.views) {
         let search = &view.rounds.search;
         let is_fixed = search.settings.lock_scale;
@@ -119,7 +119,7 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
         let lead = lead.max(color.map_or(f64::NEG_INFINITY, Judgment::lead));
         let by_shape = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };
         if *agrees {
-            least = Some(least.map_or(by_shape, |least| least.min(by_shape)));
+            least = least.min(by_shape);
         }
         let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
         views.push(SummaryView {
@@ -154,6 +154,7 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
     let used = || views.iter().filter(|view| view.role == ViewRole::Used);
     // Without a view that agrees, nothing is known.
     let confidence = used().map(|view| view.confidence).reduce(f64::min).unwrap_or(0.0);
+    let is_sure = used().next().is_some() && least >= SURE;
     let score = used().map(|view| f64::from(view.score.total)).sum();
     let mut all: Vec<SummaryView> = (0..count)
         .map(|_| SummaryView {
@@ -180,7 +181,7 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
         world_from_mesh,
         world: WorldFrame::Camera,
         confidence,
-        is_sure: least.is_some_and(|least| least >= SURE),
+        is_sure,
         alternatives: Vec::new(),
         proportions: None,
         uncertainty,

@@ -68,8 +68,8 @@ export interface Scheduler {
   check(): void;
   /** Gives the thread away between two slices. */
   turn(): Promise<void>;
-  /** The helpers of a search. */
-  helpersFor?(search: SharedSearch): CoreHelpers;
+  /** The helpers of a search, if it may have any. */
+  helpersFor?(search: SharedSearch): CoreHelpers | undefined;
 }
 
 /** The part of a call that calibration takes, where it is one. */
@@ -95,11 +95,9 @@ export class JobContext {
     ];
   }
 
-  /** The same job without progress and helpers: these have the input of its first search. */
+  /** The same job without progress. */
   quiet(): JobContext {
-    const { scheduler } = this;
-    const alone = { sliceMs: scheduler.sliceMs, check: () => scheduler.check(), turn: () => scheduler.turn() };
-    return new JobContext(this.modules, alone, undefined);
+    return new JobContext(this.modules, this.scheduler, undefined);
   }
 
   /** Calls a module with an input. */

@@ -2,9 +2,9 @@
  * Poses of meshes whose coordinates are far from zero, such as those of a map. The core aligns such a mesh relative to an
  * origin o in it; callers pass and receive poses of the mesh in its file: s·R·(p − o) + t = s·R·p + (t − s·R·o).
  */
-import { rotationOfUnit } from "../conventions/rotation.js";
+import { type Matrix3, rotationOfUnit, turned } from "../conventions/rotation.js";
 import { isRecord } from "../values/kinds.js";
-import type { Quaternion } from "../values/values.js";
+import type { Quaternion, Vector3 } from "../values/values.js";
 
 /** x, y, z of the origin in the mesh file. */
 export type Origin = readonly number[];
@@ -29,11 +29,8 @@ function relocated(value: unknown, origin: Origin, sign: 1 | -1): unknown {
   const columns = isMatrix(matrix) ? matrix : columnsOf(scale, rotationMatrix ?? rotation);
   if (columns === undefined || !Array.isArray(translation)) return moved;
   // In other proportions, s·R·S·(p − o) + t.
-  const rows = Array.isArray(stretch) ? (stretch as Origin[]) : undefined;
-  const offset = product(
-    columns,
-    rows?.map((row) => row.reduce((sum, x, k) => sum + x * (origin[k] ?? 0), 0)) ?? origin,
-  );
+  const stretched = Array.isArray(stretch) ? turned(stretch.flat() as unknown as Matrix3, origin as Vector3) : origin;
+  const offset = product(columns, stretched);
   return {
     ...moved,
     ...(isMatrix(matrix) ? { matrix: movedMatrix(matrix, offset, sign) } : {}),

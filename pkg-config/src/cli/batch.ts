@@ -143,8 +143,6 @@ async function runCases<T extends CaseKey>(
     });
   /** Adds the cases that were done before, and returns the others. */
   const resume = async (): Promise<T[]> => {
-    // Without all of these, the files of the batch would hold less than before: they stay as they are.
-    const stop = onInterruption(() => output.discard());
     const resumed = new Set<T>();
     let recorded = 0;
     for await (const { task, name, entry } of output.resumed(tasks)) {
@@ -157,7 +155,6 @@ async function runCases<T extends CaseKey>(
       const [error] = count(name, entry);
       if (error !== undefined) failedBefore.push(`${name} (${error})`);
     }
-    stop();
     if (recorded > 0) note(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
     return tasks.filter((task) => !resumed.has(task));
   };
@@ -229,7 +226,8 @@ async function runCases<T extends CaseKey>(
     if (!isOnly) note(jsonl === "-" ? remedy : "To go on, run the same command with --resume.");
   };
 
-  const left = flags.resume ? await resume() : tasks;
+  // Until all earlier cases are there, the files would hold less than before: they stay as they are.
+  const left = flags.resume ? await resume().finally(onInterruption(() => output.discard())) : tasks;
   const { workers = "auto" } = flags;
   // A single case is done on this thread, unless the flags ask for workers.
   const wanted = workers === "auto" ? (isOnly ? 0 : autoWorkers(availableParallelism())) : workers;

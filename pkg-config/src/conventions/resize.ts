@@ -111,22 +111,19 @@ export function resizeInput<T extends ImagesAndCamera>(input: T, size: ImageSize
     const [kinds, channels] = formats[name] as readonly [readonly string[], number];
     changed[name] = resized(pixelsOf<DepthPixels | MaskPixels>(`input.${name}`, part, kinds, channels), to, channels);
   }
-  if (camera !== undefined) {
-    const [first] = images;
-    const isOwn = hasSize(camera) || first === undefined;
-    const from = isOwn ? sizeOf("input.camera", camera) : sizeOf(`input.${first[0]}`, first[1]);
-    changed.camera = withIntrinsics(camera, resizedPinhole(pinholeOf("input.camera", camera, from), from, to), to);
-  }
+  if (camera !== undefined) changed.camera = resizedCamera(camera, images[0], to);
   return changed as unknown as T;
 }
 
-/** Whether a camera has the size of the image that its intrinsics belong to. */
-const hasSize = (camera: unknown): boolean => isRecord(camera) && camera.width !== undefined;
-
-/** A camera with other intrinsics for an image of this size, and all else that it states, such as the unit of depth. */
-function withIntrinsics(camera: CameraInput, intrinsics: Pinhole, size: ImageSize): CameraInput {
-  const { K: _, fovYDeg: __, ...others } = camera as unknown as Record<string, unknown>;
-  return { ...others, ...intrinsics, width: size.width, height: size.height } as CameraInput;
+/**
+ * A camera for another size of its image, with all else that it states, such as the unit of depth.
+ * @param first the image that the intrinsics belong to if the camera states no size, and its name
+ */
+function resizedCamera(camera: CameraInput, first: readonly [string, unknown] | undefined, to: ImageSize): Pinhole {
+  const { K: _, fovYDeg: __, ...others } = (isRecord(camera) ? camera : {}) as Record<string, unknown>;
+  const isSized = others.width !== undefined || first === undefined;
+  const from = isSized ? sizeOf("input.camera", camera) : sizeOf(`input.${first[0]}`, first[1]);
+  return { ...others, ...resizedPinhole(pinholeOf("input.camera", camera, from), from, to), ...to };
 }
 
 /** The bounding box of the object in a mask, with a margin that is clipped to the image. */
@@ -194,9 +191,8 @@ export function cropInput<T extends ImagesAndCamera>(input: T, box: PixelBox | {
     cropped[name] = sampled(pixels, { width, height }, source, channels);
   }
   if (camera !== undefined) {
-    const from = hasSize(camera) ? sizeOf("input.camera", camera) : size;
-    const whole = resizedPinhole(pinholeOf("input.camera", camera, from), from, size);
-    cropped.camera = withIntrinsics(camera, { ...whole, cx: whole.cx - left, cy: whole.cy - top }, { width, height });
+    const whole = resizedCamera(camera, first, size);
+    cropped.camera = { ...whole, cx: whole.cx - left, cy: whole.cy - top, width, height };
   }
   return cropped as unknown as T;
 }

@@ -53,7 +53,7 @@ export class Shot {
 
   /** The matrix that places the arrays of the mesh, of one that places the mesh in its file. */
   ofArrays(matrix: readonly number[]): readonly number[] {
-    return toOrigin([...matrix], this.mesh.fileOrigin);
+    return toOrigin(matrix, this.mesh.fileOrigin);
   }
 
   /** Frees what the core keeps of the mesh. */

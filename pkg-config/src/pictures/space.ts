@@ -40,7 +40,7 @@ interface Seen {
 
 /** The posed mesh, simplified, and the points of a view in the colours of a picture of it. */
 export function spaceOf(shot: Shot, matrix: readonly number[], seen: Seen): SpaceJson {
-  const mesh = simplified(shot, matrix);
+  const mesh = simplified(shot, shot.ofArrays(matrix));
   const { min, max } = bounds(mesh.vertices);
   const center = min.map((low, axis) => (low + (max[axis] as number)) / 2) as SpaceJson["center"];
   const size = Math.max(...min.map((low, axis) => (max[axis] as number) - low), 1e-6);
@@ -56,11 +56,10 @@ export function spaceOf(shot: Shot, matrix: readonly number[], seen: Seen): Spac
 }
 
 /** The posed mesh with one vertex per occupied cell of a grid: the mean of the vertices in it. */
-function simplified(shot: Shot, matrix: readonly number[]): { vertices: Float64Array; triangles: Uint16Array } {
-  const { mesh } = shot;
+function simplified({ mesh }: Shot, matrix: readonly number[]): { vertices: Float64Array; triangles: Uint16Array } {
   const { positions } = mesh;
   const indices = mesh.indices ?? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i);
-  const pose = similarityOf({ matrix: shot.ofArrays(matrix) });
+  const pose = similarityOf({ matrix });
   const { min: low, max: high } = bounds(positions);
   const side = Math.max(...high.map((x, axis) => x - (low[axis] as number)), 1e-30) / CELLS;
   const vertexOfCell = new Map<number, number>();

@@ -1,7 +1,11 @@
 /** Workers whose script is on another origin, such as that of a CDN. */
 
-/** The addresses of scripts that import one from elsewhere, by its address: each worker would hold another one. */
-const importing = new Map<string, string>();
+import { oncePerKey } from "../values/values.js";
+
+/** The address of a script that imports the one at an address: the browser would keep another one for each worker. */
+const importing = oncePerKey((address: string) =>
+  URL.createObjectURL(new Blob([`import ${JSON.stringify(address)};`], { type: "text/javascript" })),
+);
 
 /**
  * Starts a worker. Browsers start workers from their own origin only, but these may import from elsewhere.
@@ -11,9 +15,5 @@ const importing = new Map<string, string>();
 export function startedFromAnywhere(start: () => Worker, script: () => URL): Worker {
   const { href, origin, protocol } = script();
   if (!protocol.startsWith("http") || origin === globalThis.location?.origin) return start();
-  const made =
-    importing.get(href) ??
-    URL.createObjectURL(new Blob([`import ${JSON.stringify(href)};`], { type: "text/javascript" }));
-  importing.set(href, made);
-  return new Worker(made, { type: "module" });
+  return new Worker(importing(href), { type: "module" });
 }

@@ -63,7 +63,9 @@ export class Helpers implements CoreHelpers, Scheduler {
     this.#isWaiting = false;
   }
 
-  helpersFor(search: SharedSearch): this {
+  /** Only the first search of a job has helpers: those that have come hold its input, and may still send its results. */
+  helpersFor(search: SharedSearch): this | undefined {
+    if (this.#search !== undefined) return undefined;
     this.#search = search;
     return this;
   }

@@ -60,16 +60,15 @@ export interface WorkerFactory {
  * @param createWorker the caller's function that creates a worker
  */
 export async function workerFactory(script?: string, createWorker?: CreateWorker): Promise<WorkerFactory> {
+  const cores = globalThis.navigator?.hardwareConcurrency ?? (await coresOfNode());
   if (typeof Worker === "function" || createWorker !== undefined) {
-    const cores = globalThis.navigator?.hardwareConcurrency ?? (await coresOfNode());
     return { create: createWorker ?? (script === undefined ? fromFile : fromScript(script)), cores };
   }
   try {
-    const [threads, os] = await Promise.all([nodeModule("node:worker_threads"), nodeModule("node:os")]);
-    const { Worker: Thread } = threads as typeof import("node:worker_threads");
+    const { Worker: Thread }: typeof import("node:worker_threads") = await nodeModule("node:worker_threads");
     return {
       create: () => (script === undefined ? new Thread(scriptUrl()) : new Thread(script, { eval: true })),
-      cores: (os as typeof import("node:os")).availableParallelism(),
+      cores,
     };
   } catch (cause) {
     const remedy = "Omit workers: calls then run on the calling thread.";
@@ -79,13 +78,11 @@ export async function workerFactory(script?: string, createWorker?: CreateWorker
 }
 
 /** The number of cores in Node, whose versions before 21 have no `navigator`. */
-const coresOfNode = async (): Promise<number> => {
-  try {
-    return ((await nodeModule("node:os")) as typeof import("node:os")).availableParallelism();
-  } catch {
-    return 2;
-  }
-};
+const coresOfNode = (): Promise<number> =>
+  nodeModule("node:os").then(
+    ({ availableParallelism }: typeof import("node:os")) => availableParallelism(),
+    () => 2,
+  );
 
 /** The script as a file of the package: bundlers do not recognise this form. */
 const scriptUrl = () => new URL("../worker.js", String(import.meta.url));

@@ -13,7 +13,7 @@ export interface CoreMesh {
   colors?: Uint8Array;
   /** Colours at points of the surface, instead. */
   samples?: ColorSamples;
-  /** What was subtracted from the coordinates of the file that the caller passed; see `origin.ts`. */
+  /** The point of the caller's file that is the origin here, if its coordinates are far from zero; see `origin.ts`. */
   fileOrigin?: readonly number[];
   /** How many copies of one mesh the file places. */
   copies?: number;
