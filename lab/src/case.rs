@@ -105,6 +105,7 @@ impl CaseFrame {
             camera: self.camera,
             mask: self.masks[0].clone(),
             photo: self.photo.clone().filter(|_| with_color),
+            relief_deviation: 0.0,
         };
         View { frame, world_from_camera: self.world_from_camera }
     }

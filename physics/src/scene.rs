@@ -134,10 +134,11 @@ pub fn settle(objects: &[Object], settings: &Settings) -> (Vec<Settled>, f64) {
         let points = || settled.body.points(settled.body.pose);
         let low = points().fold(DVec3::INFINITY, DVec3::min);
         let size = points().fold(DVec3::NEG_INFINITY, DVec3::max) - low;
-        (low.z, size.x.max(size.y))
+        (low.z, size.max_element())
     };
-    let widest = bodies.iter().map(|b| reach(b).1).filter(|x| x.is_finite()).fold(0.0, f64::max);
-    let cell = CELL_M.max(widest / MOST_CELLS);
+    // Of any side: what stands may come to lie.
+    let longest = bodies.iter().map(|b| reach(b).1).filter(|x| x.is_finite()).fold(0.0, f64::max);
+    let cell = CELL_M.max(longest / MOST_CELLS);
     // From below, so that what is on top finds what it stands on at its place.
     let mut order: Vec<usize> = (0..objects.len()).collect();
     order.sort_by(|a, b| reach(&bodies[*a]).0.total_cmp(&reach(&bodies[*b]).0));

@@ -35,22 +35,25 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
     if let Some(photo) = photo(input)? {
         observation = observation.with_photo(photo)?;
     }
-    if let Some(uncertainty) = get(input, "uncertainty") {
-        let of = |key| required_number(&uncertainty, "uncertainty", key);
-        let relief = CalibrationUncertainty { shift: of("shift")?, focal: of("focal")? }.relief();
-        observation = observation.with_relief_deviation(relief);
-    }
+    observation = observation.with_relief_deviation(relief_deviation(input)?);
     match get(input, "others") {
         Some(others) => observation.with_others(Image::new("occluders", width, height, to_u8s(&others, "occluders")?)?),
         None => Ok(observation),
     }
 }
 
-/// The depth map, the camera and, if there are any, the mask and the photo of an input.
+/// The depth map, the camera and, if there are any, the mask, the photo and the uncertainty of the calibration of an input.
 pub fn frame(input: &JsValue) -> Result<Frame> {
     let (depth, camera) = view(input)?;
     let mask = get(input, "mask").map(|_| mask(input, depth.width(), depth.height())).transpose()?;
-    Ok(Frame { depth, camera, mask, photo: photo(input)? })
+    Ok(Frame { depth, camera, mask, photo: photo(input)?, relief_deviation: relief_deviation(input)? })
+}
+
+/// How well the calibration of an input determines the relief of its objects.
+fn relief_deviation(input: &JsValue) -> Result<f64> {
+    let Some(uncertainty) = get(input, "uncertainty") else { return Ok(0.0) };
+    let of = |key| required_number(&uncertainty, "uncertainty", key);
+    Ok(CalibrationUncertainty { shift: of("shift")?, focal: of("focal")? }.relief())
 }
 
 /// The depth map and the camera of an input.

@@ -47,8 +47,8 @@ pub struct Estimate {
     /// The unknowns that it follows from.
     pub unknowns: Unknowns,
     reference: Reference,
-    /// Standard deviation of the depth of the objects that the shift leaves, relative to it.
-    pub shift_deviation: f64,
+    /// Standard deviation of the logarithm of the relief; 0 where the shift is known.
+    relief_deviation: f64,
     /// Standard deviation of the logarithm of the focal length.
     pub focal_deviation: f64,
     /// The best pose of each object; `None` for one that takes no part or has none.
@@ -56,9 +56,10 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// The standard deviations of the calibration.
+    /// The standard deviations of the calibration. The distance that a shift leaves follows from relief and focal length.
     pub fn uncertainty(&self) -> CalibrationUncertainty {
-        CalibrationUncertainty { shift: self.shift_deviation, focal: self.focal_deviation }
+        let Self { relief_deviation: relief, focal_deviation: focal, .. } = *self;
+        CalibrationUncertainty { shift: if relief > 0.0 { libm::hypot(relief, focal) } else { 0.0 }, focal }
     }
 
     /// Sets the focal length, which other views have determined better: the logarithm of its factor, and its deviation.
@@ -172,9 +173,8 @@ impl Estimator<'_, '_> {
         };
         let mut deviations = [0.0; 2];
         let mut sample = self.sample(at, at, &poses).await?;
-        let is_affine = self.view.kind.is_affine();
         let mut axes: Vec<Axis> = axis.into_iter().collect();
-        if is_affine && self.view.focal != Focal::Known {
+        if self.view.kind.is_affine() && self.view.focal != Focal::Known {
             axes.extend([Axis::Focal, Axis::Relief]);
         }
         for axis in axes {
@@ -185,7 +185,7 @@ impl Estimator<'_, '_> {
             }
         }
         let calibration = self.reference.calibration(self.view.kind, sample.at);
-        let [relief, focal] = deviations;
+        let [relief_deviation, focal_deviation] = deviations;
         let mut best = vec![None; self.subjects.len()];
         for (k, pose) in self.used.iter().zip(sample.poses) {
             best[*k] = pose;
@@ -194,12 +194,8 @@ impl Estimator<'_, '_> {
             calibration,
             unknowns: sample.at,
             reference: self.reference,
-            shift_deviation: if is_affine {
-                libm::hypot(relief, focal * f64::from(u8::from(self.view.focal != Focal::Known)))
-            } else {
-                0.0
-            },
-            focal_deviation: if self.view.focal == Focal::Known { 0.0 } else { focal },
+            relief_deviation,
+            focal_deviation,
             poses: best,
         })
     }

@@ -191,15 +191,19 @@ async fn estimate_frame(
     Ok(FrameEstimate { estimate, pose })
 }
 
-/// Gives views of the same camera, whose focal length is a guess, the mean of their estimates.
+/// Gives views of the same camera, whose focal length is a guess, the mean of their estimates. Each of these includes the guess,
+/// which counts once.
 fn share_focal(frames: &[RawFrame], all: &mut [FrameEstimate]) {
     let Some(RawFrame { view: first, .. }) = frames.first() else { return };
     let is_shared = |view: &RawView| view.camera == first.camera && view.focal == first.focal;
-    if first.focal == Focal::Known || !frames.iter().all(|frame| is_shared(&frame.view)) {
+    let Focal::Guessed(deviation) = first.focal else { return };
+    if !frames.iter().all(|frame| is_shared(&frame.view)) {
         return;
     }
-    let weight = |own: &FrameEstimate| 1.0 / (own.estimate.focal_deviation * own.estimate.focal_deviation);
-    let weights: f64 = all.iter().map(weight).sum();
+    let inverse_square = |deviation: f64| 1.0 / (deviation * deviation);
+    let (guess, weight) =
+        (inverse_square(deviation), |own: &FrameEstimate| inverse_square(own.estimate.focal_deviation));
+    let weights = guess + all.iter().map(|own| (weight(own) - guess).max(0.0)).sum::<f64>();
     let focal = all.iter().map(|own| weight(own) * own.estimate.unknowns.focal).sum::<f64>() / weights;
     for (own, frame) in all.iter_mut().zip(frames) {
         own.estimate.set_focal(frame.view.kind, focal, libm::sqrt(1.0 / weights));

@@ -19,6 +19,8 @@ pub struct Frame {
     pub mask: Option<Mask>,
     /// The photo, with the field of view of the depth map, if there is one.
     pub photo: Option<Arc<Photo>>,
+    /// See [`Observation::relief_deviation`].
+    pub relief_deviation: f64,
 }
 
 impl Frame {
@@ -43,6 +45,7 @@ impl Frame {
     pub fn observation(&self) -> Result<Option<Observation>> {
         let Some(mask) = self.mask.clone() else { return Ok(None) };
         let observation = Observation::new(self.depth.clone(), mask, self.camera)?;
+        let observation = observation.with_relief_deviation(self.relief_deviation);
         Ok(Some(match &self.photo {
             Some(photo) => observation.with_photo(photo.clone())?,
             None => observation,
@@ -58,6 +61,7 @@ impl Frame {
             camera: self.camera.thinned(bounds.map(|[first, _]| first), step),
             mask: self.mask.as_ref().map(|mask| thinned(mask, bounds, step, 0)),
             photo: None,
+            relief_deviation: self.relief_deviation,
         }
     }
 }

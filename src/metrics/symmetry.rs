@@ -14,6 +14,8 @@ const MAX_ELEMENTS: usize = 720;
 
 /// Elements closer than this (1 − |cos(angle / 2)|) are equal; 1e-9 is an angle of 0.005°.
 const SAME_TURN: f64 = 1e-9;
+/// Sine of the angle up to which two axes are one: declared axes have three digits or more, and a half turn doubles their error.
+const SAME_AXIS: f64 = 0.01;
 
 /// The rotational symmetry of an object. All axes pass through the centroid of the surface, a fixed point of every
 /// symmetry.
@@ -131,7 +133,9 @@ impl SymmetryGroup {
         // Rotations about the continuous axis are already in the group.
         if let Some(axis) = group.continuous {
             group.sphere |= generators.iter().any(|g| !parallel(&axis, &(g * axis)));
-            generators.retain(|g| !same(&twist(g, &axis), g));
+            // With these, all half turns that turn the axis over are one.
+            generators.retain(|g| (g * axis).dot(&axis) < 0.0);
+            generators.truncate(1);
         }
         if group.sphere {
             return Ok(group);
@@ -169,7 +173,7 @@ fn same(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> bool {
 }
 
 fn parallel(a: &Unit<Vector3<f64>>, b: &Unit<Vector3<f64>>) -> bool {
-    a.cross(b).norm() < 1e-6
+    a.cross(b).norm() < SAME_AXIS
 }
 
 fn invalid(found: String, expected: &str) -> Error {

@@ -38,7 +38,7 @@ use crate::precise::search::recipe::FINE;
 use crate::precise::search::refine::Refiner;
 use crate::precise::verdict::choice::AGREES;
 use crate::precise::verdict::color::{LOOSE, agreement_at, loose_axis, roll};
-use crate::precise::verdict::confidence::sureness;
+use crate::precise::verdict::confidence::{certainty_of_relief, sureness};
 use crate::progress::Host;
 use crate::report::Effort;
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
@@ -346,7 +346,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
-            sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.certainty_of_color
+            let sure = sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.certainty_of_color;
+            sure * certainty_of_relief(frame.relief_deviation)
         };
         let camera_from_mesh = pose.similarity(&self.tracked.pyramid.frame);
         let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };

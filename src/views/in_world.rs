@@ -30,6 +30,7 @@ use crate::precise::search::ranking::Found;
 use crate::precise::search::recipe::{FINE, SURE};
 use crate::precise::verdict::color::{Judgment, cells};
 use crate::precise::verdict::conclusion::{Reliability, reliability};
+use crate::precise::verdict::confidence::certainty_of_relief;
 use crate::report::{Alternative, Sim3};
 
 /// Times that the mask of a view without one is predicted.
@@ -168,6 +169,10 @@ fn summary(
     let first = used.parts.first().ok_or_else(no_candidate)?;
     let seen = roles.iter().zip(&shown).filter(|(role, _)| **role == ViewRole::Used);
     let depths = seen.map(|(_, score)| f64::from(score.depth));
+    // Together they are as certain as the one whose depth is known best.
+    let of_used = views.iter().zip(&roles).filter(|(_, role)| **role == ViewRole::Used);
+    let relief = of_used.map(|(view, _)| view.frame.relief_deviation).fold(f64::INFINITY, f64::min);
+    let confidence = confidence * certainty_of_relief(relief);
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
         let world_from_camera = cameras[k].world_from_camera();

@@ -158,7 +158,7 @@ impl Request {
             let photo = self.views[view.index].frame.photo.as_deref();
             view.judge_colors(photo, mesh.colors(), pauses).await;
         }
-        unrelated(searched, self.views.len())
+        unrelated(searched, &self.views)
     }
 }
 

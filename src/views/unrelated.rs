@@ -1,5 +1,6 @@
 //! Unrelated views, without camera poses: one size for all of them, and a pose in each.
 
+use super::View;
 use super::common_size::{SILHOUETTE_ERROR, SizeEvidence, common_size, mean, refine_at, with_shape_error};
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
 use super::searched_view::SearchedView;
@@ -15,7 +16,7 @@ use crate::precise::search::ranking::Found;
 use crate::precise::search::recipe::{COMMON_SIZE, FINE, SURE};
 use crate::precise::verdict::alternatives::lead;
 use crate::precise::verdict::color::Judgment;
-use crate::precise::verdict::confidence::sureness;
+use crate::precise::verdict::confidence::{certainty_of_relief, sureness};
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
 const NEAR: f32 = 0.35;
@@ -92,12 +93,12 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     Some(CommonSize { sd, views, renders })
 }
 
-/// The result of `count` views without camera poses. Its world is the camera of the first view that agrees with the size. A view
+/// The result of views without camera poses. Its world is the camera of the first view that agrees with the size. A view
 /// that was not searched has the pose of that view, without confidence.
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no view has a pose.
-pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
+pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> {
     let common = with_common_size(searched).ok_or_else(no_candidate)?;
     let effort = searched.first().map_or_else(Default::default, |view| view.rounds.search.settings.effort);
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
@@ -121,7 +122,8 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
         if *agrees {
             least = least.min(by_shape);
         }
-        let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
+        let relief = certainty_of_relief(frames[view.index].frame.relief_deviation);
+        let confidence = by_shape * color.map_or(1.0, |color| color.certainty) * relief;
         views.push(SummaryView {
             camera_from_mesh: found.pose.similarity(&search.mesh.frame),
             confidence,
@@ -156,7 +158,8 @@ pub fn unrelated(searched: &[SearchedView], count: usize) -> Result<Summary> {
     let confidence = used().map(|view| view.confidence).reduce(f64::min).unwrap_or(0.0);
     let is_sure = used().next().is_some() && least >= SURE;
     let score = used().map(|view| f64::from(view.score.total)).sum();
-    let mut all: Vec<SummaryView> = (0..count)
+    let mut all: Vec<SummaryView> = frames
+        .iter()
         .map(|_| SummaryView {
             camera_from_mesh: world_from_mesh,
             confidence: 0.0,

@@ -41,7 +41,7 @@ pub fn frame(e: &mut Entropy<'_>) -> Result<Frame> {
             Some(photo(e, any)?)
         }
     };
-    Ok(Frame { depth, camera: camera?, mask, photo: photo.map(Arc::new) })
+    Ok(Frame { depth, camera: camera?, mask, photo: photo.map(Arc::new), relief_deviation: 0.0 })
 }
 
 fn photo(e: &mut Entropy<'_>, [width, height]: [usize; 2]) -> Result<Photo> {

@@ -1,7 +1,7 @@
 /** Depth as models guess it, and cameras that nobody wrote down: what is unknown is estimated with the pose. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type AlignInput, createAligner, type DepthKind, type Sim3 } from "sim3align";
+import { type AlignInput, createAligner, type DepthKind, type FrameInput, type Sim3, type ViewInput } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { frameAt, turnBetween } from "../support/rig.js";
@@ -121,4 +121,30 @@ test("views of relative depth have one size, and the cameras' distance makes it 
   });
   const all = await here.alignViews({ mesh, views }, quick);
   assert.ok(all.views.every((each) => each.depthCalibration?.isMetric));
+});
+
+/** What the confidence of a pose is multiplied by, by how well the relief is known. */
+const certainty = ({ depthCalibration }: { depthCalibration?: { uncertainty: { shift: number; focal: number } } }) => {
+  const { shift, focal } = depthCalibration?.uncertainty ?? assert.fail("no calibration");
+  return 1 - (shift ** 2 - focal ** 2) / 0.43 ** 2;
+};
+
+test("in corrected depth, each call has the same pose, and is surer by what the calibration leaves open", async () => {
+  const frame = { width, height, mask, camera: calibration.camera };
+  const relativeDepth = { depth: disparityMap.data, depthKind: "affine-invariant-disparity" } as const;
+  const { data: depth } = correctDepth(disparityMap, calibration);
+  const tracked = async (frame: FrameInput) => {
+    const tracker = await here.track(mesh);
+    const pose = await tracker.next(frame);
+    await tracker.dispose();
+    return pose;
+  };
+  const inViews = async (view: ViewInput) => (await here.alignViews({ mesh, views: [view] }, quick)).views[0];
+  for (const call of [tracked, inViews]) {
+    const [estimated, known] = [await call({ ...frame, ...relativeDepth }), await call({ ...frame, depth })];
+    assert.ok(estimated !== undefined && known !== undefined);
+    assert.ok(Math.abs(estimated.scale / known.scale - 1) < 1e-3, `${estimated.scale} and ${known.scale}`);
+    const share = estimated.confidence / known.confidence / certainty(estimated);
+    assert.ok(certainty(estimated) < 0.999 && Math.abs(share - 1) < 1e-3, `${call.name}: ${share}`);
+  }
 });

@@ -6,10 +6,14 @@ use sim3align::calibrate::frames::{RawFrame, Sequence, calibrate_views};
 use sim3align::calibrate::raw_view::{Focal, RawView};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
 use sim3align::error::Result;
+use sim3align::evidence::frame::Frame;
 use sim3align::geometry::depth_kind::DepthKind;
 use sim3align::pauses::{Pauses, finished};
+use sim3align::track::options::TrackOptions;
+use sim3align::track::tracker::Tracker;
+use sim3align::views::align_views;
 
-use crate::observations::{body, observe, orbit, quick, truth};
+use crate::observations::{body, frame_of, observe, orbit, quick, truth, views};
 use crate::prelude::*;
 
 /// The output of a model for depth z, and its shift t.
@@ -123,6 +127,8 @@ fn views_and_frames_share_a_camera_and_a_unit() {
     let frames = [0.0, 1.2].map(|angle| frame(angle, Focal::Guessed(0.2), 1.15));
     let found = finished(calibrate_views(&frames, &mesh, &options, &mut Silent, &Pauses::none())).unwrap();
     assert_eq!(found[0].camera, found[1].camera);
+    let error = libm::log(found[0].camera.fx / observe(&body, &truth()).camera().fx).abs();
+    assert!(error < 0.02, "the focal length is off by {error}");
     // The object is at about the same distance in both.
     let [a, b] = [0, 1].map(|k| {
         let pixels = found[k].depth.data().iter().zip(frames[k].mask.as_ref().unwrap().data());
@@ -176,6 +182,39 @@ fn the_confidence_counts_how_well_the_relief_is_known() {
         let most = (1.0 - (deviation / 0.43) * (deviation / 0.43)).max(0.0);
         assert!((estimated.confidence / measured.confidence - most).abs() < 1e-9, "{deviation}: {most}");
     }
+}
+
+/// Views with known cameras are as certain as the best of them; others, and frames, each on its own.
+#[wasm_bindgen_test]
+fn the_confidence_of_views_and_frames_counts_it_too() {
+    let deviations = [0.2, 0.3];
+    let certainty = deviations.map(|deviation: f64| 1.0 - (deviation / 0.43) * (deviation / 0.43));
+    let confidences = |are_known: bool, is_estimated: bool| {
+        let mut seen = views(&body(), &[0.0, 1.3]);
+        for (view, deviation) in seen.iter_mut().zip(deviations) {
+            view.frame.relief_deviation = if is_estimated { deviation } else { 0.0 };
+            view.world_from_camera = view.world_from_camera.filter(|_| are_known);
+        }
+        let found = align_views(seen, &PreparedMesh::borrowed(&body()), &crate::views::options(), &mut Silent).unwrap();
+        [found.views[0].confidence, found.views[1].confidence, found.confidence]
+    };
+    for (are_known, most) in [(true, [certainty[0]; 3]), (false, [certainty[0], certainty[1], certainty[1]])] {
+        let (estimated, measured) = (confidences(are_known, true), confidences(are_known, false));
+        for k in 0..3 {
+            // The least of several is that of a view that is about as sure as the others.
+            let tolerance = if k == 2 && !are_known { 0.05 } else { 1e-9 };
+            assert!(
+                (estimated[k] / measured[k] - most[k]).abs() < tolerance,
+                "{are_known}, {k}: {estimated:?} {measured:?}"
+            );
+        }
+    }
+    let tracked = |relief_deviation: f64| {
+        let mut tracker = Tracker::new(PreparedMesh::new(body()), TrackOptions::default()).unwrap();
+        let frame = Frame { relief_deviation, ..frame_of(&observe(&body(), &truth())) };
+        tracker.next(&frame, &mut Silent).unwrap().confidence
+    };
+    assert!((tracked(0.2) / tracked(0.0) - certainty[0]).abs() < 1e-9);
 }
 
 #[wasm_bindgen_test]

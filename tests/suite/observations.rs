@@ -53,7 +53,13 @@ pub fn orbit(angle: f64) -> Similarity {
 
 /// An observation as a frame of a video, or of one of several views.
 pub fn frame_of(seen: &Observation) -> Frame {
-    Frame { depth: seen.depth().clone(), camera: seen.camera(), mask: Some(seen.mask().clone()), photo: None }
+    Frame {
+        depth: seen.depth().clone(),
+        camera: seen.camera(),
+        mask: Some(seen.mask().clone()),
+        photo: None,
+        relief_deviation: 0.0,
+    }
 }
 
 pub fn turn_deg(a: &Similarity, b: &Similarity) -> f64 {

@@ -81,6 +81,18 @@ fn the_nearest_turn_is_the_nearest_of_all() {
     assert!(errors(&mesh, &turned(Vector3::new(1.0, 2.0, 3.0), 2.0), &ball).rotation_error_deg < 1e-5);
 }
 
+#[wasm_bindgen_test]
+fn half_turns_across_an_axis_of_revolution_are_one_and_make_no_ball() {
+    let mesh = cuboid(Vec3::ONE);
+    // At any angles to each other, and written with three digits.
+    let rod = declared(&[([0.0, 0.0, 1.0], None), ([1.0, 0.0, 0.0], Some(2)), ([0.955, 0.296, 0.001], Some(2))]);
+    let error = |axis: [f64; 3], angle: f64| errors(&mesh, &turned(axis.into(), angle), &rod).rotation_error_deg;
+    for axis in [[1.0, 0.0, 0.0], [0.4, -1.7, 0.0]] {
+        assert!(error(axis, core::f64::consts::PI) < 1e-5, "{axis:?}");
+        assert!((error(axis, 0.5) - 0.5f64.to_degrees()).abs() < 1e-5, "{axis:?}");
+    }
+}
+
 /// The mesh turned at random, away from its origin, and uneven by `uneven` of its size.
 fn askew(mesh: &Mesh, draw: &mut Draw, uneven: f32) -> (Mesh, DQuat) {
     let turn = rotation(draw);

@@ -79,7 +79,8 @@ pub fn begin_track_frame(
             let (mut next, options) = (sequence.clone(), tracker.options().of_first_frame());
             let Calibrated { depth, camera, calibration } =
                 next.next(&raw, mesh, &options, &mut Silent, &pauses).await?;
-            let frame = Frame { depth, camera, mask: raw.mask, photo };
+            let relief_deviation = calibration.uncertainty.relief();
+            let frame = Frame { depth, camera, mask: raw.mask, photo, relief_deviation };
             let found = tracker.next_in_steps(&frame, &mut host, &pauses).await?;
             *sequence = next;
             Ok((found, Some(calibration)))

@@ -121,6 +121,17 @@ fn a_body_that_would_tip_over_an_edge_is_fixed() {
     }
 }
 
+/// A spike that stands on its tip and would come to lie, at an angle to the axes: it covers no more cells than other bodies.
+#[wasm_bindgen_test]
+fn what_is_tall_and_tips_over_needs_no_more_room() {
+    let ends = cuboid(Vec3::ZERO, Vec3::new(0.5, 0.4, 400.0));
+    let tipped = |p: &Vec3| if p.z == 0.0 { Vec3::new(0.25, 0.2, 0.0) } else { *p };
+    let spike = Mesh::new(ends.positions().iter().map(tipped).collect(), ends.triangles().to_vec()).unwrap();
+    let turned = similarity(1.0, DQuat::from_rotation_z(0.7), DVec3::Z);
+    let objects = [object(cube(1.0), moved(0.0, 0.0, 0.0), On::Ground), object(spike, turned, On::Object(0))];
+    assert!(!settle(&objects, &SETTINGS)[1].is_free);
+}
+
 #[wasm_bindgen_test]
 fn bodies_that_are_a_little_inside_of_each_other_are_moved_apart() {
     let at = |x: f64| object(cube(0.1), moved(x, 0.0, 0.0), On::Ground);

@@ -95,8 +95,8 @@ impl Search {
     pub(crate) fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
         let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
-        let mut near: Vec<Found> = Vec::new();
-        for angle in [0.0, NEIGHBORHOOD[0], NEIGHBORHOOD[1]] {
+        let mut near = vec![stage.at_its_distance(&mut canvas, pose)];
+        for angle in NEIGHBORHOOD {
             for axis in 0..6 {
                 let mut step = [0.0; 7];
                 step[axis / 2] = if axis % 2 == 0 { angle } else { -angle };
