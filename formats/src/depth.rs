@@ -24,7 +24,7 @@ enum Format {
 }
 
 /// The first bytes of each format.
-const SIGNATURES: [(&[u8], Format); 7] = [
+const SIGNATURES: [(&[u8], Format); 9] = [
     (b"PK\x03\x04", Format::Npz),
     // An archive without entries.
     (b"PK\x05\x06", Format::Npz),
@@ -33,6 +33,8 @@ const SIGNATURES: [(&[u8], Format); 7] = [
     (b"MM\0*", Format::Tiff),
     (b"Pf\n", Format::Pfm),
     (b"PF\n", Format::Pfm),
+    (b"Pf\r", Format::Pfm),
+    (b"PF\r", Format::Pfm),
 ];
 
 impl Format {

@@ -175,7 +175,15 @@ fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
         };
         layers.iter().enumerate().flat_map(channels).collect()
     };
-    if let Some(&(layer, channel)) = places(&DEPTH_NAMES).first() {
+    // The last part of a name is also that of a vector, as of a normal, and of what grows with the depth.
+    let is_depth = |&(layer, channel): &(usize, usize)| {
+        let names: Vec<String> =
+            headers[layer].channels.list.iter().map(|channel| channel.name.to_string().to_ascii_lowercase()).collect();
+        let pass = names[channel].rsplit_once('.').map_or("", |(pass, _)| pass);
+        let other = if pass.is_empty() { "x".to_owned() } else { format!("{pass}.x") };
+        !names.contains(&other) && !pass.ends_with("mist")
+    };
+    if let Some((layer, channel)) = places(&DEPTH_NAMES).into_iter().find(is_depth) {
         return Ok((layer, vec![channel]));
     }
     match (layers.as_slice(), places(&SINGLE_NAMES).as_slice(), places(&COLOUR_NAMES).as_slice()) {

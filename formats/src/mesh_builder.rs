@@ -5,6 +5,7 @@ use glam::{DMat4, DVec3, Vec3};
 use crate::color::WHITE;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, too_large};
 use crate::painted_mesh::{Paint, PaintedMesh};
+use crate::polygon::Polygon;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::{Mesh, UsedVertices};
 use sim3align_geometry::surface_colors::Rgb;
@@ -18,6 +19,8 @@ const FAR: f64 = 1000.0;
 pub(crate) struct MeshBuilder {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
+    /// The triangles of the last polygon.
+    polygon: Polygon,
     /// Of the vertices and triangles so far, or fewer: the rest has no colour or coordinates of its own.
     paint: Paint,
 }
@@ -58,7 +61,17 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Adds a polygon (or a triangle fan) as triangles around its first corner: exact for convex polygons.
+    /// Adds a polygon as triangles. Corners that are not known yet make it a fan.
+    pub fn push_polygon(&mut self, corners: &[u32]) -> Result<()> {
+        let points: Vec<DVec3> = corners.iter().filter_map(|i| self.positions.get(*i as usize).copied()).collect();
+        self.polygon.cut(if points.len() == corners.len() { &points } else { &[] }, corners.len());
+        for i in 0..self.polygon.triangles.len() {
+            self.push_triangle(self.polygon.triangles[i].map(|place| corners[place]))?;
+        }
+        Ok(())
+    }
+
+    /// Adds a triangle fan around its first corner.
     pub fn push_fan(&mut self, corners: &[u32]) -> Result<()> {
         let Some((&first, rest)) = corners.split_first() else { return Ok(()) };
         rest.windows(2).try_for_each(|pair| self.push_triangle([first, pair[0], pair[1]]))
@@ -94,11 +107,12 @@ impl MeshBuilder {
         self.paint.coordinates = self.triangles.iter().map(|triangle| triangle.map(of_corner)).collect();
     }
 
-    /// Sets the texture coordinates of the fan that begins with the triangle of index `first`, from those of its corners.
-    pub fn map_fan(&mut self, first: usize, coordinates: &[[f32; 2]]) {
-        let Some((&center, rest)) = coordinates.split_first() else { return };
+    /// Sets the texture coordinates of the last polygon, which begins with the triangle of index `first`, from those of its
+    /// corners.
+    pub fn map_polygon(&mut self, first: usize, coordinates: &[[f32; 2]]) {
         self.paint.coordinates.resize(first, Default::default());
-        self.paint.coordinates.extend(rest.windows(2).map(|pair| [center, pair[0], pair[1]]));
+        let of_triangle = |triangle: &[usize; 3]| triangle.map(|place| coordinates[place]);
+        self.paint.coordinates.extend(self.polygon.triangles.iter().map(of_triangle));
     }
 
     /// The triangles that follow have the material of this index.
@@ -144,7 +158,7 @@ impl MeshBuilder {
     /// # Errors
     /// Those of [`Mesh::new`].
     pub fn finish(self) -> Result<PaintedMesh> {
-        let Self { positions, triangles, mut paint } = self;
+        let Self { positions, triangles, mut paint, .. } = self;
         if !paint.vertex_colors.is_empty() {
             paint.vertex_colors.resize(positions.len(), WHITE);
         }

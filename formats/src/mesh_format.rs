@@ -42,7 +42,7 @@ impl MeshFormat {
     ///
     /// Binary STL is detected by its length, because its header may begin with "solid" like the text form.
     pub fn sniff(bytes: &[u8]) -> Option<Self> {
-        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+        let text = text::unmarked(bytes).trim_ascii_start();
         if bytes.starts_with(b"glTF") || text.starts_with(b"{") {
             return Some(Self::Gltf);
         }

@@ -1,6 +1,7 @@
 //! Material libraries of OBJ files.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 
 use crate::color::linear;
 use crate::mesh_format::MeshReadOptions;
@@ -17,11 +18,12 @@ const MAX_OPTIONS: usize = 24;
 #[derive(Debug, Default)]
 pub(crate) struct MaterialLibrary {
     entries: Vec<Entry>,
+    /// The last entry of each name.
+    places: HashMap<Vec<u8>, usize>,
 }
 
 #[derive(Debug, Default)]
 struct Entry {
-    name: Vec<u8>,
     /// `Kd`.
     diffuse: Option<[f64; 3]>,
     /// `map_Kd`: the file, and its options.
@@ -40,12 +42,12 @@ impl MaterialLibrary {
     /// Adds the materials of an MTL file.
     pub fn add(&mut self, bytes: &[u8]) {
         for line in lines(bytes) {
-            let line = line.split(|&b| b == b'#').next().unwrap_or_default();
+            let line = uncommented(line);
             let mut parts = words(line);
             match (parts.next().map(<[u8]>::to_ascii_lowercase).as_deref(), self.entries.last_mut()) {
                 (Some(b"newmtl"), _) => {
-                    let name = parts.collect::<Vec<_>>().join(&b' ');
-                    self.entries.push(Entry { name, ..Entry::default() });
+                    self.places.insert(parts.collect::<Vec<_>>().join(&b' '), self.entries.len());
+                    self.entries.push(Entry::default());
                 }
                 (Some(b"kd"), Some(entry)) => {
                     let numbers: Vec<f64> = parts.map_while(number).collect();
@@ -64,7 +66,7 @@ impl MaterialLibrary {
 
     /// The index of the material of this name; the last one of its name counts.
     pub fn index_of(&self, name: &[u8]) -> Option<usize> {
-        self.entries.iter().rposition(|entry| entry.name == name)
+        self.places.get(name).copied()
     }
 
     /// Offset and scale of the texture coordinates of a material; `None` without a texture.
@@ -96,6 +98,14 @@ impl MaterialLibrary {
         }
         Ok(loaded)
     }
+}
+
+/// A line without its comment. In the names of materials and files, the sign of comments is a letter.
+pub(crate) fn uncommented(line: &[u8]) -> &[u8] {
+    const NAMED: [&str; 4] = ["newmtl", "usemtl", "mtllib", "map_Kd"];
+    let first = words(line).next().unwrap_or_default();
+    let has_name = NAMED.iter().any(|name| first.eq_ignore_ascii_case(name.as_bytes()));
+    if has_name { line } else { line.split(|&b| b == b'#').next().unwrap_or_default() }
 }
 
 /// All after the first word of a line.

@@ -128,6 +128,8 @@ impl<'a> Archive<'a> {
                 Ok(header) => header,
                 // Text, objects and records are not for us.
                 Err(error) if error.code == ErrorCode::UnsupportedFormat => continue,
+                // Records of many fields.
+                Err(_) if head.len() as u64 == HEADER_BYTES => continue,
                 Err(error) => return Err(error),
             };
             let start = head.len() - cursor.remaining().len();
@@ -168,17 +170,16 @@ impl<'a> Archive<'a> {
         let is_map = |entry: &&Entry| {
             let is_other =
                 [&MASKS[..], &OTHER_MAPS, &DISPARITY].iter().any(|names| names.contains(&entry.name.as_str()));
-            entry.header.kind == Kind::Float
-                && entry.header.squeezed(2).len() == 2
-                && entry.header.count() > 9
-                && !is_other
+            let size = entry.header.squeezed(2);
+            // Matrices of cameras are smaller.
+            entry.header.kind == Kind::Float && size.len() == 2 && size.iter().all(|side| *side > 4) && !is_other
         };
+        if let Some(entry) = self.find(&POINTS).filter(|_| !is_disparity) {
+            return points(entry);
+        }
         let mut maps = self.entries.iter().filter(is_map);
         if let (Some(only), None) = (maps.next(), maps.next()) {
             return image(only.clone());
-        }
-        if let Some(entry) = self.find(&POINTS).filter(|_| !is_disparity) {
-            return points(entry);
         }
         if let Some(Entry { name, .. }) = disparity {
             return Err(unsupported(
@@ -200,7 +201,8 @@ impl<'a> Archive<'a> {
 
     /// The pixels with depth, if there is a mask of booleans.
     fn mask(&mut self, size: [usize; 2]) -> Result<Option<Vec<bool>>> {
-        let Some(entry) = self.find(&MASKS).filter(|entry| entry.header.kind == Kind::Bool) else { return Ok(None) };
+        let is_mask = |name: &&str| self.find(&[name]).filter(|entry| entry.header.kind == Kind::Bool);
+        let Some(entry) = MASKS.iter().find_map(is_mask) else { return Ok(None) };
         if entry.header.squeezed(2) != size {
             return Err(Error::new(
                 ErrorCode::SizeMismatch,

@@ -1,22 +1,24 @@
 //! Wavefront OBJ: vertices, faces and colours; other statements are ignored.
 
+use std::collections::HashSet;
+
 use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::mesh_builder::MeshBuilder;
 use crate::mesh_format::MeshReadOptions;
-use crate::mtl::MaterialLibrary;
+use crate::mtl::{MaterialLibrary, uncommented};
 use crate::resources::{Resources, distinct, external};
 use crate::text::{lines, number, parsed, quoted, words};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
 
-/// Reads `v` and `f` lines: polygons become fans, negative indices count back from the latest vertex, and a
+/// Reads `v` and `f` lines: polygons become triangles, negative indices count back from the latest vertex, and a
 /// backslash at the end of a line continues it. Normals and free-form surfaces are not read.
 ///
-/// Colours are those of the vertices (`v x y z r g b`, sRGB-encoded, 0 to 1), or those of the materials: `map_Kd` with
-/// the `vt` of the faces, else `Kd`.
+/// Colours are the textures of the materials (`map_Kd` with the `vt` of the faces), else those of the vertices (`v x y z r g b`,
+/// sRGB-encoded, 0 to 1), else `Kd`.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`] with the line number, [`ErrorCode::IndexOutOfRange`], [`ErrorCode::FileTooLarge`],
@@ -44,7 +46,7 @@ pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
                     return Err(corrupt("mesh", found, "at least 3"));
                 }
                 let first = builder.triangle_count();
-                builder.push_fan(&corners)?;
+                builder.push_polygon(&corners)?;
                 if let Some(colors) = &colors {
                     colors.map_face(&mut builder, first, rest);
                 }
@@ -58,15 +60,21 @@ pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
         }
         Ok(())
     })?;
-    let painted = builder.finish()?;
+    let mut painted = builder.finish()?;
     let Some(colors) = colors else { return Ok(painted.plain(None)) };
-    // Vertex colours need no library; scanners and generators often write them even in files that name one.
-    if let Some(missing) = colors.missing
-        && painted.paint.vertex_colors.is_empty()
-    {
+    let has_own = !painted.paint.vertex_colors.is_empty();
+    if let (Some(missing), false) = (colors.missing, has_own) {
         return Ok(painted.plain(Some(missing)));
     }
     let materials = colors.library.load(&painted.paint.used_materials(), options);
+    // Scanners and generators write colours of vertices beside materials, whose Kd is then that of no surface. A texture is finer.
+    match &materials {
+        Ok(materials) if materials.iter().any(|material| material.texture.is_some()) => {
+            painted.paint.vertex_colors.clear();
+        }
+        _ if has_own => return Ok(painted.colored(Ok(Vec::new()))),
+        _ => {}
+    }
     Ok(painted.colored(materials))
 }
 
@@ -88,6 +96,8 @@ pub(crate) fn external_resources(bytes: &[u8]) -> Result<Vec<String>> {
 struct ObjColors<'a> {
     resources: Option<Resources<'a>>,
     library: MaterialLibrary,
+    /// The files that it was read from.
+    libraries: HashSet<String>,
     /// Texture coordinates, from the lower left corner of the image.
     coordinates: Vec<[f32; 2]>,
     material: Option<usize>,
@@ -97,7 +107,14 @@ struct ObjColors<'a> {
 
 impl<'a> ObjColors<'a> {
     fn new(resources: Option<Resources<'a>>) -> Self {
-        Self { resources, library: MaterialLibrary::default(), coordinates: Vec::new(), material: None, missing: None }
+        Self {
+            resources,
+            library: MaterialLibrary::default(),
+            libraries: HashSet::new(),
+            coordinates: Vec::new(),
+            material: None,
+            missing: None,
+        }
     }
 
     /// Reads the statements that concern colours.
@@ -111,7 +128,7 @@ impl<'a> ObjColors<'a> {
                 let mut numbers = rest.iter().map(|word| number(word).unwrap_or_default() as f32);
                 self.coordinates.push([numbers.next().unwrap_or_default(), numbers.next().unwrap_or_default()]);
             }
-            b"mtllib" => match external(&file_name(rest), self.resources) {
+            b"mtllib" if self.libraries.insert(file_name(rest)) => match external(&file_name(rest), self.resources) {
                 Ok(bytes) => self.library.add(&bytes),
                 Err(error) => self.missing = Some(error),
             },
@@ -137,7 +154,7 @@ impl<'a> ObjColors<'a> {
             [u * scale[0] + offset[0], 1.0 - (v * scale[1] + offset[1])]
         };
         let mapped: Vec<[f32; 2]> = corners.iter().map(of).collect();
-        builder.map_fan(first, &mapped);
+        builder.map_polygon(first, &mapped);
     }
 }
 
@@ -148,7 +165,7 @@ type Visit<'v> = dyn FnMut(usize, &[&[u8]]) -> Result<()> + 'v;
 fn for_each_statement(bytes: &[u8], visit: &mut Visit<'_>) -> Result<()> {
     let mut statement: Vec<&[u8]> = Vec::new();
     for (i, line) in lines(bytes).enumerate() {
-        let code = line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii_end();
+        let code = uncommented(line).trim_ascii_end();
         if let Some(continued) = code.strip_suffix(b"\\") {
             statement.extend(words(continued));
             continue;

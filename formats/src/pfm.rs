@@ -27,6 +27,10 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
         _ => return Err(broken(format!("the scale {scale:?}"))),
     };
     let count = pixel_count("depth", width, height)?;
+    // Lines that end with a space or with two characters.
+    while cursor.remaining().len() > 4 * count && cursor.remaining().first().is_some_and(u8::is_ascii_whitespace) {
+        cursor.take(1)?;
+    }
     let data = cursor.take(4 * count)?;
     let value = |bytes: &[u8]| {
         let bytes = bytes.first_chunk().copied().unwrap_or_default();

@@ -12,7 +12,7 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Reads the elements `vertex` (x, y, z of any type, at any position among the properties), `face` (polygons, as
-/// fans) and `tristrips`; ignores the others. Colours are the properties red, green and blue of the vertices: whole numbers
+/// triangles) and `tristrips`; ignores the others. Colours are the properties red, green and blue of the vertices: whole numbers
 /// up to the largest of their type, or floats from 0 to 1, sRGB-encoded.
 ///
 /// # Errors
@@ -32,7 +32,7 @@ pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
                 }
                 Ok(())
             })?,
-            b"face" => read_faces(element, &mut body, &mut |corners| builder.push_fan(corners))?,
+            b"face" => read_faces(element, &mut body, &mut |corners| builder.push_polygon(corners))?,
             b"tristrips" => read_faces(element, &mut body, &mut |corners| {
                 // −1, which arrives as u32::MAX, separates the strips.
                 corners.split(|&corner| corner == u32::MAX).try_for_each(|strip| builder.push_strip(strip))

@@ -8,7 +8,7 @@ use crate::colored_mesh::ColoredMesh;
 use crate::cursor::Cursor;
 use crate::guard::corrupt;
 use crate::mesh_builder::MeshBuilder;
-use crate::text::{lines, number, quoted, words};
+use crate::text::{lines, number, quoted, unmarked, words};
 use sim3align_geometry::error::Result;
 
 const HEADER_BYTES: usize = 80;
@@ -29,7 +29,7 @@ pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
 /// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
 pub fn read_stl(bytes: &[u8]) -> Result<ColoredMesh> {
     let is_text = !has_binary_length(bytes)
-        && bytes.trim_ascii_start().starts_with(b"solid")
+        && unmarked(bytes).trim_ascii_start().starts_with(b"solid")
         && !bytes.iter().take(1024).any(|&b| b == 0);
     if is_text { read_text(bytes) } else { read_binary(bytes) }
 }

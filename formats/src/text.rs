@@ -2,8 +2,14 @@
 
 use core::str::FromStr;
 
+/// A text after its byte order mark, if it has one.
+pub fn unmarked(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
 /// The lines of a file, ended by \n, \r\n or \r (a trailing \r is white space for [`words`]).
 pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let bytes = unmarked(bytes);
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     bytes.split(move |&b| b == end)
 }

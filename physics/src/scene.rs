@@ -139,11 +139,14 @@ pub fn settle(objects: &[Object], settings: &Settings) -> (Vec<Settled>, f64) {
     // Of any side: what stands may come to lie.
     let longest = bodies.iter().map(|b| reach(b).1).filter(|x| x.is_finite()).fold(0.0, f64::max);
     let cell = CELL_M.max(longest / MOST_CELLS);
-    // From below, so that what is on top finds what it stands on at its place.
+    // From below, and what carries before what it carries, which then finds it at its place.
     let mut order: Vec<usize> = (0..objects.len()).collect();
     order.sort_by(|a, b| reach(&bodies[*a]).0.total_cmp(&reach(&bodies[*b]).0));
     let mut done = vec![false; objects.len()];
-    for &i in &order {
+    let waits =
+        |i: &usize, done: &[bool]| matches!(objects[*i].on, On::Object(k) if k != *i && done.get(k) == Some(&false));
+    while let Some(next) = order.iter().position(|i| !waits(i, &done)) {
+        let i = order.remove(next);
         done[i] = true;
         let below = match objects[i].on {
             On::Nothing => continue,

@@ -51,7 +51,7 @@ pub fn contacts(
 ) -> Vec<Option<Contact>> {
     let mut shifts = vec![0.0; bodies.len()];
     let mut contacts: Vec<Option<Contact>> = vec![None; bodies.len()];
-    // From below, so that what is on top moves with what is below it.
+    // From below, and what carries before what it carries, which moves with it. Of two that carry each other, the lower one.
     let mut order: Vec<usize> = Vec::new();
     let low = |i: &usize| {
         let known = bodies[*i].as_ref().zip(grounds[*i].as_ref());
@@ -62,7 +62,12 @@ pub fn contacts(
         let place = order.iter().position(|k| low(k) > low(&i)).unwrap_or(order.len());
         order.insert(place, i);
     }
-    for i in order {
+    let waits = |i: &usize, order: &[usize]| {
+        let ground = grounds.get(*i).and_then(Option::as_ref);
+        ground.is_some_and(|ground| matches!(ground.on, RestsOn::Object(k) if k != *i && order.contains(&k)))
+    };
+    while !order.is_empty() {
+        let i = order.remove(order.iter().position(|i| !waits(i, &order)).unwrap_or(0));
         let Some(body) = &bodies[i] else { continue };
         let mut contact =
             Contact { rests_on: None, gap_m: None, shared_volume: shared(i, bodies, camera), snapped_m: 0.0 };

@@ -10,7 +10,7 @@ import {
   type MeshArrays,
   type SceneInput,
 } from "sim3align";
-import { readMesh } from "sim3align/formats";
+import { readDepth, readMesh } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
 import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
 import { assertNear } from "../support/random.js";
@@ -130,6 +130,38 @@ test("camera: a vertical field of view, and lens distortion, which is warned of"
 test("camera: nine numbers in an .npz file", async () => {
   const file = zip([deflated("depth.npy", depthFile), deflated("cam_K.npy", npy(Float32Array.from(K), 1, 9))]);
   assert.deepEqual((await evaluated({ camera: undefined, depth: file })).metrics, reference.metrics);
+});
+
+test("arrays of an .npz file that are no depth are told from it by their names, sizes and types", async () => {
+  const size = [3, 4] as const;
+  const matrix = npy(
+    Float32Array.from({ length: 16 }, (_, i) => i + 1),
+    4,
+    4,
+  );
+  const values = Float32Array.from({ length: 3 * 12 }, (_, i) => (i % 3 === 2 ? 2 + i / 100 : 0));
+  const points = Buffer.from(
+    Buffer.from(npy(values, 3, 12))
+      .toString("latin1")
+      .replace("(3, 12), }  ", "(3, 4, 3), }"),
+    "latin1",
+  );
+  const flags = npy(
+    Uint8Array.from({ length: 12 }, (_, i) => i % 2),
+    ...size,
+  );
+  const valid = Buffer.from(Buffer.from(flags).toString("latin1").replace("|u1", "|b1"), "latin1");
+  const long = Buffer.concat([Buffer.from("\x93NUMPY\x01\x00\x40\x1f", "latin1"), Buffer.alloc(8000, "(")]);
+  const depthOf = async (files: Record<string, Uint8Array>) =>
+    (await readDepth(zip(Object.entries(files).map(([name, bytes]) => deflated(`${name}.npy`, bytes))))).data;
+  const z = values.filter((_, i) => i % 3 === 2);
+  for (const name of ["pose", "intrinsics", "extrinsic"])
+    assert.deepEqual(await depthOf({ [name]: matrix, points }), z);
+  const found = await depthOf({ mask: flags, depth: npy(z, ...size), valid, records: long });
+  assert.deepEqual(
+    found,
+    z.map((value, i) => (i % 2) * value),
+  );
 });
 
 test("mesh: triangles without indices, null for indices", async () => {

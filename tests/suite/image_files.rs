@@ -186,6 +186,56 @@ fn files_without_a_single_depth_map_are_refused() {
     assert!(values.data()[1].is_nan() && (values.data()[0], values.data()[3]) == (1.0, 2.0));
 }
 
+/// An EXR of 2 × 1 pixels, without compression, whose channels have the values 1, 2, 3 … in the order of their names.
+fn exr_of(names: &[&str]) -> Vec<u8> {
+    let mut bytes = [0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0].to_vec();
+    let mut attribute = |name: &str, kind: &str, value: &[u8]| {
+        bytes.extend(
+            [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &(value.len() as u32).to_le_bytes(), value].concat(),
+        );
+    };
+    let words = |values: &[u32]| -> Vec<u8> { values.iter().flat_map(|value| value.to_le_bytes()).collect() };
+    let channel = |name: &&str| [name.as_bytes(), b"\0", &words(&[2, 0, 1, 1])].concat();
+    attribute("channels", "chlist", &[names.iter().flat_map(channel).collect(), vec![0]].concat());
+    attribute("compression", "compression", &[0]);
+    attribute("dataWindow", "box2i", &words(&[0, 0, 1, 0]));
+    attribute("displayWindow", "box2i", &words(&[0, 0, 1, 0]));
+    attribute("lineOrder", "lineOrder", &[0]);
+    attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
+    attribute("screenWindowCenter", "v2f", &[0; 8]);
+    attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
+    bytes.push(0);
+    let start = bytes.len() as u64 + 8;
+    let values = (1..=names.len()).flat_map(|k| [k as f32; 2]).flat_map(f32::to_le_bytes);
+    [bytes, start.to_le_bytes().to_vec(), words(&[0, 8 * names.len() as u32]), values.collect()].concat()
+}
+
+/// Channels as renderers name them: the depth, not the z of a normal or of a position, nor Blender's mist.
+#[wasm_bindgen_test]
+fn the_z_of_a_vector_is_no_depth() {
+    for (names, depth) in [
+        (&["N.X", "N.Y", "N.Z", "Z"] as &[&str], 4.0),
+        (&["Layer.Depth.Z", "Layer.Normal.X", "Layer.Normal.Y", "Layer.Normal.Z"], 1.0),
+        (&["Layer.Combined.R", "Layer.Depth.Z", "Layer.Mist.Z"], 2.0),
+        (&["B", "G", "R", "depth.Z"], 4.0),
+    ] {
+        assert_eq!(metric(&exr_of(names)).unwrap().values.data(), [depth; 2], "{names:?}");
+    }
+    for names in [&["X", "Y", "Z"] as &[&str], &["N.X", "N.Y", "N.Z"], &["Layer.Mist.Z"]] {
+        assert_eq!(metric(&exr_of(names)).map(drop), Err(ErrorCode::UnsupportedFormat), "{names:?}");
+    }
+}
+
+#[wasm_bindgen_test]
+fn lines_of_a_pfm_end_with_one_character_or_more() {
+    for header in ["Pf\n2 1\n-1\n", "Pf\r\n2 1\r\n-1.0\r\n", "Pf\n2 1 \n-1.0 \n"] {
+        // A value that begins with a space, and one that does not.
+        let first = f32::from_le_bytes([0x20, 0x0a, 0x20, 0x40]);
+        let bytes: Vec<u8> = header.bytes().chain([first, 3.0].into_iter().flat_map(f32::to_le_bytes)).collect();
+        assert_eq!(metric(&bytes).unwrap().values.data(), [first, 3.0], "{header:?}");
+    }
+}
+
 #[wasm_bindgen_test]
 fn cameras_in_files_are_in_pixels_of_the_depth() {
     let camera = |bytes| metric(bytes).unwrap().camera.map(|camera| [camera.fx, camera.fy, camera.cx, camera.cy]);

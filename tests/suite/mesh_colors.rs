@@ -239,6 +239,45 @@ fn vertex_colors_of_ply_and_obj_are_srgb() {
     assert_eq!((weighted.colors, weighted.problem), (None, None));
 }
 
+/// The colour of an OBJ of three triangles at x = 0, 4 and 8, with the materials "part #1", "part #2" and none, and the library
+/// `#m.mtl`.
+fn obj_colors(library: &str, vertex_color: &str) -> SurfaceColors {
+    let triangle = |k: usize| {
+        let x = 4 * k;
+        let vertices =
+            [[x, 0], [x + 1, 0], [x, 1]].map(|[x, y]| format!("v {x} {y} 0{vertex_color}\nvt 0.5 0.5\n")).concat();
+        let [material, a, b, c] = [k + 1, 3 * k + 1, 3 * k + 2, 3 * k + 3];
+        let part = if k < 2 { format!("usemtl part #{material}\n") } else { "usemtl other\n".into() };
+        format!("{vertices}{part}f {a}/{a} {b}/{b} {c}/{c}\n")
+    };
+    let obj = "\u{feff}mtllib #m.mtl\nmtllib #m.mtl\n".to_owned() + &[0, 1, 2].map(triangle).concat();
+    let resources = |name: &str| match name {
+        "#m.mtl" => Some(library.as_bytes().to_vec()),
+        "a #.png" => Some(rgb_png(&[[10, 200, 30]], 1, 1)),
+        _ => None,
+    };
+    let options = MeshReadOptions { resources: Some(&resources), ..MeshReadOptions::default() };
+    let read = read_colored_mesh(obj.as_bytes(), &options).unwrap();
+    assert_eq!(read.problem, None);
+    read.colors.unwrap()
+}
+
+#[wasm_bindgen_test]
+fn an_obj_has_the_colors_of_textures_or_of_vertices_or_of_materials() {
+    let white = [255; 3];
+    let by_part = |parts: [Rgb; 3]| move |p: Vec3| Some(parts[(p.x / 4.0) as usize]);
+    let materials = "\u{feff}newmtl part #1\nKd 0.2 0.4 0.6 # dark\nnewmtl part #2\nKd 0.8 0.2 0\n";
+    check(&obj_colors(materials, ""), 1, by_part([[51, 102, 153], [204, 51, 0], white]));
+    // Not their product: exporters write some Kd.
+    check(&obj_colors(materials, " 0.4 0.2 0.8"), 1, by_part([[102, 51, 204]; 3]));
+    let textured = format!("{materials}map_Kd a #.png\n");
+    for vertex_color in ["", " 0.4 0.2 0.8"] {
+        check(&obj_colors(&textured, vertex_color), 1, by_part([[51, 102, 153], [10, 200, 30], white]));
+    }
+    // Where a texture is missing, vertices have their colours.
+    check(&obj_colors(&format!("{materials}map_Kd b.png\n"), " 0.4 0.2 0.8"), 1, by_part([[102, 51, 204]; 3]));
+}
+
 #[wasm_bindgen_test]
 fn factors_and_vertex_colors_of_gltf_are_linear() {
     // Linear .25 is 137 in sRGB; 0 and 1 stay.

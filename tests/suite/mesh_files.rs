@@ -52,6 +52,44 @@ fn obj_knows_references_polygons_continuations_and_comments() {
     assert_eq!(read(&mac).unwrap().triangles(), [[0, 1, 2]]);
 }
 
+/// A letter that is wound around two notches, in any plane: its triangles have its area, and none is turned over.
+#[wasm_bindgen_test]
+fn polygons_with_notches_are_cut_within_their_outline() {
+    let outline = [[0, 0], [5, 0], [5, 3], [4, 3], [4, 1], [3, 1], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]];
+    let area = 5.0 * 3.0 - 2.0 * 2.0;
+    for start in 0..outline.len() {
+        let ring: Vec<[i32; 2]> = (0..outline.len()).map(|i| outline[(start + i) % outline.len()]).collect();
+        let vertex = |[x, y]: [i32; 2]| format!("v {x} {} {y}\n", y - x);
+        let vertices: String = ring.iter().map(|p| vertex(*p)).collect();
+        let obj = format!("{vertices}f 1 2 3 4 5 6 7 8 9 10 11 12\n");
+        let ply_vertices = vertices.replace("v ", "");
+        let ply = header("ascii", "12", "1") + &ply_vertices + "12 0 1 2 3 4 5 6 7 8 9 10 11\n";
+        for file in [obj, ply] {
+            let mesh = read(&file).unwrap();
+            let signed = |[a, b, c]: [u32; 3]| {
+                let [a, b, c] = [a, b, c].map(|i| mesh.positions()[i as usize]);
+                0.5 * f64::from((b - a).cross(c - a).dot(-Vec3::Y))
+            };
+            let areas: Vec<f64> = mesh.triangles().iter().map(|t| signed(*t)).collect();
+            assert_eq!(areas.len(), 10, "{file}");
+            assert!(areas.iter().all(|own| *own >= 0.0) && areas.iter().sum::<f64>() == area, "{areas:?}\n{file}");
+        }
+    }
+    // Too many corners are a fan, at once.
+    let spiral = |i: u32| libm::sincos(f64::from(i) * 0.3);
+    let vertices: String =
+        (0..60_000).map(|i| format!("v {} {} 0\n", spiral(i).0 * f64::from(i), spiral(i).1)).collect();
+    let face: String = (1..=60_000).map(|i| format!(" {i}")).collect();
+    assert_eq!(read(format!("{vertices}f{face}\n")).unwrap().triangles().len(), 59_998);
+}
+
+#[wasm_bindgen_test]
+fn a_byte_order_mark_is_no_part_of_the_first_statement() {
+    for file in ["v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_owned(), solid(&[["0 0 0", "1 0 0", "0 1 0"]])] {
+        assert_eq!(read(format!("\u{feff}{file}")).unwrap(), read(&file).unwrap());
+    }
+}
+
 #[wasm_bindgen_test]
 fn ply_strips_and_both_zeros_of_stl_are_read() {
     let strips = "ply\nformat ascii 1.0\ncomment strips\nelement vertex 5\nproperty float x\nproperty float y\n\

@@ -4,7 +4,7 @@ use glam::{DMat4, DQuat, DVec3, Vec3};
 
 use crate::gltf::accessor::AccessorReader;
 use crate::gltf::document::Instances;
-use crate::guard::corrupt;
+use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use sim3align_geometry::error::Result;
 
 impl Instances {
@@ -19,6 +19,10 @@ impl Instances {
         let count = counts.into_iter().flatten().next().unwrap_or_default();
         if counts.into_iter().flatten().any(|other| other != count) {
             return Err(corrupt("mesh", "instances whose attributes differ in number", "one per instance"));
+        }
+        // Each has a triangle at least.
+        if count > MAX_VERTICES / 3 {
+            return Err(too_large("mesh", format!("{count} instances"), format!("at most {}", MAX_VERTICES / 3)));
         }
         let at = |vectors: &Option<Vec<Vec3>>, i: usize, default: DVec3| {
             vectors.as_ref().and_then(|vectors| vectors.get(i)).map_or(default, |vector| vector.as_dvec3())

@@ -111,6 +111,15 @@ fn a_stack_is_put_down_from_below_in_any_order() {
 }
 
 #[wasm_bindgen_test]
+fn what_has_sunk_below_what_carries_it_is_put_on_it() {
+    let mat = object(cuboid(Vec3::ZERO, Vec3::new(0.3, 0.3, 0.003)), moved(0.0, 0.0, 0.003), On::Ground);
+    let objects = [object(cube(0.1), moved(0.1, 0.1, 0.002), On::Object(1)), mat];
+    for (body, z) in settle(&objects, &SETTINGS).iter().zip([0.003, 0.0]) {
+        assert!(body.is_free && (lowest(body) - z).abs() < 1e-6, "at {}, expected {z}", lowest(body));
+    }
+}
+
+#[wasm_bindgen_test]
 fn a_body_that_would_tip_over_an_edge_is_fixed() {
     let table = || object(cuboid(Vec3::ZERO, Vec3::new(0.4, 0.4, 0.1)), moved(0.0, 0.0, 0.0), On::Ground);
     // Its centre is 5 cm from its side: beyond x = 0.35, it is not over the table.

@@ -88,7 +88,7 @@ function unitOf(
 export const unknownUnit = (depthKind: DepthKind) => ({ metres: null, source: depthKind, isAssumed: false });
 
 /** Signatures of the files of depth models: NPZ (also without an array), OpenEXR, TIFF and PFM. */
-const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "Pf\n", "PF\n"];
+const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "Pf\n", "PF\n", "Pf\r", "PF\r"];
 
 /**
  * Reads a depth map of any supported format by the module for that format.
