@@ -1,7 +1,7 @@
 //! Material libraries of OBJ files.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use crate::color::linear;
 use crate::mesh_format::MeshReadOptions;
@@ -19,7 +19,7 @@ const MAX_OPTIONS: usize = 24;
 pub(crate) struct MaterialLibrary {
     entries: Vec<Entry>,
     /// The last entry of each name.
-    places: HashMap<Vec<u8>, usize>,
+    places: BTreeMap<Vec<u8>, usize>,
 }
 
 #[derive(Debug, Default)]

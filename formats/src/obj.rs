@@ -1,7 +1,5 @@
 //! Wavefront OBJ: vertices, faces and colours; other statements are ignored.
 
-use std::collections::HashSet;
-
 use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
@@ -97,7 +95,7 @@ struct ObjColors<'a> {
     resources: Option<Resources<'a>>,
     library: MaterialLibrary,
     /// The files that it was read from.
-    libraries: HashSet<String>,
+    libraries: Vec<String>,
     /// Texture coordinates, from the lower left corner of the image.
     coordinates: Vec<[f32; 2]>,
     material: Option<usize>,
@@ -110,7 +108,7 @@ impl<'a> ObjColors<'a> {
         Self {
             resources,
             library: MaterialLibrary::default(),
-            libraries: HashSet::new(),
+            libraries: Vec::new(),
             coordinates: Vec::new(),
             material: None,
             missing: None,
@@ -128,10 +126,16 @@ impl<'a> ObjColors<'a> {
                 let mut numbers = rest.iter().map(|word| number(word).unwrap_or_default() as f32);
                 self.coordinates.push([numbers.next().unwrap_or_default(), numbers.next().unwrap_or_default()]);
             }
-            b"mtllib" if self.libraries.insert(file_name(rest)) => match external(&file_name(rest), self.resources) {
-                Ok(bytes) => self.library.add(&bytes),
-                Err(error) => self.missing = Some(error),
-            },
+            b"mtllib" => {
+                let name = file_name(rest);
+                if !self.libraries.contains(&name) && self.missing.is_none() {
+                    match external(&name, self.resources) {
+                        Ok(bytes) => self.library.add(&bytes),
+                        Err(error) => self.missing = Some(error),
+                    }
+                    self.libraries.push(name);
+                }
+            }
             b"usemtl" => {
                 self.material = self.library.index_of(&rest.join(&b' '));
                 builder.use_material(self.material);

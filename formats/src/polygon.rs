@@ -26,10 +26,7 @@ impl Polygon {
         let next = |i: usize| points[(i + 1) % points.len()];
         let first = points.first().copied().unwrap_or_default();
         let normal: DVec3 = (0..points.len()).map(|i| (points[i] - first).cross(next(i) - first)).sum();
-        let turn = |[a, b, c]: [usize; 3]| {
-            (points[b] - points[a]).cross(points[c] - points[b]).dot(normal)
-                / normal.length_squared().max(f64::MIN_POSITIVE)
-        };
+        let turn = |corners: [usize; 3]| turn(corners.map(|i| points[i]), normal);
         let corner = |ring: &[usize], i: usize| [i + ring.len() - 1, i, i + 1].map(|k| ring[k % ring.len()]);
         if points.len() > 3 && (0..count).any(|i| turn(corner(&ring, i)) < -FLAT) {
             while ring.len() > 3 {
@@ -52,4 +49,10 @@ impl Polygon {
             self.triangles.extend(rest.windows(2).map(|pair| [first, pair[0], pair[1]]));
         }
     }
+}
+
+/// By how much three corners turn to the left, seen along a normal, relative to its square.
+#[inline(never)]
+fn turn([a, b, c]: [DVec3; 3], normal: DVec3) -> f64 {
+    (b - a).cross(c - b).dot(normal) / normal.length_squared().max(f64::MIN_POSITIVE)
 }

@@ -78,7 +78,7 @@ export interface FramesFolder {
 /** The names of the `frame_*` folders of a case, in order; none for a case of one view. */
 export async function frameNames(folder: string): Promise<string[]> {
   const entries = await readdir(folder, { withFileTypes: true }).catch(() => []);
-  const names = entries.filter((entry) => entry.isDirectory() && isFrame(entry.name));
+  const names = entries.filter((entry) => (entry.isDirectory() || entry.isSymbolicLink()) && isFrame(entry.name));
   return names.map(({ name }) => name).sort(naturally);
 }
 

@@ -28,7 +28,7 @@ export const wasmModules = [
   { name: "core", crate: "sim3align-core", budget: 195_000 },
   { name: "joint", crate: "sim3align-joint", budget: 308_000 },
   { name: "registration", crate: "sim3align-registration", budget: 148_500 },
-  { name: "formats", crate: "sim3align-module-formats", budget: 262_000 },
+  { name: "formats", crate: "sim3align-module-formats", budget: 264_000 },
   { name: "depth-files", crate: "sim3align-depth-files", budget: 242_000 },
   { name: "splats", crate: "sim3align-splats", budget: 62_000 },
   { name: "webp", crate: "sim3align-webp", budget: 82_000 },

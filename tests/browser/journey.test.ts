@@ -85,6 +85,8 @@ for (const name of browserNames) {
       const isAsLeft = async (one: Tab) => {
         await one.has('main[data-scene="Own files"]');
         await one.has("#accept", /Accepted/);
+        // In a panel that is loaded later.
+        await one.has("#centre");
         assert.equal(await one.text("#centre"), centre);
       };
       await isAsLeft(tab);

@@ -1,7 +1,7 @@
 /** `sim3align align` and `evaluate`: what they read, print and write, and their exit status. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { rmSync, symlinkSync, truncateSync, writeFileSync } from "node:fs";
+import { cpSync, rmSync, symlinkSync, truncateSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner, OPTIONS } from "sim3align";
@@ -208,6 +208,10 @@ test("evaluate scores the truth, a file, and what align wrote, and reports what 
       assert.ok(Math.abs(value - aligned[name]) <= 1e-9 * Math.abs(value), `${name}: ${value}, not ${aligned[name]}`);
     }
   }
+  // A case whose name is a field of transforms.
+  cpSync(join(folder, "blob"), join(folder, "scale"), { recursive: true });
+  writeFileSync(join(folder, "named.json"), JSON.stringify({ scale: results("aligned.json").blob }));
+  succeeds("evaluate scale --transform named.json");
   const failing: [args: string, code: string, message: RegExp][] = [
     ["nowhere", "FILE_NOT_FOUND", /nowhere/],
     ["others", "FILE_NOT_FOUND", /no true pose/],

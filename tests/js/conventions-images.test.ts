@@ -185,6 +185,7 @@ test("tensors that leave the choice open, and sizes that do not go together, are
     ],
     [() => resizeInput({ camera }, { width: 8, height: 6 }), "INVALID_ARGUMENT input.camera.width"],
     [() => cropInput({ depth }, { ...whole, left: 1 }), "SIZE_MISMATCH box", /within/],
+    [() => cropInput({ depth, cameraFile: camera }, whole), "INVALID_ARGUMENT cameraFile", /readCamera/],
     // Bytes of a file cannot be cropped, and the whole photo would not belong to the part.
     [() => cropInput({ depth, image: fixture("photo.png") as never }, whole), "INVALID_ARGUMENT input.image"],
     [

@@ -76,7 +76,12 @@ async function start(): Promise<void> {
   import("./intake/index.js").catch(() => {});
   storePage();
 }
-start();
+start().catch((error) => {
+  page.notKept.value = `A part of this page could not be loaded (${error.message}): reload it.`;
+  isSettled.value = true;
+});
+
+addEventListener("unhandledrejection", ({ reason }) => announce(`${reason?.message ?? reason}`, "failed"));
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(readAddress().sample);

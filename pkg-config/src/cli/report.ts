@@ -5,7 +5,7 @@ import { readFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import type { CasePictures } from "../pictures/case-pictures.js";
 import { columns, type ReportDetails, type ReportRow } from "../report-page/row.js";
-import { alternativesOf, type Entry, rowOf } from "./entry.js";
+import { alternativesOf, type Entry, isFailure, rowOf } from "./entry.js";
 import { namesIn, UsageError } from "./files.js";
 import { OutputFile } from "./output-file.js";
 import type { RunFiles } from "./run-files.js";
@@ -52,7 +52,8 @@ export class ReportFolder {
   /** Adds a row to the table; its pictures are shown if they are there. */
   add(name: string, entry: Entry): void {
     const fields = Object.entries(rowOf(entry)).filter(([field]) => pageFields.includes(field));
-    const folder = this.has(name) ? { folder: fileName(name) } : {};
+    // Those of a case that fails now are of an earlier run.
+    const folder = this.has(name) && !isFailure(entry) ? { folder: fileName(name) } : {};
     const row = { name, ...folder, ...Object.fromEntries(fields) } as ReportRow;
     this.#rows.lines([`sim3align.rows.push(${JSON.stringify(row)});`]);
   }

@@ -54,7 +54,8 @@ function parse(text: string, argument: string, path: string): unknown {
 function entryOf(json: unknown, name: string, invalid: (found: string, expected: string) => Error): object {
   if (Array.isArray(json)) return { matrix: json };
   if (!isRecord(json)) throw invalid(JSON.stringify(json), "an object");
-  if ("matrix" in json || "scale" in json || "available" in json) return json;
+  // Cases may have these names, too.
+  if (["matrix", "scale", "available"].some((key) => key in json && !isRecord(json[key]))) return json;
   const entry = json[name];
   if (isRecord(entry) && !("error" in entry)) return entry;
   if (isRecord(entry)) throw invalid(`the failure of ${name}`, "an aligned case");

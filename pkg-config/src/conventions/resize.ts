@@ -80,6 +80,10 @@ const formatsOf = (
 function imagesIn(input: unknown) {
   const given = record("input", input, "{ depth, mask, camera }");
   const { depth, pointMap, mask, image, camera } = given as ImagesAndCamera;
+  if (given.cameraFile !== undefined) {
+    const remedy = "Pass camera: await readCamera(cameraFile) of sim3align/formats, which is changed with the images.";
+    throw failure("INVALID_ARGUMENT", "cameraFile", describe(given.cameraFile), "camera", remedy);
+  }
   const images = Object.entries({ depth, pointMap, mask, image }).filter(([, part]) => part !== undefined);
   return { given, images, camera, formats: formatsOf(image) };
 }

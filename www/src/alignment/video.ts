@@ -40,9 +40,10 @@ export async function openVideo({ frames = [] }: Inputs, done: VideoWork = begun
   const read = frame && (await readFrame(frame));
   if (frame === undefined || read == null) return false;
   const opened = await videoOf(frames);
-  closeVideo();
   const ofFrames = <T>(of: readonly (T | null)[]) => opened.frames.map((_, i) => of[i] ?? null);
+  // At once: without its frames, the video before would be stored as if nothing had been done in it.
   batch(() => {
+    closeVideo();
     video.value = opened;
     framePoses.value = ofFrames(done.framePoses);
     frameWorks.value = ofFrames(done.frameWorks);
@@ -95,7 +96,8 @@ export async function showFrame(index: number): Promise<void> {
   if (frame === undefined || index === frameIndex.peek()) return;
   const call = ++lastCall;
   const opened = await readFrame(frame);
-  if (call === lastCall && opened !== null) put(index, frame, opened);
+  // Another scene may have been opened meanwhile.
+  if (call === lastCall && opened !== null && video.peek()?.frames[index] === frame) put(index, frame, opened);
 }
 
 async function readFrame(frame: Inputs, begun = readInputs(frame)): Promise<Scene | null> {

@@ -149,8 +149,9 @@ function onKey(workspace: Workspace, known: readonly Command[], event: KeyboardE
   const command = known.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${listed}`);
   if (command?.changes && workspace.isReadonly.peek()) return;
   if (isTyping(target) && command?.isGlobal !== true) return;
-  // Enter presses the button that has the focus.
-  if (key === "Enter" && !isMod && target !== document.body) return;
+  // Enter presses the button that has the focus; the 3D view has no use for it.
+  const isOfPage = target === document.body || target instanceof HTMLCanvasElement;
+  if (key === "Enter" && !isMod && !isOfPage) return;
   if (command?.key === "ArrowLeft") {
     // Sliders have these keys, too; and without handles, they scroll.
     if (workspace.gizmo.peek() === null || target instanceof HTMLInputElement) return;

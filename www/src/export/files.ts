@@ -28,9 +28,9 @@ export const allJsonText = async (): Promise<string> =>
 
 /** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */
 export function bopText({ objects }: Scene): string {
-  const entries = objects.map(({ pose, name }, i) => {
+  const entries = objects.flatMap(({ isPlaced, pose, name }, i) => {
     const { entry, scale } = toBop(pose.value.transform, { objId: i + 1 });
-    return { ...entry, name, model_mm_per_mesh_unit: 1000 * scale };
+    return isPlaced ? [{ ...entry, name, model_mm_per_mesh_unit: 1000 * scale }] : [];
   });
   return JSON.stringify({ 0: entries }, null, 2);
 }

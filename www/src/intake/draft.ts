@@ -17,7 +17,7 @@ import { rolesOf } from "./roles.js";
 import { fromSam3d } from "./sam3d.js";
 import { scenesOfTyped } from "./scenes.js";
 
-const { announce, enlist, inputs, scene, show } = page;
+const { announce, enlist, inputs, scene, show, video } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
@@ -73,7 +73,8 @@ export function proposeScenes(scenes: readonly Inputs[]): Promise<void> {
 /** Puts the files of the draft into the scene that is shown, in place of those that they name. */
 export async function putIntoShown(): Promise<void> {
   const typed = draft.peek()?.forShown;
-  const shown = inputs.peek();
+  // A frame of a video with other files is a scene of its own.
+  const shown = { ...inputs.peek(), ...(video.peek() !== null && { id: "" }) };
   if (typed !== undefined) await edit(await replaced({ ...shown, files: filesOf(shown) }, typed));
 }
 

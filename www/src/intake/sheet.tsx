@@ -36,6 +36,8 @@ export function Sheet() {
       class="intake"
       aria-labelledby="intake-title"
       onCancel={(event) => {
+        // That of a file picker bubbles.
+        if (event.target !== event.currentTarget) return;
         event.preventDefault();
         dismiss();
       }}

@@ -78,12 +78,12 @@ async function correctMask(object: number): Promise<void> {
 
 /** Opens a scene of the list, as it was left. */
 export async function openListed({ id }: Inputs): Promise<void> {
-  const inputs = list.peek().find((one) => one.inputs.id === id)?.inputs;
-  if (inputs === undefined) return;
-  announce(`Reading ${inputs.name} …`, "working");
+  const listed = list.peek().find((one) => one.inputs.id === id)?.inputs;
+  if (listed === undefined || (id === inputs.peek().id && scene.peek() !== null)) return;
+  announce(`Reading ${listed.name} …`, "working");
   await attempt(async () => {
     const { reopen } = await import("../session/index.js");
-    if (!(await reopen(inputs))) await (await intake()).proposeScenes([inputs]);
+    if (!(await reopen(listed))) await (await intake()).proposeScenes([listed]);
   });
 }
 

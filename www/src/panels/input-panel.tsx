@@ -5,14 +5,16 @@ import { editInputs } from "../opening/open.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
 
-const { inputs, objects, scene, unit } = page;
+const { framePoses, frameWorks, inputs, objects, scene, unit } = page;
 
 /** Forgets the scene. What a person has decided, set or drawn is not forgotten unasked. */
 async function forget(): Promise<void> {
   const { name, objects: pairs } = inputs.peek();
   const isSet = objects.peek().some(({ verdict, pose }) => verdict.peek() !== null || pose.peek().source === "hand");
   const isDrawn = pairs.some(({ mask }) => mask?.isDrawn === true);
-  if ((isSet || isDrawn) && !confirm(`Forget ${name}, with what you have set, accepted and drawn?`)) return;
+  const isInFrames = frameWorks.peek().some(Boolean) || framePoses.peek().some((one) => one?.isCorrected === true);
+  if ((isSet || isDrawn || isInFrames) && !confirm(`Forget ${name}, with what you have set, accepted and drawn?`))
+    return;
   await (await import("../session/index.js")).forgetScene();
 }
 

@@ -1,4 +1,5 @@
 /** The time axis of a video. */
+import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { alignFrames, correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../alignment/video.js";
 import { page } from "../state/page.js";
@@ -101,20 +102,34 @@ export function TimePanel() {
 function Play({ count }: { count: number }) {
   useEffect(() => stopPlaying, []);
   return (
-    <button type="button" id="play" aria-label="Play" disabled={isTracking.value} onClick={() => play(count)}>
-      ▶
+    <button
+      type="button"
+      id="play"
+      aria-label={isPlaying.value ? "Pause" : "Play"}
+      disabled={isTracking.value}
+      onClick={() => (isPlaying.peek() ? stopPlaying() : play(count))}
+    >
+      {isPlaying.value ? "⏸" : "▶"}
     </button>
   );
 }
 
 let timer: ReturnType<typeof setTimeout> | undefined;
 
-const stopPlaying = () => clearTimeout(timer);
+const isPlaying = signal(false);
+
+function stopPlaying(): void {
+  clearTimeout(timer);
+  isPlaying.value = false;
+}
 
 /** Shows the frames one after the other; from the last one, from the beginning. */
 async function play(count: number): Promise<void> {
-  stopPlaying();
+  isPlaying.value = true;
   const next = frameIndex.peek() + 1 < count ? frameIndex.peek() + 1 : 0;
   await showFrame(next);
-  if (next + 1 < count) timer = setTimeout(() => play(count), FRAME_MS);
+  // Another frame may have been chosen meanwhile.
+  if (isPlaying.peek() && frameIndex.peek() === next && next + 1 < count)
+    timer = setTimeout(() => play(count), FRAME_MS);
+  else stopPlaying();
 }

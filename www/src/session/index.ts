@@ -61,7 +61,8 @@ export function keepSession(): void {
     const since = pending?.id === id ? pending.since : performance.now();
     pending = null;
     const from = listed(id);
-    if (done === null || from === undefined) return;
+    // Between two scenes, one may have the work of the other.
+    if (done === null || from === undefined || "framePoses" in done !== (from.frames !== undefined)) return;
     const write = () => {
       pending = null;
       keep(from, done, settings);
@@ -219,9 +220,12 @@ export async function reopen(from: Inputs): Promise<boolean> {
 /** Forgets the scene that is shown. Another one takes its place. */
 export async function forgetScene(): Promise<void> {
   const { id } = inputs.peek();
+  // What is being stored would be stored once more.
+  const last = running.get(id);
+  await leave(id);
+  await last;
   await forgetWork(id);
   disown(id);
-  await leave(id);
   hasSession((await storedWorks()).length > 0);
   // There may be room for the others now.
   for (const { inputs: from } of list.peek()) {
@@ -252,6 +256,9 @@ async function leave(id: string): Promise<void> {
   await fileActions.peek()?.another();
 }
 
+/** The number of the last scene that was opened. Those that are read more slowly are not shown. */
+let lastOpening = 0;
+
 async function open(session: Packed, named: Inputs): Promise<boolean> {
   if (named.frames !== undefined) {
     const isOpen = await openVideo(named, videoWorkOf(session));
@@ -261,7 +268,9 @@ async function open(session: Packed, named: Inputs): Promise<boolean> {
   // Objects may have other names than their files.
   const objects = named.objects.map((one, i) => ({ ...one, name: session.objects[i]?.name ?? one.name }));
   const from = { ...named, objects };
+  const call = ++lastOpening;
   const reading = await readInputs(from);
+  if (call !== lastOpening) return true;
   const opened = sceneOf(from, reading);
   if (opened === null) return false;
   batch(() => {
