@@ -164,21 +164,20 @@ impl Picture {
 /// The layer and the channel of depth; three channels of colour may hold it, too, if they are equal.
 fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
     let names_of = |header: &Header| -> Vec<String> {
-        let last = |name: String| name.rsplit('.').next().unwrap_or_default().to_owned();
-        header.channels.list.iter().map(|channel| last(channel.name.to_string().to_ascii_lowercase())).collect()
+        header.channels.list.iter().map(|channel| channel.name.to_string().to_ascii_lowercase()).collect()
     };
     let layers: Vec<Vec<String>> = headers.iter().map(names_of).collect();
     let places = |wanted: &[&str]| -> Vec<(usize, usize)> {
         let channels = |(layer, names): (usize, &Vec<String>)| -> Vec<(usize, usize)> {
-            let is_wanted = |(_, name): &(usize, &String)| wanted.contains(&name.as_str());
+            let is_wanted =
+                |(_, name): &(usize, &String)| wanted.contains(&name.rsplit('.').next().unwrap_or_default());
             names.iter().enumerate().filter(is_wanted).map(|(channel, _)| (layer, channel)).collect()
         };
         layers.iter().enumerate().flat_map(channels).collect()
     };
     // The last part of a name is also that of a vector, as of a normal, and of what grows with the depth.
     let is_depth = |&(layer, channel): &(usize, usize)| {
-        let names: Vec<String> =
-            headers[layer].channels.list.iter().map(|channel| channel.name.to_string().to_ascii_lowercase()).collect();
+        let names = &layers[layer];
         let pass = names[channel].rsplit_once('.').map_or("", |(pass, _)| pass);
         let other = if pass.is_empty() { "x".to_owned() } else { format!("{pass}.x") };
         !names.contains(&other) && !pass.ends_with("mist")

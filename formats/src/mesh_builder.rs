@@ -63,8 +63,9 @@ impl MeshBuilder {
 
     /// Adds a polygon as triangles. Corners that are not known yet make it a fan.
     pub fn push_polygon(&mut self, corners: &[u32]) -> Result<()> {
-        let points: Vec<DVec3> = corners.iter().filter_map(|i| self.positions.get(*i as usize).copied()).collect();
-        self.polygon.cut(if points.len() == corners.len() { &points } else { &[] }, corners.len());
+        let known = || corners.iter().map(|i| self.positions.get(*i as usize).copied()).collect();
+        let points: Option<Vec<DVec3>> = if corners.len() > 3 { known() } else { None };
+        self.polygon.cut(&points.unwrap_or_default(), corners.len());
         for i in 0..self.polygon.triangles.len() {
             self.push_triangle(self.polygon.triangles[i].map(|place| corners[place]))?;
         }

@@ -28,7 +28,7 @@ impl Polygon {
         let normal: DVec3 = (0..points.len()).map(|i| (points[i] - first).cross(next(i) - first)).sum();
         let turn = |corners: [usize; 3]| turn(corners.map(|i| points[i]), normal);
         let corner = |ring: &[usize], i: usize| [i + ring.len() - 1, i, i + 1].map(|k| ring[k % ring.len()]);
-        if points.len() > 3 && (0..count).any(|i| turn(corner(&ring, i)) < -FLAT) {
+        if !points.is_empty() && (0..count).any(|i| turn(corner(&ring, i)) < -FLAT) {
             while ring.len() > 3 {
                 let ear = (0..ring.len()).find(|&i| {
                     let ear @ [a, b, c] = corner(&ring, i);

@@ -123,7 +123,7 @@ test("views of relative depth have one size, and the cameras' distance makes it 
   assert.ok(all.views.every((each) => each.depthCalibration?.isMetric));
 });
 
-/** What the confidence of a pose is multiplied by, by how well the relief is known. */
+/** The factor that lowers a confidence, which follows from the uncertainty of the calibration. */
 const certainty = ({ depthCalibration }: { depthCalibration?: { uncertainty: { shift: number; focal: number } } }) => {
   const { shift, focal } = depthCalibration?.uncertainty ?? assert.fail("no calibration");
   return 1 - (shift ** 2 - focal ** 2) / 0.43 ** 2;

@@ -2,7 +2,7 @@
 
 import { type Pinhole, pinholeOf, resizedPinhole } from "../camera/pinhole.js";
 import type { CameraInput } from "../types/inputs.js";
-import { describe, failure } from "../values/error.js";
+import { failure, invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import {
   type DepthPixels,
@@ -82,7 +82,7 @@ function imagesIn(input: unknown) {
   const { depth, pointMap, mask, image, camera } = given as ImagesAndCamera;
   if (given.cameraFile !== undefined) {
     const remedy = "Pass camera: await readCamera(cameraFile) of sim3align/formats, which is changed with the images.";
-    throw failure("INVALID_ARGUMENT", "cameraFile", describe(given.cameraFile), "camera", remedy);
+    throw invalidArgument("cameraFile", given.cameraFile, "camera", remedy);
   }
   const images = Object.entries({ depth, pointMap, mask, image }).filter(([, part]) => part !== undefined);
   return { given, images, camera, formats: formatsOf(image) };
@@ -172,7 +172,7 @@ export function cropInput<T extends ImagesAndCamera>(input: T, box: PixelBox | {
   const [left, top] = [whole("box.left", region.left, 0), whole("box.top", region.top, 0)];
   const [first] = images;
   if (first === undefined) {
-    throw failure("INVALID_ARGUMENT", "input", describe(input), "depth, mask or pointMap", "Pass the images.");
+    throw invalidArgument("input", input, "depth, mask or pointMap", "Pass the images.");
   }
   const size = sizeOf(`input.${first[0]}`, first[1]);
   for (const [name, part] of images) {
