@@ -4,7 +4,7 @@ import { dirname, join } from "node:path";
 import { filesBelow } from "../lib/cache.mjs";
 import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
-import { setUp, wasmTarget } from "../lib/setup.mjs";
+import { setUp } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
 import { checkTables } from "../lib/tables.mjs";
 import { checkFigures } from "../record/documents.mjs";
@@ -20,15 +20,12 @@ const crates = [
 
 export async function lint() {
   await setUp();
-  const clippy = (/** @type {readonly string[]} */ args) => () =>
-    run("cargo", ["clippy", "--quiet", ...args, "--", "-D", "warnings"], { remedy: "correct what clippy names" });
-  const tested = ["sim3align", "sim3align-physics"].flatMap((name) => ["--package", name]);
+  const clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
   const [node, biome] = nodeProgram("@biomejs/biome", "biome");
   const [, tsc] = nodeProgram("typescript", "tsc");
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
-    ["clippy, native", clippy(["--workspace", "--all-targets"])],
-    ["clippy, tests in WebAssembly", clippy(["--test", "suite", "--target", wasmTarget, ...tested])],
+    ["clippy", () => run("cargo", clippy, { remedy: "correct what clippy names" })],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
     ...["pkg-config", "tests", "www", "scripts"].map(
       (folder) =>
