@@ -101,8 +101,7 @@ await script(async () => {
     print(`${cells.map((cell, i) => (i > 0 ? `${cell}`.padStart(i < 4 ? 8 : 14) : `${cell}`.padEnd(10))).join("")}\n`);
   print("\n");
   line(["suite", "passed", "failed", "skipped", "time"]);
-  for (const { name, counts, ms } of results)
-    line([name, counts.passed, counts.failed, counts.skipped, duration(ms)]);
+  for (const { name, counts, ms } of results) line([name, counts.passed, counts.failed, counts.skipped, duration(ms)]);
 
   const total = sum(results.map(({ counts }) => counts));
   print(`\nAll took ${duration(performance.now() - started)}.\n`);
