@@ -3,7 +3,7 @@ import { existsSync, mkdirSync, rmSync } from "node:fs";
 import { basename, join } from "node:path";
 import { command } from "./bench/command.mjs";
 import { fixed, markdownTable, median } from "./bench/table.mjs";
-import { foldersOf } from "./lib/folders.mjs";
+import { foldersOf } from "./lib/cache.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { at, packageDir } from "./lib/paths.mjs";
 import { runPython } from "./lib/python.mjs";

@@ -6,16 +6,14 @@ import { buildPackage } from "./lib/package.mjs";
 import { sampleDir } from "./lib/paths.mjs";
 import { copySample } from "./lib/sample.mjs";
 import { caseFolders } from "./speed/inputs.mjs";
-import { measurePeers } from "./speed/peers.mjs";
 import { measurePool } from "./speed/pool.mjs";
 import { measureSizes } from "./speed/sizes.mjs";
 import { measureStages } from "./speed/stages.mjs";
 import { measureVideo } from "./speed/video.mjs";
 
-/** The measurements. Other libraries need Python and are measured on request only. */
-const parts = ["stages", "sizes", "video", "pool", "peers"];
+const parts = ["stages", "sizes", "video", "pool"];
 
-/** @typedef {{ only: string[], runs: number, quality: string, quick: boolean, python: string }} Options */
+/** @typedef {{ only: string[], runs: number, quality: string, quick: boolean }} Options */
 
 /** @param {string[]} paths @param {Options} options */
 async function measure(paths, options) {
@@ -35,19 +33,15 @@ async function measure(paths, options) {
   if (run.only.includes("sizes")) await measureSizes(run);
   if (run.only.includes("video")) await measureVideo(videos, run);
   if (run.only.includes("pool")) await measurePool(found, run);
-  if (run.only.includes("peers")) await measurePeers(cases, run);
 }
 
 await command("speed", (program) =>
   program
-    .description(
-      "Measures time and memory: stages of an alignment, sizes of inputs, a tracked frame, the pool, Open3D.",
-    )
+    .description("Measures time and memory: stages of an alignment, sizes of inputs, a tracked frame, the pool.")
     .argument("[folder...]", "case folders, folders of case folders, and folders with frames; by default the sample")
-    .option("--only <part...>", `some of ${parts.join(", ")}`, parts.slice(0, -1))
+    .option("--only <part...>", `some of ${parts.join(", ")}`, parts)
     .option("--runs <n>", "runs that count", count, 5)
     .option("--quality <name>", "of the stages", "auto")
     .option("--quick", "one run of the smallest inputs", false)
-    .option("--python <program>", "the Python, 3.11 or 3.12, that Open3D is installed for", "python3")
     .action(measure),
 );

@@ -3,13 +3,12 @@
 import { createHash } from "node:crypto";
 import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { bundleGlue, bundleScripts, bundleTypes } from "./bundle.mjs";
+import { bundleGlue, bundleReportPage, bundleScripts, bundleTypes } from "./bundle.mjs";
 import { cached, digest, once } from "./cache.mjs";
 import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
 import { NOTICE } from "./notices.mjs";
 import { at, compiledDir, glueDir, packageDir, skinDir } from "./paths.mjs";
-import { bundleReportPage } from "./report-page.mjs";
 import { attempt, nodeProgram, run } from "./run.mjs";
 import { wasmBindgenVersion } from "./setup.mjs";
 import { step } from "./step.mjs";

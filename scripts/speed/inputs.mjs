@@ -2,7 +2,7 @@
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { foldersOf } from "../lib/folders.mjs";
+import { foldersOf } from "../lib/cache.mjs";
 import { compiledDir } from "../lib/paths.mjs";
 
 /**
