@@ -8,11 +8,11 @@
 use glam::{DMat3, DVec3};
 
 use super::clip::{ClipVolume, GUARD_BAND_PX};
-use super::counts;
 use super::image::Window;
 use super::mesh::Mesh;
 use super::pinhole::Pinhole;
 use super::similarity::Similarity;
+use sim3align_runtime::counts;
 
 /// The triangle index of a pixel that no triangle covers.
 pub const NO_TRIANGLE: u32 = u32::MAX;
@@ -38,7 +38,7 @@ const MAX_COORDINATE: f64 = 1e60;
 ///
 /// ```
 /// # use sim3align_geometry::{mesh::Mesh, pinhole::Pinhole, rasteriser::Rasteriser, similarity::Similarity};
-/// # fn main() -> sim3align_geometry::error::Result<()> {
+/// # fn main() -> sim3align_runtime::error::Result<()> {
 /// let mesh = Mesh::from_flat(&[0.0, 0.0, 2.0, 3.0, 0.0, 2.0, 0.0, 3.0, 2.0], None)?;
 /// let mut rasteriser = Rasteriser::new();
 /// rasteriser.render(&mesh, &Similarity::identity(), &Pinhole::new(2.0, 2.0, 0.0, 0.0)?, 3, 2);

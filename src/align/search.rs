@@ -1,8 +1,8 @@
 //! The alignment of one object by search, as it runs: the parts from which [`align`](super::align), and the calls of a
 //! scene, are composed.
 //!
-//! Each part awaits a pause point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
-//! are bit-identical regardless of pauses.
+//! Each part awaits a yield point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
+//! are bit-identical whether or not it yields.
 
 use super::outcome::{Outcome, Setup, outcome, score};
 use super::warnings::{about_fit, about_mesh, about_search, retain_doubts};
@@ -10,7 +10,6 @@ use crate::error::Result;
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
-use crate::pauses::Pauses;
 use crate::precise;
 use crate::precise::drawing::equivalence::DIFFERENT;
 use crate::precise::drawing::pose::CropPose;
@@ -30,6 +29,7 @@ use crate::precise::verdict::confidence::certainty_of_relief;
 use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
+use crate::scheduler::Scheduler;
 
 /// The options, validated, and the settings that follow from them.
 pub struct Request {
@@ -44,7 +44,7 @@ pub struct Search<'a> {
     mesh: &'a PreparedMesh<'a>,
     request: &'a Request,
     stages: Stopwatch<'a>,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 }
 
 /// The result of a search, by shape.
@@ -105,7 +105,7 @@ impl<'a> Search<'a> {
         mesh: &'a PreparedMesh<'a>,
         request: &'a Request,
         host: &'a mut dyn Host,
-        pauses: &'a Pauses,
+        scheduler: &'a Scheduler,
     ) -> Result<Self> {
         let mut stages = Stopwatch::new(host, precise::PLAN);
         stages.enter(Stage::Inspect);
@@ -114,17 +114,17 @@ impl<'a> Search<'a> {
         if let Some(settings) = request.efforts.first().filter(is_long)
             && mesh.has_one_form(&settings.grids)
         {
-            pauses.ask_for_help().await;
+            scheduler.ask_for_help().await;
         }
-        pauses.here().await;
+        scheduler.yield_point().await;
         let mesh = match request.efforts.first() {
             Some(first) => {
                 let views = core::iter::once(observation);
-                without_invented_plate(views, mesh, &request.options, first, pauses).await
+                without_invented_plate(views, mesh, &request.options, first, scheduler).await
             }
             None => mesh,
         };
-        Ok(Self { observation, mesh, request, stages, pauses })
+        Ok(Self { observation, mesh, request, stages, scheduler })
     }
 
     /// The mesh that is aligned: the one given, or that without a ground plate.
@@ -139,10 +139,10 @@ impl<'a> Search<'a> {
     pub async fn clouds(&mut self) -> Result<Clouds> {
         let setup = &self.request.setup;
         let mut clouds = Clouds::new(self.observation, self.mesh.mesh(), &setup.sampling, &mut self.stages)?;
-        self.pauses.here().await;
+        self.scheduler.yield_point().await;
         if setup.metrics {
             clouds.evidence(Normals::Measured, &mut self.stages);
-            self.pauses.here().await;
+            self.scheduler.yield_point().await;
         }
         Ok(clouds)
     }
@@ -152,20 +152,20 @@ impl<'a> Search<'a> {
     /// # Errors
     /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`start::begin`].
     pub async fn search(&mut self) -> Result<Searched> {
-        let Self { observation, mesh, request: Request { options, efforts, .. }, pauses, .. } = *self;
+        let Self { observation, mesh, request: Request { options, efforts, .. }, scheduler, .. } = *self;
         let stages = &mut self.stages;
         if let Some(first) = efforts.first() {
             start::decimate(mesh, first, stages)?;
-            pauses.here().await;
+            scheduler.yield_point().await;
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
             if settings.is_long(1) && mesh.has_one_form(&settings.grids) {
-                pauses.ask_for_help().await;
+                scheduler.ask_for_help().await;
             }
             let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
-            pauses.here().await;
-            start::run(&mut rounds, &efforts::share(index, efforts.len()), pauses, stages).await;
+            scheduler.yield_point().await;
+            start::run(&mut rounds, &efforts::share(index, efforts.len()), scheduler, stages).await;
             let concluded = conclusion::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
             let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
@@ -175,7 +175,7 @@ impl<'a> Search<'a> {
                 let mut has_rival = false;
                 if let Some(mut look) = look {
                     let share = efforts::share(index + 1, efforts.len() + 1);
-                    start::run(&mut look, &share, pauses, stages).await;
+                    start::run(&mut look, &share, scheduler, stages).await;
                     has_rival = start::has_rival(&mut rounds, &look);
                 }
                 if !has_rival {
@@ -195,8 +195,8 @@ impl<'a> Search<'a> {
     pub async fn search_among(&mut self, start: WarmStart<'_>) -> Result<Searched> {
         let given = start.findings;
         let mut rounds = self.among(start, None)?;
-        self.pauses.here().await;
-        start::run(&mut rounds, &efforts::share(0, 1), self.pauses, &mut self.stages).await;
+        self.scheduler.yield_point().await;
+        start::run(&mut rounds, &efforts::share(0, 1), self.scheduler, &mut self.stages).await;
         let mut searched = Searched::new(rounds)?;
         if searched.confidence() < given.confidence - DOUBT && searched.rounds.prefer(&given.found) {
             searched = Searched::new(searched.rounds)?;
@@ -222,7 +222,7 @@ impl<'a> Search<'a> {
     /// The verdict of the photo on the poses; `None` without a photo, or without colours of the mesh.
     pub async fn colors(&self, searched: &Searched) -> Option<Judgment> {
         let (photo, colors) = (self.observation.photo()?, self.mesh.colors()?);
-        Some(judgment(&searched.rounds, photo, colors, self.pauses).await)
+        Some(judgment(&searched.rounds, photo, colors, self.scheduler).await)
     }
 
     /// The result, with its metrics.

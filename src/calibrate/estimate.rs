@@ -12,9 +12,9 @@ use super::raw_view::{Focal, RawView};
 use super::unknowns::{Reference, Unknowns};
 use crate::error::Result;
 use crate::geometry::depth_kind::DepthKind;
-use crate::pauses::Pauses;
 use crate::precise::no_candidate;
 use crate::progress::Stopwatch;
+use crate::scheduler::Scheduler;
 
 /// Relief of an object beside its width: that of a plate seen from the front, the ratio between neighbours on the grid, and
 /// their number.
@@ -85,7 +85,7 @@ struct Estimator<'a, 's> {
     used: Vec<usize>,
     reference: Reference,
     prior: Prior<'a>,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
     stages: &'a mut Stopwatch<'s>,
 }
 
@@ -116,7 +116,7 @@ pub async fn estimate(
     view: &RawView,
     subjects: &[Subject<'_>],
     start: Option<Start>,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Estimate> {
     let pixels = |s: &Subject<'_>| s.mask.data().iter().filter(|m| **m != 0).count();
@@ -130,7 +130,7 @@ pub async fn estimate(
         return Err(first.and_then(|subject| subject.unusable(view)).unwrap_or_else(no_candidate));
     };
     let prior = Prior::of(view, reference);
-    Estimator { view, subjects, used, reference, prior, pauses, stages }.run(start).await
+    Estimator { view, subjects, used, reference, prior, scheduler, stages }.run(start).await
 }
 
 impl Estimator<'_, '_> {
@@ -149,7 +149,7 @@ impl Estimator<'_, '_> {
             // The reason why there is none.
             let calibration = self.reference.calibration(self.view.kind, grid[best]);
             for subject in self.used.iter().filter_map(|k| self.subjects.get(*k)) {
-                subject.search(self.view, &calibration, self.pauses, self.stages).await?;
+                subject.search(self.view, &calibration, self.scheduler, self.stages).await?;
             }
             return Err(no_candidate());
         }
@@ -225,7 +225,7 @@ impl Estimator<'_, '_> {
         let mut found = Vec::new();
         for k in &self.used {
             let Some(subject) = self.subjects.get(*k) else { continue };
-            let poses = subject.search(self.view, &calibration, self.pauses, self.stages).await;
+            let poses = subject.search(self.view, &calibration, self.scheduler, self.stages).await;
             found.push(poses.unwrap_or_default());
         }
         Ok(found)
@@ -242,7 +242,7 @@ impl Estimator<'_, '_> {
             let refined = subject.refined(self.view, &calibration, poses, tolerance, self.stages).ok().flatten();
             sample.score += refined.as_ref().map_or(0.0, |(score, _)| *score);
             sample.poses.push(refined.map(|(_, pose)| pose));
-            self.pauses.here().await;
+            self.scheduler.yield_point().await;
         }
         sample.total += sample.score;
         Ok(sample)

@@ -23,12 +23,12 @@ use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::order::median;
 use crate::geometry::pinhole::Pinhole;
-use crate::pauses::Pauses;
 use crate::precise::drawing::pose::MeshFrame;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::prior::Prior as ScalePrior;
 use crate::progress::{Host, Stage, Stopwatch};
+use crate::scheduler::Scheduler;
 
 /// Progress at the start of each stage.
 const PLAN: &[(Stage, f64)] = &[(Stage::Prepare, 0.0), (Stage::Search, 0.0), (Stage::Refine, 0.0)];
@@ -65,7 +65,7 @@ pub async fn calibrate(
     view: &RawView,
     objects: &[Object<'_>],
     host: &mut dyn Host,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Result<Calibrated> {
     for object in objects {
         check_mask_size([view.values.width(), view.values.height()], object.mask)?;
@@ -79,7 +79,7 @@ pub async fn calibrate(
         return calibrated(view, Calibration::default(), None, is_metric);
     }
     let subjects: Vec<Subject<'_>> = objects.iter().map(|object| subject(object, is_metric)).collect();
-    let estimate = estimate(view, &subjects, None, pauses, &mut stages).await?;
+    let estimate = estimate(view, &subjects, None, scheduler, &mut stages).await?;
     let factors = lengths.iter().zip(&estimate.poses).filter_map(|(length, pose)| {
         let (length, pose) = length.as_ref().zip(pose.as_ref())?;
         Some((length / pose.scale()) as f32)

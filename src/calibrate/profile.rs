@@ -9,7 +9,6 @@ use super::raw_view::RawView;
 use crate::error::{Error, Result};
 use crate::evidence::observation::Observation;
 use crate::geometry::image::{DepthMap, Mask};
-use crate::pauses::Pauses;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::drawing::render::Canvas;
@@ -22,6 +21,7 @@ use crate::precise::search::refine::Refiner;
 use crate::precise::search::start;
 use crate::progress::Stopwatch;
 use crate::report::Effort;
+use crate::scheduler::Scheduler;
 
 /// Maximum number of steps of a refinement.
 const STEPS: usize = 8;
@@ -75,12 +75,12 @@ impl Subject<'_> {
         &self,
         view: &RawView,
         calibration: &Calibration,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
         stages: &mut Stopwatch<'_>,
     ) -> Result<Vec<(f64, Pictured)>> {
         let observation = self.observation(view, calibration)?;
         let mut rounds = start::begin(&observation, self.mesh, None, &self.options, &self.settings(), stages)?;
-        start::run(&mut rounds, &(0.0..1.0), pauses, stages).await;
+        start::run(&mut rounds, &(0.0..1.0), scheduler, stages).await;
         let median = rounds.search.observation.median_m;
         let pictured = |found: &Found| {
             (f64::from(found.score.total), Pictured { pose: found.pose, focal: calibration.focal, median })

@@ -12,7 +12,6 @@ use glam::DQuat;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
-use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
@@ -24,6 +23,7 @@ use crate::precise::search::rounds::Rounds;
 use crate::precise::verdict::color::{Judgment, judgment};
 use crate::precise::verdict::confidence::sureness;
 use crate::progress::{Host, Stopwatch};
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// The prior of a search.
 pub struct DetectionPrior {
@@ -64,7 +64,7 @@ impl Detection {
         options: &'a AlignOptions,
         known: &'a DetectionPrior,
         host: &'a mut dyn Host,
-        pauses: &'a Pauses,
+        scheduler: &'a Scheduler,
     ) -> Boxed<'a, Result<Self>> {
         boxed(async move {
             let mut rounds: Option<Rounds> = None;
@@ -80,8 +80,8 @@ impl Detection {
                 if let Some(log_scale) = log_scale {
                     next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
                 }
-                pauses.here().await;
-                start::run(&mut next, &(0.2..0.85), pauses, stages).await;
+                scheduler.yield_point().await;
+                start::run(&mut next, &(0.2..0.85), scheduler, stages).await;
                 let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
                 let (conditioning, _) = next.search.conditioning(&best.pose);
                 let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
@@ -89,7 +89,7 @@ impl Detection {
                 rounds = Some(next);
             }
             let rounds = rounds.ok_or_else(no_candidate)?;
-            let judgment = by_color(&rounds, observation, mesh, pauses).await;
+            let judgment = by_color(&rounds, observation, mesh, scheduler).await;
             let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
             let certainty_of_color = judgment.map_or(1.0, |judgment| judgment.certainty);
             Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, certainty_of_color } })
@@ -102,10 +102,10 @@ async fn by_color(
     rounds: &Rounds,
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Option<Judgment> {
     let (photo, colors) = (observation.photo()?, mesh.colors()?);
-    Some(judgment(rounds, photo, colors, pauses).await)
+    Some(judgment(rounds, photo, colors, scheduler).await)
 }
 
 /// The pose that counts, and its lead over the others.

@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::pauses::Pauses;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
@@ -15,6 +14,7 @@ use crate::precise::search::rounds::Rounds;
 use crate::precise::search::start;
 use crate::precise::verdict::color::{Judgment, judgment};
 use crate::progress::Stopwatch;
+use crate::scheduler::Scheduler;
 
 /// A view with a mask, and its search.
 pub struct SearchedView {
@@ -50,9 +50,9 @@ impl SearchedView {
     }
 
     /// Runs the search to its end.
-    pub async fn run(&mut self, pauses: &Pauses) {
+    pub async fn run(&mut self, scheduler: &Scheduler) {
         while let Some(round) = self.rounds.round() {
-            self.rounds.run(pauses).await;
+            self.rounds.run(scheduler).await;
             if self.candidates.is_empty() && round.task == Task::Refine {
                 self.candidates = self.rounds.poses().to_vec();
             }
@@ -60,9 +60,9 @@ impl SearchedView {
     }
 
     /// Compares the poses of the search, which has ended, with the photo. The pose that colour chooses becomes the first.
-    pub async fn judge_colors(&mut self, photo: Option<&Photo>, colors: Option<&SurfaceColors>, pauses: &Pauses) {
+    pub async fn judge_colors(&mut self, photo: Option<&Photo>, colors: Option<&SurfaceColors>, scheduler: &Scheduler) {
         let (Some(photo), Some(colors)) = (photo, colors) else { return };
-        let judgment = judgment(&self.rounds, photo, colors, pauses).await;
+        let judgment = judgment(&self.rounds, photo, colors, scheduler).await;
         if let Some(chosen) = judgment.chosen {
             self.rounds.found.insert(0, chosen);
         }

@@ -12,9 +12,9 @@ use super::recipe::{FINE, MIN_ROTATIONS, ROUNDS, Round, Task};
 use super::tasks::{Outcome, RoundTasks};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
-use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::observation::anchors::Anchor;
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Score below the best pose at which a refined turn of it is not ranked.
 const NEAR: f32 = 0.3;
@@ -191,13 +191,13 @@ impl Rounds {
         }
     }
 
-    /// Runs the current round, with a pause point after each of its tasks, and begins the next one.
-    pub fn run<'a>(&'a mut self, pauses: &'a Pauses) -> Boxed<'a, ()> {
+    /// Runs the current round, with a yield point after each of its tasks, and begins the next one.
+    pub fn run<'a>(&'a mut self, scheduler: &'a Scheduler) -> Boxed<'a, ()> {
         boxed(async move {
             let Some(mut round) = self.round() else { return };
             let allowance = self.allowed(round);
             let outcomes = loop {
-                match self.outcomes(round, allowance, pauses).await {
+                match self.outcomes(round, allowance, scheduler).await {
                     Ok(outcomes) => break outcomes,
                     Err(TooLong(work)) => round = self.rotate_less(work, allowance),
                 }
@@ -207,7 +207,7 @@ impl Rounds {
     }
 
     /// The results of the tasks of a round, in order, of as many as its allowance is enough for.
-    async fn outcomes(&self, round: Round, allowance: u64, pauses: &Pauses) -> Result<Vec<Found>, TooLong> {
+    async fn outcomes(&self, round: Round, allowance: u64, scheduler: &Scheduler) -> Result<Vec<Found>, TooLong> {
         let search = &self.search;
         let tasks = RoundTasks {
             view: search.view,
@@ -235,7 +235,7 @@ impl Rounds {
             }
             too_long.is_some()
         };
-        let outcomes = pauses.list(&mut tasks.on(search), ends).await;
+        let outcomes = scheduler.run_tasks(&mut tasks.on(search), ends).await;
         too_long.map_or_else(|| Ok(outcomes.into_iter().flat_map(|outcome| outcome.found).collect()), Err)
     }
 

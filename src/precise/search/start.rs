@@ -14,7 +14,6 @@ use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::Symmetry;
-use crate::pauses::Pauses;
 use crate::precise::drawing::equivalence::DIFFERENT;
 use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::{CropPose, MeshFrame};
@@ -26,6 +25,7 @@ use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::surroundings::{Neighbourhood, Surroundings};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Effort;
+use crate::scheduler::Scheduler;
 
 /// Score below that of the best pose down to which a pose is its rival.
 const RIVAL: f32 = 0.05;
@@ -204,12 +204,12 @@ pub fn decimate(
 }
 
 /// Runs a search to its end. `share` is the progress at its start and end, 0 to 1.
-pub async fn run(rounds: &mut Rounds, share: &Range<f64>, pauses: &Pauses, stages: &mut Stopwatch<'_>) {
+pub async fn run(rounds: &mut Rounds, share: &Range<f64>, scheduler: &Scheduler, stages: &mut Stopwatch<'_>) {
     while let Some(round) = rounds.round() {
         if !round.task.is_on_rotation_grid() && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
-        rounds.run(pauses).await;
+        rounds.run(scheduler).await;
         stages.reach(share.start + (share.end - share.start) * round.done, rounds.best());
     }
 }

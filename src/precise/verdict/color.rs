@@ -15,7 +15,6 @@ use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::equivalence::{self, Equivalence};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
@@ -29,6 +28,7 @@ use crate::precise::search::recipe::{COLORED, FINE, SearchSettings};
 use crate::precise::search::refine::Refiner;
 use crate::precise::search::rounds::Rounds;
 use crate::report::{ColorReport, Effort};
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Contrast between two poses, relative to the noise, from which on they look different.
 pub const DIFFERENT: f64 = 2.0;
@@ -70,16 +70,16 @@ pub struct Judgment {
     pub is_used: bool,
 }
 
-/// The verdict of the photo on the poses of a search, with a pause point after each comparison.
+/// The verdict of the photo on the poses of a search, with a yield point after each comparison.
 pub fn judgment<'a>(
     rounds: &'a Rounds,
     photo: &'a Photo,
     colors: &'a SurfaceColors,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 ) -> Boxed<'a, Judgment> {
     boxed(async move {
         let photo = cells(photo, &rounds.search);
-        let compared = compared(rounds, &photo, colors, pauses).await;
+        let compared = compared(rounds, &photo, colors, scheduler).await;
         chosen(rounds, &photo, colors, &compared)
     })
 }
@@ -110,7 +110,7 @@ fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared:
 
 /// The poses of a search with about the shape score of the best one, which is the first, and their colours. Empty if
 /// nothing can be compared.
-async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, pauses: &Pauses) -> Vec<Compared> {
+async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, scheduler: &Scheduler) -> Vec<Compared> {
     let search = &rounds.search;
     let mut canvas = Canvas::default();
     let look_at = |canvas: &mut Canvas, pose: CropPose| {
@@ -148,7 +148,7 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, p
                 list.push(Compared { found: Found { pose, score, ..*best }, appearance, look });
             }
         }
-        pauses.here().await;
+        scheduler.yield_point().await;
     }
     list
 }
