@@ -75,7 +75,7 @@ enum Placement {
     /// Triangles with this vertex need clipping.
     Outside,
     /// Not finite; triangles with this vertex are skipped.
-    Nowhere,
+    NotFinite,
 }
 
 /// 1/z as a linear function of the pixel, clamped to the range of the triangle's corners.
@@ -222,7 +222,7 @@ impl Rasteriser {
                     InverseDepth::of(points, &points, camera)
                 };
                 self.fill(id, corners.map(|v| v.fixed), plane);
-            } else if corners.iter().all(|v| v.placement != Placement::Nowhere) {
+            } else if corners.iter().all(|v| v.placement != Placement::NotFinite) {
                 let (polygon, count) = volume.clip(points());
                 let polygon = &polygon[..count];
                 let plane = || InverseDepth::of(points(), polygon, camera);
@@ -258,7 +258,7 @@ impl Rasteriser {
             if finite {
                 farthest = farthest.max(camera.z);
             }
-            let placement = if finite { Placement::Outside } else { Placement::Nowhere };
+            let placement = if finite { Placement::Outside } else { Placement::NotFinite };
             Vertex { fixed: [0; 2], placement }
         }));
         // 1/z must fit into f32.

@@ -11,21 +11,21 @@ use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
 use crate::precise;
-use crate::precise::drawing::equivalence::DIFFERENT;
+use crate::precise::drawing::equivalence::DISTINCT_MIN_ANGLE_RAD;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::conditioning::DROP;
-use crate::precise::scoring::surroundings::Neighbourhood;
+use crate::precise::scoring::scene_term::SceneContext;
 use crate::precise::search::efforts;
 use crate::precise::search::plate::without_invented_plate;
 use crate::precise::search::recipe::{SURE, SearchSettings};
 use crate::precise::search::rounds::Rounds;
-use crate::precise::search::start::{self, Findings, WarmStart};
+use crate::precise::search::start::{self, SearchState, WarmStart};
 use crate::precise::verdict::color::{Judgment, agreement, judgment};
 use crate::precise::verdict::conclusion;
 use crate::precise::verdict::conclusion::Certainty;
-use crate::precise::verdict::confidence::certainty_of_relief;
+use crate::precise::verdict::confidence::depth_calibration_reliability;
 use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
@@ -48,19 +48,19 @@ pub struct Search<'a> {
 }
 
 /// The result of a search, by shape.
-pub struct Searched {
+pub struct SearchResult {
     /// The poses.
     pub rounds: Rounds,
     solution: Solution,
     certainty: Certainty,
 }
 
-/// Loss of confidence beyond which the surroundings do not choose another pose than the object alone.
-const DOUBT: f64 = 0.05;
-/// Share of the confidence below which the surroundings contradict what an object alone shows.
-const CONTRADICTION: f64 = 0.75;
+/// Loss of confidence beyond which the scene does not choose another pose than the object alone.
+const MAX_CONFIDENCE_LOSS: f64 = 0.05;
+/// Share of the confidence below which the scene contradicts what an object alone shows.
+const CONTRADICTION_RATIO: f64 = 0.75;
 /// Loss of the score of the image, at about the same rotation, with the same meaning: two standard deviations.
-const MOST_LOSS: f64 = 4.0 * DROP;
+const MAX_IMAGE_SCORE_LOSS: f64 = 4.0 * DROP;
 
 impl Request {
     /// A request with these options.
@@ -83,7 +83,7 @@ impl Request {
     }
 }
 
-impl Searched {
+impl SearchResult {
     fn new(rounds: Rounds) -> Result<Self> {
         let (solution, certainty) = conclusion::conclude(&rounds, None)?;
         Ok(Self { rounds, solution, certainty })
@@ -147,80 +147,100 @@ impl<'a> Search<'a> {
         Ok(clouds)
     }
 
-    /// Searches with increasing effort, until the confidence is high and no rival of the pose is found.
+    /// Searches with increasing effort, until the confidence is high and the best pose has no rival.
     ///
     /// # Errors
-    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`start::begin`].
-    pub async fn search(&mut self) -> Result<Searched> {
-        let Self { observation, mesh, request: Request { options, efforts, .. }, scheduler, .. } = *self;
-        let stages = &mut self.stages;
+    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`start::start_search`].
+    pub async fn search(&mut self) -> Result<SearchResult> {
+        let efforts = self.request.efforts();
         if let Some(first) = efforts.first() {
-            start::decimate(mesh, first, stages)?;
-            scheduler.yield_point().await;
+            start::decimate(self.mesh, first, &mut self.stages)?;
+            self.scheduler.yield_point().await;
         }
-        let mut before: Option<Rounds> = None;
+
+        let mut previous: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            if settings.is_long(1) && mesh.has_one_form(&settings.grids) {
-                scheduler.ask_for_help().await;
-            }
-            let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
-            scheduler.yield_point().await;
-            start::run(&mut rounds, &efforts::share(index, efforts.len()), scheduler, stages).await;
-            let concluded = conclusion::conclude(&rounds, None);
+            let mut rounds = self.search_rotations(previous.as_ref(), index, settings).await?;
+
+            let verdict = conclusion::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
-            let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
-            if is_last || is_sure {
-                let (solution, certainty) = concluded?;
-                let look = start::rival_search(&rounds).filter(|_| !is_last);
-                let mut has_rival = false;
-                if let Some(mut look) = look {
-                    let share = efforts::share(index + 1, efforts.len() + 1);
-                    start::run(&mut look, &share, scheduler, stages).await;
-                    has_rival = start::has_rival(&mut rounds, &look);
-                }
-                if !has_rival {
-                    return Ok(Searched { rounds, solution, certainty });
-                }
+            let is_sure = matches!(&verdict, Ok((_, certainty)) if certainty.confidence >= SURE);
+            if is_last || (is_sure && !self.find_rivals(&mut rounds, index).await) {
+                let (solution, certainty) = verdict?;
+                return Ok(SearchResult { rounds, solution, certainty });
             }
-            before = Some(rounds);
+
+            previous = Some(rounds);
         }
         Err(precise::no_candidate())
     }
 
-    /// Searches among the poses that another search of the object has found, with its
-    /// surroundings since.
+    /// Runs the search of the effort with this index to its end.
+    async fn search_rotations(
+        &mut self,
+        previous: Option<&Rounds>,
+        index: usize,
+        settings: &SearchSettings,
+    ) -> Result<Rounds> {
+        if settings.is_long(1) && self.mesh.has_one_form(&settings.grids) {
+            self.scheduler.ask_for_help().await;
+        }
+        let Request { options, efforts, .. } = self.request;
+        let mut rounds =
+            start::start_search(self.observation, self.mesh, previous, options, settings, &mut self.stages)?;
+        self.scheduler.yield_point().await;
+
+        let progress = efforts::share(index, efforts.len());
+        start::run_rounds(&mut rounds, &progress, self.scheduler, &mut self.stages).await;
+        Ok(rounds)
+    }
+
+    /// Whether a search from other rotations finds rivals of the best pose, which then become candidates.
+    async fn find_rivals(&mut self, rounds: &mut Rounds, index: usize) -> bool {
+        let Some(mut rival_rounds) = start::rival_search(rounds) else { return false };
+
+        let progress = efforts::share(index + 1, self.request.efforts.len() + 1);
+        start::run_rounds(&mut rival_rounds, &progress, self.scheduler, &mut self.stages).await;
+        start::take_rivals(rounds, &rival_rounds)
+    }
+
+    /// Searches from the candidates of an earlier search of the object, with the scene around it.
     ///
     /// # Errors
     /// As [`Search::search`].
-    pub async fn search_among(&mut self, start: WarmStart<'_>) -> Result<Searched> {
-        let given = start.findings;
-        let mut rounds = self.among(start, None)?;
+    pub async fn search_again(&mut self, start: WarmStart<'_>) -> Result<SearchResult> {
+        let earlier = start.earlier;
+        let mut rounds = self.restart(start, None)?;
         self.scheduler.yield_point().await;
-        start::run(&mut rounds, &efforts::share(0, 1), self.scheduler, &mut self.stages).await;
-        let mut searched = Searched::new(rounds)?;
-        if searched.confidence() < given.confidence - DOUBT && searched.rounds.prefer(&given.found) {
-            searched = Searched::new(searched.rounds)?;
+        start::run_rounds(&mut rounds, &efforts::share(0, 1), self.scheduler, &mut self.stages).await;
+
+        let mut result = SearchResult::new(rounds)?;
+        if result.confidence() < earlier.confidence - MAX_CONFIDENCE_LOSS
+            && result.rounds.move_to_front(&earlier.candidates)
+        {
+            result = SearchResult::new(result.rounds)?;
         }
-        let is_contradicted = searched.confidence() < CONTRADICTION * given.confidence;
-        if is_contradicted || leaves_image(given, &searched.rounds) {
+
+        let is_contradicted = result.confidence() < CONTRADICTION_RATIO * earlier.confidence;
+        if is_contradicted || leaves_image(earlier, &result.rounds) {
             // Tables, undersides and neighbours are as inaccurate as the object: what its image shows, wins.
-            let alone = WarmStart { findings: given, surroundings: Neighbourhood::default() };
-            searched = Searched::new(self.among(alone, Some(&searched.rounds))?)?;
+            let alone = WarmStart { earlier, context: SceneContext::default() };
+            result = SearchResult::new(self.restart(alone, Some(&result.rounds))?)?;
         }
-        Ok(searched)
+        Ok(result)
     }
 
-    /// The search among given poses, before its first round; `before` is an earlier one of the same object.
-    fn among(&mut self, start: WarmStart<'_>, before: Option<&Rounds>) -> Result<Rounds> {
+    /// The search from earlier candidates, before its first round; `previous` has the observation, if it has been cleaned.
+    fn restart(&mut self, start: WarmStart<'_>, previous: Option<&Rounds>) -> Result<Rounds> {
         let Request { options, efforts, .. } = self.request;
-        let settings = efforts.iter().find(|settings| settings.effort == start.findings.effort);
-        let settings = settings.ok_or_else(precise::no_candidate)?.again(start.findings.is_sure());
-        let clean = before.map(|rounds| rounds.search.observation.clone());
-        start::resume(self.observation, self.mesh, clean, start, options, &settings, &mut self.stages)
+        let settings = efforts.iter().find(|settings| settings.effort == start.earlier.effort);
+        let settings = settings.ok_or_else(precise::no_candidate)?.again(start.earlier.is_sure());
+        let clean = previous.map(|rounds| rounds.search.observation.clone());
+        start::restart_search(self.observation, self.mesh, clean, start, options, &settings, &mut self.stages)
     }
 
     /// The verdict of the photo on the poses; `None` without a photo, or without colours of the mesh.
-    pub async fn colors(&self, searched: &Searched) -> Option<Judgment> {
+    pub async fn colors(&self, searched: &SearchResult) -> Option<Judgment> {
         let (photo, colors) = (self.observation.photo()?, self.mesh.colors()?);
         Some(judgment(&searched.rounds, photo, colors, self.scheduler).await)
     }
@@ -229,14 +249,19 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus).
-    pub fn finish(mut self, mut clouds: Clouds, searched: Searched, colors: Option<&Judgment>) -> Result<Alignment> {
-        let Searched { rounds, solution, certainty } = searched;
+    pub fn finish(
+        mut self,
+        mut clouds: Clouds,
+        searched: SearchResult,
+        colors: Option<&Judgment>,
+    ) -> Result<Alignment> {
+        let SearchResult { rounds, solution, certainty } = searched;
         let (solution, mut certainty) = match colors {
             Some(judgment) => conclusion::conclude(&rounds, Some(judgment))?,
             None => (solution, certainty),
         };
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
-        certainty.confidence *= certainty_of_relief(observation.relief_deviation());
+        certainty.confidence *= depth_calibration_reliability(observation.relief_deviation());
         let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
         if let Some(metrics) = &mut metrics {
             let (clean, pose) = (rounds.search.observation.clone(), &solution.camera_from_mesh);
@@ -246,18 +271,18 @@ impl<'a> Search<'a> {
         let pose = CropPose::of_similarity(&solution.camera_from_mesh, &search.mesh.frame);
         let proportions = pose.and_then(|pose| stretch(search, mesh.mesh(), &pose, options.proportions));
         let mut outcome = outcome(observation, setup, &clouds, &solution, metrics, self.stages);
-        outcome.warnings.extend(about_mesh(&mesh.left_out()));
+        outcome.warnings.extend(about_mesh(&mesh.removed_parts()));
         Ok(Alignment { proportions, ..with_certainty(outcome, certainty, search.renders) })
     }
 }
 
-/// Whether the surroundings have moved the pose that the object has alone farther than its image allows.
-fn leaves_image(given: &Findings, rounds: &Rounds) -> bool {
-    let (Some(alone), Some(now)) = (given.found.first(), rounds.found.first()) else { return false };
+/// Whether the scene has moved the pose that the object has alone farther than its image allows.
+fn leaves_image(earlier: &SearchState, rounds: &Rounds) -> bool {
+    let (Some(alone), Some(now)) = (earlier.candidates.first(), rounds.candidates.first()) else { return false };
     let search = &rounds.search;
     let loss = search.by_image(&alone.score) - search.by_image(&now.score);
     let turn = search.equivalence.angle(alone.pose.rotation, now.pose.rotation);
-    turn < DIFFERENT && f64::from(loss) > MOST_LOSS
+    turn < DISTINCT_MIN_ANGLE_RAD && f64::from(loss) > MAX_IMAGE_SCORE_LOSS
 }
 
 fn with_certainty(outcome: Outcome, certainty: Certainty, renders: usize) -> Alignment {

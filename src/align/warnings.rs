@@ -3,7 +3,7 @@
 use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
-use crate::precise::drawing::surplus::LeftOut;
+use crate::precise::drawing::removed_parts::RemovedParts;
 use crate::report::Preset;
 use crate::report::{ScoreTerms, Warning, WarningCode, is_collapsed};
 
@@ -229,8 +229,8 @@ pub fn about_fit(terms: &ScoreTerms) -> Option<Warning> {
 }
 
 /// A warning about parts of the mesh that are left out.
-pub fn about_mesh(left_out: &LeftOut) -> Option<Warning> {
-    let &LeftOut { floating, inside, ground } = left_out;
+pub fn about_mesh(removed_parts: &RemovedParts) -> Option<Warning> {
+    let &RemovedParts { floating, inside, ground } = removed_parts;
     let plate = (usize::from(ground > 0.0), ground);
     let mut named = String::new();
     for ((count, share), what) in

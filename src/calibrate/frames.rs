@@ -2,7 +2,7 @@
 
 use super::calibration::Calibration;
 use super::estimate::{Estimate, Start, estimate};
-use super::profile::{Pictured, Subject};
+use super::profile::{CalibrationObject, RefinedPose};
 use super::raw_view::{Focal, RawView};
 use super::{Calibrated, Object, calibrated, known_scale, subject};
 use crate::error::{Error, ErrorCode, Result};
@@ -30,7 +30,7 @@ pub struct RawFrame {
 /// A frame whose unit has not been compared with that of the others.
 struct FrameEstimate {
     estimate: Estimate,
-    pose: Pictured,
+    pose: RefinedPose,
 }
 
 /// Calibrates several views of an object. Their units are made one by the size of the object: in metres if that is known, if
@@ -87,7 +87,7 @@ struct Last {
     focal_deviation: f64,
     /// The estimate of the last frame with a mask, its pose, and its scale in the unit of the results.
     estimate: Estimate,
-    pose: Pictured,
+    pose: RefinedPose,
     calibration: Calibration,
     /// Depths of the last frame in the unit of the results, see [`STRIDE`].
     depths: Vec<f32>,
@@ -185,7 +185,7 @@ async fn estimate_frame(
     };
     check_mask_size([view.values.width(), view.values.height()], mask)?;
     let object = Object { mask, others: None, mesh, options };
-    let subjects: [Subject<'_>; 1] = [subject(&object, view.kind.is_metric())];
+    let subjects: [CalibrationObject<'_>; 1] = [subject(&object, view.kind.is_metric())];
     let estimate = estimate(view, &subjects, start, scheduler, stages).await?;
     let pose = estimate.poses.first().copied().flatten().ok_or_else(crate::precise::no_candidate)?;
     Ok(FrameEstimate { estimate, pose })

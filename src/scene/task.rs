@@ -18,7 +18,7 @@ use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::scoring::surroundings::Surroundings;
+use crate::precise::scoring::scene_term::SceneTerm;
 use crate::precise::search::start::WarmStart;
 use crate::progress::Host;
 use crate::report::{Alignment, Sim3};
@@ -150,13 +150,13 @@ pub fn place<'a>(
             let colors = search.colors(&searched).await;
             // Of the poses that shape leaves, that first which the photo chooses.
             if let Some(chosen) = colors.and_then(|colors| colors.chosen) {
-                searched.rounds.found.insert(0, chosen);
+                searched.rounds.candidates.insert(0, chosen);
             }
             return Ok((Placement::new(&searched, observation).ok_or_else(missing)?, None));
         };
         let clouds = search.clouds().await?;
-        let normal = start.surroundings.ground.map(|floor| floor.normal);
-        let searched = search.search_among(start).await?;
+        let normal = start.context.plane.map(|plane| plane.normal);
+        let searched = search.search_again(start).await?;
         let placement = Placement::new(&searched, observation).ok_or_else(missing)?;
         let colors = search.colors(&searched).await;
         let alignment = search.finish(clouds, searched, colors.as_ref())?;
@@ -175,8 +175,8 @@ pub fn helper(
     options: AlignOptions,
     start: Option<WarmStart<'_>>,
 ) -> Result<Helper> {
-    let known = start.map(|start| start.surroundings).unwrap_or_default();
+    let known = start.map(|start| start.context).unwrap_or_default();
     Ok(Helper::new(vec![Some(observation)], mesh, Request::new(options)?, move |search| {
-        search.surround(Surroundings::new(known.clone(), &search.mesh, &search.observation));
+        search.set_scene_term(SceneTerm::new(known.clone(), &search.mesh, &search.observation));
     }))
 }

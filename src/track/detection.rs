@@ -17,11 +17,11 @@ use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::NOISE;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::SURE;
 use crate::precise::search::rounds::Rounds;
 use crate::precise::verdict::color::{Judgment, judgment};
-use crate::precise::verdict::confidence::sureness;
+use crate::precise::verdict::confidence::pose_probability;
 use crate::progress::{Host, Stopwatch};
 use crate::scheduler::{Boxed, Scheduler, boxed};
 
@@ -45,7 +45,7 @@ pub struct Lead {
 /// A found object.
 pub struct Detection {
     /// The pose.
-    pub found: Found,
+    pub found: Candidate,
     /// The frame.
     pub observation: Rc<CleanObservation>,
     /// Its lead over other poses.
@@ -57,7 +57,7 @@ impl Detection {
     /// before, the nearest one counts: an object that looks alike from several sides has not turned unseen.
     ///
     /// # Errors
-    /// As [`start::begin`].
+    /// As [`start::start_search`].
     pub fn search<'a>(
         observation: &'a Observation,
         mesh: &'a PreparedMesh<'_>,
@@ -76,16 +76,16 @@ impl Detection {
                 let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
                 let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
                 let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
-                let mut next = start::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
+                let mut next = start::start_search(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
                 if let Some(log_scale) = log_scale {
                     next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
                 }
                 scheduler.yield_point().await;
-                start::run(&mut next, &(0.2..0.85), scheduler, stages).await;
-                let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+                start::run_rounds(&mut next, &(0.2..0.85), scheduler, stages).await;
+                let best = next.candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
                 let (conditioning, _) = next.search.conditioning(&best.pose);
-                let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
-                certainty = sureness(best, lead, conditioning.as_ref());
+                let lead = lead(&next.search.equivalence, best, &next.candidates[1..], |other| other.score.total);
+                certainty = pose_probability(best, lead, conditioning.as_ref());
                 rounds = Some(next);
             }
             let rounds = rounds.ok_or_else(no_candidate)?;
@@ -109,13 +109,13 @@ async fn by_color(
 }
 
 /// The pose that counts, and its lead over the others.
-fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) -> Result<(Found, f64)> {
-    let first = *rounds.found.first().ok_or_else(no_candidate)?;
+fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) -> Result<(Candidate, f64)> {
+    let first = *rounds.candidates.first().ok_or_else(no_candidate)?;
     let mut chosen = judgment.and_then(|judgment| judgment.chosen).unwrap_or(first);
     let is_colored = judgment.is_some_and(|judgment| judgment.is_used && !judgment.rivals.is_empty());
     if let (Some((_, before)), false) = (known.before, is_colored) {
-        for other in rounds.found.iter().filter(|other| other.score.total > first.score.total - 0.5 * NOISE) {
-            let angle = |found: &Found| rounds.search.equivalence.angle(found.pose.rotation, before);
+        for other in rounds.candidates.iter().filter(|other| other.score.total > first.score.total - 0.5 * NOISE) {
+            let angle = |found: &Candidate| rounds.search.equivalence.angle(found.pose.rotation, before);
             if angle(other) < angle(&chosen) {
                 chosen = *other;
             }
@@ -126,8 +126,8 @@ fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) 
         let nearest = rounds.search.equivalence.nearest(chosen.pose.rotation, before);
         chosen.pose = rounds.search.mesh.turns.turned(&chosen.pose, nearest);
     }
-    let others: Vec<Found> =
-        rounds.found.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();
-    let margin = lead(&rounds.search.equivalence, &chosen, &others, |found| found.score.total);
+    let others: Vec<Candidate> =
+        rounds.candidates.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();
+    let margin = lead(&rounds.search.equivalence, &chosen, &others, |other| other.score.total);
     Ok((chosen, judgment.map_or(margin, |color| margin.max(color.lead()))))
 }

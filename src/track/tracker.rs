@@ -32,12 +32,12 @@ use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::{NOISE, Score};
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::FINE;
 use crate::precise::search::refine::Refiner;
 use crate::precise::verdict::choice::AGREES;
 use crate::precise::verdict::color::{LOOSE, agreement_at, loose_axis, roll};
-use crate::precise::verdict::confidence::{certainty_of_relief, sureness};
+use crate::precise::verdict::confidence::{depth_calibration_reliability, pose_probability};
 use crate::progress::Host;
 use crate::report::Effort;
 use crate::scheduler::{Boxed, Scheduler, boxed, finished};
@@ -245,7 +245,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if self.state != TrackState::Lost && near.as_ref().is_some_and(is_leaving) {
             return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= VISIBLE[1]);
         }
-        // Found anew, where a mask shows the object.
+        // Candidate anew, where a mask shows the object.
         let before = self.certain.unwrap_or(last.rotation);
         let anew = match frame.observation().ok().flatten() {
             Some(observation) => self.detect(&observation, Some(before), host, scheduler).await.ok(),
@@ -308,7 +308,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host, scheduler).await?;
         // With the settings of the frames after it, so that scores compare.
         let search = self.tracked.search(detection.observation);
-        let found = Found { score: search.score(&detection.found.pose), ..detection.found };
+        let found = Candidate { score: search.score(&detection.found.pose), ..detection.found };
         let evidence = Evidence { search, region: PhotoRegion::WHOLE };
         Ok(FramePose { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
@@ -352,8 +352,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
-            let sure = sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.certainty_of_color;
-            sure * certainty_of_relief(frame.relief_deviation)
+            let sure = pose_probability(&found, self.lead.margin, conditioning.as_ref()) * self.lead.certainty_of_color;
+            sure * depth_calibration_reliability(frame.relief_deviation)
         };
         let camera_from_mesh = pose.similarity(&self.tracked.pyramid.frame);
         let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };
@@ -380,7 +380,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
-    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Found) {
+    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Candidate) {
         let Evidence { search, .. } = evidence;
         let (Some(colors), true) = (self.mesh.borrow().colors(), frame.photo.is_some()) else { return };
         if let Some(axis) = loose_axis(search, &found.pose, LOOSE)
@@ -388,12 +388,12 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             && let Some((pose, _)) = roll(search, &photo, colors, found.pose, axis)
             && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
         {
-            *found = Found { pose, score: search.score(&pose), ..*found };
+            *found = Candidate { pose, score: search.score(&pose), ..*found };
         }
     }
 
     /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.
-    fn weigh_size(&mut self, search: &Search, found: &mut Found, silhouette_error: f64) {
+    fn weigh_size(&mut self, search: &Search, found: &mut Candidate, silhouette_error: f64) {
         if !self.size.wants(found.pose.rotation) {
             return;
         }

@@ -26,11 +26,11 @@ use crate::precise::scoring::conditioning::{
 };
 use crate::precise::scoring::score::Score;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{FINE, SURE};
 use crate::precise::verdict::color::{Judgment, cells};
 use crate::precise::verdict::conclusion::{Reliability, reliability};
-use crate::precise::verdict::confidence::certainty_of_relief;
+use crate::precise::verdict::confidence::depth_calibration_reliability;
 use crate::report::{Alternative, Sim3};
 
 /// Times that the mask of a view without one is predicted.
@@ -147,11 +147,11 @@ fn verdict(
     }
     let color = judged.map(|(judgment, _)| judgment);
     let best = ranked.first().ok_or_else(no_candidate)?;
-    let mut found: Vec<Found> = ranked.iter().filter_map(|ranked| first.found(ranked)).collect();
-    if let Some(first) = found.first_mut() {
+    let mut candidates: Vec<Candidate> = ranked.iter().filter_map(|ranked| first.candidate(ranked)).collect();
+    if let Some(first) = candidates.first_mut() {
         first.score = mean_score(&score, best.score.total);
     }
-    let reliability = reliability(&found, color.as_ref(), free.as_ref(), first.search)?;
+    let reliability = reliability(&candidates, color.as_ref(), free.as_ref(), first.search)?;
     Ok(Verdict { best: best.clone(), conditioning, color, reliability })
 }
 
@@ -172,7 +172,7 @@ fn summary(
     // Together they are as certain as the one whose depth is known best.
     let of_used = views.iter().zip(&roles).filter(|(_, role)| **role == ViewRole::Used);
     let relief = of_used.map(|(view, _)| view.frame.relief_deviation).fold(f64::INFINITY, f64::min);
-    let confidence = confidence * certainty_of_relief(relief);
+    let confidence = confidence * depth_calibration_reliability(relief);
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
         let world_from_camera = cameras[k].world_from_camera();

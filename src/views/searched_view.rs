@@ -34,7 +34,7 @@ impl SearchedView {
     /// A view before its search; `previous` is the same view after a search with less effort.
     ///
     /// # Errors
-    /// As [`start::begin`].
+    /// As [`start::start_search`].
     pub fn begin(
         (index, camera): (usize, PlacedCamera),
         observation: &Observation,
@@ -44,7 +44,7 @@ impl SearchedView {
         stages: &mut Stopwatch<'_>,
     ) -> Result<Self> {
         let before = previous.map(|view| &view.rounds);
-        let mut rounds = start::begin(observation, mesh, before, options, settings, stages)?;
+        let mut rounds = start::start_search(observation, mesh, before, options, settings, stages)?;
         rounds.search.view = index;
         Ok(Self { index, camera, rounds, candidates: Vec::new(), color: None })
     }
@@ -64,20 +64,21 @@ impl SearchedView {
         let (Some(photo), Some(colors)) = (photo, colors) else { return };
         let judgment = judgment(&self.rounds, photo, colors, scheduler).await;
         if let Some(chosen) = judgment.chosen {
-            self.rounds.found.insert(0, chosen);
+            self.rounds.candidates.insert(0, chosen);
         }
         self.color = Some(judgment);
     }
 
     /// The view as one of several.
     pub fn part(&self) -> Part<'_> {
-        let own = self.rounds.found.first().map(|found| found.pose);
+        let own = self.rounds.candidates.first().map(|candidate| candidate.pose);
         Part { index: self.index, search: &self.rounds.search, camera: self.camera, own }
     }
 
     /// The poses in the world that the search has found or refined once.
     pub fn hypotheses(&self) -> impl Iterator<Item = WorldPose> {
-        let poses = self.rounds.found.iter().map(|found| found.pose).chain(self.candidates.iter().copied());
+        let poses =
+            self.rounds.candidates.iter().map(|candidate| candidate.pose).chain(self.candidates.iter().copied());
         poses.map(|pose| self.camera.place(&pose))
     }
 }

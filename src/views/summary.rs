@@ -142,7 +142,7 @@ impl Summary {
             names
         };
         let (against, blind) = (of(ViewRole::Contradicting), of(ViewRole::Blind));
-        let mut warnings: Vec<Warning> = warnings::about_mesh(&mesh.left_out()).into_iter().collect();
+        let mut warnings: Vec<Warning> = warnings::about_mesh(&mesh.removed_parts()).into_iter().collect();
         if !against.is_empty() {
             warnings.push(Warning {
                 code: WarningCode::ViewContradicts,

@@ -12,11 +12,11 @@ use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::score::Score;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{COMMON_SIZE, FINE, SURE};
 use crate::precise::verdict::alternatives::lead;
 use crate::precise::verdict::color::Judgment;
-use crate::precise::verdict::confidence::{certainty_of_relief, sureness};
+use crate::precise::verdict::confidence::{depth_calibration_reliability, pose_probability};
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
 const NEAR: f32 = 0.35;
@@ -32,7 +32,7 @@ pub struct CommonSize {
     /// Standard deviation of the size, relative.
     pub sd: f64,
     /// The pose of each searched view at this scale, and whether the view agrees with it.
-    pub views: Vec<(Found, bool)>,
+    pub views: Vec<(Candidate, bool)>,
     /// Number of poses rendered.
     pub renders: usize,
 }
@@ -41,20 +41,23 @@ pub struct CommonSize {
 pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     let [rank, polish] = COMMON_SIZE;
     let mut renders = 0;
-    let likely: Vec<Vec<Found>> = searched.iter().map(likely).collect();
+    let likely: Vec<Vec<Candidate>> = searched.iter().map(likely).collect();
     let evidence: Vec<Vec<SizeEvidence>> = searched
         .iter()
         .zip(&likely)
-        .map(|(view, found)| {
+        .map(|(view, candidates)| {
             let objective = fine(&view.rounds.search);
-            renders += found.len();
-            found.iter().filter_map(|found| SizeEvidence::at(objective, &found.pose, SILHOUETTE_ERROR)).collect()
+            renders += candidates.len();
+            candidates
+                .iter()
+                .filter_map(|candidate| SizeEvidence::at(objective, &candidate.pose, SILHOUETTE_ERROR))
+                .collect()
         })
         .collect();
     let fixed = searched.first()?.rounds.search.prior.fixed_scale().map(libm::log);
     let (mut size, mut sd, chosen) = common_size(&evidence, fixed)?;
     let agrees: Vec<bool> = chosen.iter().map(Option::is_some).collect();
-    let mut poses: Vec<Found> = Vec::new();
+    let mut poses: Vec<Candidate> = Vec::new();
     for round in 0..ROUNDS {
         poses = searched
             .iter()
@@ -62,10 +65,10 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
             .map(|(k, view)| {
                 // A view that contradicts keeps its own size.
                 let tried = if round == 0 { likely[k].clone() } else { vec![poses[k]] };
-                let refined = tried.into_iter().map(|found| {
-                    let own = found.pose.size + found.pose.distance;
+                let refined = tried.into_iter().map(|candidate| {
+                    let own = candidate.pose.size + candidate.pose.distance;
                     let at = if agrees[k] { size } else { own };
-                    let refined = refine_at(view.rounds.search.objective(rank.grid), found.pose, at, rank.steps);
+                    let refined = refine_at(view.rounds.search.objective(rank.grid), candidate.pose, at, rank.steps);
                     renders += refined.renders;
                     refined
                 });
@@ -74,20 +77,22 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
             .collect::<Option<Vec<_>>>()?;
         let evidence = searched.iter().zip(&poses).zip(&agrees).filter(|(_, agrees)| **agrees);
         let evidence: Vec<SizeEvidence> = evidence
-            .filter_map(|((view, found), _)| SizeEvidence::at(fine(&view.rounds.search), &found.pose, SILHOUETTE_ERROR))
+            .filter_map(|((view, candidate), _)| {
+                SizeEvidence::at(fine(&view.rounds.search), &candidate.pose, SILHOUETTE_ERROR)
+            })
             .collect();
         if fixed.is_none() {
             (size, sd) = mean(evidence.iter().copied()).unwrap_or((size, sd));
         }
     }
-    let views = searched.iter().zip(poses).zip(agrees).map(|((view, found), agrees)| {
-        let own = found.pose.size + found.pose.distance;
+    let views = searched.iter().zip(poses).zip(agrees).map(|((view, candidate), agrees)| {
+        let own = candidate.pose.size + candidate.pose.distance;
         let search = &view.rounds.search;
         let refined =
-            refine_at(search.objective(polish.grid), found.pose, if agrees { size } else { own }, polish.steps);
+            refine_at(search.objective(polish.grid), candidate.pose, if agrees { size } else { own }, polish.steps);
         renders += refined.renders;
         // The score stays that of the fine grid, because scores of different grids are not comparable.
-        (Found { score: search.score(&refined.pose), renders: 0, ..refined }, agrees)
+        (Candidate { score: search.score(&refined.pose), renders: 0, ..refined }, agrees)
     });
     let views = views.collect();
     Some(CommonSize { sd, views, renders })
@@ -105,36 +110,36 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
     let mut views: Vec<SummaryView> = Vec::new();
     let mut conditioned: Vec<Option<Conditioning>> = Vec::new();
     let mut least: f64 = 1.0;
-    for (view, (found, agrees)) in searched.iter().zip(&common.views) {
+    for (view, (candidate, agrees)) in searched.iter().zip(&common.views) {
         let search = &view.rounds.search;
         let is_fixed = search.settings.lock_scale;
         // The size is as certain as all views together make it.
         let of_all = |own: Conditioning| Conditioning { scale: common.sd, ..own };
-        let own = search.conditioning(&found.pose).0;
+        let own = search.conditioning(&candidate.pose).0;
         let conditioning = if *agrees && !is_fixed { own.map(of_all) } else { own };
         // All are scored with the mesh as it is, at the common size or their own.
-        let others = view.rounds.found.get(1..).unwrap_or_default();
+        let others = view.rounds.candidates.get(1..).unwrap_or_default();
         let likely = others.get(..RIVALS).unwrap_or(others);
-        let lead = lead(&search.equivalence, found, likely, |other| search.score(&other.pose).total);
+        let lead = lead(&search.equivalence, candidate, likely, |other| search.score(&other.pose).total);
         let color = view.color.as_ref();
         let lead = lead.max(color.map_or(f64::NEG_INFINITY, Judgment::lead));
-        let by_shape = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };
+        let by_shape = if *agrees { pose_probability(candidate, lead, conditioning.as_ref()) } else { 0.0 };
         if *agrees {
             least = least.min(by_shape);
         }
-        let relief = certainty_of_relief(frames[view.index].frame.relief_deviation);
+        let relief = depth_calibration_reliability(frames[view.index].frame.relief_deviation);
         let confidence = by_shape * color.map_or(1.0, |color| color.certainty) * relief;
         views.push(SummaryView {
-            camera_from_mesh: found.pose.similarity(&search.mesh.frame),
+            camera_from_mesh: candidate.pose.similarity(&search.mesh.frame),
             confidence,
             role: if *agrees { ViewRole::Used } else { ViewRole::Contradicting },
             world_from_camera: Similarity::identity(),
             rotation_sd_deg: Some(0.0),
             position_sd_m: Some(0.0),
-            score: found.score,
+            score: candidate.score,
             color: color.map(|color| color.report),
         });
-        conditioned.push(if is_fixed { search.conditioning_as_fixed(&found.pose) } else { conditioning });
+        conditioned.push(if is_fixed { search.conditioning_as_fixed(&candidate.pose) } else { conditioning });
     }
     let world_from_mesh = views[first].camera_from_mesh;
     for (k, view) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
@@ -179,7 +184,7 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
         free_axis: free_axis.map(|axis| axis.to_array()),
         position_m: own.position_m,
     });
-    searched.iter().zip(views).for_each(|(view, found)| all[view.index] = found);
+    searched.iter().zip(views).for_each(|(view, candidate)| all[view.index] = candidate);
     Ok(Summary {
         world_from_mesh,
         world: WorldFrame::Camera,
@@ -189,7 +194,7 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
         proportions: None,
         uncertainty,
         score,
-        converged: common.views.iter().all(|(found, _)| found.converged),
+        converged: common.views.iter().all(|(candidate, _)| candidate.converged),
         renders: common.renders + searched.iter().map(|view| view.rounds.search.renders).sum::<usize>(),
         effort,
         views: all,
@@ -197,15 +202,15 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
 }
 
 /// The poses of a view that may be right: the one that colour chooses, or all that shape allows.
-fn likely(view: &SearchedView) -> Vec<Found> {
-    let found = &view.rounds.found;
-    let best = found.first().map_or(0.0, |best| best.score.total);
+fn likely(view: &SearchedView) -> Vec<Candidate> {
+    let candidates = &view.rounds.candidates;
+    let best = candidates.first().map_or(0.0, |best| best.score.total);
     let tried = if view.color.as_ref().is_some_and(|color| color.is_used) { 1 } else { TRIED };
-    found.iter().filter(|f| f.score.total > best - NEAR).take(tried).copied().collect()
+    candidates.iter().filter(|f| f.score.total > best - NEAR).take(tried).copied().collect()
 }
 
-fn best_of(found: impl Iterator<Item = Found>) -> Option<Found> {
-    found.reduce(|best, next| if next.score.total > best.score.total { next } else { best })
+fn best_of(candidates: impl Iterator<Item = Candidate>) -> Option<Candidate> {
+    candidates.reduce(|best, next| if next.score.total > best.score.total { next } else { best })
 }
 
 fn fine(search: &Search) -> Objective<'_> {

@@ -10,7 +10,7 @@ use crate::precise::no_candidate;
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::score::NOISE;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::SURE;
 use crate::precise::search::rounds::Rounds;
 use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Solution, Uncertainty};
@@ -50,14 +50,14 @@ pub struct Reliability {
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) without a pose.
 pub fn reliability(
-    found: &[Found],
+    candidates: &[Candidate],
     color: Option<&Judgment>,
     conditioning: Option<&Conditioning>,
     search: &Search,
 ) -> Result<Reliability> {
-    let best = found.first().ok_or_else(no_candidate)?;
+    let best = candidates.first().ok_or_else(no_candidate)?;
     let listed = |margin: f32, with_turns: bool| {
-        let mut list = alternatives(found, search, margin);
+        let mut list = alternatives(candidates, search, margin);
         let rivals = color.iter().flat_map(|color| &color.rivals).filter(|rival| with_turns || !rival.is_turn);
         add_rivals(&mut list, best, rivals, search);
         list
@@ -74,11 +74,11 @@ pub fn reliability(
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose overlaps the mask.
 pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, Certainty)> {
     let search = &rounds.search;
-    let mut found = Cow::Borrowed(&rounds.found);
+    let mut candidates = Cow::Borrowed(&rounds.candidates);
     if let Some(chosen) = color.and_then(|color| color.chosen) {
-        found.to_mut().insert(0, chosen);
+        candidates.to_mut().insert(0, chosen);
     }
-    let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+    let best = candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
@@ -88,9 +88,9 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
     };
     // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
     // wrong; it is evidence of which of several poses is the better one.
-    let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
+    let by_image = if search.has_scene_term() { search.conditioning_by_image(&best.pose) } else { conditioning };
     let as_fixed = if search.settings.lock_scale { search.conditioning_as_fixed(&best.pose) } else { conditioning };
-    let Reliability { confidence, alternatives, .. } = reliability(&found, color, by_image.as_ref(), search)?;
+    let Reliability { confidence, alternatives, .. } = reliability(&candidates, color, by_image.as_ref(), search)?;
     let certainty = Certainty {
         confidence,
         turn_confidence: color.and_then(|color| color.turn),

@@ -8,7 +8,7 @@
 use super::choice::SHAPE;
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::score::NOISE;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::report::Alternative;
 
 /// Intercept and coefficients of the regression: overlap, depth, outline, the margin relative to [`NOISE`], and the
@@ -25,22 +25,22 @@ const WRONG_RELIEF: f64 = 0.43;
 
 /// The probability that the relief of an observation is not so wrong that the pose is, given the standard deviation of its
 /// estimate: at least this, by Chebyshev's inequality. The errors of such estimates have long tails.
-pub(crate) fn certainty_of_relief(deviation: f64) -> f64 {
+pub(crate) fn depth_calibration_reliability(deviation: f64) -> f64 {
     let share = deviation / WRONG_RELIEF;
     (1.0 - share * share).max(0.0)
 }
 
 /// The probability that a pose is correct, 0 to 1.
-pub(crate) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
+pub(crate) fn confidence(best: &Candidate, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
     let score = f64::from(best.score.total);
     // Colour has lowered the odds of poses that shape alone cannot exclude.
     let lead = |other: &Alternative| score - other.score + other.color_margin.unwrap_or(0.0).max(0.0) / SHAPE;
     let margin = alternatives.iter().fold(f64::from(NOISE), |margin, other| margin.min(lead(other)));
-    sureness(best, margin, conditioning)
+    pose_probability(best, margin, conditioning)
 }
 
 /// The same, given the lead over the next best placement, of which no more than [`NOISE`] counts.
-pub(crate) fn sureness(best: &Found, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
+pub(crate) fn pose_probability(best: &Candidate, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
     let Some(conditioning) = conditioning else { return 0.0 };
     let margin = lead.min(f64::from(NOISE));
     let log = |x: f64, [low, high]: [f64; 2]| libm::log(x.max(low).min(high));
