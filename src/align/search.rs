@@ -24,8 +24,7 @@ use crate::precise::search::rounds::Rounds;
 use crate::precise::search::start::{self, SearchState, WarmStart};
 use crate::precise::verdict::color::{Judgment, agreement, judgment};
 use crate::precise::verdict::conclusion;
-use crate::precise::verdict::conclusion::Certainty;
-use crate::precise::verdict::confidence::depth_calibration_reliability;
+use crate::precise::verdict::conclusion::Verdict;
 use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
@@ -52,7 +51,7 @@ pub struct SearchResult {
     /// The poses.
     pub rounds: Rounds,
     solution: Solution,
-    certainty: Certainty,
+    verdict: Verdict,
 }
 
 /// Loss of confidence beyond which the scene does not choose another pose than the object alone.
@@ -85,13 +84,13 @@ impl Request {
 
 impl SearchResult {
     fn new(rounds: Rounds) -> Result<Self> {
-        let (solution, certainty) = conclusion::conclude(&rounds, None)?;
-        Ok(Self { rounds, solution, certainty })
+        let (solution, verdict) = conclusion::conclude(&rounds, None)?;
+        Ok(Self { rounds, solution, verdict })
     }
 
     /// The probability that the best pose is right.
     pub fn confidence(&self) -> f64 {
-        self.certainty.confidence
+        self.verdict.confidence.overall()
     }
 }
 
@@ -162,12 +161,12 @@ impl<'a> Search<'a> {
         for (index, settings) in efforts.iter().enumerate() {
             let mut rounds = self.search_rotations(previous.as_ref(), index, settings).await?;
 
-            let verdict = conclusion::conclude(&rounds, None);
+            let conclusion = conclusion::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
-            let is_sure = matches!(&verdict, Ok((_, certainty)) if certainty.confidence >= SURE);
+            let is_sure = matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.overall() >= SURE);
             if is_last || (is_sure && !self.find_rivals(&mut rounds, index).await) {
-                let (solution, certainty) = verdict?;
-                return Ok(SearchResult { rounds, solution, certainty });
+                let (solution, verdict) = conclusion?;
+                return Ok(SearchResult { rounds, solution, verdict });
             }
 
             previous = Some(rounds);
@@ -249,30 +248,46 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus).
-    pub fn finish(
-        mut self,
-        mut clouds: Clouds,
-        searched: SearchResult,
-        colors: Option<&Judgment>,
-    ) -> Result<Alignment> {
-        let SearchResult { rounds, solution, certainty } = searched;
-        let (solution, mut certainty) = match colors {
-            Some(judgment) => conclusion::conclude(&rounds, Some(judgment))?,
-            None => (solution, certainty),
-        };
+    pub fn finish(mut self, mut clouds: Clouds, result: SearchResult, colors: Option<&Judgment>) -> Result<Alignment> {
+        let SearchResult { rounds, mut solution, mut verdict } = result;
+        if colors.is_some() {
+            (solution, verdict) = conclusion::conclude(&rounds, colors)?;
+        }
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
-        certainty.confidence *= depth_calibration_reliability(observation.relief_deviation());
+        verdict.confidence.relief_deviation = observation.relief_deviation();
+
         let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
         if let Some(metrics) = &mut metrics {
             let (clean, pose) = (rounds.search.observation.clone(), &solution.camera_from_mesh);
             metrics.color_agreement = agreement(observation, Some(clean), mesh, pose);
         }
+
         let search = &rounds.search;
         let pose = CropPose::of_similarity(&solution.camera_from_mesh, &search.mesh.frame);
         let proportions = pose.and_then(|pose| stretch(search, mesh.mesh(), &pose, options.proportions));
-        let mut outcome = outcome(observation, setup, &clouds, &solution, metrics, self.stages);
-        outcome.warnings.extend(about_mesh(&mesh.removed_parts()));
-        Ok(Alignment { proportions, ..with_certainty(outcome, certainty, search.renders) })
+
+        let Outcome { camera_from_mesh, metrics, mut warnings, diagnostics: common, points } =
+            outcome(observation, setup, &clouds, &solution, metrics, self.stages);
+        let confidence = verdict.confidence.overall();
+        warnings.extend(about_mesh(&mesh.removed_parts()));
+        warnings.extend(about_search(common.converged));
+        warnings.extend(about_fit(&verdict.terms));
+        retain_doubts(&mut warnings, confidence);
+
+        let [target_points, source_points] = points;
+        let counts = SearchCounts { source_points, target_points, renders: search.renders };
+        let Verdict { turn_confidence, alternatives, uncertainty, effort, score, terms, color, .. } = verdict;
+        Ok(Alignment {
+            camera_from_mesh,
+            confidence,
+            turn_confidence,
+            alternatives,
+            uncertainty,
+            proportions,
+            metrics,
+            warnings,
+            diagnostics: PreciseDiagnostics { common, counts, effort, score, terms, color },
+        })
     }
 }
 
@@ -283,26 +298,4 @@ fn leaves_image(earlier: &SearchState, rounds: &Rounds) -> bool {
     let loss = search.by_image(&alone.score) - search.by_image(&now.score);
     let turn = search.equivalence.angle(alone.pose.rotation, now.pose.rotation);
     turn < DISTINCT_MIN_ANGLE_RAD && f64::from(loss) > MAX_IMAGE_SCORE_LOSS
-}
-
-fn with_certainty(outcome: Outcome, certainty: Certainty, renders: usize) -> Alignment {
-    let Certainty { confidence, turn_confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
-    let Outcome { camera_from_mesh, metrics, mut warnings, diagnostics: common, points } = outcome;
-    let [target_points, source_points] = points;
-    let counts = SearchCounts { source_points, target_points, renders };
-    warnings.extend(about_search(common.converged));
-    warnings.extend(about_fit(&terms));
-    retain_doubts(&mut warnings, confidence);
-    let diagnostics = PreciseDiagnostics { common, counts, effort, score, terms, color };
-    Alignment {
-        camera_from_mesh,
-        confidence,
-        turn_confidence,
-        alternatives,
-        uncertainty,
-        proportions: None,
-        metrics,
-        warnings,
-        diagnostics,
-    }
 }

@@ -39,7 +39,7 @@ pub struct Lead {
     /// The difference between the scores of the pose and of the best other one.
     pub margin: f64,
     /// Probability that colours have chosen the right one of the poses; 1 without colours.
-    pub certainty_of_color: f64,
+    pub color_probability: f64,
 }
 
 /// A found object.
@@ -91,8 +91,8 @@ impl Detection {
             let rounds = rounds.ok_or_else(no_candidate)?;
             let judgment = by_color(&rounds, observation, mesh, scheduler).await;
             let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
-            let certainty_of_color = judgment.map_or(1.0, |judgment| judgment.certainty);
-            Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, certainty_of_color } })
+            let color_probability = judgment.map_or(1.0, |judgment| judgment.probability);
+            Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, color_probability } })
         })
     }
 }

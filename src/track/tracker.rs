@@ -36,8 +36,8 @@ use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::FINE;
 use crate::precise::search::refine::Refiner;
 use crate::precise::verdict::choice::AGREES;
-use crate::precise::verdict::color::{LOOSE, agreement_at, loose_axis, roll};
-use crate::precise::verdict::confidence::{depth_calibration_reliability, pose_probability};
+use crate::precise::verdict::color::{LOOSE_MIN_SD_RAD, agreement_at, loose_axis, roll};
+use crate::precise::verdict::confidence::{Confidence, pose_probability};
 use crate::progress::Host;
 use crate::report::Effort;
 use crate::scheduler::{Boxed, Scheduler, boxed, finished};
@@ -115,7 +115,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             state: TrackState::Lost,
             usual: None,
             certain: None,
-            lead: Lead { margin: 0.0, certainty_of_color: 1.0 },
+            lead: Lead { margin: 0.0, color_probability: 1.0 },
             history: History::default(),
         })
     }
@@ -185,7 +185,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.last = self.history.last();
             self.state = TrackState::Tracking;
             self.usual = None;
-            self.lead = Lead { margin: f64::from(NOISE), certainty_of_color: 1.0 };
+            self.lead = Lead { margin: f64::from(NOISE), color_probability: 1.0 };
             self.certain = self.last.map(|pose| pose.rotation);
             let evidence =
                 SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0, depth_agreement: 1.0 };
@@ -352,8 +352,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
-            let sure = pose_probability(&found, self.lead.margin, conditioning.as_ref()) * self.lead.certainty_of_color;
-            sure * depth_calibration_reliability(frame.relief_deviation)
+            let shape = pose_probability(&found, self.lead.margin, conditioning.as_ref());
+            let (color, relief_deviation) = (self.lead.color_probability, frame.relief_deviation);
+            Confidence { shape, color, relief_deviation }.overall()
         };
         let camera_from_mesh = pose.similarity(&self.tracked.pyramid.frame);
         let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };
@@ -383,7 +384,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Candidate) {
         let Evidence { search, .. } = evidence;
         let (Some(colors), true) = (self.mesh.borrow().colors(), frame.photo.is_some()) else { return };
-        if let Some(axis) = loose_axis(search, &found.pose, LOOSE)
+        if let Some(axis) = loose_axis(search, &found.pose, LOOSE_MIN_SD_RAD)
             && let Some(photo) = evidence.photo(frame)
             && let Some((pose, _)) = roll(search, &photo, colors, found.pose, axis)
             && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)

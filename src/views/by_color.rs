@@ -14,7 +14,7 @@ use crate::precise::scoring::score::NOISE;
 use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{COARSE, COLORED, FINE};
 use crate::precise::verdict::choice::{Choice, ColorScore, best_roll};
-use crate::precise::verdict::color::{DISTINCT_MIN_ANGLE_RAD, Judgment, LOOSE, are_rivals};
+use crate::precise::verdict::color::{DISTINCT_MIN_CONTRAST, Judgment, LOOSE_MIN_SD_RAD, are_rivals};
 use crate::precise::verdict::lookalikes::{Likeness, Lookalike, ROLLS, among};
 
 /// Correlation above which a photo agrees no better.
@@ -68,7 +68,7 @@ impl Photos<'_> {
         }
         let differ = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|k| &compared[k]);
-            are_rivals(a.ranked.pose.rotation, b.ranked.pose.rotation) && difference(a, b) > DISTINCT_MIN_ANGLE_RAD
+            are_rivals(a.ranked.pose.rotation, b.ranked.pose.rotation) && difference(a, b) > DISTINCT_MIN_CONTRAST
         };
         let choice = Choice::among(compared.iter().map(|compared| compared.look).collect(), differ)?;
         let is_changed = choice.chosen != 0;
@@ -77,7 +77,7 @@ impl Photos<'_> {
             chosen.pose = self.views.polished(&polish, chosen.pose);
         }
         let part = self.views.parts.first()?;
-        let loosest = || conditioning.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= LOOSE);
+        let loosest = || conditioning.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= LOOSE_MIN_SD_RAD);
         let axis = part.search.equivalence.free_axis(chosen.pose.rotation).or_else(|| loosest().map(|(_, axis)| axis));
         let rolled = axis.filter(|_| choice.is_used).and_then(|axis| self.roll(&mut joint, &chosen, axis));
         let gain = rolled.map_or(0.0, |(_, gain)| gain);

@@ -31,17 +31,17 @@ use crate::report::{ColorReport, Effort};
 use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Contrast between two poses, relative to the noise, from which on they look different.
-pub const DISTINCT_MIN_ANGLE_RAD: f64 = 2.0;
+pub const DISTINCT_MIN_CONTRAST: f64 = 2.0;
 /// Minimum rotation between poses that are rivals, radians.
-const RIVAL: f64 = 0.35;
+const RIVAL_MIN_ANGLE_RAD: f64 = 0.35;
 /// Standard deviation of a rotation, radians, from which on colour refines it.
-pub const LOOSE: f64 = 0.05;
+pub const LOOSE_MIN_SD_RAD: f64 = 0.05;
 
 /// A pose whose shape is within noise of the best one.
 struct Compared {
     candidate: Candidate,
     appearance: Appearance,
-    look: ColorScore,
+    agreement: ColorScore,
 }
 
 /// A pose of about the same shape score as the chosen one, but of other colours.
@@ -61,7 +61,7 @@ pub struct Judgment {
     /// Other poses that look different, best first.
     pub rivals: Vec<Rival>,
     /// Probability that the chosen pose is right up to the symmetry of the shape, given that it is one of those compared.
-    pub certainty: f64,
+    pub probability: f64,
     /// Probability that it is the right one of the poses that this symmetry makes equivalent; `None` where these look alike.
     pub turn: Option<f64>,
     /// For the result.
@@ -86,11 +86,11 @@ pub fn judgment<'a>(
 
 /// Chooses among the compared poses.
 fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared: &[Compared]) -> Judgment {
-    let scores = compared.iter().map(|compared| compared.look).collect();
+    let scores = compared.iter().map(|compared| compared.agreement).collect();
     let differ = |a: usize, b: usize| {
         let [a, b] = [a, b].map(|k| &compared[k]);
         are_rivals(a.candidate.pose.rotation, b.candidate.pose.rotation)
-            && a.appearance.difference(&b.appearance) > DISTINCT_MIN_ANGLE_RAD
+            && a.appearance.difference(&b.appearance) > DISTINCT_MIN_CONTRAST
     };
     let Some(choice) = Choice::among(scores, differ) else { return Judgment::none() };
     let is_changed = choice.chosen != 0;
@@ -98,7 +98,7 @@ fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared:
     if is_changed {
         candidate.pose = polished(rounds, candidate.pose);
     }
-    let axis = if choice.is_used { loose_axis(&rounds.search, &candidate.pose, LOOSE) } else { None };
+    let axis = if choice.is_used { loose_axis(&rounds.search, &candidate.pose, LOOSE_MIN_SD_RAD) } else { None };
     let rolled = axis.and_then(|axis| roll(&rounds.search, photo, colors, candidate.pose, axis));
     let gain = rolled.map_or(0.0, |(_, gain)| gain);
     if let Some((pose, _)) = rolled {
@@ -120,15 +120,15 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, s
     };
     let Some(best) = rounds.candidates.first() else { return Vec::new() };
     let Some((of_best, appearance)) = look_at(&mut canvas, best.pose) else { return Vec::new() };
-    let look = ColorScore::new(appearance.agreement, 0.0);
+    let agreement = ColorScore::new(appearance.agreement, 0.0);
     let score = Score { total: best.score.total, ..of_best };
-    let mut list = vec![Compared { candidate: Candidate { score, ..*best }, appearance, look }];
+    let mut list = vec![Compared { candidate: Candidate { score, ..*best }, appearance, agreement }];
     let [rough, _] = COLORED;
     let refiner = Refiner { objective: search.objective(rough.grid), lock_scale: search.settings.lock_scale };
     for Lookalike { pose, likeness } in lookalikes(rounds) {
         let is_rough = likeness == Likeness::Rough;
         // A turn of the best pose doubles its error. The poses of the search near the turn are more accurate.
-        let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
+        let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL_MIN_ANGLE_RAD;
         let known = rounds.candidates.iter().skip(1).find(|candidate| is_near(&candidate.pose, &pose));
         let pose = match known {
             Some(candidate) => candidate.pose,
@@ -146,8 +146,8 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, s
             score.total = best.score.total + shape;
             // What a symmetry makes equivalent is compared, whatever the inaccuracy of the mesh takes off its score.
             if likeness == Likeness::Equal || score.total > best.score.total - NOISE {
-                let look = ColorScore::new(appearance.agreement, shape);
-                list.push(Compared { candidate: Candidate { pose, score, ..*best }, appearance, look });
+                let agreement = ColorScore::new(appearance.agreement, shape);
+                list.push(Compared { candidate: Candidate { pose, score, ..*best }, appearance, agreement });
             }
         }
         scheduler.yield_point().await;
@@ -157,7 +157,7 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, s
 
 /// Whether two poses are so far apart that one of them is wrong.
 pub fn are_rivals(a: DQuat, b: DQuat) -> bool {
-    angle_between(a, b) > RIVAL
+    angle_between(a, b) > RIVAL_MIN_ANGLE_RAD
 }
 
 /// The axis about which shape leaves the rotation open, by at least `loose` radians.
@@ -202,17 +202,17 @@ impl Judgment {
             Some((k, Rival { candidate, margin: choice.margin(k, gain), is_turn }))
         };
         let (indices, rivals): (Vec<usize>, Vec<Rival>) = choice.rivals.iter().filter_map(rival).unzip();
-        let certainty = |are_turns: bool| {
+        let probability = |are_turns: bool| {
             let these = indices.iter().zip(&rivals).filter(|(_, rival)| rival.is_turn == are_turns);
-            let known = choice.certainty(gain, these.map(|(k, _)| *k));
+            let known = choice.probability(gain, these.map(|(k, _)| *k));
             // Where no pose agrees, the colours of the mesh as likely as not mean nothing, and all turns are right; but which of
             // them colour would choose is open.
             if are_turns || choice.is_used { known } else { known.max(UNMATCHED) }
         };
         Self {
             chosen: is_other.then_some(end),
-            certainty: certainty(false),
-            turn: rivals.iter().any(|rival| rival.is_turn).then(|| certainty(true)),
+            probability: probability(false),
+            turn: rivals.iter().any(|rival| rival.is_turn).then(|| probability(true)),
             report: choice.report(gain),
             is_used: choice.is_used,
             rivals,
@@ -230,7 +230,7 @@ impl Judgment {
 
     /// Nothing can be compared.
     fn none() -> Self {
-        Self { chosen: None, rivals: Vec::new(), certainty: 1.0, turn: None, report: HIDDEN, is_used: false }
+        Self { chosen: None, rivals: Vec::new(), probability: 1.0, turn: None, report: HIDDEN, is_used: false }
     }
 }
 
