@@ -98,19 +98,6 @@ export async function bundleScripts() {
   chmodSync(join(packageDir, "cli", "main.js"), 0o755);
 }
 
-/** Bundles the script of a report's page, in one piece: pages from disk may not load modules. */
-export async function bundleReportPage() {
-  // The set-up installs it first.
-  const { build } = await import("esbuild");
-  const { metafile } = await build({
-    entryPoints: [join(compiledDir, "report-page", "main.js")],
-    outfile: join(packageDir, "report-page.js"),
-    ...{ bundle: true, minify: true, format: "iife", platform: "browser", target: "es2022", logLevel: "warning" },
-    metafile: true,
-  });
-  refuseForeign(metafile);
-}
-
 /** Bundles the compiler's declarations. */
 export async function bundleTypes() {
   // The set-up installs them first.

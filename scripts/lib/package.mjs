@@ -3,7 +3,7 @@
 import { createHash } from "node:crypto";
 import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { bundleGlue, bundleReportPage, bundleScripts, bundleTypes } from "./bundle.mjs";
+import { bundleGlue, bundleScripts, bundleTypes } from "./bundle.mjs";
 import { cached, digest, once } from "./cache.mjs";
 import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
@@ -45,7 +45,6 @@ async function write(info) {
   await bundleGlue();
   await bundleScripts();
   await bundleInline();
-  await bundleReportPage();
   await bundleElement();
   await bundleTypes();
   writeFileSync(infoFile, info);

@@ -45,7 +45,7 @@ export function checkCodes() {
     Array.from(source.matchAll(pattern), ([, code = ""]) => code);
   const [warnings = ""] = /export type WarningCode = .*/.exec(text("pkg-config/src/generated/types.ts")) ?? [];
   const errors = [
-    ...all(text("geometry/src/error.rs"), /=> "([A-Z_0-9]+)"/g),
+    ...all(text("runtime/src/error.rs"), /=> "([A-Z_0-9]+)"/g),
     ...all(text("pkg-config/src/values/error.ts"), /^ {2}\| "([A-Z_0-9]+)"/gm),
   ];
   for (const [level, codes] of /** @type {const} */ ([

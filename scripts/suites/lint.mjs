@@ -12,7 +12,7 @@ import { checkCodes, checkDocuments } from "./documents.mjs";
 
 /** Crates of the workspace besides the aligner. */
 const crates = [
-  ...["formats", "geometry", "lab", "physics"],
+  ...["formats", "geometry", "lab", "physics", "runtime"],
   ...["core", "depth-files", "formats", "joint", "physics", "registration", "splats", "webp"].map(
     (name) => `modules/${name}`,
   ),
