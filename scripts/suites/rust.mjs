@@ -1,8 +1,9 @@
 /** The Rust tests, natively and as WebAssembly in Node. */
 import { rustCounts, withStatus } from "../lib/counts.mjs";
 import { print } from "../lib/output.mjs";
+import { at } from "../lib/paths.mjs";
 import { attempt } from "../lib/run.mjs";
-import { rustToolchain, wasmBindgen, wasmBindgenProgram, wasmTarget } from "../lib/setup.mjs";
+import { rustToolchain, wasmBindgen, wasmTarget } from "../lib/setup.mjs";
 
 /**
  * Runs tests; once more if they hang, because Node itself may: its end can deadlock (nodejs/node#54918).
@@ -29,6 +30,8 @@ export async function wasm() {
   await wasmBindgen();
   const packages = ["sim3align", "sim3align-physics"].flatMap((name) => ["--package", name]);
   return cargoTest(["--target", wasmTarget, ...packages, "--test", "suite"], {
-    env: { CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: wasmBindgenProgram("wasm-bindgen-test-runner") },
+    env: {
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: `${process.execPath} ${at("scripts", "lib", "wasm-tests.mjs")}`,
+    },
   });
 }
