@@ -133,7 +133,7 @@ export async function browser() {
 
 /** A copy of what the examples use: the unpacked tarball as pkg/, and the examples. */
 const copy = at("target", "examples");
-const examplesDir = join(copy, "examples");
+export const examplesDir = join(copy, "examples");
 
 /** Files that working in the examples' folder leaves there. */
 const made = new Set(["node_modules", "sample", "dist", "annotation", "annotations"]);
