@@ -1,5 +1,5 @@
 /** Checks of the package before it is used: its form, its declarations, its sizes. */
-import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { dirname, join, sep } from "node:path";
 import { writeApiDocs } from "../lib/api-docs.mjs";
@@ -61,7 +61,6 @@ export async function checkPackage() {
     ["types, in modules' resolution", () => run(node, [attw, file, "--profile", "esm-only", "--no-emoji"])],
     ["tsc --strict, resolution node16", () => compileStrictly("node16")],
     ["tsc --strict, resolution bundler", () => compileStrictly("bundler")],
-    ["package.json names files that exist", checkNamedFiles],
     ["npm publish --dry-run, without a correction", checkPublishing],
     ["the API report is up to date", checkApiReport],
     ["the notice names what the modules hold, under licences that are allowed", checkNotice],
@@ -83,16 +82,6 @@ async function checkPublishing() {
     const found = reason || corrected.join("\n");
     throw new Error(`npm publish --dry-run: ${found}\nRemedy: \`npm pkg fix\` in pkg-config names what to correct.`);
   }
-}
-
-function checkNamedFiles() {
-  const { bin, exports } = JSON.parse(readFileSync(join(packageDir, "package.json"), "utf8"));
-  /** @type {(entry: unknown) => string[]} */
-  const targets = (entry) =>
-    entry && typeof entry === "object" ? Object.values(entry).flatMap(targets) : [String(entry)];
-  const named = [...targets(bin), ...targets(exports)].filter((path) => !path.includes("*"));
-  const missing = named.filter((path) => !existsSync(join(packageDir, path)));
-  if (missing.length > 0) throw new Error(`pkg/ lacks ${missing.join(", ")}, which its package.json names.`);
 }
 
 /** @returns {[title: string, check: (say: (note: string) => void) => unknown][]} */

@@ -38,7 +38,7 @@ fn fault(call: Call, bytes: &[u8]) -> Option<String> {
 
 fn fuzz(cases: u32, least_results: u32, call: Call) {
     let seed = std::env::var("SIM3ALIGN_FUZZ_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
-    let mut random = Random::new(seed, 0);
+    let mut random = Random::new(seed, 1);
     for _ in 0..cases {
         let length = random.below(BYTES);
         let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
