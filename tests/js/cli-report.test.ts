@@ -72,8 +72,7 @@ test("from the side, the mesh is where the measured points are", async () => {
     const [red = 0, green = 0, blue = 0] = data.subarray(3 * i, 3 * i + 3);
     // The mesh is orange, depth is yellow to violet, and what nobody has seen is nearly white.
     const sum = red - blue > 90 && green < 0.7 * red ? sums.mesh : red < 240 || blue < 200 ? sums.points : undefined;
-    if (sum !== undefined)
-      for (const [k, x] of [i % width, Math.floor(i / width), 1].entries()) sum[k] = (sum[k] ?? 0) + x;
+    for (const [k, x] of [i % width, Math.floor(i / width), 1].entries()) if (sum) sum[k] = (sum[k] ?? 0) + x;
   }
   for (const [what, [, , count = 0]] of Object.entries(sums)) assert.ok(count > 300, `${count} pixels of ${what}`);
   const middle = ([u = 0, v = 0, n = 1]: number[]) => [u / n, v / n];
