@@ -6,9 +6,8 @@ import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
 import { setUp } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
-import { checkTables } from "../lib/tables.mjs";
 import { checkFigures } from "../record/documents.mjs";
-import { checkCodes, checkDocuments } from "./documents.mjs";
+import { checkCodes, checkDocuments, checkNames } from "./documents.mjs";
 
 /** Crates of the workspace besides the aligner. */
 const crates = [
@@ -32,7 +31,7 @@ export async function lint() {
         /** @type {const} */ ([`types of ${folder}/`, () => run(node, [tsc, "--noEmit", "--project", folder])]),
     ),
     ["links and commands of the documents", checkDocuments],
-    ["formats in documents and comments", checkTables],
+    ["names, formats and sizes in documents and comments", checkNames],
     ["figures of the record in documents", checkFigures],
     ["codes of the guide on errors", checkCodes],
     ["commands start before any package is installed", checkCommands],
