@@ -41,9 +41,9 @@ async function measure(folders, { seconds, python }) {
   for (const [i, scene] of scenes.entries()) {
     exported.push(await exportScene(scene, join(root, `${String(i).padStart(3, "0")}-${basename(scene)}`)));
   }
+  const printed = (await runPython("simulators", [seconds, ...exported], python)).trimEnd();
   /** @type {Simulated[]} */
-  const results = [];
-  await runPython("simulators", [seconds, ...exported], python, (line) => results.push(JSON.parse(line)));
+  const results = printed.split("\n").map((line) => JSON.parse(line));
   const rows = /** @type {const} */ (["mujoco", "pybullet"]).map((simulator) => {
     const free = results.flatMap((result) => result[simulator].bodies.filter((body) => !body.fixed));
     const still = results.filter((result) => result[simulator].bodies.every(stays));
