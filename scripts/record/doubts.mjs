@@ -129,7 +129,7 @@ async function doubtedOf(aligner, inputs) {
     const { name, input, truth } = /** @type {Clean} */ (inputs[index]);
     let codes = alignment.warnings.map((/** @type {{ code: string }} */ { code }) => code);
     if (codes.includes("MESH_DOUBTFUL") && truth !== null) {
-      const known = { truth: truth.transform, symmetry: truth.symmetry, layout: false };
+      const known = { truth: truth.transform, symmetry: truth.symmetry };
       const { errors } = await aligner.evaluate(input, alignment, known);
       const of = [errors.scaleError, errors.rotationErrorDeg, errors.translationErrorRelative];
       const isRight = of.every((error, i) => error <= (RIGHT[i] ?? 0));

@@ -56,7 +56,8 @@ fn judged(result: ResultRow, object: &CaseObject, frame: &CaseFrame, k: usize, p
     if object.class == MISFIT {
         return result;
     }
-    let errors = pose_errors(&object.mesh, pose, truth, &object.symmetry);
+    let symmetry = object.symmetry.group(&object.mesh);
+    let errors = symmetry.and_then(|symmetry| pose_errors(&object.mesh, pose, truth, &symmetry));
     result.with_errors(errors.ok().as_ref().map(three))
 }
 
