@@ -7,7 +7,7 @@ import type { KnownPose } from "../conventions/pose-file.js";
 import type { AlignInput } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import { fileReaders } from "../modules/readers.js";
-import { oncePerKey } from "../values/values.js";
+import { oncePerKey } from "../values/validation.js";
 import { type CaseToDo, caseJob, precise, shared } from "./align.js";
 import type { Job } from "./batch.js";
 import { absolutePath, textOf, UsageError } from "./files.js";

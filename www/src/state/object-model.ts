@@ -1,7 +1,7 @@
 /** An object of a scene: its mask, its mesh, and the state of its alignment. */
 import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
 import type { MeshArrays, Metrics, PoseErrors, Sim3AlignError, Sim3Like, Stage } from "sim3align";
-import type { Vector3 } from "sim3align/values/values";
+import type { Vector3 } from "sim3align/values/validation";
 import { type AnyAlignment, type Doubt, doubtOf, type PreciseAlignment } from "./alignment.js";
 import { boundsOf, isResult, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
 
