@@ -15,18 +15,38 @@ import { cellsOf, heads, reliability, reliabilityHeads, rightOf } from "./record
 /** @typedef {import("./bench/results.mjs").ResultRow & { set: string }} Result */
 /** @typedef {{ quick: boolean, check?: boolean, save?: boolean, only?: string[], threads?: number }} RecordOptions */
 
-/** The numbers of cases of each set of the lab, whole and quick. @type {Record<string, readonly [whole: number, quick: number]>} */
+/** Rows of options of the lab, by their names. @param {Record<string, string>} options */
+const rows = (options) => Object.entries(options).flatMap(([name, text]) => ["--row", `${name}: ${text}`]);
+
+/**
+ * The generated sets: numbers of cases, whole and quick; the set of the lab where its name is another; rows in place of its own.
+ * @type {Record<string, { cases: readonly [whole: number, quick: number], of?: string, more?: readonly string[] }>}
+ */
 const sets = {
-  general: [480, 72],
-  sensors: [264, 33],
-  colors: [168, 12],
-  surplus: [96, 12],
-  scenes: [60, 6],
-  arranged: [24, 2],
-  views: [24, 3],
-  videos: [12, 1],
-  placements: [24, 2],
-  monocular: [48, 2],
+  general: { cases: [480, 72] },
+  sensors: { cases: [264, 33] },
+  colors: { cases: [168, 12] },
+  surplus: {
+    ...{ cases: [48, 4], of: "general" },
+    more: rows({ floaters: "surplus=floaters", plate: "surplus=plate", "fused-plate": "surplus=fused-plate" }),
+  },
+  models: {
+    ...{ cases: [48, 3], of: "general" },
+    more: rows({
+      ...{ affine: "model=affine", disparity: "model=disparity", "no-camera": "model=no-camera" },
+      "disparity-no-camera": "model=disparity-no-camera",
+    }),
+  },
+  scenes: { cases: [60, 6] },
+  placements: {
+    ...{ cases: [24, 2], of: "scenes" },
+    more: rows({ alone: "initial=true", together: "call=scene initial=true" }),
+  },
+  videos: { cases: [12, 1] },
+  views: {
+    ...{ cases: [12, 1], of: "videos" },
+    more: rows({ "known cameras": "call=views views=4", "unknown cameras": "call=views views=4 cameras=false" }),
+  },
 };
 /** Sets with hints, and the frames of a video, which are not found independently, say nothing of confidences. */
 const hinted = ["placements", "videos"];
@@ -46,8 +66,8 @@ async function measured({ quick, only, threads }) {
   const folder = at("target", "bench", "record", `${quick ? "quick" : "whole"}-${code.slice(0, 12)}`);
   mkdirSync(folder, { recursive: true });
 
-  const inputs = Object.entries(sets).map(([set, counts]) => {
-    const args = ["--set", set, "--count", `${counts[quick ? 1 : 0]}`, "--seed", SEED];
+  const inputs = Object.entries(sets).map(([set, { cases, of = set, more = [] }]) => {
+    const args = ["--set", of, "--count", `${cases[quick ? 1 : 0]}`, "--seed", SEED, ...more];
     return /** @type {const} */ ([set, args]);
   });
   if (given !== undefined) inputs.push(["given", ["--cases", given]]);
