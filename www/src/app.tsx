@@ -1,17 +1,15 @@
 /** The page. */
 import { useEffect } from "preact/hooks";
-import { pageCommands } from "./commands/page-commands.js";
 import { listenToKeys } from "./commands/shortcuts.js";
 import { draft } from "./input/draft.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
-import { Header } from "./panels/header.js";
+import { Header, isHelpOpen, pageCommands } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
 import { HandPanel, OptionsPanel } from "./panels/later.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { StartPanel } from "./panels/start-panel.js";
-import { isHelpOpen, isPaletteOpen } from "./state/help.js";
 import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
 import { WorkspaceProvider } from "./ui/workspace.js";
@@ -41,11 +39,6 @@ const ScenesPanel = lazy(
 const Kept = lazy(
   () => notKept.value !== null || othersScenes.value.length > 0,
   () => import("./panels/kept.js").then(({ Kept }) => Kept),
-);
-
-const Palette = lazy(
-  () => isPaletteOpen.value,
-  () => import("./panels/palette.js").then(({ Palette }) => Palette),
 );
 
 const HelpDialog = lazy(
@@ -79,7 +72,6 @@ export function App() {
           <TimePanel />
           <HandPanel />
         </main>
-        <Palette />
         <HelpDialog />
         <Intake />
         <DropOverlay />

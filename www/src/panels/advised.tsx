@@ -1,7 +1,5 @@
 /** What is said of a result: the cause of what is wrong first, with what helps; warnings and contact among the rest. */
-import { useEffect } from "preact/hooks";
 import { type Advice, adviceFor } from "../alignment/advice.js";
-import { searchSwap, swapIn } from "../alignment/swap.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
@@ -13,16 +11,13 @@ interface OfObject {
 }
 
 const adviceIn = (scene: Scene | null, object: ObjectModel | null): Advice | null =>
-  scene === null || object === null ? null : adviceFor(scene, object, swapIn(scene).value);
+  scene === null || object === null ? null : adviceFor(scene, object);
 
 export function Advised({ object }: OfObject) {
   const workspace = useWorkspace();
   const { fileActions, isReadonly, isRunning } = workspace;
-  const [scene, isBusy] = [workspace.scene.value, isRunning.value];
-  useEffect(() => {
-    if (scene !== null && object !== null && !isBusy) searchSwap(scene).catch(console.error);
-  }, [scene, object, isBusy]);
-  const advice = adviceIn(scene, object);
+  const isBusy = isRunning.value;
+  const advice = adviceIn(workspace.scene.value, object);
   if (advice === null || object === null) return null;
   const { cause, text, remedies } = advice;
   const hasFiles = fileActions.value !== null;
