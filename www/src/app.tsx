@@ -20,7 +20,7 @@ const { gizmo, isSettled, largeView, list, notKept, othersScenes, scene, space, 
 
 const Intake = lazy(
   () => draft.value !== null,
-  () => import("./intake/index.js").then(({ Sheet }) => Sheet),
+  () => import("./intake/sheet.js").then(({ Sheet }) => Sheet),
 );
 const TimePanel = lazy(
   () => video.value !== null,
@@ -33,7 +33,7 @@ const ExportPanel = lazy(
 );
 const ScenesPanel = lazy(
   () => list.value.length > 0,
-  () => import("./panels/scenes.js").then(({ ScenesPanel }) => ScenesPanel),
+  () => import("./panels/scene-list.js").then(({ ScenesPanel }) => ScenesPanel),
 );
 
 const Kept = lazy(

@@ -73,7 +73,7 @@ async function start(): Promise<void> {
   keepSession();
   (await import("./intake/queue.js")).runAhead();
   // From here on, files can be dropped without a connection. Without one now, the first drop tries again.
-  import("./intake/index.js").catch(() => {});
+  import("./intake/sheet.js").catch(() => {});
   storePage();
 }
 start().catch((error) => {

@@ -7,8 +7,8 @@ import { fileReaders } from "sim3align/modules/readers";
 import { readScene } from "sim3align/scene/read-scene";
 import { viewOf } from "../input/depth-view.js";
 import { photoFrom } from "../input/photo.js";
-import { type ReadObject, sceneOf } from "../input/read-scene.js";
 import { readMesh } from "../input/reader.js";
+import { type ReadObject, sceneOf } from "../input/reading.js";
 import { type Inputs, noInputs } from "../state/inputs.js";
 import type { Opened } from "./given-files.js";
 import type { GivenInput, GivenScene } from "./sim3-align.js";
@@ -39,7 +39,7 @@ async function fromMemory({ name = "Scene", image, ...given }: GivenScene): Prom
   const inputs: Inputs = {
     ...noInputs,
     name,
-    objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null, isSure: true })),
+    objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null })),
   };
   const cameraSource = notes.cameraSource ?? null;
   const warnings = notes.warnings.map(({ message }) => message);

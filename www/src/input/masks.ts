@@ -3,29 +3,15 @@ import { Sim3AlignError } from "sim3align";
 import { resizedMask } from "sim3align/conventions/resize";
 import type { MaskSource, NamedFile } from "../state/inputs.js";
 import { once } from "../state/once.js";
-import { extension } from "./files.js";
-import { photoExtensions } from "./photo.js";
 import { type ReadMask, readMask } from "./reader.js";
 
-const plainMask = once(async (file: NamedFile): Promise<ReadMask> => {
-  const ending = extension(file.path);
-  if (photoExtensions.includes(ending) && !ending.startsWith("jp"))
-    return (await import("./label-masks.js")).maskOfPicture(file);
-  return readMask(await file.bytes());
-});
+const markedBy = once(async (file: NamedFile): Promise<ReadMask> => readMask(await file.bytes()));
 
 /** The mask of a source. */
 export async function maskOf(source: MaskSource): Promise<ReadMask> {
-  const mask = await markedBy(source);
+  const mask = await markedBy(source.file);
   if (source.isInverted !== true) return mask;
   return { ...mask, data: mask.data.map((inside) => (inside === 0 ? 1 : 0)), reading: "inverted" };
-}
-
-/** Label maps and annotations are read by a script of their own. */
-async function markedBy(source: MaskSource): Promise<ReadMask> {
-  const { file, label, annotation } = source;
-  if (label !== undefined || annotation !== undefined) return (await import("./label-masks.js")).maskFrom(source);
-  return plainMask(file);
 }
 
 /** The mask at the size of the depth map. */

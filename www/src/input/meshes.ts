@@ -1,9 +1,10 @@
 /** Reads mesh files, each once, with the files that they refer to. */
-import type { MeshFormat } from "sim3align";
+import { type MeshFormat, Sim3AlignError } from "sim3align";
 import { externalResources, type MeshFromFile } from "sim3align/formats";
 import { refersToFiles } from "sim3align/input/formats";
 import type { MeshSource } from "../state/inputs.js";
 import { once } from "../state/once.js";
+import { MAX_BYTES } from "./allowance.js";
 import { extension } from "./files.js";
 import { readMesh } from "./reader.js";
 
@@ -16,11 +17,14 @@ export interface LoadedMesh {
 /** The mesh of a source. */
 export const meshOf = once(load);
 
-/** Smaller files hold no mesh that is too large. */
-const LARGE_BYTES = 1 << 20;
-
 async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
-  if ((file.size ?? 0) > LARGE_BYTES) await (await import("./mesh-header.js")).checkMeshSize(file);
+  if ((file.size ?? 0) > MAX_BYTES) {
+    throw new Sim3AlignError({
+      ...{ code: "FILE_TOO_LARGE", argument: "mesh", expected: "at most 1 GB" },
+      found: `${((file.size ?? 0) / 1e9).toFixed(1)} GB`,
+      remedy: "Simplify the mesh: the search uses ten thousand triangles at most.",
+    });
+  }
   const bytes = await file.bytes();
   const ending = extension(file.path);
   if (!refersToFiles(file.path)) return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };

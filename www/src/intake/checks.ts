@@ -4,11 +4,11 @@ import { doubtOfSize } from "sim3align/camera/pinhole";
 import { otherSize, scaled } from "../input/camera-size.js";
 import { baseName, folderOf } from "../input/files.js";
 import { doubt, error, type Problem, type Remedy, withoutObject } from "../input/problems.js";
-import type { Reading, ReadObject } from "../input/read-scene.js";
+import type { Reading, ReadObject } from "../input/reading.js";
 import { depthRange } from "../pictures/colours.js";
 import { type Inputs, withInverted } from "../state/inputs.js";
 import { visibleExtent } from "../state/visible-extent.js";
-import { isForeign, isNamedPhoto } from "./roles.js";
+import { isNamedPhoto, isUnassigned } from "./file-roles.js";
 
 /** A typical vertical field of view of phones and laptops. */
 export const ASSUMED_FOV_DEG = 50;
@@ -35,7 +35,7 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
     ...reading.problems.map((one) =>
       one.field === "camera" && one.code === "SIZE_MISMATCH" ? stretched(one, reading) : one,
     ),
-    ...notUsed(inputs),
+    ...unassigned(inputs),
     ...several(inputs),
     ...missing(inputs),
     ...guessed(inputs, reading),
@@ -60,17 +60,17 @@ function missing({ depth, objects }: Inputs): Problem[] {
   ];
 }
 
-/** Files that were meant as an input, but cannot be one. */
-function notUsed({ files }: Inputs): Problem[] {
-  const foreign = files.filter(isForeign);
-  if (foreign.length === 0) return [];
-  const names = foreign.slice(0, 3).map(({ file }) => baseName(file.path));
-  const more = foreign.length > names.length ? `, and ${foreign.length - names.length} more` : "";
+/** Files of which nothing says what they are. */
+function unassigned({ files }: Inputs): Problem[] {
+  const unknown = files.filter(isUnassigned);
+  if (unknown.length === 0) return [];
+  const names = unknown.slice(0, 3).map(({ file }) => baseName(file.path));
+  const more = unknown.length > names.length ? `, and ${unknown.length - names.length} more` : "";
   const leaveOut: Remedy = {
     title: "Leave out",
-    apply: (inputs) => ({ ...inputs, files: inputs.files.filter((one) => !isForeign(one)) }),
+    apply: (inputs) => ({ ...inputs, files: inputs.files.filter((one) => !isUnassigned(one)) }),
   };
-  const what = `${names.join(", ")}${more}: not used. Save photos as JPEG or PNG, masks as PNG, and meshes as GLB, OBJ, PLY or STL.`;
+  const what = `${names.join(", ")}${more}: not used. Choose below what each file is.`;
   return [doubt("files", what, [leaveOut])];
 }
 
@@ -201,14 +201,6 @@ function ofObject(
   const problems: Problem[] = [];
   if (files.mask === null && several) problems.push(error("mask", `No mask for ${files.name}.`, [leaveOut], i));
   if (files.mesh === null && several) problems.push(error("mesh", `No mesh for ${files.name}.`, [leaveOut], i));
-  if (files.mesh !== null && files.mask !== null && !files.isSure) {
-    const names = `${baseName(files.mask.file.path)} and ${baseName(files.mesh.file.path)}`;
-    const right: Remedy = {
-      title: "They do",
-      apply: (now) => ({ ...now, objects: now.objects.map((one, k) => (k === i ? { ...one, isSure: true } : one)) }),
-    };
-    problems.push(doubt("mesh", `Do ${names} belong together? Their names do not say so.`, [right], i));
-  }
   if (mask === null || depth === null) return problems;
   const { count, readings, border } = counted(mask, depth);
   const invert: Remedy = { title: "Invert it", apply: withInverted(i) };

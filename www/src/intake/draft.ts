@@ -4,18 +4,26 @@ import { alignAll } from "../alignment/align.js";
 import { openVideo, trackAll } from "../alignment/video.js";
 import { extractArchives } from "../input/archives.js";
 import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../input/draft.js";
+import { baseName } from "../input/files.js";
 import { error, errorOf, type Problem } from "../input/problems.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import { asListed, isVideo } from "../input/video-frames.js";
 import { isSession } from "../session/pack.js";
 import { openProject } from "../session/project.js";
-import { type Inputs, type NamedFile, noInputs, type Role, type Typed, withId } from "../state/inputs.js";
+import {
+  type Inputs,
+  type MeshSource,
+  type NamedFile,
+  noInputs,
+  type ObjectFiles,
+  type Role,
+  type Typed,
+  withId,
+} from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
-import { canReplace, replaced } from "./replace.js";
-import { rolesOf } from "./roles.js";
-import { fromSam3d } from "./sam3d.js";
-import { scenesOfTyped } from "./scenes.js";
+import { fromSam3d, isUnassigned, rolesOf } from "./file-roles.js";
+import { scenesOf } from "./grouping.js";
 
 const { announce, enlist, inputs, scene, show, video } = page;
 
@@ -25,57 +33,79 @@ let lastChange = 0;
 /** Whether a draft waits for its depth map. */
 const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
 
-/** Proposes files as one or several scenes. A draft that is open takes files without a depth map, and the one that it lacks. */
+/** The files of a drop with their roles, and how their depth is read where that is known. */
+interface Drop {
+  typed: readonly Typed[];
+  more: Partial<Pick<Inputs, "depthKind" | "resizeMasks">>;
+}
+
+/** Drops are read one after the other, so that a second one joins the first. */
+let lastDrop: Promise<unknown> = Promise.resolve();
+
+/** Proposes files as one or several scenes. A draft that is open takes them. */
 export async function propose(files: readonly NamedFile[]): Promise<void> {
-  const change = ++lastChange;
-  let typed: Typed[];
-  let made: Awaited<ReturnType<typeof fromSam3d>> = null;
+  const reading = lastDrop.then(() => readDrop(files));
+  lastDrop = reading.catch(() => {});
   try {
-    const extracted = await extractArchives(files);
-    if (change !== lastChange) return;
-    if (extracted.some(isSession)) {
-      if (!(await openProject(extracted))) {
-        return refuse(error("files", "The project was saved by another version of this page."));
-      }
-      draft.value = null;
-      return;
-    }
-    made = await fromSam3d(extracted);
-    const left = made?.left.map((file): Typed => ({ file, role: "unused" })) ?? [];
-    typed = [...(await rolesOf(made?.files ?? extracted)), ...left];
+    const drop = await reading;
+    if (drop !== null) await place(drop);
   } catch (cause) {
-    if (change === lastChange) refuse(errorOf("files", cause));
-    return;
+    refuse(errorOf("files", cause));
   }
-  if (change !== lastChange) return;
-  if (typed.every(({ role }) => role === "unused" || role === "resource")) {
+}
+
+/** Reads which files there are; null for a project, which is opened. */
+async function readDrop(files: readonly NamedFile[]): Promise<Drop | null> {
+  const extracted = await extractArchives(files);
+  if (extracted.some(isSession)) {
+    if (!(await openProject(extracted))) throw new Error("The project was saved by another version of this page.");
+    draft.value = null;
+    return null;
+  }
+  const converted = await fromSam3d(extracted);
+  if (converted === null) return { typed: rolesOf(extracted), more: {} };
+  const { files: made, depthKind, left } = converted;
+  const typed = [...rolesOf(made), ...left.map((file): Typed => ({ file, role: "unused" }))];
+  // Point maps of large images are smaller than the images.
+  return { typed, more: { depthKind, resizeMasks: true } };
+}
+
+/** Makes the files of a drop a draft, or a part of the draft that is open. */
+async function place({ typed, more }: Drop): Promise<void> {
+  if (typed.every((one) => (one.role === "unused" && !isUnassigned(one)) || one.role === "resource")) {
     const names = typed.slice(0, 3).map(({ file }) => file.path);
     return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
   }
+  const scenes = scenesOf(typed).map((one) => ({ ...one, ...more }));
   const open = draft.peek();
-  const depths = typed.filter(({ role }) => role === "depth").length;
-  if (open !== null && (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open))))) return add(open, typed);
-  const scenes = await scenesOfTyped(typed);
+  if (open !== null) {
+    const depths = typed.filter(({ role }) => role === "depth").length;
+    if (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open)))) {
+      return rebuild(replaced(draftInputs(open).files, typed));
+    }
+    const others = open.isEdit ? [] : open.scenes.filter(({ files }) => files.length > 0);
+    return proposeScenes([...others, ...scenes], others.length);
+  }
   const shown = inputs.peek();
   if (shown.sample === null && shown.depth !== null && canReplace(typed)) {
     return set({ scenes, index: 0, isVideo: false, isEdit: false, forShown: typed });
   }
-  // Point maps of large images are smaller than the images.
-  const more = made === null ? {} : { depthKind: made.depthKind, resizeMasks: true };
-  await proposeScenes(scenes.map((one) => ({ ...one, ...more })));
+  await proposeScenes(scenes);
 }
 
-/** Proposes scenes, the first of which is looked at. */
-export function proposeScenes(scenes: readonly Inputs[]): Promise<void> {
-  return set({ scenes, index: 0, isVideo: isVideo(scenes), isEdit: false });
+/** Proposes scenes, one of which is looked at. */
+export function proposeScenes(scenes: readonly Inputs[], index = 0): Promise<void> {
+  return set({ scenes, index, isVideo: isVideo(scenes), isEdit: false });
 }
 
 /** Puts the files of the draft into the scene that is shown, in place of those that they name. */
 export async function putIntoShown(): Promise<void> {
   const typed = draft.peek()?.forShown;
+  if (typed === undefined) return;
   // A frame of a video with other files is a scene of its own.
   const shown = { ...inputs.peek(), ...(video.peek() !== null && { id: "" }) };
-  if (typed !== undefined) await edit(await replaced({ ...shown, files: filesOf(shown) }, typed));
+  const before = { ...shown, files: filesOf(shown) };
+  await edit(rebuilt(before, replaced(before.files, typed)));
 }
 
 /** Takes the scenes as the frames of one video, or as scenes of their own. */
@@ -138,16 +168,9 @@ export async function choose(role: Exclude<Role, "unused">, files: readonly Name
     const own = role === "depth" ? { ...named, depthKind: null } : named;
     return change(() => ({ ...own, [role]: role === "camera" ? camera : file }), true);
   }
-  const known = await rolesOf(files);
-  const typed = known.map((one) => ({ file: one.file, role: fits(one.role, role) ? one.role : role }));
-  const replaced: readonly Role[] =
-    role === "mask" ? ["mask", "labels", "annotations", "truth"] : ["mesh", "resource", "truth"];
-  await rebuild([...inputs.files.filter((one) => !replaced.includes(one.role)), ...typed]);
-}
-
-/** Whether the role that a name suggests is one that the field takes. */
-function fits(role: Role, field: Role): boolean {
-  return role === field || (field === "mask" ? role === "labels" || role === "annotations" : role === "resource");
+  const typed = rolesOf(files).map((one) => (one.role === "resource" ? one : { file: one.file, role }));
+  const others: readonly Role[] = role === "mask" ? ["mask", "truth"] : ["mesh", "resource", "truth"];
+  await rebuild([...inputs.files.filter((one) => !others.includes(one.role)), ...typed]);
 }
 
 /** Gives a file another role. */
@@ -170,7 +193,10 @@ export async function accept(): Promise<void> {
   if (open.isVideo) {
     const listed = asListed(open.scenes);
     // Tracking starts with the first frame, whichever is looked at.
-    if (!(await openVideo(listed))) return announce("The first frame could not be read.", "failed");
+    if (!(await openVideo(listed))) {
+      draft.value = draft.peek() ?? open;
+      return announce("The first frame could not be read.", "failed");
+    }
     enlist([listed]);
     await trackAll();
     return;
@@ -188,22 +214,53 @@ export function dismiss(): void {
   announce("Nothing was changed.");
 }
 
-async function add(open: Draft, typed: readonly Typed[]): Promise<void> {
-  const single: readonly Role[] = ["photo", "camera"];
-  const isReplaced = (one: Typed) => single.includes(one.role) && typed.some(({ role }) => role === one.role);
-  await rebuild([...draftInputs(open).files.filter((one) => !isReplaced(one)), ...typed]);
+/** What can be put into a scene that is there: all but its depth map, with which a new scene begins. */
+const replaceable: readonly Role[] = ["photo", "camera", "mask", "mesh", "resource", "truth"];
+
+/** Whether files can be put into a scene that is there. */
+const canReplace = (typed: readonly Typed[]): boolean =>
+  typed.some(({ role }) => role !== "resource" && replaceable.includes(role)) &&
+  typed.every(({ role }) => role === "unused" || replaceable.includes(role));
+
+/** The files with others in place of those of the same role and name; there is one photo, and one camera. */
+function replaced(before: readonly Typed[], typed: readonly Typed[]): Typed[] {
+  const gone = typed.flatMap(({ file: { path }, role }) => {
+    const alike = before.filter((one) => one.role === role);
+    if (role === "photo" || role === "camera") return alike;
+    const namesakes = alike.filter(({ file }) => baseName(file.path) === baseName(path));
+    const same = namesakes.find(({ file }) => file.path === path);
+    return same === undefined && namesakes.length > 1 ? [] : [same ?? namesakes[0]];
+  });
+  return [...before.filter((one) => !gone.includes(one)), ...typed];
 }
 
-/** Makes the scene anew from its files. What was entered stays. */
+/** Makes the scene of the draft anew from its files. */
 async function rebuild(files: readonly Typed[]): Promise<void> {
   const open = draft.peek();
-  if (open === null) return;
-  const before = draftInputs(open);
-  const [after] = await scenesOfTyped(files);
-  if (after === undefined) return;
+  if (open !== null) await change(() => rebuilt(draftInputs(open), files), true);
+}
+
+/** The scene of other files. What was entered stays, and so do pairs of files that are still there. */
+function rebuilt(before: Inputs, files: readonly Typed[]): Inputs {
+  const [after] = scenesOf(files);
+  if (after === undefined) return before;
   const { depthScale, depthKind, resizeMasks } = before;
   const camera = before.camera?.kind === "file" ? after.camera : (after.camera ?? before.camera);
-  await change(() => ({ ...after, depthScale, depthKind, resizeMasks, camera, ...ownName(before) }), true);
+  const paired = new Set<MeshSource>();
+  const objects = after.objects.map((object) => {
+    const known = before.objects.find(({ mask }) => mask !== null && mask.file === object.mask?.file);
+    if (known === undefined) return object;
+    const mesh = after.meshes.find(({ file }) => file === known.mesh?.file) ?? object.mesh;
+    if (mesh !== null) paired.add(mesh);
+    return { ...object, name: known.name, mask: known.mask, mesh };
+  });
+  // A mesh of which a pair is kept is that of no other object.
+  const isTaken = ({ mask, mesh }: ObjectFiles) => mesh !== null && paired.has(mesh) && mask === null;
+  return {
+    ...after,
+    ...{ id: before.id, imageId: before.imageId ?? after.imageId, objects: objects.filter((one) => !isTaken(one)) },
+    ...{ depthScale, depthKind, resizeMasks, camera, ...ownName(before) },
+  };
 }
 
 /** A sample with other files is no sample. */
@@ -255,7 +312,7 @@ function filesOf(inputs: Inputs): Typed[] {
     ...inputs.objects.flatMap(({ mask, mesh, truth }): (Typed | null)[] => [
       mask && { file: mask.file, role: "mask" },
       mesh && { file: mesh.file, role: "mesh" },
-      truth && { file: truth.file, role: "truth" },
+      truth && { file: truth, role: "truth" },
     ]),
   ];
   return typed.filter((one) => one !== null);

@@ -1,7 +1,7 @@
 /** Masks that are marked on the photo of a draft. */
 import { useMemo } from "preact/hooks";
 import { type Draft, draftInputs, marked } from "../input/draft.js";
-import { colourOf } from "../input/read-scene.js";
+import { colourOf } from "../input/reading.js";
 import { depthFile, maskFile } from "../masking/mask-file.js";
 import { seenBy } from "../masking/photo-model.js";
 import type { Mark } from "../masking/strokes.js";
@@ -90,9 +90,9 @@ const withMask =
   (i: number, file: NamedFile) =>
   (inputs: Inputs): Inputs => {
     const before = inputs.objects[i];
-    const object: ObjectFiles = before ?? { name: "Object", mask: null, mesh: null, truth: null, isSure: true };
+    const object: ObjectFiles = before ?? { name: "Object", mask: null, mesh: null, truth: null };
     const objects = [...inputs.objects];
-    objects[i] = { ...object, mask: { file, isDrawn: true }, isSure: true };
+    objects[i] = { ...object, mask: { file, isDrawn: true } };
     const files = inputs.files.filter((one) => one.file !== before?.mask?.file);
     return { ...inputs, objects, files: [...files, { file, role: "mask" }] };
   };

@@ -9,6 +9,7 @@ import { page } from "../state/page.js";
 import { Check, Choices, FileButton } from "../ui/controls.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
 import { accept, assign, asVideo, change, dismiss, look, propose, putIntoShown } from "./draft.js";
+import { isUnassigned } from "./file-roles.js";
 import { FromPhoto } from "./from-photo.js";
 import { Marking } from "./marking.js";
 import { ObjectRows } from "./object-rows.js";
@@ -137,8 +138,6 @@ const roles: readonly (readonly [Role, string])[] = [
   ["photo", "Photo"],
   ["camera", "Camera"],
   ["mask", "Mask"],
-  ["labels", "Label map"],
-  ["annotations", "COCO annotations"],
   ["mesh", "Mesh"],
   ["truth", "True pose"],
   ["initial", "First pose"],
@@ -147,17 +146,19 @@ const roles: readonly (readonly [Role, string])[] = [
   ["unused", "Not used"],
 ];
 
+/** The form that says which file is what. It is open where only a person can tell. */
 function FileRoles({ inputs: { files } }: { inputs: Inputs }) {
   if (files.length === 0) return null;
   const unused = files.filter(({ role }) => role === "unused").length;
+  const asked = files.filter(isUnassigned);
   return (
-    <details class="file-roles">
+    <details class="file-roles" open={asked.length > 0}>
       <summary>
         {files.length} {files.length === 1 ? "file" : "files"}
         {unused > 0 && `, ${unused} not used`}
       </summary>
       <ul>
-        {files.slice(0, 200).map(({ file, role }) => (
+        {[...new Set([...asked, ...files])].slice(0, 200).map(({ file, role }) => (
           <li key={file.path}>
             <span class="path" title={file.path}>
               {file.path}

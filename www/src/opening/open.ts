@@ -1,7 +1,7 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
 import { alignAll } from "../alignment/align.js";
 import { draft } from "../input/draft.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { Listed, NextKind } from "../state/opened.js";
 import { page } from "../state/page.js";

@@ -6,7 +6,7 @@
 import { batch, effect, untracked } from "@preact/signals";
 import { alignAll } from "../alignment/align.js";
 import { openVideo, videoWork } from "../alignment/video.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { stateOf } from "../state/object-work.js";

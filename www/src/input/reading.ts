@@ -2,7 +2,7 @@
 import type { DepthKind, MeshArrays, PixelArray } from "sim3align";
 import { type CameraFile, type MeshFromFile, readCamera, readPose } from "sim3align/formats";
 import type { ImageSize } from "sim3align/values/pixels";
-import type { CameraSource, Field, Inputs, NamedFile, TruthSource } from "../state/inputs.js";
+import type { CameraSource, Field, Inputs, NamedFile } from "../state/inputs.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { RawView } from "../state/raw-view.js";
 import type { Scene } from "../state/scene.js";
@@ -132,7 +132,7 @@ export async function readInputs(
               ),
           mesh === null ? null : attempt("mesh", mesh.file, () => meshOf(mesh), i),
           truthOf(truth),
-          truthOf(initial === undefined ? null : { file: initial }),
+          truthOf(initial ?? null),
         ]);
         const { mesh: arrays = null, glb = null } = readMesh ?? {};
         return { mask: readMask, maskReading, mesh: arrays, glb, truth: readTruth, initial: first?.transform };
@@ -230,15 +230,5 @@ function entered({ fx, fy, cx, cy }: Extract<CameraSource, { kind: "numbers" }>)
 }
 
 /** A pose in a file. It only serves for comparison, or as a candidate, so an unreadable file counts as a missing one. */
-async function truthOf(source: TruthSource | null): Promise<ObjectParts["truth"]> {
-  if (source === null) return null;
-  try {
-    const bytes = await source.file.bytes();
-    if (source.entry === undefined) return await readPose(bytes);
-    const { imageId, index } = source.entry;
-    const images = JSON.parse(new TextDecoder().decode(bytes)) as Record<string, object[]>;
-    return await readPose(images[imageId]?.[index] ?? {});
-  } catch {
-    return null;
-  }
-}
+const truthOf = async (file: NamedFile | null): Promise<ObjectParts["truth"]> =>
+  file && readPose(await file.bytes()).catch(() => null);
