@@ -20,4 +20,4 @@ pub mod track;
 pub mod views;
 
 pub use sim3align_geometry as geometry;
-pub use sim3align_geometry::{error, helpers, number, pauses};
+pub use sim3align_runtime::{counts, error, helpers, number, scheduler};

@@ -10,9 +10,9 @@ use crate::colored_mesh::ColoredMesh;
 use crate::depth::{DepthImage, DepthReadOptions, DepthUnit};
 use crate::guard::{MAX_BUFFER_BYTES, too_large};
 use sim3align_geometry::depth_kind::DepthKind;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// A plain object with these properties.
 pub fn object(properties: &[(&str, JsValue)]) -> JsValue {

@@ -1,9 +1,9 @@
 //! The content of a mesh file: a mesh and its colours.
 
 use glam::DVec3;
-use sim3align_geometry::error::Error;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::surface_colors::{Rgb, SurfaceColors};
+use sim3align_runtime::error::Error;
 
 /// A mesh and its colours.
 #[derive(Debug, Clone, PartialEq)]

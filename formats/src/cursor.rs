@@ -1,7 +1,7 @@
 //! A checked reader of bytes: reading past the end is an error, never a panic.
 
 use crate::guard::corrupt;
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// A position in a byte slice.
 #[derive(Debug, Clone)]

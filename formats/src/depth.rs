@@ -7,8 +7,8 @@ use crate::npy::{self, Kind, NpyImage};
 use crate::png::{self, PngInfo};
 use crate::{exr, npz, pfm, tiff};
 use sim3align_geometry::depth_kind::DepthKind;
-use sim3align_geometry::error::Result;
 use sim3align_geometry::image::DepthMap;
+use sim3align_runtime::error::Result;
 
 /// The formats of depth models, by their signatures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,7 +116,7 @@ fn read_npy(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
 /// - `.pfm`: one channel.
 ///
 /// # Errors
-/// [`ErrorCode`](sim3align_geometry::error::ErrorCode)`::EightBitDepth`, `UnsupportedFormat`, `CorruptFile`,
+/// [`ErrorCode`](sim3align_runtime::error::ErrorCode)`::EightBitDepth`, `UnsupportedFormat`, `CorruptFile`,
 /// `FileTooLarge`, `EmptyImage`, `SizeMismatch` for a mask of another size, `InvalidCamera`, `InvalidOption`.
 pub fn read_depth_file(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     match Format::of(bytes) {

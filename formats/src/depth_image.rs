@@ -1,10 +1,10 @@
 //! A depth map from a file: its values, their unit, and the camera in the file.
 
 use sim3align_geometry::depth_kind::DepthKind;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::{DepthMap, Image};
-use sim3align_geometry::number::number;
 use sim3align_geometry::pinhole::Pinhole;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::number::number;
 
 /// Default unit of integer depth in metres: millimetres, as most sensors write them.
 pub const DEFAULT_DEPTH_SCALE: f64 = 0.001;

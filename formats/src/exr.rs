@@ -14,7 +14,7 @@ use exr::prelude::f16;
 use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{MAX_PIXELS, corrupt, pixel_count, too_large, unsupported};
 use sim3align_geometry::depth_kind::DepthKind;
-use sim3align_geometry::error::{Error, Result};
+use sim3align_runtime::error::{Error, Result};
 
 /// Names of depth, the last part of `LAYER.NAME`: `Z` by convention (OpenEXR, Blender), or `depth`.
 const DEPTH_NAMES: [&str; 2] = ["z", "depth"];

@@ -1,8 +1,8 @@
 //! The camera that a depth model writes beside its depth.
 
 use sim3align_geometry::angle::sin_cos;
-use sim3align_geometry::error::{Error, Result};
 use sim3align_geometry::pinhole::Pinhole;
+use sim3align_runtime::error::{Error, Result};
 
 /// Largest principal point and focal length of intrinsics in image sizes. Those in pixels are larger in any image that
 /// shows something.

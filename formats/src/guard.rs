@@ -1,7 +1,7 @@
 //! Size limits of the readers, and their errors.
 
-use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 use sim3align_geometry::image::check_not_empty;
+use sim3align_runtime::error::{Error, ErrorCode, Result, Text};
 
 /// Maximum number of pixels of an image: 8192 × 8192.
 pub const MAX_PIXELS: usize = 1 << 26;

@@ -6,9 +6,9 @@ use crate::exif;
 use crate::guard::{corrupt, pixel_count, too_large, unsupported};
 use crate::orientation::Orientation;
 use crate::reducer::{Reducer, reduced_size};
-use sim3align_geometry::error::{Error, Result};
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, Result};
 
 pub(crate) const MAGIC: &[u8] = b"\xff\xd8\xff";
 

@@ -3,7 +3,7 @@
 //! Readers take bytes. For malicious input, they return a value or an error, and allocate memory in proportion to the
 //! input or up to a stated limit.
 
-pub use sim3align_geometry::error;
+pub use sim3align_runtime::error;
 
 pub mod bindings;
 mod color;

@@ -4,9 +4,9 @@ use crate::guard::{MAX_PIXELS, beginning, unsupported};
 use crate::jpeg;
 use crate::npy::{self, Kind, NpyImage};
 use crate::png::{self, PngInfo};
-use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{Image, Mask};
-use sim3align_geometry::number::number;
+use sim3align_runtime::error::Result;
+use sim3align_runtime::number::number;
 
 /// A mask from a file.
 #[derive(Debug, Clone)]
@@ -28,10 +28,10 @@ pub struct MaskImage {
 /// where values lie in flat regions, all of them above 0 are the object. With values below 0, which are logits, too.
 ///
 /// # Errors
-/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat),
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
-/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
-/// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
+/// [`UnsupportedFormat`](sim3align_runtime::error::ErrorCode::UnsupportedFormat),
+/// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_runtime::error::ErrorCode::FileTooLarge),
+/// [`EmptyImage`](sim3align_runtime::error::ErrorCode::EmptyImage).
 pub fn read_mask(bytes: &[u8]) -> Result<MaskImage> {
     if bytes.starts_with(png::MAGIC) {
         return read_png(bytes);

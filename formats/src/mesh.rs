@@ -5,8 +5,8 @@ use crate::guard::{beginning, unsupported};
 pub use crate::mesh_format::{MeshFormat, MeshReadOptions};
 use crate::resources::ExternalResources;
 use crate::{gltf, obj, ply, stl};
-use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
+use sim3align_runtime::error::Result;
 
 /// The distinct files that a mesh file refers to. Of an `.obj`, these are its libraries; given the content of a library,
 /// its textures.

@@ -6,9 +6,9 @@ use crate::color::WHITE;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, too_large};
 use crate::painted_mesh::{Paint, PaintedMesh};
 use crate::polygon::Polygon;
-use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::{Mesh, UsedVertices};
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::Result;
 
 /// Distance of a mesh from zero, in its diagonals, from which 32 bits would round its vertices by more than 6e-5 diagonals.
 const FAR: f64 = 1000.0;

@@ -2,7 +2,7 @@
 
 use crate::resources::{ImageDecoder, Resources};
 use crate::{stl, text};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// The supported mesh formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

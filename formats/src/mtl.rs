@@ -9,7 +9,7 @@ use crate::painted_mesh::Material;
 use crate::resources::external;
 use crate::text::{lines, number, words};
 use crate::texture::{TextureLoader, Wrap};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// Maximum number of options before a file name; there are twelve kinds.
 const MAX_OPTIONS: usize = 24;

@@ -2,7 +2,7 @@
 
 use crate::cursor::Cursor;
 use crate::guard::{corrupt, pixel_count, unsupported};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
 

@@ -16,7 +16,7 @@ use crate::file_camera::FileCamera;
 use crate::guard::{corrupt, pixel_count, too_large, unsupported};
 use crate::npy::{Kind, NpyArray, NpyHeader};
 use sim3align_geometry::depth_kind::DepthKind;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Names of depth, in order of preference.
 const DEPTH: [&str; 6] = ["depth", "depth_map", "depthmap", "pred_depth", "predicted_depth", "prediction"];

@@ -9,8 +9,8 @@ use crate::mesh_format::MeshReadOptions;
 use crate::mtl::{MaterialLibrary, uncommented};
 use crate::resources::{Resources, distinct, external};
 use crate::text::{lines, number, parsed, quoted, words};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Reads `v` and `f` lines: polygons become triangles, negative indices count back from the latest vertex, and a
 /// backslash at the end of a line continues it. Normals and free-form surfaces are not read.

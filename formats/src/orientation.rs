@@ -1,7 +1,7 @@
 //! The orientation that cameras note in EXIF data.
 
-use sim3align_geometry::error::Result;
 use sim3align_geometry::image::Image;
+use sim3align_runtime::error::Result;
 
 /// The place of the first row and column of a stored image when it is viewed: 1, the default, is as stored (Exif 2.32,
 /// 4.6.4).

@@ -7,10 +7,10 @@ use glam::DVec3;
 use crate::color::{WHITE, linear, srgb};
 use crate::colored_mesh::ColoredMesh;
 use crate::texture::{Texture, Wrap};
-use sim3align_geometry::error::{Error, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::surface::{SurfaceSample, surface_area, triangle_area};
 use sim3align_geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors, interpolated};
+use sim3align_runtime::error::{Error, Result};
 
 /// The sources of a mesh's surface colour.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@ use crate::cursor::Cursor;
 use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{corrupt, pixel_count, unsupported};
 use sim3align_geometry::depth_kind::DepthKind;
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// Longest number in a header.
 const MAX_WORD: usize = 32;
@@ -62,6 +62,6 @@ fn word(cursor: &mut Cursor<'_>) -> Result<String> {
     }
 }
 
-fn broken(found: String) -> sim3align_geometry::error::Error {
+fn broken(found: String) -> sim3align_runtime::error::Error {
     corrupt("depth", format!("a PFM with {found}"), "width, height and scale")
 }

@@ -5,9 +5,9 @@ use crate::guard::{beginning, unsupported};
 use crate::jpeg;
 use crate::orientation::Orientation;
 use crate::png::{self, PngInfo};
-use sim3align_geometry::error::Result;
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::Result;
 
 /// Maximum number of pixels of a photo after reading, a little more than those of full HD: the comparison of colours
 /// uses fewer.
@@ -18,10 +18,10 @@ pub const MAX_PHOTO_PIXELS: usize = 1 << 21;
 /// [`MAX_PHOTO_PIXELS`] is reduced by a whole number while it is read.
 ///
 /// # Errors
-/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat),
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
-/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
-/// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
+/// [`UnsupportedFormat`](sim3align_runtime::error::ErrorCode::UnsupportedFormat),
+/// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_runtime::error::ErrorCode::FileTooLarge),
+/// [`EmptyImage`](sim3align_runtime::error::ErrorCode::EmptyImage).
 pub fn read_photo(bytes: &[u8]) -> Result<Image<Rgb>> {
     let (image, orientation) = decode("image", bytes, MAX_PHOTO_PIXELS)?;
     orientation.apply("image", image)
@@ -39,8 +39,8 @@ pub fn read_stored_photo(bytes: &[u8]) -> Result<Image<Rgb>> {
 /// none.
 ///
 /// # Errors
-/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat) for other files,
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile).
+/// [`UnsupportedFormat`](sim3align_runtime::error::ErrorCode::UnsupportedFormat) for other files,
+/// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile).
 pub fn read_exif(bytes: &[u8]) -> Result<Exif> {
     if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") {
         return Ok(Exif::parse(bytes.to_vec()));

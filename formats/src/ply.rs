@@ -8,8 +8,8 @@ use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::mesh_builder::MeshBuilder;
 use crate::ply_header::{Element, Encoding, Header, Scalar};
 use crate::text::{number, quoted};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Reads the elements `vertex` (x, y, z of any type, at any position among the properties), `face` (polygons, as
 /// triangles) and `tristrips`; ignores the others. Colours are the properties red, green and blue of the vertices: whole numbers

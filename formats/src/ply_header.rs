@@ -2,7 +2,7 @@
 
 use crate::guard::{corrupt, unsupported};
 use crate::text::{parsed, quoted, words};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// The encoding of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

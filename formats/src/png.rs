@@ -9,9 +9,9 @@ use crate::exif;
 use crate::guard::{corrupt, pixel_count};
 use crate::orientation::Orientation;
 use crate::reducer::{Reducer, reduced_size};
-use sim3align_geometry::error::Result;
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::Result;
 
 pub(crate) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 

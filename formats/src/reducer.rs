@@ -1,8 +1,8 @@
 //! Reduces an image while it is read, so that large ones need no more memory than small ones.
 
-use sim3align_geometry::error::Result;
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::Result;
 
 /// Takes the pixels of an image in any order, and averages them to a smaller one. The average is that of the encoded
 /// values, as usual when photos are resized.

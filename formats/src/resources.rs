@@ -4,9 +4,9 @@ use std::borrow::Cow;
 
 use crate::data_uri;
 use crate::guard::corrupt;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Returns the content of a file that a mesh file refers to, by the URI or name in it.
 pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;

@@ -9,7 +9,7 @@ use crate::cursor::Cursor;
 use crate::guard::corrupt;
 use crate::mesh_builder::MeshBuilder;
 use crate::text::{lines, number, quoted, unmarked, words};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 const HEADER_BYTES: usize = 80;
 const TRIANGLE_BYTES: usize = 50;
@@ -25,8 +25,8 @@ pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
 /// Reads an STL. Vertices with equal coordinates are merged, without rounding.
 ///
 /// # Errors
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
-/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
+/// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_runtime::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
 pub fn read_stl(bytes: &[u8]) -> Result<ColoredMesh> {
     let is_text = !has_binary_length(bytes)
         && unmarked(bytes).trim_ascii_start().starts_with(b"solid")

@@ -9,9 +9,9 @@ use crate::guard::{MAX_PIXELS, too_large, unsupported};
 use crate::photo;
 use crate::reducer::{reduce, reduced_size};
 use crate::resources::ImageDecoder;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Maximum number of texels of a texture after reading: the texels of a surface that fills a quarter of it are still
 /// several times as dense as the points where colours are read.

@@ -8,7 +8,7 @@ use tiff::{ColorType, TiffError};
 use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{MAX_PIXELS, corrupt, pixel_count, too_large, unsupported};
 use sim3align_geometry::depth_kind::DepthKind;
-use sim3align_geometry::error::{Error, Result};
+use sim3align_runtime::error::{Error, Result};
 
 /// Maximum compression ratio, that of LZW on one value; a file that would need more is incomplete.
 const MAX_RATIO: usize = 4096;

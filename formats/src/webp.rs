@@ -8,9 +8,9 @@ use crate::exif;
 use crate::guard::{corrupt, pixel_count};
 use crate::photo::MAX_PHOTO_PIXELS;
 use crate::reducer::{Reducer, reduced_size};
-use sim3align_geometry::error::{Error, Result};
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, Result};
 
 /// Maximum memory of one allocation of the decoder.
 const MAX_DECODER_BYTES: usize = 1 << 28;
@@ -27,9 +27,9 @@ pub struct WebpImage {
 /// Reads a WebP, lossy or lossless, turned as its EXIF data say, unless it is wanted `as_stored`. One of more than [`MAX_PHOTO_PIXELS`] is reduced by a whole number.
 ///
 /// # Errors
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
-/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
-/// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
+/// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_runtime::error::ErrorCode::FileTooLarge),
+/// [`EmptyImage`](sim3align_runtime::error::ErrorCode::EmptyImage).
 pub fn read_webp(bytes: &[u8], as_stored: bool) -> Result<WebpImage> {
     let mut decoder = open(bytes)?;
     let full = {

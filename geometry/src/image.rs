@@ -1,7 +1,7 @@
 //! Row-major images of any pixel type.
 
-use crate::error::{Error, ErrorCode, Result};
-use crate::number::number;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::number::number;
 
 /// A row-major image: pixel (u, v) is `data[v * width + u]`; u runs right, v runs down.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,10 +8,10 @@ use glam::Vec3;
 use wide::f32x4;
 
 use super::cloud::Bounds;
-use super::counts;
 use super::kd_nodes::{Division, Node, Query};
 use super::order::{pack, select_smallest};
-use super::pauses::Pauses;
+use sim3align_runtime::counts;
+use sim3align_runtime::scheduler::Scheduler;
 
 /// Points of a leaf whose distances are computed at once.
 const LANES: usize = 4;
@@ -60,11 +60,11 @@ impl KdTree {
         Self::of(points, division)
     }
 
-    /// [`KdTree::new`] with pauses.
-    pub async fn paused(points: &[Vec3], pauses: &Pauses) -> Self {
+    /// [`KdTree::new`], yielding.
+    pub async fn paused(points: &[Vec3], scheduler: &Scheduler) -> Self {
         let mut division = Division::new(points);
         while let Some(count) = division.advance() {
-            pauses.point(DIVIDED * count as f64).await;
+            scheduler.yield_after(DIVIDED * count as f64).await;
         }
         Self::of(points, division)
     }

@@ -1,5 +1,5 @@
 //! Geometry that the aligner and the file readers share: meshes, clouds, images, cameras, transforms, search trees and
-//! the rasteriser, with the error type of all crates and the pauses of long calls.
+//! the rasteriser.
 //!
 //! Two linear algebra crates divide the work. glam: f32 and f64 vectors in the hot loops over pixels, points and
 //! triangles, and all stored coordinates. nalgebra: transforms ([`similarity::Similarity`]), and solvers
@@ -10,25 +10,18 @@ pub mod angle;
 pub mod clip;
 pub mod cloud;
 pub mod components;
-pub mod counts;
 pub mod curve;
 pub mod decimate;
 pub mod depth_kind;
 pub mod disjoint_sets;
 pub mod distance_transform;
-pub mod error;
-#[cfg(target_arch = "wasm32")]
-mod heap;
-pub mod helpers;
 pub mod image;
 mod kd_nodes;
 pub mod kd_tree;
 pub mod mesh;
 pub mod mesh_parts;
 pub mod normal_equations;
-pub mod number;
 pub mod order;
-pub mod pauses;
 pub mod pinhole;
 pub mod random;
 pub mod rasteriser;
@@ -46,8 +39,3 @@ pub mod voxel_grid;
 compile_error!("the results are tested to have the same bits on wasm32, x86_64 and aarch64 only");
 #[cfg(target_feature = "relaxed-simd")]
 compile_error!("relaxed SIMD gives other bits on other machines: build with simd128 alone");
-
-/// The allocator of all modules.
-#[cfg(target_arch = "wasm32")]
-#[global_allocator]
-static ALLOCATOR: heap::Heap = heap::Heap::new();

@@ -3,8 +3,8 @@
 use glam::Vec3;
 
 use crate::cloud::Bounds;
-use crate::error::{Error, ErrorCode, Result};
-use crate::number::numbers;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::number::numbers;
 
 /// A triangle mesh with at least one triangle, finite coordinates, and indices in range.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,8 +4,8 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::angle::sin_cos;
-use crate::error::{Error, ErrorCode, Result};
-use crate::number::number;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::number::number;
 
 /// Largest ratio of the two focal lengths: pixels of cameras are nearly square, also after a resize that is not uniform.
 const MAX_FOCAL_RATIO: f64 = 20.0;

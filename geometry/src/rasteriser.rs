@@ -8,11 +8,11 @@
 use glam::{DMat3, DVec3};
 
 use super::clip::{ClipVolume, GUARD_BAND_PX};
-use super::counts;
 use super::image::Window;
 use super::mesh::Mesh;
 use super::pinhole::Pinhole;
 use super::similarity::Similarity;
+use sim3align_runtime::counts;
 
 /// The triangle index of a pixel that no triangle covers.
 pub const NO_TRIANGLE: u32 = u32::MAX;
@@ -38,7 +38,7 @@ const MAX_COORDINATE: f64 = 1e60;
 ///
 /// ```
 /// # use sim3align_geometry::{mesh::Mesh, pinhole::Pinhole, rasteriser::Rasteriser, similarity::Similarity};
-/// # fn main() -> sim3align_geometry::error::Result<()> {
+/// # fn main() -> sim3align_runtime::error::Result<()> {
 /// let mesh = Mesh::from_flat(&[0.0, 0.0, 2.0, 3.0, 0.0, 2.0, 0.0, 3.0, 2.0], None)?;
 /// let mut rasteriser = Rasteriser::new();
 /// rasteriser.render(&mesh, &Similarity::identity(), &Pinhole::new(2.0, 2.0, 0.0, 0.0)?, 3, 2);
@@ -75,7 +75,7 @@ enum Placement {
     /// Triangles with this vertex need clipping.
     Outside,
     /// Not finite; triangles with this vertex are skipped.
-    Nowhere,
+    NotFinite,
 }
 
 /// 1/z as a linear function of the pixel, clamped to the range of the triangle's corners.
@@ -222,7 +222,7 @@ impl Rasteriser {
                     InverseDepth::of(points, &points, camera)
                 };
                 self.fill(id, corners.map(|v| v.fixed), plane);
-            } else if corners.iter().all(|v| v.placement != Placement::Nowhere) {
+            } else if corners.iter().all(|v| v.placement != Placement::NotFinite) {
                 let (polygon, count) = volume.clip(points());
                 let polygon = &polygon[..count];
                 let plane = || InverseDepth::of(points(), polygon, camera);
@@ -258,7 +258,7 @@ impl Rasteriser {
             if finite {
                 farthest = farthest.max(camera.z);
             }
-            let placement = if finite { Placement::Outside } else { Placement::Nowhere };
+            let placement = if finite { Placement::Outside } else { Placement::NotFinite };
             Vertex { fixed: [0; 2], placement }
         }));
         // 1/z must fit into f32.

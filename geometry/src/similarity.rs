@@ -3,8 +3,8 @@
 use glam::{Mat3, Vec3};
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use crate::error::{Error, ErrorCode, Result};
-use crate::number::{number, numbers};
+use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::number::{number, numbers};
 
 /// The similarity y = s·R·x + t. Values are named by their frames: `camera_from_mesh`.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -3,11 +3,11 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::cloud::{Bounds, Cloud};
-use crate::error::{Error, ErrorCode, Result};
 use crate::mesh::Mesh;
-use crate::number::number;
 use crate::random::Random;
 use crate::symmetric_eigen::{SymmetricEigen, outer};
+use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::number::number;
 
 /// Random stream of [`each_surface_sample`].
 const STREAM: u64 = 2;

@@ -3,10 +3,10 @@
 use glam::Vec3;
 
 use crate::cloud::Cloud;
-use crate::error::{Error, ErrorCode, Result};
 use crate::mesh::Mesh;
 use crate::surface::{SurfaceSample, each_surface_sample};
 use crate::triangle_tree::TriangleTree;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Number of points that represent the colours of a surface: about one for each cell that is compared with a photo.
 pub const COLOR_SAMPLES: usize = 32_768;

@@ -3,11 +3,11 @@
 use glam::{DVec3, Vec3};
 use wide::f32x4;
 
-use super::counts;
 use super::curve::along_curve;
 use super::mesh::Mesh;
 use super::order::{index_of, pack, select_smallest};
 use super::triangle_block::{BLOCK, TriangleBlock, by_axis};
+use sim3align_runtime::counts;
 
 /// Children of a node, whose boxes are tested at once.
 const CHILDREN: usize = 4;

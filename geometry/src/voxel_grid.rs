@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::cloud::{Bounds, Cloud};
 use super::order::{index_of, sort_from};
-use super::pauses::{Pauses, finished};
+use sim3align_runtime::scheduler::{Scheduler, finished};
 
 /// Limit on the cells along an axis; points beyond are assigned to the last one. 2²¹ cells of 1 mm span two kilometres.
 const MAX_CELLS: u32 = (1 << 21) - 1;
@@ -22,28 +22,28 @@ const AVERAGED: f64 = 2e-5;
 /// Cells are sorted instead of hashed: the order does not depend on the platform. Returns the cloud unchanged if
 /// `voxel_size` is not above 0.
 pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
-    finished(paused_downsample(cloud, voxel_size, &Pauses::none()))
+    finished(paused_downsample(cloud, voxel_size, &Scheduler::unbounded()))
 }
 
-/// [`voxel_downsample`] with pauses.
-pub async fn paused_downsample(cloud: &Cloud, voxel_size: f32, pauses: &Pauses) -> Cloud {
-    match Occupied::of(&cloud.points, voxel_size, pauses).await {
+/// [`voxel_downsample`], yielding.
+pub async fn paused_downsample(cloud: &Cloud, voxel_size: f32, scheduler: &Scheduler) -> Cloud {
+    match Occupied::of(&cloud.points, voxel_size, scheduler).await {
         None => cloud.clone(),
         Some(occupied) => {
-            pauses.point(AVERAGED * cloud.len() as f64).await;
+            scheduler.yield_after(AVERAGED * cloud.len() as f64).await;
             occupied.means(cloud)
         }
     }
 }
 
 /// A voxel size that leaves at most `count` points of a cloud and, if the points sample a surface, not many fewer.
-pub async fn voxel_size_leaving(cloud: &Cloud, count: usize, pauses: &Pauses) -> f32 {
+pub async fn voxel_size_leaving(cloud: &Cloud, count: usize, scheduler: &Scheduler) -> f32 {
     let wanted = count.max(1) as f32;
     let Some(bounds) = Bounds::of(&cloud.points) else { return 0.0 };
     // Starts too fine for any surface that fills its box. Doubling the voxels quarters the cells of a surface.
     let mut size = 0.3 * bounds.diagonal() / wanted.sqrt();
     for _ in 0..MAX_ROUNDS {
-        let occupied = Occupied::of(&cloud.points, size, pauses).await;
+        let occupied = Occupied::of(&cloud.points, size, scheduler).await;
         let left = occupied.map_or(cloud.len(), |occupied| occupied.cells().count());
         if left <= count {
             break;
@@ -64,13 +64,13 @@ struct Occupied {
 
 impl Occupied {
     /// `None` without points, or for a `voxel_size` that is not above 0.
-    async fn of(points: &[Vec3], voxel_size: f32, pauses: &Pauses) -> Option<Self> {
+    async fn of(points: &[Vec3], voxel_size: f32, scheduler: &Scheduler) -> Option<Self> {
         let bounds = Bounds::of(points).filter(|_| voxel_size > 0.0)?;
         let cell_of: Vec<[u32; 3]> = points.iter().map(|&p| cell(p, bounds.min, voxel_size)).collect();
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         // One sort per axis, the least significant first.
         for axis in [2, 1, 0] {
-            pauses.point(SORTED * points.len() as f64).await;
+            scheduler.yield_after(SORTED * points.len() as f64).await;
             order = sorted_by(axis, &cell_of, &order);
         }
         Some(Self { cell_of, order })

@@ -4,7 +4,7 @@
 use std::fs::File;
 use std::time::Instant;
 
-use sim3align::geometry::counts::{self, Counts};
+use sim3align::counts::{self, Counts};
 
 thread_local! {
     /// The CPU time of this thread, on Linux. It stays open: a call of a reader takes less time than opening it.

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::prelude::*;
-use sim3align_geometry::error::Text;
+use sim3align_runtime::error::Text;
 
 /// Reads a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {

@@ -1,6 +1,6 @@
 //! Enumerations whose values have names: on command lines, in files and in tables.
 
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// A value of an enumeration with names.
 pub trait Named: Copy + PartialEq + 'static {
@@ -53,9 +53,9 @@ macro_rules! named {
         }
 
         impl core::str::FromStr for $name {
-            type Err = sim3align_geometry::error::Error;
+            type Err = sim3align_runtime::error::Error;
 
-            fn from_str(name: &str) -> sim3align_geometry::error::Result<Self> {
+            fn from_str(name: &str) -> sim3align_runtime::error::Result<Self> {
                 $crate::names::Named::from_name(name)
             }
         }

@@ -20,7 +20,6 @@ pub use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 pub use sim3align::precise::options::{AlignOptions, Quality};
 pub use sim3align::progress::Silent;
 pub use sim3align_geometry::cloud::{Bounds, Cloud};
-pub use sim3align_geometry::error::{Error, ErrorCode};
 pub use sim3align_geometry::image::{DepthMap, Image, Mask};
 pub use sim3align_geometry::kd_tree::KdTree;
 pub use sim3align_geometry::mesh::Mesh;
@@ -29,6 +28,7 @@ pub use sim3align_geometry::random::Random;
 pub use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
 pub use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 pub use sim3align_geometry::surface_colors::SurfaceColors;
+pub use sim3align_runtime::error::{Error, ErrorCode};
 
 /// A result, by default with the error of the package.
 pub type Result<T, E = Error> = core::result::Result<T, E>;

@@ -9,7 +9,6 @@ import { bundleElement } from "./element.mjs";
 import { bundleInline } from "./inline.mjs";
 import { NOTICE } from "./notices.mjs";
 import { at, compiledDir, glueDir, packageDir, skinDir } from "./paths.mjs";
-import { bundleReportPage } from "./report-page.mjs";
 import { attempt, nodeProgram, run } from "./run.mjs";
 import { wasmBindgenVersion } from "./setup.mjs";
 import { step } from "./step.mjs";
@@ -46,7 +45,6 @@ async function write(info) {
   await bundleGlue();
   await bundleScripts();
   await bundleInline();
-  await bundleReportPage();
   await bundleElement();
   await bundleTypes();
   writeFileSync(infoFile, info);

@@ -134,7 +134,7 @@ pub fn evaluate_prepared(
     let initial_scale = initial_scale(&observed, &reconstructed);
     let scale_ratio = camera_from_mesh.scale / initial_scale;
     let mut warnings = warnings::about_observation(observation);
-    warnings.extend(warnings::about_mesh(&prepared.left_out()));
+    warnings.extend(warnings::about_mesh(&prepared.removed_parts()));
     let compared = options.truth.map(|truth| {
         let symmetry = prepared.symmetry(&options.symmetry)?;
         let comparison = PoseComparison::new(mesh, camera_from_mesh, &truth, &symmetry)?;

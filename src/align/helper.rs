@@ -18,7 +18,7 @@ pub struct Helper {
     observations: Vec<Option<Observation>>,
     mesh: Rc<PreparedMesh<'static>>,
     request: Request,
-    surround: Box<dyn Fn(&mut Search)>,
+    set_scene_term: Box<dyn Fn(&mut Search)>,
     /// Those that it has had tasks of.
     searches: Vec<Search>,
     /// The tasks to be run.
@@ -28,15 +28,15 @@ pub struct Helper {
 
 impl Helper {
     /// A helper that is ready for the search with the greatest effort in the first view. `request` are the options of one
-    /// view; `surround` sets the surroundings of the object.
+    /// view; `set_scene_term` sets the scene around the object.
     pub fn new(
         observations: Vec<Option<Observation>>,
         mesh: Rc<PreparedMesh<'static>>,
         request: Request,
-        surround: impl Fn(&mut Search) + 'static,
+        set_scene_term: impl Fn(&mut Search) + 'static,
     ) -> Self {
-        let (surround, searches) = (Box::new(surround), Vec::new());
-        let mut helper = Self { observations, mesh, request, surround, searches, part: None, tasks: None };
+        let (set_scene_term, searches) = (Box::new(set_scene_term), Vec::new());
+        let mut helper = Self { observations, mesh, request, set_scene_term, searches, part: None, tasks: None };
         if let Some(effort) = helper.request.efforts().last().map(|settings| settings.effort) {
             helper.search(0, effort, false);
             helper.searches.iter().for_each(Search::make_grids);
@@ -53,15 +53,15 @@ impl Helper {
 
     /// Runs tasks until it is time; the message about them, or `None` if there is nothing to do.
     pub fn step(&mut self, is_time: impl FnMut() -> bool) -> Option<Vec<f64>> {
-        let RoundTasks { view, effort, is_surrounded, .. } = *self.tasks.as_ref()?;
-        let place = self.search(view, effort, is_surrounded)?;
+        let RoundTasks { view, effort, has_scene_term, .. } = *self.tasks.as_ref()?;
+        let place = self.search(view, effort, has_scene_term)?;
         self.part.as_mut()?.run(&mut self.tasks.as_ref()?.on(&self.searches[place]), is_time)
     }
 
     /// The place of a search in the list.
-    fn search(&mut self, view: usize, effort: Effort, is_surrounded: bool) -> Option<usize> {
+    fn search(&mut self, view: usize, effort: Effort, has_scene_term: bool) -> Option<usize> {
         let of_view = |search: &&Search| search.view == view;
-        let is_it = |search: &Search| search.effort() == effort && search.is_surrounded() == is_surrounded;
+        let is_it = |search: &Search| search.effort() == effort && search.has_scene_term() == has_scene_term;
         if let Some(known) = self.searches.iter().position(|search| of_view(&search) && is_it(search)) {
             return Some(known);
         }
@@ -78,8 +78,8 @@ impl Helper {
         if search.prior.initial.is_some() {
             search.equivalence = search.mesh.equivalence(&options.symmetry).ok()?;
         }
-        if is_surrounded {
-            (self.surround)(&mut search);
+        if has_scene_term {
+            (self.set_scene_term)(&mut search);
         }
         self.searches.push(search);
         Some(self.searches.len() - 1)

@@ -13,11 +13,11 @@ use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
 use crate::paper;
 use crate::paper::options::PaperOptions;
-use crate::pauses::{Boxed, Pauses, Task, boxed, finished};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::progress::Host;
 use crate::report::{Alignment, PaperAlignment};
+use crate::scheduler::{Boxed, Scheduler, Task, boxed, finished};
 pub use outcome::{Setup, align_by};
 use search::{Request, Search};
 
@@ -41,7 +41,7 @@ pub fn align_prepared(
     request: Request,
     host: &mut dyn Host,
 ) -> Result<Alignment> {
-    finished(align_with_pauses(observation, mesh, &request, host, &Pauses::none()))
+    finished(align_cooperatively(observation, mesh, &request, host, &Scheduler::unbounded()))
 }
 
 /// [`align`] in steps, with other threads that may help. The task owns or borrows its observation and mesh.
@@ -53,24 +53,24 @@ pub fn align_task<'a, 'm: 'a>(
     mesh: impl Borrow<PreparedMesh<'m>> + 'a,
     options: AlignOptions,
     mut host: impl Host + 'a,
-    pauses: Pauses,
+    scheduler: Scheduler,
 ) -> Result<Task<'a, Alignment>> {
     let request = Request::new(options)?;
-    Ok(Task::new(pauses, |pauses| async move {
-        align_with_pauses(observation.borrow(), mesh.borrow(), &request, &mut host, &pauses).await
+    Ok(Task::new(scheduler, |scheduler| async move {
+        align_cooperatively(observation.borrow(), mesh.borrow(), &request, &mut host, &scheduler).await
     }))
 }
 
 /// The recipe of [`align`].
-fn align_with_pauses<'a>(
+fn align_cooperatively<'a>(
     observation: &'a Observation,
     mesh: &'a PreparedMesh<'_>,
     request: &'a Request,
     host: &'a mut dyn Host,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 ) -> Boxed<'a, Result<Alignment>> {
     boxed(async move {
-        let mut search = Search::begin(observation, mesh, request, host, pauses).await?;
+        let mut search = Search::begin(observation, mesh, request, host, scheduler).await?;
         let clouds = search.clouds().await?;
         let searched = search.search().await?;
         let colors = search.colors(&searched).await;

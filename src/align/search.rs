@@ -1,8 +1,8 @@
 //! The alignment of one object by search, as it runs: the parts from which [`align`](super::align), and the calls of a
 //! scene, are composed.
 //!
-//! Each part awaits a pause point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
-//! are bit-identical regardless of pauses.
+//! Each part awaits a yield point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
+//! are bit-identical whether or not it yields.
 
 use super::outcome::{Outcome, Setup, outcome, score};
 use super::warnings::{about_fit, about_mesh, about_search, retain_doubts};
@@ -10,26 +10,25 @@ use crate::error::Result;
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
-use crate::pauses::Pauses;
 use crate::precise;
-use crate::precise::drawing::equivalence::DIFFERENT;
+use crate::precise::drawing::equivalence::DISTINCT_MIN_ANGLE_RAD;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::conditioning::DROP;
-use crate::precise::scoring::surroundings::Neighbourhood;
+use crate::precise::scoring::scene_term::SceneContext;
 use crate::precise::search::efforts;
 use crate::precise::search::plate::without_invented_plate;
 use crate::precise::search::recipe::{SURE, SearchSettings};
 use crate::precise::search::rounds::Rounds;
-use crate::precise::search::start::{self, Findings, WarmStart};
+use crate::precise::search::start::{self, SearchState, WarmStart};
 use crate::precise::verdict::color::{Judgment, agreement, judgment};
 use crate::precise::verdict::conclusion;
-use crate::precise::verdict::conclusion::Certainty;
-use crate::precise::verdict::confidence::certainty_of_relief;
+use crate::precise::verdict::conclusion::Verdict;
 use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
+use crate::scheduler::Scheduler;
 
 /// The options, validated, and the settings that follow from them.
 pub struct Request {
@@ -44,23 +43,23 @@ pub struct Search<'a> {
     mesh: &'a PreparedMesh<'a>,
     request: &'a Request,
     stages: Stopwatch<'a>,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 }
 
 /// The result of a search, by shape.
-pub struct Searched {
+pub struct SearchResult {
     /// The poses.
     pub rounds: Rounds,
     solution: Solution,
-    certainty: Certainty,
+    verdict: Verdict,
 }
 
-/// Loss of confidence beyond which the surroundings do not choose another pose than the object alone.
-const DOUBT: f64 = 0.05;
-/// Share of the confidence below which the surroundings contradict what an object alone shows.
-const CONTRADICTION: f64 = 0.75;
+/// Loss of confidence beyond which the scene does not choose another pose than the object alone.
+const MAX_CONFIDENCE_LOSS: f64 = 0.05;
+/// Share of the confidence below which the scene contradicts what an object alone shows.
+const CONTRADICTION_RATIO: f64 = 0.75;
 /// Loss of the score of the image, at about the same rotation, with the same meaning: two standard deviations.
-const MOST_LOSS: f64 = 4.0 * DROP;
+const MAX_IMAGE_SCORE_LOSS: f64 = 4.0 * DROP;
 
 impl Request {
     /// A request with these options.
@@ -83,15 +82,15 @@ impl Request {
     }
 }
 
-impl Searched {
+impl SearchResult {
     fn new(rounds: Rounds) -> Result<Self> {
-        let (solution, certainty) = conclusion::conclude(&rounds, None)?;
-        Ok(Self { rounds, solution, certainty })
+        let (solution, verdict) = conclusion::conclude(&rounds, None)?;
+        Ok(Self { rounds, solution, verdict })
     }
 
     /// The probability that the best pose is right.
     pub fn confidence(&self) -> f64 {
-        self.certainty.confidence
+        self.verdict.confidence.overall()
     }
 }
 
@@ -105,7 +104,7 @@ impl<'a> Search<'a> {
         mesh: &'a PreparedMesh<'a>,
         request: &'a Request,
         host: &'a mut dyn Host,
-        pauses: &'a Pauses,
+        scheduler: &'a Scheduler,
     ) -> Result<Self> {
         let mut stages = Stopwatch::new(host, precise::PLAN);
         stages.enter(Stage::Inspect);
@@ -114,17 +113,17 @@ impl<'a> Search<'a> {
         if let Some(settings) = request.efforts.first().filter(is_long)
             && mesh.has_one_form(&settings.grids)
         {
-            pauses.ask_for_help().await;
+            scheduler.ask_for_help().await;
         }
-        pauses.here().await;
+        scheduler.yield_point().await;
         let mesh = match request.efforts.first() {
             Some(first) => {
                 let views = core::iter::once(observation);
-                without_invented_plate(views, mesh, &request.options, first, pauses).await
+                without_invented_plate(views, mesh, &request.options, first, scheduler).await
             }
             None => mesh,
         };
-        Ok(Self { observation, mesh, request, stages, pauses })
+        Ok(Self { observation, mesh, request, stages, scheduler })
     }
 
     /// The mesh that is aligned: the one given, or that without a ground plate.
@@ -139,145 +138,164 @@ impl<'a> Search<'a> {
     pub async fn clouds(&mut self) -> Result<Clouds> {
         let setup = &self.request.setup;
         let mut clouds = Clouds::new(self.observation, self.mesh.mesh(), &setup.sampling, &mut self.stages)?;
-        self.pauses.here().await;
+        self.scheduler.yield_point().await;
         if setup.metrics {
             clouds.evidence(Normals::Measured, &mut self.stages);
-            self.pauses.here().await;
+            self.scheduler.yield_point().await;
         }
         Ok(clouds)
     }
 
-    /// Searches with increasing effort, until the confidence is high and no rival of the pose is found.
+    /// Searches with increasing effort, until the confidence is high and the best pose has no rival.
     ///
     /// # Errors
-    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`start::begin`].
-    pub async fn search(&mut self) -> Result<Searched> {
-        let Self { observation, mesh, request: Request { options, efforts, .. }, pauses, .. } = *self;
-        let stages = &mut self.stages;
+    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`start::start_search`].
+    pub async fn search(&mut self) -> Result<SearchResult> {
+        let efforts = self.request.efforts();
         if let Some(first) = efforts.first() {
-            start::decimate(mesh, first, stages)?;
-            pauses.here().await;
+            start::decimate(self.mesh, first, &mut self.stages)?;
+            self.scheduler.yield_point().await;
         }
-        let mut before: Option<Rounds> = None;
+
+        let mut previous: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            if settings.is_long(1) && mesh.has_one_form(&settings.grids) {
-                pauses.ask_for_help().await;
-            }
-            let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
-            pauses.here().await;
-            start::run(&mut rounds, &efforts::share(index, efforts.len()), pauses, stages).await;
-            let concluded = conclusion::conclude(&rounds, None);
+            let mut rounds = self.search_rotations(previous.as_ref(), index, settings).await?;
+
+            let conclusion = conclusion::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
-            let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
-            if is_last || is_sure {
-                let (solution, certainty) = concluded?;
-                let look = start::rival_search(&rounds).filter(|_| !is_last);
-                let mut has_rival = false;
-                if let Some(mut look) = look {
-                    let share = efforts::share(index + 1, efforts.len() + 1);
-                    start::run(&mut look, &share, pauses, stages).await;
-                    has_rival = start::has_rival(&mut rounds, &look);
-                }
-                if !has_rival {
-                    return Ok(Searched { rounds, solution, certainty });
-                }
+            let is_sure = matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.overall() >= SURE);
+            if is_last || (is_sure && !self.find_rivals(&mut rounds, index).await) {
+                let (solution, verdict) = conclusion?;
+                return Ok(SearchResult { rounds, solution, verdict });
             }
-            before = Some(rounds);
+
+            previous = Some(rounds);
         }
         Err(precise::no_candidate())
     }
 
-    /// Searches among the poses that another search of the object has found, with its
-    /// surroundings since.
+    /// Runs the search of the effort with this index to its end.
+    async fn search_rotations(
+        &mut self,
+        previous: Option<&Rounds>,
+        index: usize,
+        settings: &SearchSettings,
+    ) -> Result<Rounds> {
+        if settings.is_long(1) && self.mesh.has_one_form(&settings.grids) {
+            self.scheduler.ask_for_help().await;
+        }
+        let Request { options, efforts, .. } = self.request;
+        let mut rounds =
+            start::start_search(self.observation, self.mesh, previous, options, settings, &mut self.stages)?;
+        self.scheduler.yield_point().await;
+
+        let progress = efforts::share(index, efforts.len());
+        start::run_rounds(&mut rounds, &progress, self.scheduler, &mut self.stages).await;
+        Ok(rounds)
+    }
+
+    /// Whether a search from other rotations finds rivals of the best pose, which then become candidates.
+    async fn find_rivals(&mut self, rounds: &mut Rounds, index: usize) -> bool {
+        let Some(mut rival_rounds) = start::rival_search(rounds) else { return false };
+
+        let progress = efforts::share(index + 1, self.request.efforts.len() + 1);
+        start::run_rounds(&mut rival_rounds, &progress, self.scheduler, &mut self.stages).await;
+        start::take_rivals(rounds, &rival_rounds)
+    }
+
+    /// Searches from the candidates of an earlier search of the object, with the scene around it.
     ///
     /// # Errors
     /// As [`Search::search`].
-    pub async fn search_among(&mut self, start: WarmStart<'_>) -> Result<Searched> {
-        let given = start.findings;
-        let mut rounds = self.among(start, None)?;
-        self.pauses.here().await;
-        start::run(&mut rounds, &efforts::share(0, 1), self.pauses, &mut self.stages).await;
-        let mut searched = Searched::new(rounds)?;
-        if searched.confidence() < given.confidence - DOUBT && searched.rounds.prefer(&given.found) {
-            searched = Searched::new(searched.rounds)?;
+    pub async fn search_again(&mut self, start: WarmStart<'_>) -> Result<SearchResult> {
+        let earlier = start.earlier;
+        let mut rounds = self.restart(start, None)?;
+        self.scheduler.yield_point().await;
+        start::run_rounds(&mut rounds, &efforts::share(0, 1), self.scheduler, &mut self.stages).await;
+
+        let mut result = SearchResult::new(rounds)?;
+        if result.confidence() < earlier.confidence - MAX_CONFIDENCE_LOSS
+            && result.rounds.move_to_front(&earlier.candidates)
+        {
+            result = SearchResult::new(result.rounds)?;
         }
-        let is_contradicted = searched.confidence() < CONTRADICTION * given.confidence;
-        if is_contradicted || leaves_image(given, &searched.rounds) {
+
+        let is_contradicted = result.confidence() < CONTRADICTION_RATIO * earlier.confidence;
+        if is_contradicted || leaves_image(earlier, &result.rounds) {
             // Tables, undersides and neighbours are as inaccurate as the object: what its image shows, wins.
-            let alone = WarmStart { findings: given, surroundings: Neighbourhood::default() };
-            searched = Searched::new(self.among(alone, Some(&searched.rounds))?)?;
+            let alone = WarmStart { earlier, context: SceneContext::default() };
+            result = SearchResult::new(self.restart(alone, Some(&result.rounds))?)?;
         }
-        Ok(searched)
+        Ok(result)
     }
 
-    /// The search among given poses, before its first round; `before` is an earlier one of the same object.
-    fn among(&mut self, start: WarmStart<'_>, before: Option<&Rounds>) -> Result<Rounds> {
+    /// The search from earlier candidates, before its first round; `previous` has the observation, if it has been cleaned.
+    fn restart(&mut self, start: WarmStart<'_>, previous: Option<&Rounds>) -> Result<Rounds> {
         let Request { options, efforts, .. } = self.request;
-        let settings = efforts.iter().find(|settings| settings.effort == start.findings.effort);
-        let settings = settings.ok_or_else(precise::no_candidate)?.again(start.findings.is_sure());
-        let clean = before.map(|rounds| rounds.search.observation.clone());
-        start::resume(self.observation, self.mesh, clean, start, options, &settings, &mut self.stages)
+        let settings = efforts.iter().find(|settings| settings.effort == start.earlier.effort);
+        let settings = settings.ok_or_else(precise::no_candidate)?.again(start.earlier.is_sure());
+        let clean = previous.map(|rounds| rounds.search.observation.clone());
+        start::restart_search(self.observation, self.mesh, clean, start, options, &settings, &mut self.stages)
     }
 
     /// The verdict of the photo on the poses; `None` without a photo, or without colours of the mesh.
-    pub async fn colors(&self, searched: &Searched) -> Option<Judgment> {
+    pub async fn colors(&self, searched: &SearchResult) -> Option<Judgment> {
         let (photo, colors) = (self.observation.photo()?, self.mesh.colors()?);
-        Some(judgment(&searched.rounds, photo, colors, self.pauses).await)
+        Some(judgment(&searched.rounds, photo, colors, self.scheduler).await)
     }
 
     /// The result, with its metrics.
     ///
     /// # Errors
     /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus).
-    pub fn finish(mut self, mut clouds: Clouds, searched: Searched, colors: Option<&Judgment>) -> Result<Alignment> {
-        let Searched { rounds, solution, certainty } = searched;
-        let (solution, mut certainty) = match colors {
-            Some(judgment) => conclusion::conclude(&rounds, Some(judgment))?,
-            None => (solution, certainty),
-        };
+    pub fn finish(mut self, mut clouds: Clouds, result: SearchResult, colors: Option<&Judgment>) -> Result<Alignment> {
+        let SearchResult { rounds, mut solution, mut verdict } = result;
+        if colors.is_some() {
+            (solution, verdict) = conclusion::conclude(&rounds, colors)?;
+        }
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
-        certainty.confidence *= certainty_of_relief(observation.relief_deviation());
+        verdict.confidence.relief_deviation = observation.relief_deviation();
+
         let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
         if let Some(metrics) = &mut metrics {
             let (clean, pose) = (rounds.search.observation.clone(), &solution.camera_from_mesh);
             metrics.color_agreement = agreement(observation, Some(clean), mesh, pose);
         }
+
         let search = &rounds.search;
         let pose = CropPose::of_similarity(&solution.camera_from_mesh, &search.mesh.frame);
         let proportions = pose.and_then(|pose| stretch(search, mesh.mesh(), &pose, options.proportions));
-        let mut outcome = outcome(observation, setup, &clouds, &solution, metrics, self.stages);
-        outcome.warnings.extend(about_mesh(&mesh.left_out()));
-        Ok(Alignment { proportions, ..with_certainty(outcome, certainty, search.renders) })
+
+        let Outcome { camera_from_mesh, metrics, mut warnings, diagnostics: common, points } =
+            outcome(observation, setup, &clouds, &solution, metrics, self.stages);
+        let confidence = verdict.confidence.overall();
+        warnings.extend(about_mesh(&mesh.removed_parts()));
+        warnings.extend(about_search(common.converged));
+        warnings.extend(about_fit(&verdict.terms));
+        retain_doubts(&mut warnings, confidence);
+
+        let [target_points, source_points] = points;
+        let counts = SearchCounts { source_points, target_points, renders: search.renders };
+        let Verdict { turn_confidence, alternatives, uncertainty, effort, score, terms, color, .. } = verdict;
+        Ok(Alignment {
+            camera_from_mesh,
+            confidence,
+            turn_confidence,
+            alternatives,
+            uncertainty,
+            proportions,
+            metrics,
+            warnings,
+            diagnostics: PreciseDiagnostics { common, counts, effort, score, terms, color },
+        })
     }
 }
 
-/// Whether the surroundings have moved the pose that the object has alone farther than its image allows.
-fn leaves_image(given: &Findings, rounds: &Rounds) -> bool {
-    let (Some(alone), Some(now)) = (given.found.first(), rounds.found.first()) else { return false };
+/// Whether the scene has moved the pose that the object has alone farther than its image allows.
+fn leaves_image(earlier: &SearchState, rounds: &Rounds) -> bool {
+    let (Some(alone), Some(now)) = (earlier.candidates.first(), rounds.candidates.first()) else { return false };
     let search = &rounds.search;
     let loss = search.by_image(&alone.score) - search.by_image(&now.score);
     let turn = search.equivalence.angle(alone.pose.rotation, now.pose.rotation);
-    turn < DIFFERENT && f64::from(loss) > MOST_LOSS
-}
-
-fn with_certainty(outcome: Outcome, certainty: Certainty, renders: usize) -> Alignment {
-    let Certainty { confidence, turn_confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
-    let Outcome { camera_from_mesh, metrics, mut warnings, diagnostics: common, points } = outcome;
-    let [target_points, source_points] = points;
-    let counts = SearchCounts { source_points, target_points, renders };
-    warnings.extend(about_search(common.converged));
-    warnings.extend(about_fit(&terms));
-    retain_doubts(&mut warnings, confidence);
-    let diagnostics = PreciseDiagnostics { common, counts, effort, score, terms, color };
-    Alignment {
-        camera_from_mesh,
-        confidence,
-        turn_confidence,
-        alternatives,
-        uncertainty,
-        proportions: None,
-        metrics,
-        warnings,
-        diagnostics,
-    }
+    turn < DISTINCT_MIN_ANGLE_RAD && f64::from(loss) > MAX_IMAGE_SCORE_LOSS
 }

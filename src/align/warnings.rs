@@ -3,7 +3,7 @@
 use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
-use crate::precise::drawing::surplus::LeftOut;
+use crate::precise::drawing::removed_parts::RemovedParts;
 use crate::report::Preset;
 use crate::report::{ScoreTerms, Warning, WarningCode, is_collapsed};
 
@@ -42,110 +42,155 @@ const FULL_RANGE_M: [f32; 2] = [1.0, 65.535];
 /// Largest share of their pixels that is 0. Of sensors, which lack readings, it is 3 to 98 %.
 const FEW_ZEROS: f64 = 1e-3;
 
+/// What warnings about an observation depend on.
+struct Facts<'a> {
+    observation: &'a Observation,
+    mask_pixels: usize,
+    /// Pixels of the mask on the border of the image.
+    border_pixels: usize,
+    /// Pixels of the mask with a reading.
+    readings: usize,
+    /// The median of the readings, metres; `None` without readings.
+    median_m: Option<f32>,
+    /// Whether all readings are whole millimetres.
+    are_whole: bool,
+}
+
 /// Warnings about depth and mask.
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
-    let (width, height) = (observation.mask().width(), observation.mask().height());
-    // Allocated once: it may be a large image.
-    let mask_pixels = observation.pixels().count();
-    let mut depths = Vec::with_capacity(mask_pixels);
-    let mut in_border = 0_usize;
-    for i in observation.pixels() {
-        let (u, v, z) = (i % width, i / width, observation.depth().data()[i]);
-        in_border += usize::from(u == 0 || v == 0 || u + 1 == width || v + 1 == height);
-        if z > 0.0 {
-            depths.push(z);
+    let facts = Facts::of(observation);
+    let warnings = [
+        facts.about_millimetres(),
+        facts.about_size(),
+        facts.about_small_depth(),
+        facts.about_inverted_depth(),
+        facts.about_normalised_depth(),
+        facts.about_inverted_mask(),
+        facts.about_whole_image(),
+        facts.about_border(),
+        facts.about_sparse_depth(),
+    ];
+    warnings.into_iter().flatten().collect()
+}
+
+fn warning(code: WarningCode, message: impl Into<String>) -> Warning {
+    Warning { code, message: message.into() }
+}
+
+impl<'a> Facts<'a> {
+    fn of(observation: &'a Observation) -> Self {
+        let (width, height) = (observation.mask().width(), observation.mask().height());
+        // Allocated once: it may be a large image.
+        let mask_pixels = observation.pixels().count();
+        let mut depths = Vec::with_capacity(mask_pixels);
+        let mut border_pixels = 0;
+        for i in observation.pixels() {
+            let (u, v, z) = (i % width, i / width, observation.depth().data()[i]);
+            border_pixels += usize::from(u == 0 || v == 0 || u + 1 == width || v + 1 == height);
+            if z > 0.0 {
+                depths.push(z);
+            }
         }
+
+        let (readings, are_whole) = (depths.len(), depths.iter().all(is_whole));
+        Self { observation, mask_pixels, border_pixels, readings, are_whole, median_m: median(depths.into_iter()) }
     }
-    let all_pixels = observation.mask().data().len();
-    let border = if width.min(height) > 2 { 2 * (width + height) - 4 } else { all_pixels };
-    let is_everything = mask_pixels as f64 >= WHOLE_IMAGE * all_pixels as f64;
-    let is_inverted = !is_everything && in_border as f64 > WHOLE_BORDER * border as f64;
-    let mut warnings = Vec::new();
-    let readings = depths.len();
-    if readings > 0 {
-        let large = LARGE_M[usize::from(!depths.iter().all(is_whole))];
-        let median = median(depths.into_iter()).unwrap_or_default();
-        if median > IMPLAUSIBLE_DEPTH_M {
-            warnings.push(Warning {
-                code: WarningCode::DepthLooksLikeMillimetres,
-                message: format!(
-                    "The object's median depth is {} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001.",
-                    number(f64::from(median))
-                ),
-            });
+
+    fn image_pixels(&self) -> usize {
+        self.observation.mask().data().len()
+    }
+
+    fn covers_image(&self) -> bool {
+        self.mask_pixels as f64 >= WHOLE_IMAGE * self.image_pixels() as f64
+    }
+
+    fn is_mask_inverted(&self) -> bool {
+        let (width, height) = (self.observation.mask().width(), self.observation.mask().height());
+        let border = if width.min(height) > 2 { 2 * (width + height) - 4 } else { self.image_pixels() };
+        !self.covers_image() && self.border_pixels as f64 > WHOLE_BORDER * border as f64
+    }
+
+    fn about_millimetres(&self) -> Option<Warning> {
+        let median = self.median_m.filter(|median| *median > IMPLAUSIBLE_DEPTH_M)?;
+        let message = format!(
+            "The object's median depth is {} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001.",
+            number(f64::from(median))
+        );
+        Some(warning(WarningCode::DepthLooksLikeMillimetres, message))
+    }
+
+    fn about_size(&self) -> Option<Warning> {
+        let is_metric = |median: &f32| (IMPLAUSIBLY_NEAR_M..IMPLAUSIBLE_DEPTH_M).contains(median);
+        let distance = f64::from(self.median_m.filter(is_metric)?);
+        let pixels = self.observation.bounds().map(|[first, last]| (last - first) as f64);
+        let camera = self.observation.camera();
+        let size = distance * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt();
+        if size < LARGE_M[usize::from(!self.are_whole)] && distance > NEAR_M {
+            return None;
         }
-        let pixels = observation.bounds().map(|[first, last]| (last - first) as f64);
-        let camera = observation.camera();
-        let size = f64::from(median) * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt();
-        let is_plausible = size < large && f64::from(median) > NEAR_M;
-        if !is_plausible && (IMPLAUSIBLY_NEAR_M..IMPLAUSIBLE_DEPTH_M).contains(&median) {
-            warnings.push(Warning {
-                code: WarningCode::SizeDoubtful,
-                message: format!(
-                    "With the assumed unit of the depth, the object is {} m large, {} m away. If it is not, pass depthScale, metres per unit: 0.01 for centimetres, 0.0002 for TUM RGB-D.",
-                    number(size),
-                    number(median.into())
-                ),
-            });
+        let message = format!(
+            "With the assumed unit of the depth, the object is {} m large, {} m away. If it is not, pass depthScale, metres per unit: 0.01 for centimetres, 0.0002 for TUM RGB-D.",
+            number(size),
+            number(distance)
+        );
+        Some(warning(WarningCode::SizeDoubtful, message))
+    }
+
+    fn about_small_depth(&self) -> Option<Warning> {
+        let median = self.median_m.filter(|median| *median < IMPLAUSIBLY_NEAR_M)?;
+        let message = format!(
+            "The object's median depth is {} m. Integers are taken as millimetres: for integers in metres pass depthScale 1. Floats are in metres.",
+            number(f64::from(median))
+        );
+        Some(warning(WarningCode::DepthLooksTooSmall, message))
+    }
+
+    fn about_inverted_depth(&self) -> Option<Warning> {
+        let share = steps_towards_camera(self.observation, self.mask_pixels)?;
+        if share < TOWARDS_CAMERA || self.is_mask_inverted() {
+            return None;
         }
-        if median < IMPLAUSIBLY_NEAR_M {
-            warnings.push(Warning {
-                code: WarningCode::DepthLooksTooSmall,
-                message: format!(
-                    "The object's median depth is {} m. Integers are taken as millimetres: for integers in metres pass depthScale 1. Floats are in metres.",
-                    number(f64::from(median))
-                ),
-            });
-        }
+        let message = format!(
+            "{} % of the steps of the depth at the object's outline go towards the camera: the object seems to be behind its surroundings. If near is large in this depth map, pass depthKind \"affine-invariant-disparity\".",
+            number((100.0 * share).round())
+        );
+        Some(warning(WarningCode::DepthLooksInverted, message))
     }
-    if let Some(share) = steps_towards_camera(observation, mask_pixels)
-        && share >= TOWARDS_CAMERA
-        && !is_inverted
-    {
-        warnings.push(Warning {
-            code: WarningCode::DepthLooksInverted,
-            message: format!(
-                "{} % of the steps of the depth at the object's outline go towards the camera: the object seems to be behind its surroundings. If near is large in this depth map, pass depthKind \"affine-invariant-disparity\".",
-                number((100.0 * share).round())
-            ),
-        });
+
+    fn about_normalised_depth(&self) -> Option<Warning> {
+        let message = "The depth map spans exactly the range from 0 to 1, or that of 16 bits, as one that was normalised: its values are no lengths. Pass depthKind \"affine-invariant-disparity\" if near is large in it, otherwise \"affine-invariant\".";
+        looks_normalised(self.observation.depth().data()).then(|| warning(WarningCode::DepthLooksNormalised, message))
     }
-    if looks_normalised(observation.depth().data()) {
-        warnings.push(Warning {
-            code: WarningCode::DepthLooksNormalised,
-            message: "The depth map spans exactly the range from 0 to 1, or that of 16 bits, as one that was normalised: its values are no lengths. Pass depthKind \"affine-invariant-disparity\" if near is large in it, otherwise \"affine-invariant\".".into(),
-        });
+
+    fn about_inverted_mask(&self) -> Option<Warning> {
+        let message = "The mask covers the border of the image: it seems to be that of the background. Invert it.";
+        self.is_mask_inverted().then(|| warning(WarningCode::MaskLooksInverted, message))
     }
-    if is_inverted {
-        warnings.push(Warning {
-            code: WarningCode::MaskLooksInverted,
-            message: "The mask covers the border of the image: it seems to be that of the background. Invert it."
-                .into(),
-        });
+
+    fn about_whole_image(&self) -> Option<Warning> {
+        let [mask, image] = [self.mask_pixels, self.image_pixels()];
+        let message = || {
+            format!(
+                "The mask covers {mask} of the image's {image} pixels: it selects everything, not an object. It may be inverted, or not a mask."
+            )
+        };
+        self.covers_image().then(|| warning(WarningCode::MaskCoversImage, message()))
     }
-    if is_everything {
-        warnings.push(Warning {
-            code: WarningCode::MaskCoversImage,
-            message: format!(
-                "The mask covers {mask_pixels} of the image's {all_pixels} pixels: it selects everything, not an object. It may be inverted, or not a mask."
-            ),
-        });
+
+    fn about_border(&self) -> Option<Warning> {
+        let message = "The mask touches the image border: part of the object may be outside the image, and the initial scale may be too small.";
+        (self.border_pixels > 0).then(|| warning(WarningCode::MaskTouchesBorder, message))
     }
-    if in_border > 0 {
-        warnings.push(Warning {
-            code: WarningCode::MaskTouchesBorder,
-            message: "The mask touches the image border: part of the object may be outside the image, and the initial scale may be too small.".into(),
-        });
+
+    fn about_sparse_depth(&self) -> Option<Warning> {
+        let [readings, mask] = [self.readings, self.mask_pixels];
+        let message = || {
+            format!(
+                "Only {readings} of the mask's {mask} pixels have a depth reading; the pose depends on these alone."
+            )
+        };
+        (2 * readings < mask).then(|| warning(WarningCode::SparseDepth, message()))
     }
-    if 2 * readings < mask_pixels {
-        warnings.push(Warning {
-            code: WarningCode::SparseDepth,
-            message: format!(
-                "Only {readings} of the mask's {mask_pixels} pixels have a depth reading; the pose depends on these alone."
-            ),
-        });
-    }
-    warnings
 }
 
 /// Whether a depth map was normalised to the range from 0: its maximum is the end of the range, and few pixels are 0. If many are 0,
@@ -229,8 +274,8 @@ pub fn about_fit(terms: &ScoreTerms) -> Option<Warning> {
 }
 
 /// A warning about parts of the mesh that are left out.
-pub fn about_mesh(left_out: &LeftOut) -> Option<Warning> {
-    let &LeftOut { floating, inside, ground } = left_out;
+pub fn about_mesh(removed_parts: &RemovedParts) -> Option<Warning> {
+    let &RemovedParts { floating, inside, ground } = removed_parts;
     let plate = (usize::from(ground > 0.0), ground);
     let mut named = String::new();
     for ((count, share), what) in

@@ -7,7 +7,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use super::host::now_ms;
 use crate::align::helper::Helper;
 use crate::helpers::{Helpers, Link};
-use crate::pauses::Pauses;
+use crate::scheduler::Scheduler;
 
 #[wasm_bindgen]
 extern "C" {
@@ -45,9 +45,9 @@ impl Link for JsHelpers {
     }
 }
 
-/// The pauses of a call of JavaScript, which may have helpers.
-pub fn pauses(helpers: Option<JsHelpers>) -> Pauses {
-    Pauses::new(now_ms, None).with_helpers(helpers.map(Helpers::new).unwrap_or_default())
+/// The scheduler of a call of JavaScript, which may have helpers.
+pub fn scheduler(helpers: Option<JsHelpers>) -> Scheduler {
+    Scheduler::new(now_ms, None).with_helpers(helpers.map(Helpers::new).unwrap_or_default())
 }
 
 /// Runs tasks for about `slice_ms` milliseconds. Returns the message about them, or `undefined` if there is nothing to do.

@@ -7,14 +7,14 @@
 
 use super::calibration::{Calibration, CalibrationUncertainty};
 use super::prior::Prior;
-use super::profile::{Pictured, Subject};
+use super::profile::{CalibrationObject, RefinedPose};
 use super::raw_view::{Focal, RawView};
 use super::unknowns::{Reference, Unknowns};
 use crate::error::Result;
 use crate::geometry::depth_kind::DepthKind;
-use crate::pauses::Pauses;
 use crate::precise::no_candidate;
 use crate::progress::Stopwatch;
+use crate::scheduler::Scheduler;
 
 /// Relief of an object beside its width: that of a plate seen from the front, the ratio between neighbours on the grid, and
 /// their number.
@@ -52,7 +52,7 @@ pub struct Estimate {
     /// Standard deviation of the logarithm of the focal length.
     pub focal_deviation: f64,
     /// The best pose of each object; `None` for one that takes no part or has none.
-    pub poses: Vec<Option<Pictured>>,
+    pub poses: Vec<Option<RefinedPose>>,
 }
 
 impl Estimate {
@@ -80,12 +80,12 @@ enum Axis {
 /// The running estimate.
 struct Estimator<'a, 's> {
     view: &'a RawView,
-    subjects: &'a [Subject<'a>],
+    subjects: &'a [CalibrationObject<'a>],
     /// Indices of those on which it rests.
     used: Vec<usize>,
     reference: Reference,
     prior: Prior<'a>,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
     stages: &'a mut Stopwatch<'s>,
 }
 
@@ -96,7 +96,7 @@ struct Sample {
     /// By the image alone, and with the prior.
     score: f64,
     total: f64,
-    poses: Vec<Option<Pictured>>,
+    poses: Vec<Option<RefinedPose>>,
 }
 
 /// The start of an estimate: poses of its objects from an earlier one, by object.
@@ -104,7 +104,7 @@ pub struct Start {
     /// The unknowns.
     pub at: Unknowns,
     /// The poses.
-    pub poses: Vec<Vec<Pictured>>,
+    pub poses: Vec<Vec<RefinedPose>>,
 }
 
 /// Estimates the unknowns of a view, without a start from searches with several calibrations.
@@ -114,12 +114,12 @@ pub struct Start {
 /// observations.
 pub async fn estimate(
     view: &RawView,
-    subjects: &[Subject<'_>],
+    subjects: &[CalibrationObject<'_>],
     start: Option<Start>,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Estimate> {
-    let pixels = |s: &Subject<'_>| s.mask.data().iter().filter(|m| **m != 0).count();
+    let pixels = |s: &CalibrationObject<'_>| s.mask.data().iter().filter(|m| **m != 0).count();
     let mut used: Vec<usize> = (0..subjects.len()).collect();
     // Those first that determine the unit.
     used.sort_by_key(|k| subjects.get(*k).map(|s| core::cmp::Reverse((s.has_length, pixels(s)))));
@@ -130,7 +130,7 @@ pub async fn estimate(
         return Err(first.and_then(|subject| subject.unusable(view)).unwrap_or_else(no_candidate));
     };
     let prior = Prior::of(view, reference);
-    Estimator { view, subjects, used, reference, prior, pauses, stages }.run(start).await
+    Estimator { view, subjects, used, reference, prior, scheduler, stages }.run(start).await
 }
 
 impl Estimator<'_, '_> {
@@ -141,7 +141,7 @@ impl Estimator<'_, '_> {
             found.push(self.searched(*at).await?);
         }
         let score = |k: usize| {
-            let best = |poses: &Vec<(f64, Pictured)>| poses.first().map_or(0.0, |(score, _)| *score);
+            let best = |poses: &Vec<(f64, RefinedPose)>| poses.first().map_or(0.0, |(score, _)| *score);
             found[k].iter().map(best).sum::<f64>() - self.prior.cost(grid[k])
         };
         let best = (0..grid.len()).fold(0, |best, k| if score(k) > score(best) { k } else { best });
@@ -149,11 +149,11 @@ impl Estimator<'_, '_> {
             // The reason why there is none.
             let calibration = self.reference.calibration(self.view.kind, grid[best]);
             for subject in self.used.iter().filter_map(|k| self.subjects.get(*k)) {
-                subject.search(self.view, &calibration, self.pauses, self.stages).await?;
+                subject.search(self.view, &calibration, self.scheduler, self.stages).await?;
             }
             return Err(no_candidate());
         }
-        let mut poses: Vec<Vec<Pictured>> = vec![Vec::new(); self.used.len()];
+        let mut poses: Vec<Vec<RefinedPose>> = vec![Vec::new(); self.used.len()];
         let [own, others] = POSES;
         for (k, count) in [(best, own), (best.wrapping_sub(1), others), (best + 1, others)] {
             let near = found.get(k).into_iter().flatten();
@@ -220,19 +220,19 @@ impl Estimator<'_, '_> {
 
     /// The poses that searches find, by object. Objects without one, such as those with depth that a calibration puts behind
     /// the camera, have none.
-    async fn searched(&mut self, at: Unknowns) -> Result<Vec<Vec<(f64, Pictured)>>> {
+    async fn searched(&mut self, at: Unknowns) -> Result<Vec<Vec<(f64, RefinedPose)>>> {
         let calibration = self.reference.calibration(self.view.kind, at);
         let mut found = Vec::new();
         for k in &self.used {
             let Some(subject) = self.subjects.get(*k) else { continue };
-            let poses = subject.search(self.view, &calibration, self.pauses, self.stages).await;
+            let poses = subject.search(self.view, &calibration, self.scheduler, self.stages).await;
             found.push(poses.unwrap_or_default());
         }
         Ok(found)
     }
 
     /// The score of all objects, refined from these poses.
-    async fn sample(&mut self, at: Unknowns, anchor: Unknowns, poses: &[Vec<Pictured>]) -> Result<Sample> {
+    async fn sample(&mut self, at: Unknowns, anchor: Unknowns, poses: &[Vec<RefinedPose>]) -> Result<Sample> {
         let calibration = self.reference.calibration(self.view.kind, at);
         let deeper = if self.view.kind.is_affine() { at.relief - anchor.relief } else { at.focal - anchor.focal };
         let tolerance = libm::exp(TOLERANCE * deeper);
@@ -242,14 +242,20 @@ impl Estimator<'_, '_> {
             let refined = subject.refined(self.view, &calibration, poses, tolerance, self.stages).ok().flatten();
             sample.score += refined.as_ref().map_or(0.0, |(score, _)| *score);
             sample.poses.push(refined.map(|(_, pose)| pose));
-            self.pauses.here().await;
+            self.scheduler.yield_point().await;
         }
         sample.total += sample.score;
         Ok(sample)
     }
 
     /// The peak of the score along an axis, and its standard deviation. The tolerance for depth is that of the first point.
-    async fn peak(&mut self, axis: Axis, from: Sample, poses: &[Vec<Pictured>], count: i32) -> Result<(Sample, f64)> {
+    async fn peak(
+        &mut self,
+        axis: Axis,
+        from: Sample,
+        poses: &[Vec<RefinedPose>],
+        count: i32,
+    ) -> Result<(Sample, f64)> {
         let center = from.at;
         let at = |k: i32| center.moved(axis == Axis::Relief, f64::from(k) * STEP);
         let mut curve: Vec<(i32, Sample)> = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::calibration::Calibration;
 use super::estimate::{Estimate, Start, estimate};
-use super::profile::{Pictured, Subject};
+use super::profile::{CalibrationObject, RefinedPose};
 use super::raw_view::{Focal, RawView};
 use super::{Calibrated, Object, calibrated, known_scale, subject};
 use crate::error::{Error, ErrorCode, Result};
@@ -11,10 +11,10 @@ use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::Mask;
 use crate::geometry::order::median;
 use crate::geometry::similarity::Similarity;
-use crate::pauses::Pauses;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::progress::{Host, Stopwatch};
+use crate::scheduler::Scheduler;
 use glam::DVec3;
 
 /// A frame of the caller.
@@ -30,7 +30,7 @@ pub struct RawFrame {
 /// A frame whose unit has not been compared with that of the others.
 struct FrameEstimate {
     estimate: Estimate,
-    pose: Pictured,
+    pose: RefinedPose,
 }
 
 /// Calibrates several views of an object. Their units are made one by the size of the object: in metres if that is known, if
@@ -44,13 +44,13 @@ pub async fn calibrate_views(
     mesh: &PreparedMesh<'_>,
     options: &AlignOptions,
     host: &mut dyn Host,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Result<Vec<Calibrated>> {
     let mut stages = Stopwatch::new(host, super::PLAN);
     mesh.check()?;
     let mut all = Vec::new();
     for (k, frame) in frames.iter().enumerate() {
-        let own = estimate_frame(frame, mesh, options, None, pauses, &mut stages).await;
+        let own = estimate_frame(frame, mesh, options, None, scheduler, &mut stages).await;
         all.push(own.map_err(|error| error.in_view(k))?);
     }
     share_focal(frames, &mut all);
@@ -87,7 +87,7 @@ struct Last {
     focal_deviation: f64,
     /// The estimate of the last frame with a mask, its pose, and its scale in the unit of the results.
     estimate: Estimate,
-    pose: Pictured,
+    pose: RefinedPose,
     calibration: Calibration,
     /// Depths of the last frame in the unit of the results, see [`STRIDE`].
     depths: Vec<f32>,
@@ -106,13 +106,13 @@ impl Sequence {
         mesh: &PreparedMesh<'_>,
         options: &AlignOptions,
         host: &mut dyn Host,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Result<Calibrated> {
         let mut stages = Stopwatch::new(host, super::PLAN);
         let Some(last) = &mut self.last else {
             mesh.check()?;
             let FrameEstimate { estimate, pose } =
-                estimate_frame(frame, mesh, options, None, pauses, &mut stages).await?;
+                estimate_frame(frame, mesh, options, None, scheduler, &mut stages).await?;
             let is_metric = frame.view.kind.is_metric();
             let known = known_scale(mesh, options).filter(|_| !is_metric);
             let factor = known.map_or(1.0, |known| known / pose.scale());
@@ -136,7 +136,7 @@ impl Sequence {
             let start = Start { at, poses: vec![vec![last.pose]] };
             let next = RawFrame { view: view.clone(), mask: frame.mask.clone(), world_from_camera: None };
             if let Ok(FrameEstimate { estimate, pose }) =
-                estimate_frame(&next, mesh, options, Some(start), pauses, &mut stages).await
+                estimate_frame(&next, mesh, options, Some(start), scheduler, &mut stages).await
             {
                 last.calibration = times(estimate.calibration, size / pose.scale());
                 (last.estimate, last.pose) = (estimate, pose);
@@ -170,7 +170,7 @@ async fn estimate_frame(
     mesh: &PreparedMesh<'_>,
     options: &AlignOptions,
     start: Option<Start>,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
     stages: &mut Stopwatch<'_>,
 ) -> Result<FrameEstimate> {
     let view = &frame.view;
@@ -185,8 +185,8 @@ async fn estimate_frame(
     };
     check_mask_size([view.values.width(), view.values.height()], mask)?;
     let object = Object { mask, others: None, mesh, options };
-    let subjects: [Subject<'_>; 1] = [subject(&object, view.kind.is_metric())];
-    let estimate = estimate(view, &subjects, start, pauses, stages).await?;
+    let subjects: [CalibrationObject<'_>; 1] = [subject(&object, view.kind.is_metric())];
+    let estimate = estimate(view, &subjects, start, scheduler, stages).await?;
     let pose = estimate.poses.first().copied().flatten().ok_or_else(crate::precise::no_candidate)?;
     Ok(FrameEstimate { estimate, pose })
 }

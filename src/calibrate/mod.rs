@@ -14,7 +14,7 @@ pub mod unknowns;
 
 use calibration::{Calibration, DepthCalibration};
 use estimate::{Estimate, estimate};
-use profile::Subject;
+use profile::CalibrationObject;
 use raw_view::{Focal, RawView};
 
 use crate::error::Result;
@@ -23,12 +23,12 @@ use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::order::median;
 use crate::geometry::pinhole::Pinhole;
-use crate::pauses::Pauses;
 use crate::precise::drawing::pose::MeshFrame;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::prior::Prior as ScalePrior;
 use crate::progress::{Host, Stage, Stopwatch};
+use crate::scheduler::Scheduler;
 
 /// Progress at the start of each stage.
 const PLAN: &[(Stage, f64)] = &[(Stage::Prepare, 0.0), (Stage::Search, 0.0), (Stage::Refine, 0.0)];
@@ -65,7 +65,7 @@ pub async fn calibrate(
     view: &RawView,
     objects: &[Object<'_>],
     host: &mut dyn Host,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Result<Calibrated> {
     for object in objects {
         check_mask_size([view.values.width(), view.values.height()], object.mask)?;
@@ -78,8 +78,8 @@ pub async fn calibrate(
     if !view.kind.is_affine() && view.focal == Focal::Known && !is_scaled {
         return calibrated(view, Calibration::default(), None, is_metric);
     }
-    let subjects: Vec<Subject<'_>> = objects.iter().map(|object| subject(object, is_metric)).collect();
-    let estimate = estimate(view, &subjects, None, pauses, &mut stages).await?;
+    let subjects: Vec<CalibrationObject<'_>> = objects.iter().map(|object| subject(object, is_metric)).collect();
+    let estimate = estimate(view, &subjects, None, scheduler, &mut stages).await?;
     let factors = lengths.iter().zip(&estimate.poses).filter_map(|(length, pose)| {
         let (length, pose) = length.as_ref().zip(pose.as_ref())?;
         Some((length / pose.scale()) as f32)
@@ -110,12 +110,12 @@ fn known_scale(mesh: &PreparedMesh<'_>, options: &AlignOptions) -> Option<f64> {
 }
 
 /// An object for the estimate. Lengths in metres are no help while the unit of the depth is unknown.
-fn subject<'a>(object: &Object<'a>, is_metric: bool) -> Subject<'a> {
+fn subject<'a>(object: &Object<'a>, is_metric: bool) -> CalibrationObject<'a> {
     let Object { mask, others, mesh, options } = object;
     let has_length = known_scale(mesh, options).is_some();
     let mut options = (*options).clone();
     if !is_metric {
         (options.scale, options.known_extent_m) = Default::default();
     }
-    Subject { mask, others: others.clone(), mesh, options, has_length }
+    CalibrationObject { mask, others: others.clone(), mesh, options, has_length }
 }

@@ -9,25 +9,25 @@ use super::raw_view::RawView;
 use crate::error::{Error, Result};
 use crate::evidence::observation::Observation;
 use crate::geometry::image::{DepthMap, Mask};
-use crate::pauses::Pauses;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::drawing::render::Canvas;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{FINE, SearchSettings};
 use crate::precise::search::refine::Refiner;
 use crate::precise::search::start;
 use crate::progress::Stopwatch;
 use crate::report::Effort;
+use crate::scheduler::Scheduler;
 
 /// Maximum number of steps of a refinement.
 const STEPS: usize = 8;
 
 /// An object of a view.
-pub struct Subject<'a> {
+pub struct CalibrationObject<'a> {
     /// Its pixels.
     pub mask: &'a Mask,
     /// The pixels of the others, if there are any.
@@ -43,13 +43,13 @@ pub struct Subject<'a> {
 /// A pose that does not depend on the distance of the object nor on the focal length: size and place are in pixels, and the
 /// distance is relative to the median depth.
 #[derive(Debug, Clone, Copy)]
-pub struct Pictured {
+pub struct RefinedPose {
     pose: CropPose,
     focal: f64,
     median: f64,
 }
 
-impl Subject<'_> {
+impl CalibrationObject<'_> {
     /// The error of the readings of this object, whatever the calibration.
     pub fn unusable(&self, view: &RawView) -> Option<Error> {
         let reading = |d: &f32| if d.is_finite() { d.abs().max(f32::MIN_POSITIVE.sqrt()) } else { 0.0 };
@@ -75,17 +75,17 @@ impl Subject<'_> {
         &self,
         view: &RawView,
         calibration: &Calibration,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
         stages: &mut Stopwatch<'_>,
-    ) -> Result<Vec<(f64, Pictured)>> {
+    ) -> Result<Vec<(f64, RefinedPose)>> {
         let observation = self.observation(view, calibration)?;
-        let mut rounds = start::begin(&observation, self.mesh, None, &self.options, &self.settings(), stages)?;
-        start::run(&mut rounds, &(0.0..1.0), pauses, stages).await;
+        let mut rounds = start::start_search(&observation, self.mesh, None, &self.options, &self.settings(), stages)?;
+        start::run_rounds(&mut rounds, &(0.0..1.0), scheduler, stages).await;
         let median = rounds.search.observation.median_m;
-        let pictured = |found: &Found| {
-            (f64::from(found.score.total), Pictured { pose: found.pose, focal: calibration.focal, median })
+        let pictured = |candidate: &Candidate| {
+            (f64::from(candidate.score.total), RefinedPose { pose: candidate.pose, focal: calibration.focal, median })
         };
-        Ok(rounds.found.iter().map(pictured).collect())
+        Ok(rounds.candidates.iter().map(pictured).collect())
     }
 
     /// The best of these poses, refined with a calibration, and its score; `None` without poses.
@@ -93,14 +93,14 @@ impl Subject<'_> {
         &self,
         view: &RawView,
         calibration: &Calibration,
-        poses: &[Pictured],
+        poses: &[RefinedPose],
         tolerance: f64,
         stages: &mut Stopwatch<'_>,
-    ) -> Result<Option<(f64, Pictured)>> {
+    ) -> Result<Option<(f64, RefinedPose)>> {
         let observation = self.observation(view, calibration)?;
         let clean = Rc::new(CleanObservation::new(&observation));
         let search: Search =
-            start::prepared(&observation, Some(clean), self.mesh, &self.options, &self.settings(), stages)?;
+            start::prepare_search(&observation, Some(clean), self.mesh, &self.options, &self.settings(), stages)?;
         let mut objective = search.objective(FINE);
         objective.scoring.depth_m *= tolerance as f32;
         let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
@@ -108,14 +108,14 @@ impl Subject<'_> {
         let median = search.observation.median_m;
         let refined = poses.iter().map(|pose| {
             let pose = pose.seen(calibration.focal, median);
-            let found = refiner.refine_in_proportion(&mut canvas, pose, STEPS, &search.mesh.surface);
-            (f64::from(found.score.total), Pictured { pose: found.pose, focal: calibration.focal, median })
+            let candidate = refiner.refine_in_proportion(&mut canvas, pose, STEPS, &search.mesh.surface);
+            (f64::from(candidate.score.total), RefinedPose { pose: candidate.pose, focal: calibration.focal, median })
         });
         Ok(refined.reduce(|best, next| if next.0 > best.0 { next } else { best }))
     }
 }
 
-impl Pictured {
+impl RefinedPose {
     /// The scale, in units of depth with the calibration of the pose per unit of the mesh in its normalised frame.
     pub fn scale(&self) -> f64 {
         self.pose.scale_translation().0

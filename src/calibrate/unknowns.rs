@@ -1,7 +1,7 @@
 //! Unknowns: the numbers that are estimated, in units that are the same for every depth map.
 
 use super::calibration::Calibration;
-use super::profile::Subject;
+use super::profile::CalibrationObject;
 use super::raw_view::RawView;
 use crate::geometry::depth_kind::DepthKind;
 use crate::geometry::image::bounds_of;
@@ -42,9 +42,9 @@ pub struct Reference {
 
 impl Reference {
     /// The reference of the objects of a view; `None` without a reading.
-    pub fn of<'a>(view: &RawView, subjects: impl Iterator<Item = &'a Subject<'a>>) -> Option<Self> {
+    pub fn of<'a>(view: &RawView, subjects: impl Iterator<Item = &'a CalibrationObject<'a>>) -> Option<Self> {
         let (mut middles, mut reliefs) = (Vec::new(), Vec::new());
-        for Subject { mask, .. } in subjects {
+        for CalibrationObject { mask, .. } in subjects {
             let pixels = view.values.data().iter().zip(mask.data());
             let values = || pixels.clone().filter(|(d, m)| **m != 0 && d.is_finite()).map(|(d, _)| *d);
             let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0);

@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3, Vec3};
 use crate::geometry::kd_tree::{GroupSearch, KdTree};
 use crate::geometry::order::{index_of, median};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
-use crate::pauses::Pauses;
+use crate::scheduler::Scheduler;
 
 /// Ratio of the middle to the largest eigenvalue below which a neighbourhood is collinear.
 const COLLINEAR: f64 = 1e-8;
@@ -23,18 +23,18 @@ pub enum Orientation {
     AwayFrom(Vec3),
 }
 
-/// The [`Estimation`] of all points, with pauses.
+/// The [`Estimation`] of all points, yielding.
 pub async fn paused_normals(
     points: &[Vec3],
     tree: &KdTree,
     neighbors: usize,
     orientation: Orientation,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Vec<Vec3> {
     let mut estimation = Estimation::new(points, tree, neighbors, orientation);
     for group in tree.groups() {
         estimation.add(group);
-        pauses.point(NORMAL * group.len() as f64).await;
+        scheduler.yield_after(NORMAL * group.len() as f64).await;
     }
     estimation.normals
 }
@@ -74,14 +74,14 @@ impl<'a> Estimation<'a> {
 
 /// Normals that point away from the viewpoint `eye` or, if it is unknown, from the median of the points, which is
 /// robust to clutter. Without viewpoints, this orientation is consistent between two clouds.
-pub async fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usize, pauses: &Pauses) -> Vec<Vec3> {
+pub async fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usize, scheduler: &Scheduler) -> Vec<Vec3> {
     let mut center = eye.unwrap_or_default();
     for axis in (0..3).take_while(|_| eye.is_none()) {
         center[axis] = median(points.iter().map(|p| p[axis])).unwrap_or_default();
-        pauses.point(OF_MEDIAN * points.len() as f64).await;
+        scheduler.yield_after(OF_MEDIAN * points.len() as f64).await;
     }
-    let tree = KdTree::paused(points, pauses).await;
-    paused_normals(points, &tree, neighbors, Orientation::AwayFrom(center), pauses).await
+    let tree = KdTree::paused(points, scheduler).await;
+    paused_normals(points, &tree, neighbors, Orientation::AwayFrom(center), scheduler).await
 }
 
 /// The unit eigenvector of the smallest eigenvalue, or zero if the neighbours do not span a plane. Sums are relative to

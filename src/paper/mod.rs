@@ -12,7 +12,6 @@ use crate::evidence::clouds::Clouds;
 use crate::evidence::extents::target_from_source;
 use crate::geometry::angle::sin_cos;
 use crate::paper::options::PaperOptions;
-use crate::pauses::{Pauses, finished};
 use crate::progress::{Stage, Stopwatch};
 use crate::register::feature_registration::FeatureRegistration;
 use crate::register::ransac::{Guard, RansacSettings};
@@ -20,6 +19,7 @@ use crate::register::settings::{RegistrationSettings, icp_metric};
 use crate::register::support::SupportSettings;
 use crate::register::umeyama::ScaleMode;
 use crate::report::{Counts, Solution};
+use crate::scheduler::{Scheduler, finished};
 
 /// Progress at the start of each stage, 0 to 1; from profiles of real cases.
 pub const PLAN: &[(Stage, f64)] = &[
@@ -44,10 +44,10 @@ pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwa
     let target = observed.normalized(&evidence.observed);
     let source = reconstructed.normalized(&evidence.reconstructed);
     let settings = settings_of(options);
-    let pauses = Pauses::none();
+    let scheduler = Scheduler::unbounded();
     let estimate = finished(async {
-        let registration = FeatureRegistration::new(&source, &target, &settings, stages, &pauses).await;
-        registration.solve(&settings, stages, &pauses).await
+        let registration = FeatureRegistration::new(&source, &target, &settings, stages, &scheduler).await;
+        registration.solve(&settings, stages, &scheduler).await
     })?;
     let solution = Solution {
         clamped: estimate.clamped,

@@ -8,9 +8,9 @@ use super::support::SupportSettings;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
-use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Counts;
+use crate::scheduler::Scheduler;
 
 /// Maximum number of descriptors per cloud; denser clouds get a coarser grid. Matching is quadratic.
 pub const MAX_FEATURES: usize = 8_000;
@@ -27,8 +27,8 @@ pub(super) struct CloudPyramid<'a> {
 }
 
 impl<'a> CloudPyramid<'a> {
-    async fn new(full: &'a Cloud, voxel_size: f32, pauses: &Pauses) -> Self {
-        Self { full, grid: GridCloud::of_at_most(MAX_FEATURES, full, voxel_size, pauses).await }
+    async fn new(full: &'a Cloud, voxel_size: f32, scheduler: &Scheduler) -> Self {
+        Self { full, grid: GridCloud::of_at_most(MAX_FEATURES, full, voxel_size, scheduler).await }
     }
 }
 
@@ -40,9 +40,9 @@ pub(super) struct CloudPair<'a> {
 
 impl<'a> CloudPair<'a> {
     /// A pair of clouds with normals, on grids of `voxel_size`.
-    pub(super) async fn new(source: &'a Cloud, target: &'a Cloud, voxel_size: f32, pauses: &Pauses) -> Self {
-        let source = CloudPyramid::new(source, voxel_size, pauses).await;
-        Self { source, target: CloudPyramid::new(target, voxel_size, pauses).await }
+    pub(super) async fn new(source: &'a Cloud, target: &'a Cloud, voxel_size: f32, scheduler: &Scheduler) -> Self {
+        let source = CloudPyramid::new(source, voxel_size, scheduler).await;
+        Self { source, target: CloudPyramid::new(target, voxel_size, scheduler).await }
     }
 
     /// The descriptors of source and target on their grids.
@@ -50,13 +50,13 @@ impl<'a> CloudPair<'a> {
         &self,
         settings: &RegistrationSettings,
         stages: &mut Stopwatch<'_>,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> [Vec<Descriptor>; 2] {
         stages.enter(Stage::Features);
         let radius = settings.fpfh_radius_voxels * settings.voxel_size;
         let mut found = [Vec::new(), Vec::new()];
         for (found, side) in found.iter_mut().zip([&self.source, &self.target]) {
-            *found = fpfh(&side.grid.cloud, &side.grid.tree, radius, pauses).await;
+            *found = fpfh(&side.grid.cloud, &side.grid.tree, radius, scheduler).await;
         }
         found
     }
@@ -66,10 +66,10 @@ impl<'a> CloudPair<'a> {
         &self,
         initial: &Similarity,
         settings: &IcpSettings,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Refined {
         let (source, target) = (&self.source.grid, &self.target.grid);
-        refine(&source.cloud, &target.cloud, &target.tree, initial, settings, pauses).await
+        refine(&source.cloud, &target.cloud, &target.tree, initial, settings, scheduler).await
     }
 
     /// ICP between the grids, then between the full clouds.
@@ -77,19 +77,19 @@ impl<'a> CloudPair<'a> {
         &self,
         initial: &Similarity,
         settings: &RegistrationSettings,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Refined {
         let Some(coarse) = settings.icp_on_grid() else {
             return Refined { target_from_source: *initial, iterations: 0, converged: true, supported: 0, rms: 0.0 };
         };
-        let on_grid = self.refine_on_grid(initial, &coarse, pauses).await;
+        let on_grid = self.refine_on_grid(initial, &coarse, scheduler).await;
         let support = SupportSettings { max_distance: coarse.final_distance, ..settings.support };
         let fine = IcpSettings { support, ..coarse };
         let (source, target) = (self.source.full, self.target.full);
         let step = source.len().div_ceil(FINE_POINTS).max(1);
         let points = source.select((0..source.len()).step_by(step));
-        let tree = KdTree::paused(&target.points, pauses).await;
-        let on_points = refine(&points, target, &tree, &on_grid.target_from_source, &fine, pauses).await;
+        let tree = KdTree::paused(&target.points, scheduler).await;
+        let on_points = refine(&points, target, &tree, &on_grid.target_from_source, &fine, scheduler).await;
         Refined { iterations: on_grid.iterations + on_points.iterations, ..on_points }
     }
 

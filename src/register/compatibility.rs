@@ -9,7 +9,7 @@ use super::ransac::pair_of;
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::order::{index_of, pack, select_smallest, sort};
 use crate::geometry::similarity::Similarity;
-use crate::pauses::Pauses;
+use crate::scheduler::Scheduler;
 
 /// Number of compatible matches from which the first pose of a seed is computed.
 const SEED_NEIGHBORS: usize = 30;
@@ -44,7 +44,7 @@ pub async fn hypotheses(
     matches: &[Match],
     distance: f32,
     count: usize,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Vec<Hypothesis> {
     let pairs: Option<Vec<Pair>> = matches.iter().map(|m| pair_of(source, target, m)).collect();
     let Some(pairs) = pairs else { return Vec::new() };
@@ -53,24 +53,24 @@ pub async fn hypotheses(
     let mut graph = Graph::new(ends.len());
     for i in 0..ends.len() {
         graph.connect(i, &ends, distance);
-        pauses.point(COMPARED * (ends.len() - i) as f64).await;
+        scheduler.yield_after(COMPARED * (ends.len() - i) as f64).await;
     }
     let mut order: Vec<u64> = Vec::with_capacity(pairs.len());
     for i in 0..pairs.len() {
         order.push(pack(-graph.weight(i), i as u32));
-        pauses.point(WORD * graph.words as f64 * f64::from(1 + graph.common(i, i))).await;
+        scheduler.yield_after(WORD * graph.words as f64 * f64::from(1 + graph.common(i, i))).await;
     }
     sort(&mut order);
     let mut taken = vec![false; pairs.len()];
     let mut found: Vec<Hypothesis> = Vec::new();
     for seed in order.into_iter().map(|key| index_of(key) as usize) {
-        if found.len() >= count || !pauses.goes_on(!found.is_empty()) {
+        if found.len() >= count || !scheduler.may_continue(!found.is_empty()) {
             break;
         }
         if taken[seed] {
             continue;
         }
-        pauses.point(TESTED * (REFITS * pairs.len()) as f64).await;
+        scheduler.yield_after(TESTED * (REFITS * pairs.len()) as f64).await;
         let Some(first) = graph.consensus(seed, &pairs) else { continue };
         let Some(hypothesis) = refit(first, &pairs, f64::from(distance)) else { continue };
         taken[seed] = true;

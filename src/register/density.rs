@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::order::quantile;
-use crate::pauses::Pauses;
+use crate::scheduler::Scheduler;
 
 /// The neighbour whose distance measures the density at a point.
 const NEIGHBOR: usize = 8;
@@ -20,14 +20,14 @@ const SPARSER: f32 = 1.5;
 const SEARCH: f64 = 1e-3;
 
 /// Indices of the points that are about as dense as the densest quarter, in ascending order.
-pub async fn dense_points(points: &[Vec3], pauses: &Pauses) -> Vec<usize> {
-    let tree = KdTree::paused(points, pauses).await;
+pub async fn dense_points(points: &[Vec3], scheduler: &Scheduler) -> Vec<usize> {
+    let tree = KdTree::paused(points, scheduler).await;
     let mut found = Vec::new();
     let mut reaches_squared: Vec<f32> = Vec::with_capacity(points.len());
     for &point in points {
         tree.k_nearest(point, NEIGHBOR + 1, &mut found);
         reaches_squared.push(found.last().map_or(f32::INFINITY, |n| n.distance_squared));
-        pauses.point(SEARCH).await;
+        scheduler.yield_after(SEARCH).await;
     }
     let surface = quantile(reaches_squared.iter().copied(), SURFACE_QUANTILE).unwrap_or_default();
     let limit = SPARSER * SPARSER * surface;

@@ -12,11 +12,11 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vector3};
 use crate::options::Options;
 use crate::options::scale::ScaleOption;
-use crate::pauses::{Boxed, Pauses, Task, boxed, finished};
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::register::matching::Match;
 use crate::register::ransac::{Consensus, Guard, GuardMode, RansacSettings, ransac, reweighted};
 use crate::report::Counts;
+use crate::scheduler::{Boxed, Scheduler, Task, boxed, finished};
 
 /// Estimates the similarity that most correspondences agree with. Clouds are interleaved x, y, z; `correspondences` are
 /// interleaved pairs of point indices, source then target.
@@ -30,8 +30,8 @@ pub fn estimate_sim3(
     options: &EstimateSim3Options,
     host: &mut dyn Host,
 ) -> Result<Registration> {
-    let pauses = Pauses::new(|| 0.0, options.work_budget);
-    finished(estimated([source_xyz, target_xyz], correspondences, options, host, &pauses))
+    let scheduler = Scheduler::new(|| 0.0, options.work_budget);
+    finished(estimated([source_xyz, target_xyz], correspondences, options, host, &scheduler))
 }
 
 /// [`estimate_sim3`] in steps, which end by this clock.
@@ -47,8 +47,8 @@ pub fn estimate_sim3_task(
     clock: fn() -> f64,
 ) -> Result<Task<'static, Registration>> {
     options.validate()?;
-    Ok(Task::new(Pauses::new(clock, options.work_budget), |pauses| async move {
-        estimated([&source_xyz, &target_xyz], &correspondences, &options, &mut host, &pauses).await
+    Ok(Task::new(Scheduler::new(clock, options.work_budget), |scheduler| async move {
+        estimated([&source_xyz, &target_xyz], &correspondences, &options, &mut host, &scheduler).await
     }))
 }
 
@@ -59,27 +59,27 @@ fn estimated<'a>(
     correspondences: &'a [u32],
     options: &'a EstimateSim3Options,
     host: &'a mut dyn Host,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 ) -> Boxed<'a, Result<Registration>> {
     boxed(async move {
         options.validate()?;
         for (argument, xyz) in [("source", source_xyz), ("target", target_xyz)] {
             check_cloud(argument, xyz, 3)?;
-            pauses.point(PREPARED * xyz.len() as f64).await;
+            scheduler.yield_after(PREPARED * xyz.len() as f64).await;
         }
         let matches = check_correspondences(correspondences, source_xyz.len() / 3, target_xyz.len() / 3)?;
-        pauses.point(PREPARED * correspondences.len() as f64).await;
+        scheduler.yield_after(PREPARED * correspondences.len() as f64).await;
         let mut stages = Stopwatch::new(host, PLAN);
         stages.enter(Stage::Ransac);
         let problem = Problem::new(source_xyz, target_xyz, matches, options)?;
-        pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+        scheduler.yield_after(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
         let Problem { source, target, matches, settings, .. } = &problem;
-        let consensus = ransac(&source.points, &target.points, matches, settings, pauses)
+        let consensus = ransac(&source.points, &target.points, matches, settings, scheduler)
             .await
             .map_err(|e| about_clouds(e, "correspondences"))?;
-        pauses.point(PREPARED * consensus.inliers.len() as f64).await;
-        let unit = reweighted(&source.points, &target.points, matches, &consensus, settings, pauses).await;
-        pauses.point(PREPARED * consensus.inliers.len() as f64).await;
+        scheduler.yield_after(PREPARED * consensus.inliers.len() as f64).await;
+        let unit = reweighted(&source.points, &target.points, matches, &consensus, settings, scheduler).await;
+        scheduler.yield_after(PREPARED * consensus.inliers.len() as f64).await;
         Ok(problem.solved(consensus, &unit, options.seed, stages))
     })
 }

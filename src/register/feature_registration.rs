@@ -10,9 +10,9 @@ use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vector3};
-use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Counts;
+use crate::scheduler::Scheduler;
 
 /// An estimated transform between normalised frames.
 #[derive(Debug, Clone)]
@@ -42,12 +42,12 @@ impl<'a> FeatureRegistration<'a> {
         target: &'a Cloud,
         settings: &RegistrationSettings,
         stages: &mut Stopwatch<'_>,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Self {
-        let clouds = CloudPair::new(source, target, settings.voxel_size, pauses).await;
-        let [source, target] = clouds.descriptors(settings, stages, pauses).await;
+        let clouds = CloudPair::new(source, target, settings.voxel_size, scheduler).await;
+        let [source, target] = clouds.descriptors(settings, stages, scheduler).await;
         stages.enter(Stage::Matching);
-        let matches = Nearest::of(&source, &target, pauses).await.enough();
+        let matches = Nearest::of(&source, &target, scheduler).await.enough();
         Self { clouds, matches }
     }
 
@@ -59,17 +59,17 @@ impl<'a> FeatureRegistration<'a> {
         &self,
         settings: &RegistrationSettings,
         stages: &mut Stopwatch<'_>,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Result<Estimate> {
         let Self { clouds, matches } = self;
         stages.enter(Stage::Ransac);
         let points = [&clouds.source, &clouds.target].map(|side| &side.grid.cloud.points);
-        let consensus = ransac(points[0], points[1], matches, &settings.ransac, pauses).await?;
+        let consensus = ransac(points[0], points[1], matches, &settings.ransac, scheduler).await?;
         stages.enter(Stage::Filter);
         let filtered = self.refit_on_supported(&consensus, settings);
 
         stages.enter(Stage::Icp);
-        let refined = clouds.refine(&filtered, settings, pauses).await;
+        let refined = clouds.refine(&filtered, settings, scheduler).await;
         // If the refinement may change the scale, it can also end at a bound of the guard.
         let guard = settings.ransac.guard.filter(|_| !settings.lock_scale);
         let stopped = guard.is_some_and(|g| g.is_bound(refined.target_from_source.scale));

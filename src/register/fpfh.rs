@@ -6,7 +6,7 @@ use glam::Vec3;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::{KdTree, Neighbor};
 use crate::geometry::order::{index_of, pack, select_smallest, sort, value_of};
-use crate::pauses::Pauses;
+use crate::scheduler::Scheduler;
 
 /// Bins per angle.
 const BINS: usize = 11;
@@ -29,25 +29,25 @@ const COUNTED: f64 = 1e-4;
 
 /// The descriptors of a cloud with normals, one per point, from the neighbours within `radius`. `tree` is the search
 /// tree over the same points.
-pub async fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32, pauses: &Pauses) -> Vec<Descriptor> {
+pub async fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32, scheduler: &Scheduler) -> Vec<Descriptor> {
     let mut found = Vec::new();
     let mut neighborhoods: Vec<Vec<Neighbor>> = Vec::with_capacity(cloud.len());
     for (i, &point) in cloud.points.iter().enumerate() {
         tree.within(point, radius, &mut found);
-        pauses.point(FOUND * found.len() as f64).await;
+        scheduler.yield_after(FOUND * found.len() as f64).await;
         neighborhoods.push(nearest_others(i, &mut found));
     }
 
     let mut simplified: Vec<Descriptor> = Vec::with_capacity(cloud.len());
     for (i, near) in neighborhoods.iter().enumerate() {
         simplified.push(simplified_histogram(cloud, i, near));
-        pauses.point(COUNTED * near.len() as f64).await;
+        scheduler.yield_after(COUNTED * near.len() as f64).await;
     }
 
     let mut combined: Vec<Descriptor> = Vec::with_capacity(cloud.len());
     for (near, own) in neighborhoods.iter().zip(&simplified) {
         combined.push(combined_histogram(near, own, &simplified));
-        pauses.point(COUNTED * near.len() as f64).await;
+        scheduler.yield_after(COUNTED * near.len() as f64).await;
     }
     combined
 }

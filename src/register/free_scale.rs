@@ -27,10 +27,10 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::order::largest;
 use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::voxel_size_leaving;
-use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
 use crate::register::free_space::{FreeSpace, SEEN};
 use crate::report::Counts;
+use crate::scheduler::Scheduler;
 
 /// Settings of one round of matching and RANSAC.
 struct Round {
@@ -84,23 +84,23 @@ pub(super) async fn register_free(
     [source_xyz, target_xyz]: [&[f64]; 2],
     options: &RegisterOptions,
     stages: &mut Stopwatch<'_>,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Result<Candidate> {
     let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
     let guard = frames.guard.unwrap_or([1.0; 2]);
     stages.enter(Stage::Normals);
-    pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
-    let scans = Scans::new(&frames, [source_xyz, target_xyz], options, pauses).await;
+    scheduler.yield_after(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+    let scans = Scans::new(&frames, [source_xyz, target_xyz], options, scheduler).await;
 
     let [least, most] = [guard[0].max(WIDEST[0]), guard[1].min(WIDEST[1])];
-    let vote = scans.at(&VOTE, pauses).await;
+    let vote = scans.at(&VOTE, scheduler).await;
     let mut voted: Vec<Hypothesis> = Vec::new();
     let mut scale = least * COARSE_STEP.min(most / least).sqrt();
-    while scale <= most && pauses.goes_on(!voted.is_empty()) {
-        let scaled = scans.scaled(scale, &vote, guard, options, pauses).await;
-        let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size, pauses).await;
-        let level = Level::new(&scaled, &clouds, &VOTE, stages, pauses).await;
-        voted.extend(level.hypotheses(&VOTE, pauses).await);
+    while scale <= most && scheduler.may_continue(!voted.is_empty()) {
+        let scaled = scans.scaled(scale, &vote, guard, options, scheduler).await;
+        let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size, scheduler).await;
+        let level = Level::new(&scaled, &clouds, &VOTE, stages, scheduler).await;
+        voted.extend(level.hypotheses(&VOTE, scheduler).await);
         scale *= COARSE_STEP;
     }
     let voted = best_first(&voted, VOTED);
@@ -109,18 +109,18 @@ pub(super) async fn register_free(
     let (scale, least) = (first.pose.scale, SECOND * first.score);
     let differs = |other: &f64| (other / scale).max(scale / other) >= SECOND_RATIO;
     let second = voted.iter().take_while(|vote| vote.score >= least).map(|vote| vote.pose.scale).find(differs);
-    let pose = scans.at(&POSE, pauses).await;
+    let pose = scans.at(&POSE, scheduler).await;
     let mut best: Option<(f64, Estimate)> = None;
     for scale in core::iter::once(scale).chain(second) {
-        if !pauses.goes_on(best.is_some()) {
+        if !scheduler.may_continue(best.is_some()) {
             break;
         }
-        let mut scaled = scans.scaled(scale, &pose, guard, options, pauses).await;
+        let mut scaled = scans.scaled(scale, &pose, guard, options, scheduler).await;
         if let Some(voxel_size) = given_voxel_size(options, &frames) {
             let guard = guard.map(|bound| bound / scale);
             scaled.settings = RegistrationSettings::new(options, voxel_size, ScaleMode::Free, Some(guard));
         }
-        if let Some((score, estimate)) = scaled.solve(&voted, guard, stages, pauses).await
+        if let Some((score, estimate)) = scaled.solve(&voted, guard, stages, scheduler).await
             && best.as_ref().is_none_or(|(highest, _)| score > *highest)
         {
             best = Some((score, estimate));
@@ -140,15 +140,15 @@ struct Scans {
 }
 
 impl Scans {
-    async fn new(frames: &NormalizedPair, xyz: [&[f64]; 2], options: &RegisterOptions, pauses: &Pauses) -> Self {
-        let (source, source_eye) = scan(&frames.source, xyz[0], options, pauses).await;
-        let (target, target_eye) = scan(&frames.target, xyz[1], options, pauses).await;
+    async fn new(frames: &NormalizedPair, xyz: [&[f64]; 2], options: &RegisterOptions, scheduler: &Scheduler) -> Self {
+        let (source, source_eye) = scan(&frames.source, xyz[0], options, scheduler).await;
+        let (target, target_eye) = scan(&frames.target, xyz[1], options, scheduler).await;
         Self { source, target, eyes: [source_eye, target_eye] }
     }
 
     /// The resolution of a round, as far as it does not depend on the scale.
-    async fn at(&self, round: &Round, pauses: &Pauses) -> Resolution {
-        Resolution { voxels: round.voxels, target: voxel_size_leaving(&self.target, round.voxels, pauses).await }
+    async fn at(&self, round: &Round, scheduler: &Scheduler) -> Resolution {
+        Resolution { voxels: round.voxels, target: voxel_size_leaving(&self.target, round.voxels, scheduler).await }
     }
 
     /// Both clouds, the source scaled.
@@ -158,17 +158,17 @@ impl Scans {
         resolution: &Resolution,
         guard: [f64; 2],
         options: &RegisterOptions,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Scaled<'_> {
         let factor = scale as f32;
         let points = self.source.points.iter().map(|&p| factor * p).collect();
         let source = Cloud { points, normals: self.source.normals.clone() };
-        let voxel_size = voxel_size_leaving(&source, resolution.voxels, pauses).await.max(resolution.target);
+        let voxel_size = voxel_size_leaving(&source, resolution.voxels, scheduler).await.max(resolution.target);
         let slack = FREE_SLACK_VOXELS * voxel_size;
         let of_source = self.eyes[0].and_then(|eye| FreeSpace::seen_from(factor * eye, &source.points, slack));
-        pauses.point(SEEN * source.len() as f64).await;
+        scheduler.yield_after(SEEN * source.len() as f64).await;
         let of_target = self.eyes[1].and_then(|eye| FreeSpace::seen_from(eye, &self.target.points, slack));
-        pauses.point(SEEN * self.target.len() as f64).await;
+        scheduler.yield_after(SEEN * self.target.len() as f64).await;
         let free = [of_source, of_target];
         let guard = guard.map(|bound| bound / scale);
         let settings = RegistrationSettings::new(options, f64::from(voxel_size), ScaleMode::Free, Some(guard));
@@ -177,14 +177,19 @@ impl Scans {
 }
 
 /// A cloud with normals, and the position of its sensor.
-async fn scan(extents: &Extents, xyz: &[f64], options: &RegisterOptions, pauses: &Pauses) -> (Cloud, Option<Vec3>) {
-    let cloud = limit_points(extents.normalized_flat(xyz), options.max_points as usize, pauses).await;
+async fn scan(
+    extents: &Extents,
+    xyz: &[f64],
+    options: &RegisterOptions,
+    scheduler: &Scheduler,
+) -> (Cloud, Option<Vec3>) {
+    let cloud = limit_points(extents.normalized_flat(xyz), options.max_points as usize, scheduler).await;
     // Scans are usually in the frame of their sensor; the points show whether that is plausible.
     let eye = vec3(&extents.unit_from_own().translation);
-    let slack = FREE_SLACK_VOXELS * voxel_size_leaving(&cloud, POSE.voxels, pauses).await;
+    let slack = FREE_SLACK_VOXELS * voxel_size_leaving(&cloud, POSE.voxels, scheduler).await;
     let eye = FreeSpace::seen_from(eye, &cloud.points, slack).map(|_| eye);
-    pauses.point(SEEN * cloud.len() as f64).await;
-    (with_normals(cloud, eye, pauses).await, eye)
+    scheduler.yield_after(SEEN * cloud.len() as f64).await;
+    (with_normals(cloud, eye, scheduler).await, eye)
 }
 
 /// The resolution of both clouds.
@@ -211,30 +216,30 @@ impl Scaled<'_> {
         voted: &[Hypothesis],
         guard: [f64; 2],
         stages: &mut Stopwatch<'_>,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Option<(f64, Estimate)> {
-        let clouds = CloudPair::new(&self.source, self.target, self.settings.voxel_size, pauses).await;
-        let level = Level::new(self, &clouds, &POSE, stages, pauses).await;
-        let mut found = level.hypotheses(&POSE, pauses).await;
+        let clouds = CloudPair::new(&self.source, self.target, self.settings.voxel_size, scheduler).await;
+        let level = Level::new(self, &clouds, &POSE, stages, scheduler).await;
+        let mut found = level.hypotheses(&POSE, scheduler).await;
         let iterations = found.len();
         stages.enter(Stage::Filter);
         for vote in voted {
             found.push(level.judged(vote.pose, vote.inliers));
-            pauses.point(level.scorer.work()).await;
+            scheduler.yield_after(level.scorer.work()).await;
         }
         let chosen = self.distinct(&found, level.scorer.distance);
 
         stages.enter(Stage::Icp);
         let mut best: Option<Hypothesis> = None;
         for candidate in chosen {
-            if !pauses.goes_on(best.is_some()) {
+            if !scheduler.may_continue(best.is_some()) {
                 break;
             }
             let mut own = self.own(&candidate.pose);
             if let Some(icp) = self.near(own.scale).brief_icp_on_grid(ITERATIONS) {
-                own = clouds.refine_on_grid(&own, &icp, pauses).await.target_from_source;
+                own = clouds.refine_on_grid(&own, &icp, scheduler).await.target_from_source;
             }
-            pauses.point(level.scorer.work()).await;
+            scheduler.yield_after(level.scorer.work()).await;
             let refined = level.judged(self.unscaled(own), candidate.inliers);
             if best.is_none_or(|best| refined.score > best.score) {
                 best = Some(refined);
@@ -242,7 +247,7 @@ impl Scaled<'_> {
         }
         let best = best?;
         let own = self.own(&best.pose);
-        let refined = clouds.refine(&own, &self.near(own.scale), pauses).await;
+        let refined = clouds.refine(&own, &self.near(own.scale), scheduler).await;
         let pose = self.unscaled(refined.target_from_source);
         let bounds = Guard { min: guard[0], max: guard[1], mode: GuardMode::Reject };
         let matches = level.matches.len();
@@ -322,12 +327,12 @@ impl<'a> Level<'a> {
         clouds: &'a CloudPair<'a>,
         round: &Round,
         stages: &mut Stopwatch<'_>,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Self {
         let settings = &scaled.settings;
-        let [source, target] = clouds.descriptors(settings, stages, pauses).await;
+        let [source, target] = clouds.descriptors(settings, stages, scheduler).await;
         stages.enter(Stage::Matching);
-        let matches = Nearest::of(&source, &target, pauses).await.best(round.matches);
+        let matches = Nearest::of(&source, &target, scheduler).await.best(round.matches);
         stages.enter(Stage::Ransac);
         let weights = [distinctiveness(&source), distinctiveness(&target)];
         let distance = scaled.settings.ransac.inlier_distance as f32;
@@ -339,17 +344,17 @@ impl<'a> Level<'a> {
     }
 
     /// Poses from matches.
-    async fn hypotheses(&self, round: &Round, pauses: &Pauses) -> Vec<Hypothesis> {
+    async fn hypotheses(&self, round: &Round, scheduler: &Scheduler) -> Vec<Hypothesis> {
         let [source, target] = [&self.scorer.clouds.source, &self.scorer.clouds.target].map(|side| &side.grid.cloud);
         let mut found = Vec::new();
         for scale in [1.0 / round.fine_step, 1.0, round.fine_step] {
             let points: Vec<Vec3> = source.points.iter().map(|&p| scale as f32 * p).collect();
             let distance = self.scorer.distance;
             let count = round.hypotheses;
-            for rigid in hypotheses(&points, &target.points, &self.matches, distance, count, pauses).await {
+            for rigid in hypotheses(&points, &target.points, &self.matches, distance, count, scheduler).await {
                 let own = Similarity { scale, ..rigid.target_from_source };
                 found.push(self.judged(self.scaled.unscaled(own), rigid.inliers.len()));
-                pauses.point(self.scorer.work()).await;
+                scheduler.yield_after(self.scorer.work()).await;
             }
         }
         found

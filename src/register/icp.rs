@@ -15,7 +15,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
 use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
-use crate::pauses::Pauses;
+use crate::scheduler::Scheduler;
 
 /// The distance that an iteration minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,12 +77,12 @@ pub async fn refine(
     target_tree: &KdTree,
     initial: &Similarity,
     settings: &IcpSettings,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Refined {
     let mut refined = Refined { target_from_source: *initial, iterations: 0, converged: false, supported: 0, rms: 0.0 };
     let mut support_settings = settings.support;
-    while refined.iterations < settings.max_iterations && pauses.goes_on(refined.iterations > 0) {
-        pauses.point(LANDED * source.len() as f64).await;
+    while refined.iterations < settings.max_iterations && scheduler.may_continue(refined.iterations > 0) {
+        scheduler.yield_after(LANDED * source.len() as f64).await;
         let support = supported(source, target, target_tree, &refined.target_from_source, &support_settings);
         refined.supported = support.len();
         let residuals = Residuals::of(&support, target, settings);

@@ -1,7 +1,7 @@
 //! Matches of descriptors: mutual nearest neighbours (paper §3.2), supplemented by one-way matches.
 
 use super::fpfh::{DIMENSION, Descriptor};
-use crate::pauses::Pauses;
+use crate::scheduler::Scheduler;
 
 /// A correspondence: indices of a source point and a target point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,18 +24,18 @@ pub struct Nearest {
 /// Below this number of mutual matches, too few are correct.
 const MIN_MUTUAL_MATCHES: usize = 50;
 
-/// Comparisons of descriptors in a unit of work, and between two pause points.
+/// Comparisons of descriptors in a unit of work, and between two yield points.
 const COMPARISONS: f64 = 60_000.0;
 const STRIDE: usize = 1 << 18;
 
 impl Nearest {
     /// Compares all descriptors.
-    pub async fn of(source: &[Descriptor], target: &[Descriptor], pauses: &Pauses) -> Self {
+    pub async fn of(source: &[Descriptor], target: &[Descriptor], scheduler: &Scheduler) -> Self {
         let mut found = [Vec::with_capacity(source.len()), Vec::with_capacity(target.len())];
         for (found, [descriptors, among]) in found.iter_mut().zip([[source, target], [target, source]]) {
             for some in descriptors.chunks((STRIDE / among.len().max(1)).max(1)) {
                 found.extend(some.iter().map(|descriptor| nearest(descriptor, among)));
-                pauses.point((some.len() * among.len()) as f64 / COMPARISONS).await;
+                scheduler.yield_after((some.len() * among.len()) as f64 / COMPARISONS).await;
             }
         }
         let [forward, backward] = found;

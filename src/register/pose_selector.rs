@@ -16,8 +16,8 @@ use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 use crate::geometry::voxel_grid::voxel_size_leaving;
 use crate::options::scale::ScaleOption;
-use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
+use crate::scheduler::Scheduler;
 
 /// Default number of voxels along the diagonal of the target's bounding box.
 const DIVISIONS: f64 = 30.0;
@@ -58,15 +58,15 @@ impl PoseSelector {
         target_xyz: &[f64],
         frames: NormalizedPair,
         options: &RegisterOptions,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Self {
         let source = frames.source.normalized_flat(source_xyz);
         let target = frames.target.normalized_flat(target_xyz);
-        pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
-        let tree = KdTree::paused(&target.points, pauses).await;
+        scheduler.yield_after(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+        let tree = KdTree::paused(&target.points, scheduler).await;
         let reverse = match options.scale {
             ScaleOption::Fixed(_) => None,
-            _ => Some(Reverse::new(&source, target, pauses).await),
+            _ => Some(Reverse::new(&source, target, scheduler).await),
         };
         Self {
             reverse,
@@ -82,11 +82,11 @@ impl PoseSelector {
 
     /// Sets a pose that was selected by evidence from both complete scenes; only a certain pose replaces it. If scenes
     /// overlap little, more points can agree under a wrong pose.
-    pub(crate) async fn prefer(&mut self, candidate: Result<Candidate>, pauses: &Pauses) {
+    pub(crate) async fn prefer(&mut self, candidate: Result<Candidate>, scheduler: &Scheduler) {
         match candidate {
             Ok(candidate) => {
                 let other = self.best.take();
-                self.consider(candidate, pauses).await;
+                self.consider(candidate, scheduler).await;
                 self.has_preferred = true;
                 if let Some((agreement, other)) = other {
                     self.keep_better(agreement, other);
@@ -107,34 +107,34 @@ impl PoseSelector {
         target_xyz: &[f64],
         options: &RegisterOptions,
         stages: &mut Stopwatch<'_>,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Result<()> {
-        if self.is_certain() || !pauses.goes_on(self.has_pose()) {
+        if self.is_certain() || !scheduler.may_continue(self.has_pose()) {
             return Ok(());
         }
         let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
         // Without a known scale, clutter misleads the preferred pose as well.
         let is_brief = self.has_preferred && self.reverse.is_none();
         stages.enter(Stage::Normals);
-        let source = with_normals(frames.source.normalized_flat(source_xyz), None, pauses).await;
-        let target = with_normals(frames.target.normalized_flat(target_xyz), None, pauses).await;
+        let source = with_normals(frames.source.normalized_flat(source_xyz), None, scheduler).await;
+        let target = with_normals(frames.target.normalized_flat(target_xyz), None, scheduler).await;
         let mut settings =
             RegistrationSettings::new(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
         if is_brief {
             settings.ransac.max_iterations = settings.ransac.max_iterations.min(ITERATIONS_WITH_PREFERRED);
         }
-        let mut registration = FeatureRegistration::new(&source, &target, &settings, stages, pauses).await;
+        let mut registration = FeatureRegistration::new(&source, &target, &settings, stages, scheduler).await;
         let poses = if is_brief { 1 } else { POSES };
         for _ in 0..poses {
-            if self.is_certain() || self.is_partial(source_xyz) || !pauses.goes_on(self.has_pose()) {
+            if self.is_certain() || self.is_partial(source_xyz) || !scheduler.may_continue(self.has_pose()) {
                 break;
             }
-            match registration.solve(&settings, stages, pauses).await {
+            match registration.solve(&settings, stages, scheduler).await {
                 Ok(estimate) => {
                     // The inliers would lead to the same pose again.
                     registration.discard(&estimate.inliers);
                     match check_scale(&estimate, options) {
-                        Ok(()) => self.consider(Candidate::new(&frames, estimate), pauses).await,
+                        Ok(()) => self.consider(Candidate::new(&frames, estimate), scheduler).await,
                         Err(error) => drop(self.failure.get_or_insert(error)),
                     }
                 }
@@ -167,13 +167,13 @@ impl PoseSelector {
         self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= CERTAIN)
     }
 
-    async fn consider(&mut self, candidate: Candidate, pauses: &Pauses) {
+    async fn consider(&mut self, candidate: Candidate, scheduler: &Scheduler) {
         let unit = self.frames.normalized(&candidate.target_from_source);
         let distance = self.inlier_distance;
-        let mut agreement = Agreement::of(&self.source, &self.target, &unit, distance, pauses).await;
+        let mut agreement = Agreement::of(&self.source, &self.target, &unit, distance, scheduler).await;
         if let Some(reverse) = &self.reverse {
             let (inverse, distance) = (unit.inverse(), distance / unit.scale as f32);
-            let back = Agreement::of(&reverse.target, &reverse.source, &inverse, distance, pauses).await;
+            let back = Agreement::of(&reverse.target, &reverse.source, &inverse, distance, scheduler).await;
             reverse.complete(&mut agreement, &back, unit.scale);
         }
         self.keep_better(agreement, candidate);
@@ -244,12 +244,12 @@ struct Reverse {
 const AREA_VOXELS: usize = 1_500;
 
 impl Reverse {
-    async fn new(source: &Cloud, target: Cloud, pauses: &Pauses) -> Self {
+    async fn new(source: &Cloud, target: Cloud, scheduler: &Scheduler) -> Self {
         let mut sizes = [0.0; 2];
         for (size, cloud) in sizes.iter_mut().zip([source, &target]) {
-            *size = voxel_size_leaving(cloud, AREA_VOXELS.min(cloud.len() / 2), pauses).await;
+            *size = voxel_size_leaving(cloud, AREA_VOXELS.min(cloud.len() / 2), scheduler).await;
         }
-        let tree = KdTree::paused(&source.points, pauses).await;
+        let tree = KdTree::paused(&source.points, scheduler).await;
         Self { source: tree, target, size: f64::from(sizes[0] / sizes[1]) }
     }
 
@@ -263,7 +263,7 @@ impl Reverse {
 }
 
 impl Agreement {
-    async fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32, pauses: &Pauses) -> Self {
+    async fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32, scheduler: &Scheduler) -> Self {
         let transform = unit.to_f32();
         let (mut near, mut sum) = (0_usize, 0.0);
         for &point in &source.points {
@@ -272,7 +272,7 @@ impl Agreement {
                 let close = distance / 3.0;
                 sum += (1.0 - f64::from(neighbor.distance_squared) / f64::from(close * close)).max(0.0);
             }
-            pauses.point(NEAREST).await;
+            scheduler.yield_after(NEAREST).await;
         }
         let count = source.len() as f64;
         let score = sum / count;
@@ -286,8 +286,8 @@ fn unit_voxel_size(options: &RegisterOptions, frames: &NormalizedPair) -> f64 {
 }
 
 /// The cloud with [`outward_normals`].
-pub(crate) async fn with_normals(mut cloud: Cloud, eye: Option<Vec3>, pauses: &Pauses) -> Cloud {
-    cloud.normals = outward_normals(&cloud.points, eye, NORMAL_NEIGHBORS, pauses).await;
+pub(crate) async fn with_normals(mut cloud: Cloud, eye: Option<Vec3>, scheduler: &Scheduler) -> Cloud {
+    cloud.normals = outward_normals(&cloud.points, eye, NORMAL_NEIGHBORS, scheduler).await;
     cloud
 }
 

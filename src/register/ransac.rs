@@ -11,8 +11,8 @@ use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vector3};
-use crate::pauses::Pauses;
 use crate::report::Counts;
+use crate::scheduler::Scheduler;
 
 const STREAM: u64 = 3;
 
@@ -28,7 +28,7 @@ const LOCAL_REFITS: usize = 4;
 /// Number of pairs by which hypotheses are judged, at most: evenly many of all. The inliers are those of all pairs.
 const JUDGES: usize = 20_000;
 
-/// Units of work between two pause points, of a draw, and of the distance of a pair.
+/// Units of work between two yield points, of a draw, and of the distance of a pair.
 const STRIDE: f64 = 1.0;
 const DRAW: f64 = 2e-4;
 const DISTANCE: f64 = 6e-6;
@@ -37,7 +37,7 @@ const DISTANCE: f64 = 6e-6;
 const COLLECTED: f64 = 3e-5;
 const WEIGHED: f64 = 5e-5;
 
-/// Pairs that are collected between two pause points.
+/// Pairs that are collected between two yield points.
 const CHUNK: usize = 1 << 16;
 
 /// The interval of permitted scales, in the frames of the matched clouds.
@@ -99,18 +99,18 @@ pub async fn ransac(
     target: &[glam::Vec3],
     matches: &[Match],
     settings: &RansacSettings,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Result<Consensus> {
-    let (numbers, pairs) = pairs_of(source, target, matches, pauses).await;
+    let (numbers, pairs) = pairs_of(source, target, matches, scheduler).await;
     let mut search = Search::new(&pairs, settings);
-    while pairs.len() >= 3 && pauses.goes_on(search.counts.iterations > 0) {
+    while pairs.len() >= 3 && scheduler.may_continue(search.counts.iterations > 0) {
         let (work, is_over) = search.advance(&pairs, settings);
-        pauses.point(work).await;
+        scheduler.yield_after(work).await;
         if is_over {
             break;
         }
     }
-    pauses.point(COLLECTED * pairs.len() as f64).await;
+    scheduler.yield_after(COLLECTED * pairs.len() as f64).await;
     let mut consensus = search.consensus(&numbers, &pairs, settings)?;
     consensus.counts.matches = matches.len();
     Ok(consensus)
@@ -121,7 +121,7 @@ async fn pairs_of(
     source: &[glam::Vec3],
     target: &[glam::Vec3],
     matches: &[Match],
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> (Vec<usize>, Vec<Pair>) {
     let (mut numbers, mut pairs) = (Vec::with_capacity(matches.len()), Vec::with_capacity(matches.len()));
     for from in (0..matches.len()).step_by(CHUNK) {
@@ -130,7 +130,7 @@ async fn pairs_of(
             numbers.push(i);
             pairs.push(pair);
         }
-        pauses.point(COLLECTED * CHUNK as f64).await;
+        scheduler.yield_after(COLLECTED * CHUNK as f64).await;
     }
     (numbers, pairs)
 }
@@ -215,7 +215,7 @@ pub async fn reweighted(
     matches: &[Match],
     consensus: &Consensus,
     settings: &RansacSettings,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Similarity {
     let mut inliers: Vec<Pair> = Vec::with_capacity(consensus.inliers.len());
     inliers.extend(consensus.inliers.iter().filter_map(|&i| pair_of(source, target, matches.get(i)?)));
@@ -224,12 +224,12 @@ pub async fn reweighted(
         return best;
     }
     for _ in 0..REWEIGHTINGS {
-        pauses.point(WEIGHED * inliers.len() as f64).await;
+        scheduler.yield_after(WEIGHED * inliers.len() as f64).await;
         let residuals: Vec<f64> = inliers.iter().map(|pair| residual_squared(&best, pair).sqrt()).collect();
         for (pair, weight) in inliers.iter_mut().zip(biweights(&residuals, ROUNDING)) {
             pair.weight = weight;
         }
-        pauses.point(WEIGHED * inliers.len() as f64).await;
+        scheduler.yield_after(WEIGHED * inliers.len() as f64).await;
         let Ok(next) = umeyama(inliers.iter().copied(), settings.scale_mode) else { break };
         if settings.guard.is_some_and(|guard| next.scale < guard.min || next.scale > guard.max) {
             break;

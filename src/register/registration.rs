@@ -13,8 +13,8 @@ use crate::evidence::observation::MIN_POINTS;
 use crate::geometry::random::Random;
 use crate::options::Options;
 use crate::options::scale::ScaleOption;
-use crate::pauses::{Boxed, Pauses, Task, boxed, finished};
 use crate::progress::{Host, Stage, Stopwatch};
+use crate::scheduler::{Boxed, Scheduler, Task, boxed, finished};
 
 /// Random stream of the subsampling.
 const STREAM: u64 = 5;
@@ -47,8 +47,8 @@ pub fn register(
     options: &RegisterOptions,
     host: &mut dyn Host,
 ) -> Result<Registration> {
-    let pauses = Pauses::new(|| 0.0, options.work_budget);
-    finished(registered([source_xyz, target_xyz], options, host, &pauses))
+    let scheduler = Scheduler::new(|| 0.0, options.work_budget);
+    finished(registered([source_xyz, target_xyz], options, host, &scheduler))
 }
 
 /// [`register`] in steps, which end by this clock.
@@ -63,8 +63,8 @@ pub fn register_task(
     clock: fn() -> f64,
 ) -> Result<Task<'static, Registration>> {
     options.validate()?;
-    Ok(Task::new(Pauses::new(clock, options.work_budget), |pauses| async move {
-        registered([&source_xyz, &target_xyz], &options, &mut host, &pauses).await
+    Ok(Task::new(Scheduler::new(clock, options.work_budget), |scheduler| async move {
+        registered([&source_xyz, &target_xyz], &options, &mut host, &scheduler).await
     }))
 }
 
@@ -76,18 +76,18 @@ fn registered<'a>(
     [source_xyz, target_xyz]: [&'a [f64]; 2],
     options: &'a RegisterOptions,
     host: &'a mut dyn Host,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 ) -> Boxed<'a, Result<Registration>> {
     boxed(async move {
         options.validate()?;
         let (source_xyz, skipped_source) = finite_points(source_xyz);
-        pauses.point(PREPARED * source_xyz.len() as f64).await;
+        scheduler.yield_after(PREPARED * source_xyz.len() as f64).await;
         let (target_xyz, skipped_target) = finite_points(target_xyz);
-        pauses.point(PREPARED * target_xyz.len() as f64).await;
+        scheduler.yield_after(PREPARED * target_xyz.len() as f64).await;
         let complete: [&[f64]; 2] = [&source_xyz, &target_xyz];
         for (argument, xyz) in ["source", "target"].into_iter().zip(complete) {
             check_cloud(argument, xyz, MIN_POINTS)?;
-            pauses.point(PREPARED * xyz.len() as f64).await;
+            scheduler.yield_after(PREPARED * xyz.len() as f64).await;
         }
         let [source_xyz, target_xyz] = complete;
         let mut stages = Stopwatch::new(host, PLAN);
@@ -103,26 +103,26 @@ fn registered<'a>(
         // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
         // all points are tried as well. The agreement of all points selects the result. Without a known scale, features
         // suffice for clouds that show the same surface; for others, matches vote for the scale.
-        pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
-        let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options, pauses).await;
+        scheduler.yield_after(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+        let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options, scheduler).await;
         let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
         if is_fixed {
-            let found = register_rigid(complete, options, &mut stages, pauses).await;
-            selector.prefer(found, pauses).await;
+            let found = register_rigid(complete, options, &mut stages, scheduler).await;
+            selector.prefer(found, scheduler).await;
         }
-        let dense = dense(&source_xyz, &target_xyz, &selector.frames, pauses).await;
+        let dense = dense(&source_xyz, &target_xyz, &selector.frames, scheduler).await;
         if let Some((source_xyz, target_xyz)) = &dense {
-            selector.try_clouds(source_xyz, target_xyz, options, &mut stages, pauses).await?;
+            selector.try_clouds(source_xyz, target_xyz, options, &mut stages, scheduler).await?;
         }
         if !selector.has_preferred() && (is_fixed || dense.is_none()) {
-            selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
+            selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, scheduler).await?;
         }
-        if !is_fixed && !selector.is_mutual() && pauses.goes_on(selector.has_pose()) {
-            let found = register_free(complete, options, &mut stages, pauses).await;
-            selector.prefer(found, pauses).await;
+        if !is_fixed && !selector.is_mutual() && scheduler.may_continue(selector.has_pose()) {
+            let found = register_free(complete, options, &mut stages, scheduler).await;
+            selector.prefer(found, scheduler).await;
         }
         if !selector.has_pose() {
-            selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
+            selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, scheduler).await?;
         }
         let mut found = selector.finish(options, stages)?;
         found.diagnostics.skipped_source_points = skipped_source;
@@ -136,10 +136,10 @@ async fn dense(
     source_xyz: &[f64],
     target_xyz: &[f64],
     frames: &NormalizedPair,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Option<(Vec<f64>, Vec<f64>)> {
-    let source = dense_points(&frames.source.normalized_flat(source_xyz).points, pauses).await;
-    let target = dense_points(&frames.target.normalized_flat(target_xyz).points, pauses).await;
+    let source = dense_points(&frames.source.normalized_flat(source_xyz).points, scheduler).await;
+    let target = dense_points(&frames.target.normalized_flat(target_xyz).points, scheduler).await;
     let kept = |dense: &[usize], xyz: &[f64]| dense.len() as f64 / (xyz.len() / 3) as f64;
     let least = kept(&source, source_xyz).min(kept(&target, target_xyz));
     let enough = source.len().min(target.len()) >= MIN_POINTS;

@@ -6,7 +6,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::rasteriser::Rasteriser;
 use crate::geometry::similarity::Similarity;
-use crate::precise::scoring::surroundings::Layer;
+use crate::precise::scoring::scene_term::Layer;
 
 /// The layer of a mesh: entry and exit of the line of sight of each pixel. A mesh is taken as solid between them, which
 /// holds for meshes that are not closed as well.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::layers::{extremes, extremes_along, layer};
 use super::plane::Plane;
-use crate::align::search::Searched;
+use crate::align::search::SearchResult;
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::cloud::Bounds;
@@ -16,17 +16,17 @@ use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::{CropPose, MeshFrame};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
-use crate::precise::scoring::surroundings::Layer;
+use crate::precise::scoring::scene_term::Layer;
 use crate::precise::search::recipe::SearchSettings;
 use crate::precise::search::rounds::Rounds;
-use crate::precise::search::start::Findings;
+use crate::precise::search::start::SearchState;
 use crate::report::Alignment;
 
 /// The results of the alignment of an object.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Placement {
     /// The poses that its search has found.
-    pub findings: Findings,
+    pub search_state: SearchState,
     /// The matrix of the pose, see [`Sim3`](crate::report::Sim3).
     pub camera_from_mesh: [f64; 16],
     /// The space that the object takes in this pose.
@@ -86,12 +86,12 @@ impl Body {
 
 impl Placement {
     /// The placement that follows from a search; `None` if it has found no pose.
-    pub fn new(searched: &Searched, observation: &Observation) -> Option<Self> {
-        let Rounds { found, search, .. } = &searched.rounds;
-        let pose = found.first()?.pose;
+    pub fn new(searched: &SearchResult, observation: &Observation) -> Option<Self> {
+        let Rounds { candidates, search, .. } = &searched.rounds;
+        let pose = candidates.first()?.pose;
         Some(Self {
-            findings: Findings {
-                found: found.clone(),
+            search_state: SearchState {
+                candidates: candidates.clone(),
                 effort: search.effort(),
                 renders: search.renders,
                 confidence: searched.confidence(),
@@ -116,7 +116,7 @@ impl Placement {
         let matrix = alignment.camera_from_mesh.matrix;
         let camera_from_mesh = Similarity::from_column_major(&matrix)?;
         if self.camera_from_mesh != matrix
-            && let Some(pyramid) = mesh.pyramid(&SearchSettings::from(self.findings.effort).grids)
+            && let Some(pyramid) = mesh.pyramid(&SearchSettings::from(self.search_state.effort).grids)
             && let Some(pose) = CropPose::of_similarity(&camera_from_mesh, &pyramid.frame)
         {
             self.body = Body::new(&pyramid, &pose, observation);

@@ -12,7 +12,7 @@ use super::plane::Plane;
 use super::support::{Ground, Support, find_support};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::pinhole::Pinhole;
-use crate::precise::scoring::surroundings::{Floor, Neighbourhood};
+use crate::precise::scoring::scene_term::{SceneContext, SupportPlane};
 use crate::precise::search::start::WarmStart;
 
 /// Confidence from which on an object takes space.
@@ -58,7 +58,7 @@ pub struct Arranged {
 }
 
 impl Plan {
-    /// The start of an object in this round: its own findings and its surroundings. `None` if it is aligned alone.
+    /// The start of an object in this round: the state of its own search and the scene around it. `None` if it is aligned alone.
     ///
     /// # Errors
     /// [`missing`] for an object that could not be aligned.
@@ -66,13 +66,14 @@ impl Plan {
         let Some(SceneState { placements, grounds, .. }) = &self.state else { return Ok(None) };
         let own = placements.get(object).and_then(Option::as_ref).ok_or_else(missing)?;
         let ground = grounds.get(object).copied().flatten();
-        let floor = |Ground { plane, gap_m, .. }| Floor { normal: plane.normal, offset_m: plane.d, gap_m };
+        let support_plane =
+            |Ground { plane, gap_m, .. }| SupportPlane { normal: plane.normal, offset_m: plane.d, gap_m };
         let others = placements.iter().enumerate().filter(|(k, _)| *k != object).filter_map(|(_, p)| p.as_ref());
         // A body that is probably elsewhere takes no space.
-        let layers = others.filter(|p| p.findings.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
+        let layers = others.filter(|p| p.search_state.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
         Ok(Some(WarmStart {
-            findings: &own.findings,
-            surroundings: Neighbourhood { ground: ground.map(floor), layers },
+            earlier: &own.search_state,
+            context: SceneContext { plane: ground.map(support_plane), layers },
         }))
     }
 

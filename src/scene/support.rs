@@ -96,11 +96,11 @@ pub fn find_support(view: &View, placements: &[Option<Placement>]) -> (Option<Su
 /// The plane that most objects stand on.
 fn chosen(planes: &[FoundPlane], placements: &[Option<Placement>]) -> Option<Support> {
     let objects = placements.iter().flatten();
-    let all: f64 = objects.clone().map(|p| 0.2 + p.findings.confidence).sum();
+    let all: f64 = objects.clone().map(|p| 0.2 + p.search_state.confidence).sum();
     let credit = |found: &FoundPlane| {
         let touching = |p: &Placement| {
             let gap = p.body.extent(&found.plane)[0] / (touch_m(&p.body));
-            (0.2 + p.findings.confidence) / (1.0 + gap * gap)
+            (0.2 + p.search_state.confidence) / (1.0 + gap * gap)
         };
         let up = found.plane.normal.dot(DVec3::NEG_Y).max(0.0);
         // A plane that more of the scene lies on is more likely the one that objects stand on.
@@ -127,7 +127,7 @@ fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> 
         let gap = p.body.extent(plane)[0];
         let noise = OFFSET[1] + OFFSET[2] * p.body.diameter();
         // A half turn that shape does not exclude makes a pose uncertain, but not its height.
-        (gap.abs() < FARTHEST_M).then_some((gap, noise, UNSURE + (1.0 - UNSURE) * p.findings.confidence))
+        (gap.abs() < FARTHEST_M).then_some((gap, noise, UNSURE + (1.0 - UNSURE) * p.search_state.confidence))
     };
     let gaps: Vec<(f64, f64, f64)> = planes.iter().zip(placements).filter_map(gap).collect();
     let loss = |offset: f64| {

@@ -16,13 +16,13 @@ use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
-use crate::pauses::{Boxed, Pauses, boxed, finished};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::scoring::surroundings::Surroundings;
+use crate::precise::scoring::scene_term::SceneTerm;
 use crate::precise::search::start::WarmStart;
 use crate::progress::Host;
 use crate::report::{Alignment, Sim3};
+use crate::scheduler::{Boxed, Scheduler, boxed, finished};
 
 /// A scene: one depth map, and the objects in it.
 pub struct Scene<'m> {
@@ -90,7 +90,7 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
             let mut place = || {
                 aligned[k].clone()?;
                 let observation = observation_of(depth, camera, &masks, k)?.with_relief_deviation(*relief_deviation);
-                finished(place(&observation, mesh, options.clone(), plan.warm_start(k)?, host, &Pauses::none()))
+                finished(place(&observation, mesh, options.clone(), plan.warm_start(k)?, host, &Scheduler::unbounded()))
             };
             let (placement, alignment) = place().map_or_else(|error| (None, Err(error)), |(p, a)| (Some(p), Ok(a)));
             aligned[k] = alignment;
@@ -139,24 +139,24 @@ pub fn place<'a>(
     options: AlignOptions,
     start: Option<WarmStart<'a>>,
     host: &'a mut dyn Host,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 ) -> Boxed<'a, Result<(Placement, Option<Alignment>)>> {
     boxed(async move {
         let request = Request::new(options)?;
-        let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
+        let mut search = Search::begin(observation, mesh, &request, host, scheduler).await?;
         let mesh = search.mesh();
         let Some(start) = start else {
             let mut searched = search.search().await?;
             let colors = search.colors(&searched).await;
             // Of the poses that shape leaves, that first which the photo chooses.
             if let Some(chosen) = colors.and_then(|colors| colors.chosen) {
-                searched.rounds.found.insert(0, chosen);
+                searched.rounds.candidates.insert(0, chosen);
             }
             return Ok((Placement::new(&searched, observation).ok_or_else(missing)?, None));
         };
         let clouds = search.clouds().await?;
-        let normal = start.surroundings.ground.map(|floor| floor.normal);
-        let searched = search.search_among(start).await?;
+        let normal = start.context.plane.map(|plane| plane.normal);
+        let searched = search.search_again(start).await?;
         let placement = Placement::new(&searched, observation).ok_or_else(missing)?;
         let colors = search.colors(&searched).await;
         let alignment = search.finish(clouds, searched, colors.as_ref())?;
@@ -175,8 +175,8 @@ pub fn helper(
     options: AlignOptions,
     start: Option<WarmStart<'_>>,
 ) -> Result<Helper> {
-    let known = start.map(|start| start.surroundings).unwrap_or_default();
+    let known = start.map(|start| start.context).unwrap_or_default();
     Ok(Helper::new(vec![Some(observation)], mesh, Request::new(options)?, move |search| {
-        search.surround(Surroundings::new(known.clone(), &search.mesh, &search.observation));
+        search.set_scene_term(SceneTerm::new(known.clone(), &search.mesh, &search.observation));
     }))
 }

@@ -12,18 +12,18 @@ use glam::DQuat;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
-use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::NOISE;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::SURE;
 use crate::precise::search::rounds::Rounds;
 use crate::precise::verdict::color::{Judgment, judgment};
-use crate::precise::verdict::confidence::sureness;
+use crate::precise::verdict::confidence::pose_probability;
 use crate::progress::{Host, Stopwatch};
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// The prior of a search.
 pub struct DetectionPrior {
@@ -39,13 +39,13 @@ pub struct Lead {
     /// The difference between the scores of the pose and of the best other one.
     pub margin: f64,
     /// Probability that colours have chosen the right one of the poses; 1 without colours.
-    pub certainty_of_color: f64,
+    pub color_probability: f64,
 }
 
 /// A found object.
 pub struct Detection {
     /// The pose.
-    pub found: Found,
+    pub found: Candidate,
     /// The frame.
     pub observation: Rc<CleanObservation>,
     /// Its lead over other poses.
@@ -57,14 +57,14 @@ impl Detection {
     /// before, the nearest one counts: an object that looks alike from several sides has not turned unseen.
     ///
     /// # Errors
-    /// As [`start::begin`].
+    /// As [`start::start_search`].
     pub fn search<'a>(
         observation: &'a Observation,
         mesh: &'a PreparedMesh<'_>,
         options: &'a AlignOptions,
         known: &'a DetectionPrior,
         host: &'a mut dyn Host,
-        pauses: &'a Pauses,
+        scheduler: &'a Scheduler,
     ) -> Boxed<'a, Result<Self>> {
         boxed(async move {
             let mut rounds: Option<Rounds> = None;
@@ -76,23 +76,23 @@ impl Detection {
                 let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
                 let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
                 let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
-                let mut next = start::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
+                let mut next = start::start_search(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
                 if let Some(log_scale) = log_scale {
                     next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
                 }
-                pauses.here().await;
-                start::run(&mut next, &(0.2..0.85), pauses, stages).await;
-                let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+                scheduler.yield_point().await;
+                start::run_rounds(&mut next, &(0.2..0.85), scheduler, stages).await;
+                let best = next.candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
                 let (conditioning, _) = next.search.conditioning(&best.pose);
-                let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
-                certainty = sureness(best, lead, conditioning.as_ref());
+                let lead = lead(&next.search.equivalence, best, &next.candidates[1..], |other| other.score.total);
+                certainty = pose_probability(best, lead, conditioning.as_ref());
                 rounds = Some(next);
             }
             let rounds = rounds.ok_or_else(no_candidate)?;
-            let judgment = by_color(&rounds, observation, mesh, pauses).await;
+            let judgment = by_color(&rounds, observation, mesh, scheduler).await;
             let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
-            let certainty_of_color = judgment.map_or(1.0, |judgment| judgment.certainty);
-            Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, certainty_of_color } })
+            let color_probability = judgment.map_or(1.0, |judgment| judgment.probability);
+            Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, color_probability } })
         })
     }
 }
@@ -102,20 +102,20 @@ async fn by_color(
     rounds: &Rounds,
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> Option<Judgment> {
     let (photo, colors) = (observation.photo()?, mesh.colors()?);
-    Some(judgment(rounds, photo, colors, pauses).await)
+    Some(judgment(rounds, photo, colors, scheduler).await)
 }
 
 /// The pose that counts, and its lead over the others.
-fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) -> Result<(Found, f64)> {
-    let first = *rounds.found.first().ok_or_else(no_candidate)?;
+fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) -> Result<(Candidate, f64)> {
+    let first = *rounds.candidates.first().ok_or_else(no_candidate)?;
     let mut chosen = judgment.and_then(|judgment| judgment.chosen).unwrap_or(first);
     let is_colored = judgment.is_some_and(|judgment| judgment.is_used && !judgment.rivals.is_empty());
     if let (Some((_, before)), false) = (known.before, is_colored) {
-        for other in rounds.found.iter().filter(|other| other.score.total > first.score.total - 0.5 * NOISE) {
-            let angle = |found: &Found| rounds.search.equivalence.angle(found.pose.rotation, before);
+        for other in rounds.candidates.iter().filter(|other| other.score.total > first.score.total - 0.5 * NOISE) {
+            let angle = |found: &Candidate| rounds.search.equivalence.angle(found.pose.rotation, before);
             if angle(other) < angle(&chosen) {
                 chosen = *other;
             }
@@ -126,8 +126,8 @@ fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) 
         let nearest = rounds.search.equivalence.nearest(chosen.pose.rotation, before);
         chosen.pose = rounds.search.mesh.turns.turned(&chosen.pose, nearest);
     }
-    let others: Vec<Found> =
-        rounds.found.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();
-    let margin = lead(&rounds.search.equivalence, &chosen, &others, |found| found.score.total);
+    let others: Vec<Candidate> =
+        rounds.candidates.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();
+    let margin = lead(&rounds.search.equivalence, &chosen, &others, |other| other.score.total);
     Ok((chosen, judgment.map_or(margin, |color| margin.max(color.lead()))))
 }

@@ -9,9 +9,9 @@ use crate::geometry::pinhole::Pinhole;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
 use crate::precise::scoring::score::Score;
-use crate::precise::search::cascade::Subject;
+use crate::precise::search::cascade::Cascade;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{FINE, TRACKED};
 use crate::precise::search::refine::Refiner;
 
@@ -23,7 +23,7 @@ const NEAR: f64 = 0.04;
 /// The pose found in a frame.
 pub struct FramePose {
     /// The pose.
-    pub found: Found,
+    pub found: Candidate,
     /// The evidence.
     pub evidence: Evidence,
     /// The lead over other poses, if all rotations were searched.
@@ -93,7 +93,7 @@ impl TrackedMesh {
     }
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
-    fn refined(&self, search: &Search, poses: &[CropPose], by_depth: bool) -> Option<Found> {
+    fn refined(&self, search: &Search, poses: &[CropPose], by_depth: bool) -> Option<Candidate> {
         let stages = if by_depth { &TRACKED[..2] } else { &TRACKED[..] };
         // Only the grids of these stages are made.
         if stages.iter().any(|stage| search.grid(stage.grid).mask_cells == 0) {
@@ -117,18 +117,18 @@ struct AtItsSize<'a> {
     by_depth: bool,
 }
 
-impl Subject for AtItsSize<'_> {
+impl Cascade for AtItsSize<'_> {
     type Pose = CropPose;
     type Score = Score;
 
-    fn refined(&mut self, grid: usize, steps: usize, poses: &[CropPose]) -> Vec<Found> {
+    fn refined(&mut self, grid: usize, steps: usize, poses: &[CropPose]) -> Vec<Candidate> {
         let mut objective = self.search.objective(grid);
         if self.by_depth {
             objective.scoring.weights = objective.scoring.weights.of_depth_alone();
         }
         let (refiner, canvas) = (Refiner { objective, lock_scale: true }, &mut Canvas::default());
         let refined = |pose: &CropPose| match steps {
-            0 => Found::of(*pose, objective.score(canvas, pose)),
+            0 => Candidate::of(*pose, objective.score(canvas, pose)),
             _ => refiner.refine(canvas, *pose, steps),
         };
         poses.iter().map(refined).collect()

@@ -25,7 +25,6 @@ use crate::geometry::similarity::Similarity;
 use crate::metrics;
 use crate::number::number;
 use crate::options::Options;
-use crate::pauses::{Boxed, Pauses, boxed, finished};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::drawing::render::Canvas;
@@ -33,14 +32,15 @@ use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::{NOISE, Score};
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::FINE;
 use crate::precise::search::refine::Refiner;
 use crate::precise::verdict::choice::AGREES;
-use crate::precise::verdict::color::{LOOSE, agreement_at, loose_axis, roll};
-use crate::precise::verdict::confidence::{certainty_of_relief, sureness};
+use crate::precise::verdict::color::{LOOSE_MIN_SD_RAD, agreement_at, loose_axis, roll};
+use crate::precise::verdict::confidence::{Confidence, pose_probability};
 use crate::progress::Host;
 use crate::report::Effort;
+use crate::scheduler::{Boxed, Scheduler, boxed, finished};
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
 use crate::views::world_pose::{PlacedCamera, WorldPose};
 
@@ -115,7 +115,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             state: TrackState::Lost,
             usual: None,
             certain: None,
-            lead: Lead { margin: 0.0, certainty_of_color: 1.0 },
+            lead: Lead { margin: 0.0, color_probability: 1.0 },
             history: History::default(),
         })
     }
@@ -132,7 +132,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     /// the object is not found in the first frame, and those of [`Observation::new`] there; those of
     /// [`Frame::check`] in all frames. The tracker remains usable.
     pub fn next(&mut self, frame: &Frame, host: &mut dyn Host) -> Result<TrackedFrame> {
-        finished(self.next_in_steps(frame, host, &Pauses::none()))
+        finished(self.next_in_steps(frame, host, &Scheduler::unbounded()))
     }
 
     /// [`Tracker::next`] in steps. A frame that is given up before its end does not count.
@@ -143,7 +143,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         &'a mut self,
         frame: &'a Frame,
         host: &'a mut dyn Host,
-        pauses: &'a Pauses,
+        scheduler: &'a Scheduler,
     ) -> Boxed<'a, Result<TrackedFrame>>
     where
         M: 'a,
@@ -152,8 +152,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         boxed(async move {
             frame.check()?;
             let seen = match self.last {
-                Some(last) => self.follow(frame, last, host, pauses).await,
-                None => Some(self.first(frame, host, pauses).await?),
+                Some(last) => self.follow(frame, last, host, scheduler).await,
+                None => Some(self.first(frame, host, scheduler).await?),
             };
             self.conclude(frame, seen)
         })
@@ -185,7 +185,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.last = self.history.last();
             self.state = TrackState::Tracking;
             self.usual = None;
-            self.lead = Lead { margin: f64::from(NOISE), certainty_of_color: 1.0 };
+            self.lead = Lead { margin: f64::from(NOISE), color_probability: 1.0 };
             self.certain = self.last.map(|pose| pose.rotation);
             let evidence =
                 SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0, depth_agreement: 1.0 };
@@ -195,7 +195,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// The pose in the first frame.
-    async fn first(&self, frame: &Frame, host: &mut dyn Host, pauses: &Pauses) -> Result<FramePose> {
+    async fn first(&self, frame: &Frame, host: &mut dyn Host, scheduler: &Scheduler) -> Result<FramePose> {
         let has_mask = frame.mask.as_ref().is_some_and(is_set);
         if let (Some(initial), false) = (&self.options.initial, has_mask) {
             let pose = CropPose::of_similarity(initial, &self.tracked.pyramid.frame).ok_or_else(no_candidate)?;
@@ -211,11 +211,17 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
                 "Pass the mask, or the pose in the first frame as options.initial.",
             )
         })?;
-        self.detect(&observation, None, host, pauses).await
+        self.detect(&observation, None, host, scheduler).await
     }
 
     /// The pose in a frame after the first; `None` if the object is lost.
-    async fn follow(&self, frame: &Frame, last: WorldPose, host: &mut dyn Host, pauses: &Pauses) -> Option<FramePose> {
+    async fn follow(
+        &self,
+        frame: &Frame,
+        last: WorldPose,
+        host: &mut dyn Host,
+        scheduler: &Scheduler,
+    ) -> Option<FramePose> {
         let size = self.size.value();
         let sized = |pose: WorldPose| size.map_or(pose, |(log_scale, _)| WorldPose { log_scale, ..pose });
         let expected = [self.motion.carried(&last), last].map(sized);
@@ -227,7 +233,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if fit(&near, self) >= FITS && self.state != TrackState::Lost {
             return near;
         }
-        pauses.here().await;
+        scheduler.yield_point().await;
         let wide = look(true);
         let near = if fit(&wide, self) > fit(&near, self) { wide } else { near };
         if fit(&near, self) >= UNCERTAIN && self.state != TrackState::Lost {
@@ -239,10 +245,10 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if self.state != TrackState::Lost && near.as_ref().is_some_and(is_leaving) {
             return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= VISIBLE[1]);
         }
-        // Found anew, where a mask shows the object.
+        // Candidate anew, where a mask shows the object.
         let before = self.certain.unwrap_or(last.rotation);
         let anew = match frame.observation().ok().flatten() {
-            Some(observation) => self.detect(&observation, Some(before), host, pauses).await.ok(),
+            Some(observation) => self.detect(&observation, Some(before), host, scheduler).await.ok(),
             None => None,
         };
         let shows_enough_anew = |seen: &FramePose| {
@@ -293,16 +299,16 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         observation: &Observation,
         before: Option<DQuat>,
         host: &mut dyn Host,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Result<FramePose> {
         let log_scale = self.size.value().map(|(log_scale, _)| log_scale);
         let known = DetectionPrior { prior: self.prior, before: before.map(|before| (log_scale, before)) };
         // The object turns after the first frame.
         let options = if before.is_some() { self.options.of_detection() } else { self.options.of_first_frame() };
-        let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host, pauses).await?;
+        let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host, scheduler).await?;
         // With the settings of the frames after it, so that scores compare.
         let search = self.tracked.search(detection.observation);
-        let found = Found { score: search.score(&detection.found.pose), ..detection.found };
+        let found = Candidate { score: search.score(&detection.found.pose), ..detection.found };
         let evidence = Evidence { search, region: PhotoRegion::WHOLE };
         Ok(FramePose { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
@@ -346,8 +352,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
-            let sure = sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.certainty_of_color;
-            sure * certainty_of_relief(frame.relief_deviation)
+            let shape = pose_probability(&found, self.lead.margin, conditioning.as_ref());
+            let (color, relief_deviation) = (self.lead.color_probability, frame.relief_deviation);
+            Confidence { shape, color, relief_deviation }.overall()
         };
         let camera_from_mesh = pose.similarity(&self.tracked.pyramid.frame);
         let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };
@@ -374,20 +381,20 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
-    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Found) {
+    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Candidate) {
         let Evidence { search, .. } = evidence;
         let (Some(colors), true) = (self.mesh.borrow().colors(), frame.photo.is_some()) else { return };
-        if let Some(axis) = loose_axis(search, &found.pose, LOOSE)
+        if let Some(axis) = loose_axis(search, &found.pose, LOOSE_MIN_SD_RAD)
             && let Some(photo) = evidence.photo(frame)
             && let Some((pose, _)) = roll(search, &photo, colors, found.pose, axis)
             && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
         {
-            *found = Found { pose, score: search.score(&pose), ..*found };
+            *found = Candidate { pose, score: search.score(&pose), ..*found };
         }
     }
 
     /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.
-    fn weigh_size(&mut self, search: &Search, found: &mut Found, silhouette_error: f64) {
+    fn weigh_size(&mut self, search: &Search, found: &mut Candidate, silhouette_error: f64) {
         if !self.size.wants(found.pose.rotation) {
             return;
         }

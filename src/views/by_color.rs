@@ -11,10 +11,10 @@ use crate::geometry::surface_colors::SurfaceColors;
 use crate::precise::scoring::appearance::{Appearance, PhotoCells};
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::score::NOISE;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{COARSE, COLORED, FINE};
 use crate::precise::verdict::choice::{Choice, ColorScore, best_roll};
-use crate::precise::verdict::color::{DIFFERENT, Judgment, LOOSE, are_rivals};
+use crate::precise::verdict::color::{DISTINCT_MIN_CONTRAST, Judgment, LOOSE_MIN_SD_RAD, are_rivals};
 use crate::precise::verdict::lookalikes::{Likeness, Lookalike, ROLLS, among};
 
 /// Correlation above which a photo agrees no better.
@@ -68,7 +68,7 @@ impl Photos<'_> {
         }
         let differ = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|k| &compared[k]);
-            are_rivals(a.ranked.pose.rotation, b.ranked.pose.rotation) && difference(a, b) > DIFFERENT
+            are_rivals(a.ranked.pose.rotation, b.ranked.pose.rotation) && difference(a, b) > DISTINCT_MIN_CONTRAST
         };
         let choice = Choice::among(compared.iter().map(|compared| compared.look).collect(), differ)?;
         let is_changed = choice.chosen != 0;
@@ -77,7 +77,7 @@ impl Photos<'_> {
             chosen.pose = self.views.polished(&polish, chosen.pose);
         }
         let part = self.views.parts.first()?;
-        let loosest = || conditioning.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= LOOSE);
+        let loosest = || conditioning.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= LOOSE_MIN_SD_RAD);
         let axis = part.search.equivalence.free_axis(chosen.pose.rotation).or_else(|| loosest().map(|(_, axis)| axis));
         let rolled = axis.filter(|_| choice.is_used).and_then(|axis| self.roll(&mut joint, &chosen, axis));
         let gain = rolled.map_or(0.0, |(_, gain)| gain);
@@ -85,9 +85,9 @@ impl Photos<'_> {
             chosen.pose = pose;
         }
         let first = self.views.parts.first()?;
-        let end = first.found(&chosen)?;
+        let end = first.candidate(&chosen)?;
         let is_other = is_changed || rolled.is_some();
-        let pose_of = |k: usize| first.found(&compared.get(k)?.ranked);
+        let pose_of = |k: usize| first.candidate(&compared.get(k)?.ranked);
         let judgment = Judgment::new(&choice, (end, is_other), pose_of, gain, &first.search.equivalence);
         Some((judgment, is_other.then_some(chosen)))
     }
@@ -102,7 +102,7 @@ impl Photos<'_> {
         let score = mean(&best.pose);
         let poses: Vec<WorldPose> = ranked.iter().skip(1).map(|other| other.pose).chain(turned).collect();
         self.views.renders += poses.len();
-        let scored = poses.into_iter().map(|pose| Found::of(pose, mean(&pose)));
+        let scored = poses.into_iter().map(|pose| Candidate::of(pose, mean(&pose)));
         let equal = part.search.equivalence.others(seen.rotation, ROLLS);
         let equal = equal.into_iter().map(|turn| part.camera.place(&part.search.mesh.turns.turned(&seen, turn)));
         Some(among(best.pose.rotation, score, scored, equal))

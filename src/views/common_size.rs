@@ -8,7 +8,7 @@ use crate::precise::scoring::conditioning::{DAMPING, DROP, covariance, deviation
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::Weights;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::refine::Refiner;
 
 /// Standard deviation of the size due to errors that all masks have in common, relative.
@@ -201,7 +201,7 @@ fn value(view: &[SizeEvidence], size: f64) -> (f64, Option<usize>) {
 }
 
 /// A pose refined at a given scale.
-pub fn refine_at(objective: Objective<'_>, pose: CropPose, log_scale: f64, steps: usize) -> Found {
+pub fn refine_at(objective: Objective<'_>, pose: CropPose, log_scale: f64, steps: usize) -> Candidate {
     let bounds = [libm::exp(log_scale); 2];
     let objective = Objective { prior: Prior { scale: Some(bounds), ..objective.prior }, ..objective };
     // At the depth of the surface, so that a change of the size moves the centre.

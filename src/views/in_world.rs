@@ -26,11 +26,10 @@ use crate::precise::scoring::conditioning::{
 };
 use crate::precise::scoring::score::Score;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{FINE, SURE};
 use crate::precise::verdict::color::{Judgment, cells};
 use crate::precise::verdict::conclusion::{Reliability, reliability};
-use crate::precise::verdict::confidence::certainty_of_relief;
 use crate::report::{Alternative, Sim3};
 
 /// Times that the mask of a view without one is predicted.
@@ -59,7 +58,7 @@ pub fn in_world(
     let scores = &ranked.first().ok_or_else(no_candidate)?.score.views;
     let agrees = |(part, score): (&Part<'_>, &Score)| parts.len() == 1 || !part.contradicts(score.total);
     let agrees: Vec<bool> = parts.iter().zip(scores).map(agrees).collect();
-    let mut roles = vec![ViewRole::Blind; views.len()];
+    let mut roles = vec![ViewRole::Unusable; views.len()];
     for (part, agrees) in parts.iter().zip(&agrees) {
         roles[part.index] = if *agrees { ViewRole::Used } else { ViewRole::Contradicting };
     }
@@ -147,11 +146,11 @@ fn verdict(
     }
     let color = judged.map(|(judgment, _)| judgment);
     let best = ranked.first().ok_or_else(no_candidate)?;
-    let mut found: Vec<Found> = ranked.iter().filter_map(|ranked| first.found(ranked)).collect();
-    if let Some(first) = found.first_mut() {
+    let mut candidates: Vec<Candidate> = ranked.iter().filter_map(|ranked| first.candidate(ranked)).collect();
+    if let Some(first) = candidates.first_mut() {
         first.score = mean_score(&score, best.score.total);
     }
-    let reliability = reliability(&found, color.as_ref(), free.as_ref(), first.search)?;
+    let reliability = reliability(&candidates, color.as_ref(), free.as_ref(), first.search)?;
     Ok(Verdict { best: best.clone(), conditioning, color, reliability })
 }
 
@@ -164,15 +163,16 @@ fn summary(
     roles: Vec<ViewRole>,
     shown: Vec<Score>,
 ) -> Result<Summary> {
-    let Verdict { best, conditioning, color, reliability: Reliability { by_shape, confidence, alternatives } } =
-        verdict;
+    let Verdict { best, conditioning, color, reliability } = verdict;
+    let Reliability { mut confidence, alternatives } = reliability;
     let first = used.parts.first().ok_or_else(no_candidate)?;
     let seen = roles.iter().zip(&shown).filter(|(role, _)| **role == ViewRole::Used);
     let depths = seen.map(|(_, score)| f64::from(score.depth));
     // Together they are as certain as the one whose depth is known best.
     let of_used = views.iter().zip(&roles).filter(|(_, role)| **role == ViewRole::Used);
-    let relief = of_used.map(|(view, _)| view.frame.relief_deviation).fold(f64::INFINITY, f64::min);
-    let confidence = confidence * certainty_of_relief(relief);
+    let is_sure = confidence.shape >= SURE;
+    confidence.relief_deviation = of_used.map(|(view, _)| view.frame.relief_deviation).fold(f64::INFINITY, f64::min);
+    let confidence = confidence.overall();
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
         let world_from_camera = cameras[k].world_from_camera();
@@ -191,7 +191,7 @@ fn summary(
         world_from_mesh,
         world: WorldFrame::Given,
         confidence,
-        is_sure: by_shape >= SURE,
+        is_sure,
         alternatives: alternatives.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
         proportions: None,
         uncertainty: conditioning.map(|own| WorldUncertainty {

@@ -7,7 +7,7 @@ use crate::precise::drawing::render::Canvas;
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::score::Score;
 use crate::precise::search::ascent::{Ascent, ascend, limited};
-use crate::precise::search::ranking::{Found, Total};
+use crate::precise::search::ranking::{Candidate, Total};
 use crate::precise::search::refine::Refiner;
 
 /// One view of a joint objective.
@@ -47,7 +47,7 @@ impl<'a> Joint<'a> {
     }
 
     /// Refines a pose in at most `iterations` steps.
-    pub fn refine(&mut self, pose: WorldPose, iterations: usize) -> Found<WorldPose, JointScore> {
+    pub fn refine(&mut self, pose: WorldPose, iterations: usize) -> Candidate<WorldPose, JointScore> {
         ascend(self, pose, iterations)
     }
 

@@ -23,9 +23,9 @@ use crate::align::helper::Helper;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::geometry::similarity::Similarity;
-use crate::pauses::{Pauses, Task, finished};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
+use crate::scheduler::{Scheduler, Task, finished};
 use options::ViewsOptions;
 use report::ViewsAlignment;
 use request::Request;
@@ -61,7 +61,7 @@ pub fn align_views(
     options: &ViewsOptions,
     host: &mut dyn Host,
 ) -> Result<ViewsAlignment> {
-    finished(Request::new(views, options.clone())?.align(mesh, host, &Pauses::none()))
+    finished(Request::new(views, options.clone())?.align(mesh, host, &Scheduler::unbounded()))
 }
 
 /// [`align_views`] in steps, with other threads that may help.
@@ -73,10 +73,10 @@ pub fn align_views_task<'a, 'm: 'a>(
     mesh: impl Borrow<PreparedMesh<'m>> + 'a,
     options: ViewsOptions,
     mut host: impl Host + 'a,
-    pauses: Pauses,
+    scheduler: Scheduler,
 ) -> Result<Task<'a, ViewsAlignment>> {
     let request = Request::new(views, options)?;
-    Ok(Task::new(pauses, |pauses| async move { request.align(mesh.borrow(), &mut host, &pauses).await }))
+    Ok(Task::new(scheduler, |scheduler| async move { request.align(mesh.borrow(), &mut host, &scheduler).await }))
 }
 
 /// A helper of [`align_views_task`] with the same views, mesh and options.

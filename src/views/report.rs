@@ -28,7 +28,7 @@ choices! {
         Contradicting = "contradicting",
         /// It shows nothing of the object: its mask cannot be used, or has too few readings, or there are too few where the
         /// object should be. Without given camera poses, the pose in it is unknown: it has a confidence of 0.
-        Blind = "blind",
+        Unusable = "unusable",
     }
 }
 

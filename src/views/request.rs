@@ -11,11 +11,11 @@ use crate::align::search;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::Observation;
 use crate::options::Options;
-use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::search::efforts;
 use crate::precise::search::plate::without_invented_plate;
 use crate::progress::{Host, Stage, Stopwatch};
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Progress at the start of each stage, 0 to 1.
 const PLAN: &[(Stage, f64)] =
@@ -88,7 +88,7 @@ impl Request {
         &'a self,
         mesh: &'a PreparedMesh<'_>,
         host: &'a mut dyn Host,
-        pauses: &'a Pauses,
+        scheduler: &'a Scheduler,
     ) -> Boxed<'a, Result<ViewsAlignment>> {
         boxed(async move {
             let mut stages = Stopwatch::new(host, PLAN);
@@ -97,7 +97,7 @@ impl Request {
             let efforts = efforts::of(&options);
             let observed = self.observations.iter().flatten();
             let mesh = match efforts.first() {
-                Some(first) => without_invented_plate(observed.clone(), mesh, &options, first, pauses).await,
+                Some(first) => without_invented_plate(observed.clone(), mesh, &options, first, scheduler).await,
                 None => mesh,
             };
             let mut searched: Vec<SearchedView> = Vec::new();
@@ -108,7 +108,7 @@ impl Request {
                 let before = core::mem::take(&mut searched);
                 unusable.clone_from(&self.unusable);
                 if settings.is_long(observed.clone().count()) && mesh.has_one_form(&settings.grids) {
-                    pauses.ask_for_help().await;
+                    scheduler.ask_for_help().await;
                 }
                 for (index, observation) in self.observations.iter().enumerate() {
                     let Some(observation) = observation else { continue };
@@ -123,8 +123,8 @@ impl Request {
                         }
                         begun => begun?,
                     };
-                    pauses.here().await;
-                    view.run(pauses).await;
+                    scheduler.yield_point().await;
+                    view.run(scheduler).await;
                     searched.push(view);
                     let done = searched.len() as f64 / self.views.len() as f64;
                     stages.reach(share.start + (share.end - share.start) * 0.8 * done, None);
@@ -133,8 +133,8 @@ impl Request {
                     return Err(unusable.into_iter().next().unwrap_or_else(no_mask));
                 }
                 stages.enter(Stage::Refine);
-                summary = self.combined(&mut searched, mesh, pauses).await;
-                pauses.here().await;
+                summary = self.combined(&mut searched, mesh, scheduler).await;
+                scheduler.yield_point().await;
                 if summary.as_ref().is_ok_and(|summary| summary.is_sure) {
                     break;
                 }
@@ -149,14 +149,14 @@ impl Request {
         &self,
         searched: &mut [SearchedView],
         mesh: &PreparedMesh<'_>,
-        pauses: &Pauses,
+        scheduler: &Scheduler,
     ) -> Result<Summary> {
         if self.has_cameras {
             return in_world(searched, &self.views, mesh, self.options.proportions);
         }
         for view in searched.iter_mut() {
             let photo = self.views[view.index].frame.photo.as_deref();
-            view.judge_colors(photo, mesh.colors(), pauses).await;
+            view.judge_colors(photo, mesh.colors(), scheduler).await;
         }
         unrelated(searched, &self.views)
     }

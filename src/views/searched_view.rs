@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::pauses::Pauses;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
@@ -15,6 +14,7 @@ use crate::precise::search::rounds::Rounds;
 use crate::precise::search::start;
 use crate::precise::verdict::color::{Judgment, judgment};
 use crate::progress::Stopwatch;
+use crate::scheduler::Scheduler;
 
 /// A view with a mask, and its search.
 pub struct SearchedView {
@@ -34,7 +34,7 @@ impl SearchedView {
     /// A view before its search; `previous` is the same view after a search with less effort.
     ///
     /// # Errors
-    /// As [`start::begin`].
+    /// As [`start::start_search`].
     pub fn begin(
         (index, camera): (usize, PlacedCamera),
         observation: &Observation,
@@ -44,15 +44,15 @@ impl SearchedView {
         stages: &mut Stopwatch<'_>,
     ) -> Result<Self> {
         let before = previous.map(|view| &view.rounds);
-        let mut rounds = start::begin(observation, mesh, before, options, settings, stages)?;
+        let mut rounds = start::start_search(observation, mesh, before, options, settings, stages)?;
         rounds.search.view = index;
         Ok(Self { index, camera, rounds, candidates: Vec::new(), color: None })
     }
 
     /// Runs the search to its end.
-    pub async fn run(&mut self, pauses: &Pauses) {
+    pub async fn run(&mut self, scheduler: &Scheduler) {
         while let Some(round) = self.rounds.round() {
-            self.rounds.run(pauses).await;
+            self.rounds.run(scheduler).await;
             if self.candidates.is_empty() && round.task == Task::Refine {
                 self.candidates = self.rounds.poses().to_vec();
             }
@@ -60,24 +60,25 @@ impl SearchedView {
     }
 
     /// Compares the poses of the search, which has ended, with the photo. The pose that colour chooses becomes the first.
-    pub async fn judge_colors(&mut self, photo: Option<&Photo>, colors: Option<&SurfaceColors>, pauses: &Pauses) {
+    pub async fn judge_colors(&mut self, photo: Option<&Photo>, colors: Option<&SurfaceColors>, scheduler: &Scheduler) {
         let (Some(photo), Some(colors)) = (photo, colors) else { return };
-        let judgment = judgment(&self.rounds, photo, colors, pauses).await;
+        let judgment = judgment(&self.rounds, photo, colors, scheduler).await;
         if let Some(chosen) = judgment.chosen {
-            self.rounds.found.insert(0, chosen);
+            self.rounds.candidates.insert(0, chosen);
         }
         self.color = Some(judgment);
     }
 
     /// The view as one of several.
     pub fn part(&self) -> Part<'_> {
-        let own = self.rounds.found.first().map(|found| found.pose);
+        let own = self.rounds.candidates.first().map(|candidate| candidate.pose);
         Part { index: self.index, search: &self.rounds.search, camera: self.camera, own }
     }
 
     /// The poses in the world that the search has found or refined once.
     pub fn hypotheses(&self) -> impl Iterator<Item = WorldPose> {
-        let poses = self.rounds.found.iter().map(|found| found.pose).chain(self.candidates.iter().copied());
+        let poses =
+            self.rounds.candidates.iter().map(|candidate| candidate.pose).chain(self.candidates.iter().copied());
         poses.map(|pose| self.camera.place(&pose))
     }
 }

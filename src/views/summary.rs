@@ -62,6 +62,22 @@ pub struct SummaryView {
     pub color: Option<ColorReport>,
 }
 
+impl SummaryView {
+    /// A view that was not searched, whose camera is unknown.
+    pub fn unseen(world_from_mesh: Similarity) -> Self {
+        Self {
+            camera_from_mesh: world_from_mesh,
+            confidence: 0.0,
+            role: ViewRole::Unusable,
+            world_from_camera: Similarity::identity(),
+            rotation_sd_deg: None,
+            position_sd_m: None,
+            score: Score::default(),
+            color: None,
+        }
+    }
+}
+
 impl Summary {
     /// The result, with the metrics of each view that has a mask, if they are wanted. `unusable` are the errors of the views whose
     /// masks cannot be used.
@@ -141,21 +157,21 @@ impl Summary {
             let names: Vec<String> = views.map(|(k, _)| k.to_string()).collect();
             names
         };
-        let (against, blind) = (of(ViewRole::Contradicting), of(ViewRole::Blind));
-        let mut warnings: Vec<Warning> = warnings::about_mesh(&mesh.left_out()).into_iter().collect();
-        if !against.is_empty() {
+        let (contradicting, unseen) = (of(ViewRole::Contradicting), of(ViewRole::Unusable));
+        let mut warnings: Vec<Warning> = warnings::about_mesh(&mesh.removed_parts()).into_iter().collect();
+        if !contradicting.is_empty() {
             warnings.push(Warning {
                 code: WarningCode::ViewContradicts,
                 message: format!(
                     "Views {} contradict the others and do not count. Check their masks and camera poses, and that they show the same object.",
-                    against.join(", ")
+                    contradicting.join(", ")
                 ),
             });
         }
-        if !blind.is_empty() {
+        if !unseen.is_empty() {
             let mut message = format!(
                 "Views {} have too few readings where the object should be, and do not count.",
-                blind.join(", ")
+                unseen.join(", ")
             );
             unusable.iter().for_each(|error| message += &format!(" {error}"));
             warnings.push(Warning { code: WarningCode::ViewShowsNothing, message });

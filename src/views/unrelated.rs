@@ -10,13 +10,12 @@ use crate::geometry::similarity::Similarity;
 use crate::precise::no_candidate;
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::objective::Objective;
-use crate::precise::scoring::score::Score;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{COMMON_SIZE, FINE, SURE};
 use crate::precise::verdict::alternatives::lead;
 use crate::precise::verdict::color::Judgment;
-use crate::precise::verdict::confidence::{certainty_of_relief, sureness};
+use crate::precise::verdict::confidence::{Confidence, pose_probability};
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
 const NEAR: f32 = 0.35;
@@ -32,7 +31,7 @@ pub struct CommonSize {
     /// Standard deviation of the size, relative.
     pub sd: f64,
     /// The pose of each searched view at this scale, and whether the view agrees with it.
-    pub views: Vec<(Found, bool)>,
+    pub views: Vec<(Candidate, bool)>,
     /// Number of poses rendered.
     pub renders: usize,
 }
@@ -41,20 +40,23 @@ pub struct CommonSize {
 pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     let [rank, polish] = COMMON_SIZE;
     let mut renders = 0;
-    let likely: Vec<Vec<Found>> = searched.iter().map(likely).collect();
+    let likely: Vec<Vec<Candidate>> = searched.iter().map(likely).collect();
     let evidence: Vec<Vec<SizeEvidence>> = searched
         .iter()
         .zip(&likely)
-        .map(|(view, found)| {
+        .map(|(view, candidates)| {
             let objective = fine(&view.rounds.search);
-            renders += found.len();
-            found.iter().filter_map(|found| SizeEvidence::at(objective, &found.pose, SILHOUETTE_ERROR)).collect()
+            renders += candidates.len();
+            candidates
+                .iter()
+                .filter_map(|candidate| SizeEvidence::at(objective, &candidate.pose, SILHOUETTE_ERROR))
+                .collect()
         })
         .collect();
     let fixed = searched.first()?.rounds.search.prior.fixed_scale().map(libm::log);
     let (mut size, mut sd, chosen) = common_size(&evidence, fixed)?;
     let agrees: Vec<bool> = chosen.iter().map(Option::is_some).collect();
-    let mut poses: Vec<Found> = Vec::new();
+    let mut poses: Vec<Candidate> = Vec::new();
     for round in 0..ROUNDS {
         poses = searched
             .iter()
@@ -62,10 +64,10 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
             .map(|(k, view)| {
                 // A view that contradicts keeps its own size.
                 let tried = if round == 0 { likely[k].clone() } else { vec![poses[k]] };
-                let refined = tried.into_iter().map(|found| {
-                    let own = found.pose.size + found.pose.distance;
+                let refined = tried.into_iter().map(|candidate| {
+                    let own = candidate.pose.size + candidate.pose.distance;
                     let at = if agrees[k] { size } else { own };
-                    let refined = refine_at(view.rounds.search.objective(rank.grid), found.pose, at, rank.steps);
+                    let refined = refine_at(view.rounds.search.objective(rank.grid), candidate.pose, at, rank.steps);
                     renders += refined.renders;
                     refined
                 });
@@ -74,20 +76,22 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
             .collect::<Option<Vec<_>>>()?;
         let evidence = searched.iter().zip(&poses).zip(&agrees).filter(|(_, agrees)| **agrees);
         let evidence: Vec<SizeEvidence> = evidence
-            .filter_map(|((view, found), _)| SizeEvidence::at(fine(&view.rounds.search), &found.pose, SILHOUETTE_ERROR))
+            .filter_map(|((view, candidate), _)| {
+                SizeEvidence::at(fine(&view.rounds.search), &candidate.pose, SILHOUETTE_ERROR)
+            })
             .collect();
         if fixed.is_none() {
             (size, sd) = mean(evidence.iter().copied()).unwrap_or((size, sd));
         }
     }
-    let views = searched.iter().zip(poses).zip(agrees).map(|((view, found), agrees)| {
-        let own = found.pose.size + found.pose.distance;
+    let views = searched.iter().zip(poses).zip(agrees).map(|((view, candidate), agrees)| {
+        let own = candidate.pose.size + candidate.pose.distance;
         let search = &view.rounds.search;
         let refined =
-            refine_at(search.objective(polish.grid), found.pose, if agrees { size } else { own }, polish.steps);
+            refine_at(search.objective(polish.grid), candidate.pose, if agrees { size } else { own }, polish.steps);
         renders += refined.renders;
         // The score stays that of the fine grid, because scores of different grids are not comparable.
-        (Found { score: search.score(&refined.pose), renders: 0, ..refined }, agrees)
+        (Candidate { score: search.score(&refined.pose), renders: 0, ..refined }, agrees)
     });
     let views = views.collect();
     Some(CommonSize { sd, views, renders })
@@ -100,86 +104,29 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no view has a pose.
 pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> {
     let common = with_common_size(searched).ok_or_else(no_candidate)?;
-    let effort = searched.first().map_or_else(Default::default, |view| view.rounds.search.settings.effort);
+    let mut views: Vec<JudgedView> =
+        searched.iter().zip(&common.views).map(|(view, pose)| judged(view, pose, common.sd, frames)).collect();
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
-    let mut views: Vec<SummaryView> = Vec::new();
-    let mut conditioned: Vec<Option<Conditioning>> = Vec::new();
-    let mut least: f64 = 1.0;
-    for (view, (found, agrees)) in searched.iter().zip(&common.views) {
-        let search = &view.rounds.search;
-        let is_fixed = search.settings.lock_scale;
-        // The size is as certain as all views together make it.
-        let of_all = |own: Conditioning| Conditioning { scale: common.sd, ..own };
-        let own = search.conditioning(&found.pose).0;
-        let conditioning = if *agrees && !is_fixed { own.map(of_all) } else { own };
-        // All are scored with the mesh as it is, at the common size or their own.
-        let others = view.rounds.found.get(1..).unwrap_or_default();
-        let likely = others.get(..RIVALS).unwrap_or(others);
-        let lead = lead(&search.equivalence, found, likely, |other| search.score(&other.pose).total);
-        let color = view.color.as_ref();
-        let lead = lead.max(color.map_or(f64::NEG_INFINITY, Judgment::lead));
-        let by_shape = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };
-        if *agrees {
-            least = least.min(by_shape);
-        }
-        let relief = certainty_of_relief(frames[view.index].frame.relief_deviation);
-        let confidence = by_shape * color.map_or(1.0, |color| color.certainty) * relief;
-        views.push(SummaryView {
-            camera_from_mesh: found.pose.similarity(&search.mesh.frame),
-            confidence,
-            role: if *agrees { ViewRole::Used } else { ViewRole::Contradicting },
-            world_from_camera: Similarity::identity(),
-            rotation_sd_deg: Some(0.0),
-            position_sd_m: Some(0.0),
-            score: found.score,
-            color: color.map(|color| color.report),
-        });
-        conditioned.push(if is_fixed { search.conditioning_as_fixed(&found.pose) } else { conditioning });
-    }
-    let world_from_mesh = views[first].camera_from_mesh;
-    for (k, view) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
-        let relative = world_from_mesh.compose(&view.camera_from_mesh.inverse());
-        view.world_from_camera = Similarity { scale: 1.0, ..relative };
-        let sd = |part: fn(&Conditioning) -> f64| {
-            let (a, b) = (conditioned[first].as_ref().map(part)?, conditioned[k].as_ref().map(part)?);
-            Some((a * a + b * b).sqrt())
-        };
-        let turn = sd(|own| own.rotation.0);
-        let moved = sd(|own| own.position_m);
-        view.rotation_sd_deg = turn.map(f64::to_degrees);
-        view.position_sd_m = turn.zip(moved).map(|(turn, moved)| {
-            // The camera swings about the object as far as the rotation of the object is uncertain.
-            let swing = turn * view.camera_from_mesh.translation.norm();
-            (moved * moved + swing * swing).sqrt()
-        });
-    }
-    let used = || views.iter().filter(|view| view.role == ViewRole::Used);
+    place_cameras(&mut views, first);
+
+    let used = || views.iter().filter(|view| view.summary.role == ViewRole::Used);
     // Without a view that agrees, nothing is known.
-    let confidence = used().map(|view| view.confidence).reduce(f64::min).unwrap_or(0.0);
-    let is_sure = used().next().is_some() && least >= SURE;
-    let score = used().map(|view| f64::from(view.score.total)).sum();
-    let mut all: Vec<SummaryView> = frames
-        .iter()
-        .map(|_| SummaryView {
-            camera_from_mesh: world_from_mesh,
-            confidence: 0.0,
-            role: ViewRole::Blind,
-            world_from_camera: Similarity::identity(),
-            rotation_sd_deg: None,
-            position_sd_m: None,
-            score: Score::default(),
-            color: None,
-        })
-        .collect();
-    let free_axis = searched[first].rounds.search.equivalence.free_axis(common.views[first].0.pose.rotation);
-    let uncertainty = conditioned[first].map(|own| WorldUncertainty {
-        scale: with_shape_error(common.sd, used().map(|view| f64::from(view.score.depth))),
+    let confidence = used().map(|view| view.summary.confidence).reduce(f64::min).unwrap_or(0.0);
+    let is_sure = used().next().is_some() && used().all(|view| view.shape_confidence >= SURE);
+    let depths = used().map(|view| f64::from(view.summary.score.depth));
+    let search = &searched[first].rounds.search;
+    let uncertainty = views[first].conditioning.as_ref().map(|own| WorldUncertainty {
+        scale: with_shape_error(common.sd, depths),
         rotation_deg: own.rotation.0.to_degrees(),
         rotation_axis: own.rotation.1.to_array(),
-        free_axis: free_axis.map(|axis| axis.to_array()),
+        free_axis: search.equivalence.free_axis(common.views[first].0.pose.rotation).map(|axis| axis.to_array()),
         position_m: own.position_m,
     });
-    searched.iter().zip(views).for_each(|(view, found)| all[view.index] = found);
+    let score = used().map(|view| f64::from(view.summary.score.total)).sum();
+
+    let world_from_mesh = views[first].summary.camera_from_mesh;
+    let mut all: Vec<SummaryView> = frames.iter().map(|_| SummaryView::unseen(world_from_mesh)).collect();
+    searched.iter().zip(views).for_each(|(view, judged)| all[view.index] = judged.summary);
     Ok(Summary {
         world_from_mesh,
         world: WorldFrame::Camera,
@@ -189,23 +136,94 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
         proportions: None,
         uncertainty,
         score,
-        converged: common.views.iter().all(|(found, _)| found.converged),
+        converged: common.views.iter().all(|(candidate, _)| candidate.converged),
         renders: common.renders + searched.iter().map(|view| view.rounds.search.renders).sum::<usize>(),
-        effort,
+        effort: search.settings.effort,
         views: all,
     })
 }
 
-/// The poses of a view that may be right: the one that colour chooses, or all that shape allows.
-fn likely(view: &SearchedView) -> Vec<Found> {
-    let found = &view.rounds.found;
-    let best = found.first().map_or(0.0, |best| best.score.total);
-    let tried = if view.color.as_ref().is_some_and(|color| color.is_used) { 1 } else { TRIED };
-    found.iter().filter(|f| f.score.total > best - NEAR).take(tried).copied().collect()
+/// A view with its pose at the common size, and the verdict on it.
+struct JudgedView {
+    summary: SummaryView,
+    /// The probability that the pose is right, by shape.
+    shape_confidence: f64,
+    conditioning: Option<Conditioning>,
 }
 
-fn best_of(found: impl Iterator<Item = Found>) -> Option<Found> {
-    found.reduce(|best, next| if next.score.total > best.score.total { next } else { best })
+/// The verdict on the pose of a view, which agrees with the common size or not. `size_sd` is the standard deviation of its
+/// logarithm.
+fn judged(view: &SearchedView, (candidate, agrees): &(Candidate, bool), size_sd: f64, frames: &[View]) -> JudgedView {
+    let search = &view.rounds.search;
+    let is_fixed = search.settings.lock_scale;
+    let free = search.conditioning(&candidate.pose).0;
+    let conditioning = match free {
+        // The size is as certain as all views together make it.
+        Some(own) if *agrees && !is_fixed => Some(Conditioning { scale: size_sd, ..own }),
+        own => own,
+    };
+
+    // All are scored with the mesh as it is, at the common size or their own.
+    let others = view.rounds.candidates.get(1..).unwrap_or_default();
+    let likely = others.get(..RIVALS).unwrap_or(others);
+    let lead = lead(&search.equivalence, candidate, likely, |other| search.score(&other.pose).total);
+    let color = view.color.as_ref();
+    let lead = lead.max(color.map_or(f64::NEG_INFINITY, Judgment::lead));
+
+    let confidence = Confidence {
+        shape: if *agrees { pose_probability(candidate, lead, conditioning.as_ref()) } else { 0.0 },
+        color: color.map_or(1.0, |color| color.probability),
+        relief_deviation: frames[view.index].frame.relief_deviation,
+    };
+    JudgedView {
+        summary: SummaryView {
+            camera_from_mesh: candidate.pose.similarity(&search.mesh.frame),
+            confidence: confidence.overall(),
+            role: if *agrees { ViewRole::Used } else { ViewRole::Contradicting },
+            world_from_camera: Similarity::identity(),
+            rotation_sd_deg: Some(0.0),
+            position_sd_m: Some(0.0),
+            score: candidate.score,
+            color: color.map(|color| color.report),
+        },
+        shape_confidence: confidence.shape,
+        conditioning: if is_fixed { search.conditioning_as_fixed(&candidate.pose) } else { conditioning },
+    }
+}
+
+/// Places the cameras relative to that of the first view: all see the mesh in the same pose.
+fn place_cameras(views: &mut [JudgedView], first: usize) {
+    let world_from_mesh = views[first].summary.camera_from_mesh;
+    let reference = views[first].conditioning;
+    for (_, JudgedView { summary, conditioning, .. }) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
+        let relative = world_from_mesh.compose(&summary.camera_from_mesh.inverse());
+        summary.world_from_camera = Similarity { scale: 1.0, ..relative };
+
+        let sd = |part: fn(&Conditioning) -> f64| {
+            let (a, b) = (reference.as_ref().map(part)?, conditioning.as_ref().map(part)?);
+            Some((a * a + b * b).sqrt())
+        };
+        let turn = sd(|own| own.rotation.0);
+        let moved = sd(|own| own.position_m);
+        summary.rotation_sd_deg = turn.map(f64::to_degrees);
+        summary.position_sd_m = turn.zip(moved).map(|(turn, moved)| {
+            // The camera swings about the object as far as the rotation of the object is uncertain.
+            let swing = turn * summary.camera_from_mesh.translation.norm();
+            (moved * moved + swing * swing).sqrt()
+        });
+    }
+}
+
+/// The poses of a view that may be right: the one that colour chooses, or all that shape allows.
+fn likely(view: &SearchedView) -> Vec<Candidate> {
+    let candidates = &view.rounds.candidates;
+    let best = candidates.first().map_or(0.0, |best| best.score.total);
+    let tried = if view.color.as_ref().is_some_and(|color| color.is_used) { 1 } else { TRIED };
+    candidates.iter().filter(|f| f.score.total > best - NEAR).take(tried).copied().collect()
+}
+
+fn best_of(candidates: impl Iterator<Item = Candidate>) -> Option<Candidate> {
+    candidates.reduce(|best, next| if next.score.total > best.score.total { next } else { best })
 }
 
 fn fine(search: &Search) -> Objective<'_> {

@@ -6,9 +6,9 @@ use super::world_pose::{PlacedCamera, WorldPose};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
 use crate::precise::scoring::score::Score;
-use crate::precise::search::cascade::{Stage, Subject};
+use crate::precise::search::cascade::{Cascade, Stage};
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{FINE, JOINT, JOINT_POLISH, JOINT_RANKING};
 use crate::precise::search::refine::Refiner;
 
@@ -34,7 +34,7 @@ pub struct Part<'a> {
 }
 
 /// A world pose and its score in all views.
-pub type Ranked = Found<WorldPose, JointScore>;
+pub type Ranked = Candidate<WorldPose, JointScore>;
 
 /// The views on whose evidence poses are refined.
 #[derive(Clone)]
@@ -49,9 +49,9 @@ pub struct ViewSet<'a> {
 
 impl Part<'_> {
     /// A pose in this view, with its total score in all of them; `None` if the view does not show it.
-    pub fn found(&self, ranked: &Ranked) -> Option<Found> {
+    pub fn candidate(&self, ranked: &Ranked) -> Option<Candidate> {
         let score = Score { total: ranked.score.total, ..Score::default() };
-        Some(Found { pose: self.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
+        Some(Candidate { pose: self.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
     }
 
     /// Whether the view, with this score, contradicts the pose.
@@ -61,14 +61,14 @@ impl Part<'_> {
     }
 }
 
-impl Subject for ViewSet<'_> {
+impl Cascade for ViewSet<'_> {
     type Pose = WorldPose;
     type Score = JointScore;
 
     fn refined(&mut self, grid: usize, steps: usize, poses: &[WorldPose]) -> Vec<Ranked> {
         let mut joint = self.level(grid);
         let refined: Vec<Ranked> = match steps {
-            0 => poses.iter().map(|pose| Found::of(*pose, joint.score(pose))).collect(),
+            0 => poses.iter().map(|pose| Candidate::of(*pose, joint.score(pose))).collect(),
             _ => poses.iter().map(|pose| joint.refine(*pose, steps)).collect(),
         };
         self.renders += refined.iter().map(|summit| summit.renders).sum::<usize>();

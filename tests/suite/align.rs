@@ -12,9 +12,9 @@ use sim3align::align::{align, align_paper, align_task};
 use sim3align::geometry::image::bounds_of;
 use sim3align::helpers::{Helpers, Link, READY};
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::pauses::Pauses;
 use sim3align::precise::search::start::prepare;
 use sim3align::report::PaperAlignment;
+use sim3align::scheduler::Scheduler;
 
 use crate::observations::{HEIGHT, WIDTH, body, camera, observe, quick, solve, truth, turn_deg};
 use crate::prelude::*;
@@ -121,8 +121,8 @@ fn pauses_and_a_prepared_mesh_change_nothing() {
         let options = AlignOptions { quality, ..AlignOptions::default() };
         let whole = align(&observe(&mesh, &truth()), &mesh, &options, &mut Silent).unwrap();
         for (seed, one_in) in [(0, 0), (0, 1), (1, 50)] {
-            let pauses = Pauses::new(pausing(seed, one_in), None);
-            let mut task = align_task(observe(&mesh, &truth()), &prepared, options.clone(), Silent, pauses).unwrap();
+            let scheduler = Scheduler::new(pausing(seed, one_in), None);
+            let mut task = align_task(observe(&mesh, &truth()), &prepared, options.clone(), Silent, scheduler).unwrap();
             let (found, steps) = stepped(&mut task, 0.0);
             assert_eq!(found, whole, "{quality:?}, seed {seed}, one pause in {one_in}");
             assert!(one_in != 1 || steps > 300, "{quality:?}: {steps} steps");
@@ -181,9 +181,9 @@ fn an_alignment_with_helpers_has_the_same_bits() {
         let arrived = (0..count).map(|k| [&[k as f64], &READY[1..]].concat()).collect();
         let crew = Crew { helpers, arrived, random: Random::new(count, 33), answers: 0 };
         let crowd = Crowd(Rc::new(RefCell::new(crew)));
-        let pauses = Pauses::none().with_helpers(Helpers::new(crowd.clone()));
+        let scheduler = Scheduler::unbounded().with_helpers(Helpers::new(crowd.clone()));
         let prepared = PreparedMesh::borrowed(&mesh);
-        let mut task = align_task(observe(&mesh, &truth()), prepared, options.clone(), Silent, pauses).unwrap();
+        let mut task = align_task(observe(&mesh, &truth()), prepared, options.clone(), Silent, scheduler).unwrap();
         let (found, _) = stepped(&mut task, f64::INFINITY);
         assert_eq!(found, alone, "{count} helpers");
         assert!(crowd.0.borrow().answers > 20, "they helped: {}", crowd.0.borrow().answers);

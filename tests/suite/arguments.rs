@@ -13,9 +13,9 @@ use sim3align::evidence::photo::Photo;
 use sim3align::geometry::depth_kind::DepthKind;
 use sim3align::options::Options;
 use sim3align::paper::options::PaperOptions;
-use sim3align::pauses::{Pauses, finished};
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::{estimate_sim3, register};
+use sim3align::scheduler::{Scheduler, finished};
 use sim3align::views::{View, align_views};
 
 use crate::calibrate::{calibrated, raw};
@@ -240,8 +240,8 @@ fn views_and_calibrations_that_can_not_be_are_refused() {
         assert_eq!(calibrated(&view, &mask, &body(), &quick()).unwrap_err().code, code);
     }
     let unmasked = [RawFrame { view: good, mask: None, world_from_camera: None }];
-    let (options, pauses) = (quick(), Pauses::none());
-    let found = finished(calibrate_views(&unmasked, &mesh, &options, &mut Silent, &pauses));
+    let (options, scheduler) = (quick(), Scheduler::unbounded());
+    let found = finished(calibrate_views(&unmasked, &mesh, &options, &mut Silent, &scheduler));
     refused(found, InvalidArgument, "views[0].mask");
 }
 

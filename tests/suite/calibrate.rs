@@ -8,7 +8,7 @@ use sim3align::calibrate::{Calibrated, Object, calibrate};
 use sim3align::error::Result;
 use sim3align::evidence::frame::Frame;
 use sim3align::geometry::depth_kind::DepthKind;
-use sim3align::pauses::{Pauses, finished};
+use sim3align::scheduler::{Scheduler, finished};
 use sim3align::track::options::TrackOptions;
 use sim3align::track::tracker::Tracker;
 use sim3align::views::align_views;
@@ -46,7 +46,7 @@ pub fn raw(seen: &Observation, kind: DepthKind, focal: Focal, factor: f64) -> Ra
 pub fn calibrated(view: &RawView, mask: &Mask, mesh: &Mesh, options: &AlignOptions) -> Result<Calibrated> {
     let mesh = PreparedMesh::borrowed(mesh);
     let objects = [Object { mask, others: None, mesh: &mesh, options }];
-    finished(calibrate(view, &objects, &mut Silent, &Pauses::none()))
+    finished(calibrate(view, &objects, &mut Silent, &Scheduler::unbounded()))
 }
 
 /// How far the relief that a shift gives the body is from the true one, as the logarithm of the ratio.
@@ -125,7 +125,7 @@ fn views_and_frames_share_a_camera_and_a_unit() {
     let (body, options) = (body(), quick());
     let mesh = PreparedMesh::borrowed(&body);
     let frames = [0.0, 1.2].map(|angle| frame(angle, Focal::Guessed(0.2), 1.15));
-    let found = finished(calibrate_views(&frames, &mesh, &options, &mut Silent, &Pauses::none())).unwrap();
+    let found = finished(calibrate_views(&frames, &mesh, &options, &mut Silent, &Scheduler::unbounded())).unwrap();
     assert_eq!(found[0].camera, found[1].camera);
     let error = libm::log(found[0].camera.fx / observe(&body, &truth()).camera().fx).abs();
     assert!(error < 0.02, "the focal length is off by {error}");
@@ -138,7 +138,7 @@ fn views_and_frames_share_a_camera_and_a_unit() {
 
     let mut sequence = Sequence::default();
     let mut next = |frame: &RawFrame| {
-        finished(sequence.next(frame, &mesh, &options, &mut Silent, &Pauses::none())).unwrap().calibration
+        finished(sequence.next(frame, &mesh, &options, &mut Silent, &Scheduler::unbounded())).unwrap().calibration
     };
     let [first, second] = [0.0, 0.07].map(|angle| next(&frame(angle, Focal::Known, 1.0)));
     let value = predicted(kind, truth().translation.z);
@@ -163,7 +163,7 @@ fn the_factor_of_each_frame_follows_from_the_frame_before() {
         view.values = Image::new("depth", view.values.width(), view.values.height(), values).unwrap();
         let mask = (i == 0).then(|| seen.mask().clone());
         let frame = RawFrame { view, mask, world_from_camera: None };
-        let found = finished(sequence.next(&frame, &mesh, &options, &mut Silent, &Pauses::none())).unwrap();
+        let found = finished(sequence.next(&frame, &mesh, &options, &mut Silent, &Scheduler::unbounded())).unwrap();
         scales.push(found.calibration.scale * f64::from(factor));
     }
     for (i, scale) in scales.iter().enumerate() {

@@ -92,7 +92,7 @@ fn the_outline_is_the_distance_to_the_rim_of_the_mask() {
         let clean = CleanObservation::new(
             &view(camera, [WIDTH, HEIGHT], &mask, |u, v| 0.5 + 1e-4 * (u % 3 + v % 2) as f32).unwrap(),
         );
-        assert_eq!(clean.rim_offset, 0.0, "seed {seed}");
+        assert_eq!(clean.boundary_offset, 0.0, "seed {seed}");
         let pixels: Vec<(usize, usize)> = (0..WIDTH * HEIGHT).map(|i| (i % WIDTH, i / WIDTH)).collect();
         let (inside, outside): (Vec<_>, Vec<_>) = pixels.into_iter().partition(|&(u, v)| mask(u, v));
         assert_eq!(clean.pixels, inside.len(), "seed {seed}");

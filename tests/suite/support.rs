@@ -1,4 +1,4 @@
-//! Shared parts of the tests: seeded draws, random similarities, surfaces with known normals, pauses and warnings.
+//! Shared parts of the tests: seeded draws, random similarities, surfaces with known normals, yields and warnings.
 
 use core::cell::RefCell;
 
@@ -7,15 +7,15 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::random::Random;
 use sim3align::geometry::similarity::{Similarity, vec3};
-use sim3align::pauses::Task;
 use sim3align::report::{Sim3, Warning, WarningCode};
+use sim3align::scheduler::Task;
 
 thread_local! {
     /// Of what the clock of [`pausing`] draws whether to pause.
     static CHANCE: RefCell<Option<(Draw, usize)>> = const { RefCell::new(None) };
 }
 
-/// A clock by which a step until 0 pauses at one pause point of `one_in`, by chance; never if that is 0.
+/// A clock by which a step until 0 yields at one yield point of `one_in`, by chance; never if that is 0.
 pub fn pausing(seed: u64, one_in: usize) -> fn() -> f64 {
     CHANCE.set((one_in > 0).then(|| (Draw::new(seed), one_in)));
     || {

@@ -1,7 +1,7 @@
 //! Tracking: videos of a turning object, corrections, losses, and the size that frames share.
 
 use sim3align::evidence::frame::Frame;
-use sim3align::pauses::{Pauses, Task};
+use sim3align::scheduler::{Scheduler, Task};
 use sim3align::track::history::{History, MOST};
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::{TrackState, TrackedFrame};
@@ -181,11 +181,11 @@ fn equivalent_turns_are_no_doubt_with_the_symmetry_of_the_object() {
     assert!(1.0 - with < 0.3 * (1.0 - without), "{with} with its symmetry, {without} without");
 }
 
-/// A frame in as many steps as there are pauses; given up after `most` of them.
+/// A frame in as many steps as there are yields; given up after `most` of them.
 fn in_steps(tracker: &mut Tracker<PreparedMesh<'static>>, frame: &Frame, most: usize) -> (usize, Option<TrackedFrame>) {
-    let mut task = Task::new(Pauses::new(|| 1.0, None), |pauses| async move {
+    let mut task = Task::new(Scheduler::new(|| 1.0, None), |scheduler| async move {
         let mut host = Silent;
-        tracker.next_in_steps(frame, &mut host, &pauses).await
+        tracker.next_in_steps(frame, &mut host, &scheduler).await
     });
     let mut steps = 0;
     while steps < most {

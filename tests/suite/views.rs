@@ -48,19 +48,19 @@ fn views_with_known_cameras_have_one_pose() {
 }
 
 #[wasm_bindgen_test]
-fn views_without_a_mask_blind_ones_and_wrong_ones_have_their_roles() {
+fn views_without_a_mask_unusable_ones_and_wrong_ones_have_their_roles() {
     type Case = (ViewRole, Option<WarningCode>, fn(&mut View));
     let cases: [Case; 5] = [
         (ViewRole::Used, None, |view| view.frame.mask = None),
-        (ViewRole::Blind, Some(WarningCode::ViewShowsNothing), |view| {
+        (ViewRole::Unusable, Some(WarningCode::ViewShowsNothing), |view| {
             view.frame.mask = None;
             view.frame.depth.data_mut().fill(0.0);
         }),
-        (ViewRole::Blind, Some(WarningCode::ViewShowsNothing), |view| {
+        (ViewRole::Unusable, Some(WarningCode::ViewShowsNothing), |view| {
             view.frame.mask.iter_mut().for_each(|mask| mask.data_mut().fill(0));
         }),
         // Lines that are thinner than the cells of a search.
-        (ViewRole::Blind, Some(WarningCode::ViewShowsNothing), |view| {
+        (ViewRole::Unusable, Some(WarningCode::ViewShowsNothing), |view| {
             let mask = view.frame.mask.as_mut().unwrap();
             let width = mask.width();
             mask.data_mut().iter_mut().enumerate().for_each(|(i, m)| *m = u8::from(i % width % 8 == i / width % 8));
@@ -124,8 +124,8 @@ fn a_view_with_an_unusable_mask_is_left_out_of_unknown_cameras() {
     for k in [1, 2] {
         assert_right(&body(), &pose_of(&found.views[k].camera_from_mesh), &orbit(ANGLES[k]), &format!("view {k}"));
     }
-    let blind = &found.views[0];
-    assert_eq!((blind.role, blind.confidence, blind.camera.position_sd_m), (ViewRole::Blind, 0.0, None));
+    let unusable = &found.views[0];
+    assert_eq!((unusable.role, unusable.confidence, unusable.camera.position_sd_m), (ViewRole::Unusable, 0.0, None));
     assert!(found.warnings.iter().any(|warning| warning.message.contains("views[0].mask")), "{:?}", found.warnings);
     assert!(found.confidence > 0.5, "{}", found.confidence);
 }

@@ -10,8 +10,8 @@ use crate::gltf::buffers::Buffers;
 use crate::gltf::document::Document;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, missing, too_large};
 use crate::resources::ImageDecoder;
-use sim3align_geometry::error::Result;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::Result;
 
 /// Maximum number of elements of an accessor without a buffer view, which consists of zeros and is not bounded by the
 /// size of the file.

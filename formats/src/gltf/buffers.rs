@@ -6,7 +6,7 @@ use ::gltf::json;
 
 use crate::guard::{MAX_BUFFER_BYTES, corrupt, missing, too_large};
 use crate::resources::{Resources, at_uri};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// The buffers, each loaded on first use; those of animations are never loaded.
 pub(super) struct Buffers<'a> {

@@ -2,7 +2,7 @@
 
 use crate::cursor::Cursor;
 use crate::guard::{corrupt, too_large, unsupported};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// Maximum size of a GLB: 2 GiB.
 const MAX_GLB_BYTES: u32 = 1 << 31;

@@ -4,7 +4,7 @@ use ::gltf::json;
 use serde::Deserialize;
 
 use crate::guard::{corrupt, too_large, unsupported};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Maximum number of objects in the JSON: each takes much more memory than its two characters.
 const MAX_JSON_OBJECTS: usize = 1 << 20;

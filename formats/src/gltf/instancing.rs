@@ -5,7 +5,7 @@ use glam::{DMat4, DQuat, DVec3, Vec3};
 use crate::gltf::accessor::AccessorReader;
 use crate::gltf::document::Instances;
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 impl Instances {
     /// The transforms of the copies of the node's mesh, each node_from_instance.

@@ -13,7 +13,7 @@ use crate::painted_mesh::Material;
 use crate::resources::at_uri;
 use crate::texture::{TextureLoader, Wrap, unsupported_texture};
 use sim3align_geometry::angle::sin_cos;
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 const CLAMP_TO_EDGE: u32 = 33_071;
 const MIRRORED_REPEAT: u32 = 33_648;

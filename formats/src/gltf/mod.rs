@@ -19,7 +19,7 @@ use self::materials::Materials;
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::mesh_format::MeshReadOptions;
 use crate::resources::{ExternalResources, distinct};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// Reads a `.glb` or `.gltf`: the nodes of the default scene (the first scene if there is no default;
 /// without scenes, all root nodes), with transforms applied and all triangles, strips and fans merged. Points and lines

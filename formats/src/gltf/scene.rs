@@ -14,7 +14,7 @@ use crate::gltf::skin::Skin;
 use crate::guard::{corrupt, missing};
 use crate::mesh_builder::MeshBuilder;
 use crate::painted_mesh::PaintedMesh;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// All triangles of the scene, in the frame of the scene, with colours if there are `materials`.
 pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Result<Materials>>) -> Result<ColoredMesh> {

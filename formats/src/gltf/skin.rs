@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3, Vec3};
 
 use crate::gltf::accessor::AccessorReader;
 use crate::guard::{corrupt, missing};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// The joints of a skin, each as scene_from_joint · joint_from_mesh.
 pub(super) struct Skin(Vec<DMat4>);

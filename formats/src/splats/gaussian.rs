@@ -3,8 +3,8 @@
 use glam::{Mat3, Quat, Vec3};
 
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// A Gaussian in the frame of its file.
 #[derive(Debug, Clone, Copy)]

@@ -12,8 +12,8 @@ mod splat_file;
 mod surface_nets;
 
 use glam::DVec3;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 use crate::colored_mesh::ColoredMesh;
 use crate::painted_mesh::{Paint, PaintedMesh};

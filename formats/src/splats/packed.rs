@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::gaussian::Gaussian;
 use crate::guard::corrupt;
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// Gaussians per chunk, which has their ranges.
 const CHUNK: usize = 256;

@@ -7,7 +7,7 @@ use super::packed::{Chunks, RANGES, WORDS};
 use crate::guard::unsupported;
 use crate::ply::{Body, read_records};
 use crate::ply_header::{Element, Header};
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// The properties of a vertex that is a Gaussian: centre, colour as the constant term of spherical harmonics, opacity as
 /// its logit, logarithms of the standard deviations, and rotation (w, x, y, z). Others, such as further harmonics, are

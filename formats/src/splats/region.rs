@@ -5,10 +5,10 @@ use glam::Vec3;
 use super::gaussian::Gaussian;
 use super::lattice::{Lattice, clear_light_regions};
 use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::number::number;
 use sim3align_geometry::surface::DIAGONALS;
 use sim3align_geometry::surface_colors::Rgb;
+use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::number::number;
 
 /// Opacity below which a Gaussian is not part of a surface.
 const MIN_OPACITY: f32 = 0.1;

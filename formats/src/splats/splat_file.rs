@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::gaussian::{Gaussian, check_count};
 use crate::guard::corrupt;
-use sim3align_geometry::error::Result;
+use sim3align_runtime::error::Result;
 
 /// Centre and standard deviations as six f32, colour (sRGB) and opacity as four bytes, rotation (w, x, y, z) as four
 /// bytes around 128.

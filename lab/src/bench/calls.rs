@@ -13,10 +13,10 @@ use sim3align::align::{align_paper, align_prepared};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
 use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::pauses::{Pauses, finished};
 use sim3align::report::{Preset, Sim3};
 use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
+use sim3align::scheduler::{Scheduler, finished};
 use sim3align::track::options::TrackOptions;
 use sim3align::track::tracker::Tracker;
 use sim3align::views::align_views;
@@ -138,7 +138,8 @@ fn modelled(case: &Case, k: usize, row: &Row, model: &DepthModel) -> Result<Resu
     let mask = frame.observation(k, false)?.mask().clone();
     let called = Object { mask: &mask, others: frame.others(k), mesh: &mesh, options: &options };
     let meter = Meter::start();
-    let Calibrated { depth, calibration, .. } = finished(calibrate(&view, &[called], &mut Silent, &Pauses::none()))?;
+    let Calibrated { depth, calibration, .. } =
+        finished(calibrate(&view, &[called], &mut Silent, &Scheduler::unbounded()))?;
     let mut observation =
         Observation::new(depth, mask, calibration.camera)?.with_relief_deviation(calibration.uncertainty.relief());
     if let Some(photo) = frame.photo.as_ref().filter(|_| row.color) {

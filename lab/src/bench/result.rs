@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::prelude::*;
-use sim3align::geometry::counts::Counts;
+use sim3align::counts::Counts;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::report::{Alignment, Diagnostics, PaperAlignment, Warning};

@@ -105,7 +105,7 @@ pub struct Listed {
 /// Reads `pairs.json` of a folder; `None` if it does not exist.
 ///
 /// # Errors
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile).
+/// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile).
 pub fn read_list(root: &Path) -> Result<Option<Vec<Listed>>> {
     let path = root.join("pairs.json");
     if !path.is_file() {

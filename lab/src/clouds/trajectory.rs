@@ -24,8 +24,8 @@ pub struct Block<const N: usize> {
 /// Reads all blocks of a file.
 ///
 /// # Errors
-/// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be read,
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile) for one that holds anything but whole blocks.
+/// [`InvalidArgument`](sim3align_runtime::error::ErrorCode::InvalidArgument) if a file cannot be read,
+/// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile) for one that holds anything but whole blocks.
 pub fn read_blocks<const N: usize>(path: &Path) -> Result<Vec<Block<N>>> {
     let bytes = read(path)?;
     let mut numbers = words(&bytes).map(|word| {

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value as Json, json};
 use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
-use sim3align::geometry::counts::{self, Counts};
+use sim3align::counts::{self, Counts};
 use sim3align::progress::{Host, Stage};
 use sim3align_lab::bench::options::Row;
 use sim3align_lab::case_folder::read::read;

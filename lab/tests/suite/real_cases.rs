@@ -1,7 +1,7 @@
 //! Real RGB-D cases: `SIM3ALIGN_CASES=<folder of case folders> cargo test -p sim3align-lab -- --ignored real_cases`.
 
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
-use sim3align::precise::drawing::surplus::LeftOut;
+use sim3align::precise::drawing::removed_parts::RemovedParts;
 use sim3align_lab::case_folder::read::{case_folders, read};
 use sim3align_lab::prelude::*;
 
@@ -13,7 +13,7 @@ fn real_cases_have_whole_meshes_and_true_poses_that_explain_their_images() {
     for folder in case_folders(Path::new(&folder)).unwrap() {
         let case = read(&folder).unwrap();
         let (frame, mesh) = (&case.frames[0], &case.objects[0].mesh);
-        assert_eq!(PreparedMesh::borrowed(mesh).left_out(), LeftOut::default(), "{}", case.name);
+        assert_eq!(PreparedMesh::borrowed(mesh).removed_parts(), RemovedParts::default(), "{}", case.name);
         let Some(truth) = frame.truths[0] else { continue };
         tried += 1;
         let observation = frame.observation(0, false).unwrap();

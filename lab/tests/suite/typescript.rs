@@ -31,7 +31,7 @@ use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{
     CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty,
 };
-use sim3align_geometry::error::ErrorCode;
+use sim3align_runtime::error::ErrorCode;
 use ts_rs::{Config, TS};
 
 const HEADER: &str = "// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.\n\n";

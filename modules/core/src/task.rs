@@ -9,15 +9,15 @@ use sim3align::align::helper::Helper;
 use sim3align::align::search::Request;
 use sim3align::bindings::answer::step_answer;
 use sim3align::bindings::error::to_js;
-use sim3align::bindings::helpers::{JsHelpers, pauses, step};
+use sim3align::bindings::helpers::{JsHelpers, scheduler, step};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::Error;
 use sim3align::evidence::observation::Observation;
-use sim3align::pauses::Task;
 use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
 use sim3align::report::Alignment;
+use sim3align::scheduler::Task;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -42,7 +42,7 @@ pub fn begin_align(
 ) -> Result<AlignTask, JsValue> {
     let begin = || {
         let (observation, mesh, options) = given(input, options)?;
-        align_task(observation, mesh, options, JsHost::new(on_progress), pauses(helpers))
+        align_task(observation, mesh, options, JsHost::new(on_progress), scheduler(helpers))
     };
     begin().map(|task| AlignTask(RefCell::new(task))).map_err(|error| to_js(&error))
 }

@@ -17,9 +17,9 @@ use sim3align::calibrate::{Calibrated, Object as CalibratedObject, calibrate};
 use sim3align::error::{Error, Result};
 use sim3align::evidence::observation::check_mask_size;
 use sim3align::geometry::image::{Image, Mask};
-use sim3align::pauses::{Pauses, Task};
 use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
+use sim3align::scheduler::{Scheduler, Task};
 use sim3align::views::options::ViewsOptions;
 
 use super::views::world_from_camera;
@@ -48,7 +48,7 @@ pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::
             objects.ok_or_else(|| wrong_type("objects", &JsValue::UNDEFINED, "an array", "Pass the objects."))?;
         let objects = usable(Array::from(&objects).iter().map(|object| owned(&object, size)))?;
         let mut host = JsHost::new(on_progress);
-        Ok(Task::new(Pauses::new(now_ms, None), move |pauses| async move {
+        Ok(Task::new(Scheduler::new(now_ms, None), move |scheduler| async move {
             let borrowed: Vec<CalibratedObject<'_>> = objects
                 .iter()
                 .map(|OwnedObject { mask, others, mesh, options }| CalibratedObject {
@@ -58,7 +58,7 @@ pub fn begin_calibrate(input: &JsValue, on_progress: Option<Function>) -> core::
                     options,
                 })
                 .collect();
-            calibrate(&view, &borrowed, &mut host, &pauses).await
+            calibrate(&view, &borrowed, &mut host, &scheduler).await
         }))
     };
     begin().map(|task| CalibrateTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
@@ -125,8 +125,8 @@ pub fn begin_calibrate_views(
         let frames = Array::from(&views).iter().enumerate().map(frame).collect::<Result<Vec<_>>>()?;
         let mesh = mesh::mesh_of(input)?;
         let mut host = JsHost::new(on_progress);
-        Ok(Task::new(Pauses::new(now_ms, None), move |pauses| async move {
-            calibrate_views(&frames, &mesh, &options.of_one_view(), &mut host, &pauses).await
+        Ok(Task::new(Scheduler::new(now_ms, None), move |scheduler| async move {
+            calibrate_views(&frames, &mesh, &options.of_one_view(), &mut host, &scheduler).await
         }))
     };
     begin().map(|task| CalibrateViewsTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))

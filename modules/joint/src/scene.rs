@@ -13,14 +13,13 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
 use sim3align::bindings::error::to_js;
-use sim3align::bindings::helpers::{JsHelpers, pauses};
+use sim3align::bindings::helpers::{JsHelpers, scheduler};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, required_number, to_numbers, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::geometry::image::{Image, Mask};
 use sim3align::number::number;
-use sim3align::pauses::Task;
 use sim3align::report::Alignment;
 use sim3align::scene::local::View;
 use sim3align::scene::placement::Placement;
@@ -29,6 +28,7 @@ use sim3align::scene::plane::Plane;
 use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::planes::union_of;
 use sim3align::scene::task::{helper, place};
+use sim3align::scheduler::Task;
 
 use crate::helper::JointHelper;
 
@@ -49,8 +49,8 @@ pub fn begin_place(
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
         let (plan, index) = planned(input)?;
         let mut host = JsHost::new(on_progress);
-        Ok(Task::new(pauses(helpers), move |pauses| async move {
-            place(&observation, &mesh, options, plan.warm_start(index)?, &mut host, &pauses).await
+        Ok(Task::new(scheduler(helpers), move |scheduler| async move {
+            place(&observation, &mesh, options, plan.warm_start(index)?, &mut host, &scheduler).await
         }))
     };
     begin().map(|task| PlaceTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))

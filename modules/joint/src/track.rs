@@ -18,9 +18,9 @@ use sim3align::calibrate::calibration::DepthCalibration;
 use sim3align::calibrate::frames::Sequence;
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::evidence::frame::Frame;
-use sim3align::pauses::{Pauses, Task};
 use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
+use sim3align::scheduler::{Scheduler, Task};
 use sim3align::track::report::TrackedFrame;
 use sim3align::track::tracker::Tracker;
 
@@ -65,23 +65,23 @@ pub fn begin_track_frame(
     on_progress: Option<Function>,
 ) -> core::result::Result<FrameTask, JsValue> {
     let begin = || {
-        let (tracked, mut host, pauses) = (tracker(id)?, JsHost::new(on_progress), Pauses::new(now_ms, None));
+        let (tracked, mut host, scheduler) = (tracker(id)?, JsHost::new(on_progress), Scheduler::new(now_ms, None));
         if !input::is_raw(frame) {
             let frame = input::frame(frame)?;
-            return Ok(Task::new(pauses, move |pauses| async move {
+            return Ok(Task::new(scheduler, move |scheduler| async move {
                 let Tracked { tracker, .. } = &mut *borrowed(&tracked)?;
-                Ok((tracker.next_in_steps(&frame, &mut host, &pauses).await?, None))
+                Ok((tracker.next_in_steps(&frame, &mut host, &scheduler).await?, None))
             }));
         }
         let (raw, photo) = (input::raw_frame(frame, None)?, input::photo(frame)?);
-        Ok(Task::new(pauses, move |pauses| async move {
+        Ok(Task::new(scheduler, move |scheduler| async move {
             let Tracked { mesh, tracker, sequence } = &mut *borrowed(&tracked)?;
             let (mut next, options) = (sequence.clone(), tracker.options().of_first_frame());
             let Calibrated { depth, camera, calibration } =
-                next.next(&raw, mesh, &options, &mut Silent, &pauses).await?;
+                next.next(&raw, mesh, &options, &mut Silent, &scheduler).await?;
             let relief_deviation = calibration.uncertainty.relief();
             let frame = Frame { depth, camera, mask: raw.mask, photo, relief_deviation };
-            let found = tracker.next_in_steps(&frame, &mut host, &pauses).await?;
+            let found = tracker.next_in_steps(&frame, &mut host, &scheduler).await?;
             *sequence = next;
             Ok((found, Some(calibration)))
         }))

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::step_answer;
 use sim3align::bindings::error::to_js;
-use sim3align::bindings::helpers::{JsHelpers, pauses};
+use sim3align::bindings::helpers::{JsHelpers, scheduler};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, wrong_type};
 use sim3align::bindings::transform::similarity;
@@ -16,7 +16,7 @@ use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::geometry::similarity::Similarity;
 use sim3align::number::number;
-use sim3align::pauses::Task;
+use sim3align::scheduler::Task;
 use sim3align::views::report::ViewsAlignment;
 use sim3align::views::{View, align_views_task, views_helper};
 
@@ -40,7 +40,7 @@ pub fn begin_align_views(
     let begin = || {
         let options = options::options(options, &options::OF_LONG_CALLS, |_| None)?;
         let (views, mesh) = (views_of(input)?, mesh::mesh_of(input)?);
-        align_views_task(views, mesh, options, JsHost::new(on_progress), pauses(helpers))
+        align_views_task(views, mesh, options, JsHost::new(on_progress), scheduler(helpers))
     };
     begin().map(|task| ViewsTask(RefCell::new(task))).map_err(|error| to_js(&error))
 }

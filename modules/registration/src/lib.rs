@@ -12,9 +12,9 @@ use sim3align::bindings::answer::{answer, step_answer};
 use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::{input, mesh, object, options};
-use sim3align::pauses::Task;
 use sim3align::register;
 use sim3align::register::report::Registration;
+use sim3align::scheduler::Task;
 use wasm_bindgen::prelude::*;
 
 /// Aligns a mesh with an observation by the method of the paper; see `Aligner.align` in the TypeScript package.

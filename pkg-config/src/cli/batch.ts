@@ -88,7 +88,7 @@ export async function runBatch<T extends CaseKey>(
   const output = new Output(flags, job.sinks ?? [], files, header);
   let isWhole = false;
   try {
-    isWhole = await runCases(job, flags, files, output);
+    isWhole = await new Batch(job, flags, files, output).run();
   } catch (error) {
     // What is done is kept, unless the command line is wrong.
     if (error instanceof UsageError) output.discard();
@@ -99,158 +99,193 @@ export async function runBatch<T extends CaseKey>(
   return isWhole;
 }
 
-async function runCases<T extends CaseKey>(
-  job: Job<T>,
-  flags: Flags,
-  files: RunFiles,
-  output: Output,
-): Promise<boolean> {
-  const { tasks } = job;
-  const pictures = await Pictures.open(flags, files);
-  const { style } = output;
-  const isOnly = tasks.length === 1;
-  const remarks: string[] = [];
-  const failedBefore: string[] = [];
-  let [done, failed, incomplete] = [0, 0, 0];
-  /** Lines about the files of cases, and these. */
-  const intake = new Map<string, string[]>();
-  let progress: BatchProgress | undefined;
+/** The run of a job: what has been done, and what is printed about it. */
+class Batch<T extends CaseKey> {
+  readonly #isOnly: boolean;
+  readonly #pictures: Pictures;
+  readonly #remarks: string[] = [];
+  /** Lines about the files of cases, and the names of these. */
+  readonly #intake = new Map<string, string[]>();
+  /** Cases of the record that had failed. */
+  readonly #failedBefore: string[] = [];
+  #done = 0;
+  #failed = 0;
+  #incomplete = 0;
+  #progress: BatchProgress | undefined;
 
-  /** Counts a case, and adds its rows to the report. Returns its errors. */
-  const count = (name: string, entry: Entry): string[] => {
-    const errors = errorsIn(entry);
-    done += 1;
-    if (errors.length > 0) failed += 1;
-    pictures.record(name, entry);
-    return errors;
-  };
-  /** Makes files of a case. Returns whether all are there. */
-  const makes = async (task: T, make: () => Promise<void>): Promise<boolean> => {
+  constructor(
+    private readonly job: Job<T>,
+    private readonly flags: Flags,
+    files: RunFiles,
+    private readonly output: Output,
+  ) {
+    this.#isOnly = job.tasks.length === 1;
+    this.#pictures = Pictures.open(flags, files);
+  }
+
+  /** Runs all cases. Returns whether all succeeded and have all their files. */
+  async run(): Promise<boolean> {
+    const { job, flags, output } = this;
+    // Until all earlier cases are there, the files would hold less than before: they stay as they are.
+    const left = flags.resume ? await this.#resume().finally(onInterruption(() => output.discard())) : job.tasks;
+    const { workers = "auto" } = flags;
+    // A single case is done on this thread, unless the flags ask for workers.
+    const wanted = workers === "auto" ? (this.#isOnly ? 0 : autoWorkers(availableParallelism())) : workers;
+    const size = Math.min(wanted, this.#isOnly ? MAX_WORKERS : left.length, MAX_WORKERS);
+
+    const stop = onInterruption(() => this.#interrupt());
     try {
-      await make();
-      return true;
-    } catch (error) {
-      if (!(error instanceof OutputError)) throw error;
-      progress?.clear();
-      note(`error: ${task.name}: ${error.message}`);
-      return false;
+      if (left.length > 0) await this.#runOn(left, size);
+    } finally {
+      stop();
+      this.#progress?.clear();
     }
-  };
-  const draw = (task: T, entry: Entry, isResumed: boolean) =>
-    makes(task, async () => {
-      const { inputs } = job;
-      if (inputs !== undefined) await pictures.draw(task.name, entry, isResumed, () => inputs(task, entry));
-    });
+    this.#end();
+    return this.#failed === 0 && this.#incomplete === 0;
+  }
+
+  async #runOn(tasks: readonly T[], workers: number): Promise<void> {
+    const aligner = await createAligner({ workers });
+    try {
+      if (!this.#isOnly) this.#progress = new BatchProgress(process.stderr, tasks.length);
+      const limit = workers > 1 ? workers + READ_AHEAD : 1;
+      for await (const write of concurrently(tasks, limit, (task) => this.#runCase(aligner, task))) {
+        write();
+        if (this.output.isClosed) break;
+      }
+    } finally {
+      aligner.dispose();
+    }
+  }
+
   /** Adds the cases that were done before, and returns the others. */
-  const resume = async (): Promise<T[]> => {
+  async #resume(): Promise<T[]> {
+    const { job, flags, output } = this;
     const resumed = new Set<T>();
     let recorded = 0;
-    for await (const { task, name, entry } of output.resumed(tasks)) {
+    for await (const { task, name, entry } of output.resumed(job.tasks)) {
       recorded += 1;
       if (task !== undefined && !isFailure(entry) && job.isComplete?.() === false) continue;
       output.add(name, entry);
       if (task === undefined) continue;
+
       resumed.add(task);
-      if (!(await draw(task, entry, true))) incomplete += 1;
-      const [error] = count(name, entry);
-      if (error !== undefined) failedBefore.push(`${name} (${error})`);
+      if (!(await this.#draw(task, entry, true))) this.#incomplete += 1;
+      const [error] = this.#count(name, entry);
+      if (error !== undefined) this.#failedBefore.push(`${name} (${error})`);
     }
-    if (recorded > 0) note(`resumed: ${resumed.size} of ${tasks.length} cases are in ${flags.jsonl}`);
-    return tasks.filter((task) => !resumed.has(task));
-  };
-  const linesOf = (task: T, entry: Entry): CaseLines => {
-    if (job.lines !== undefined) return job.lines(task, entry, isOnly, style);
-    return isFailure(entry) ? { [isOnly ? "remarks" : "rows"]: failedLines(task.name, entry, style) } : {};
-  };
+    if (recorded > 0) note(`resumed: ${resumed.size} of ${job.tasks.length} cases are in ${flags.jsonl}`);
+    return job.tasks.filter((task) => !resumed.has(task));
+  }
+
   /** Works on a case. Returns a function that writes the result. */
-  const run = async (aligner: Aligner, task: T): Promise<() => void> => {
+  async #runCase(aligner: Aligner, task: T): Promise<() => void> {
+    const { job, output } = this;
     const early: string[] = [];
-    const line = isOnly ? new StatusLine(process.stderr) : undefined;
-    let isComplete = true;
+    const line = this.#isOnly ? new StatusLine(process.stderr) : undefined;
     const show = (state: string) => line?.show(`[1/1] ${task.name}  ${state}`);
+    let isComplete = true;
     const caseRun: CaseRun = {
-      ...{ found: undefined, style, isClosed: () => output.isClosed },
+      ...{ found: undefined, style: output.style, isClosed: () => output.isClosed },
       print(...lines) {
         line?.clear();
         if (line === undefined) early.push(...lines);
         else output.lines(lines);
       },
       partial: (entry) => line && output.begin(task.name, entry),
-      async make(files) {
-        if (!(await makes(task, files))) isComplete = false;
+      make: async (files) => {
+        if (!(await this.#make(task, files))) isComplete = false;
       },
     };
-    if (isOnly)
+    if (this.#isOnly)
       caseRun.onProgress = ({ stage, fraction }) =>
         show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`);
+
     show("reading");
     const work = job.run(aligner, task, caseRun).catch((error) => failureEntry(error, caseRun.found));
     const entry = await work.finally(() => line?.clear());
     // Before the record: a case that is there has all its files.
-    if (!(await draw(task, entry, false))) isComplete = false;
-    return () => {
-      const hasErrors = count(task.name, entry).length > 0;
-      if (isComplete) output.record(task, entry);
-      else incomplete += 1;
-      output.add(task.name, entry);
-      for (const line of intakeLines(entry)) intake.set(line, [...(intake.get(line) ?? []), task.name]);
-      const { rows = [], remarks: more = [] } = linesOf(task, entry);
-      remarks.push(...more);
-      progress?.clear();
-      output.lines([...early, ...rows]);
-      progress?.add(hasErrors || !isComplete);
-    };
-  };
+    if (!(await this.#draw(task, entry, false))) isComplete = false;
+    return () => this.#write(task, entry, isComplete, early);
+  }
+
+  /** Writes the result of a case. `early` are lines that were printed before. */
+  #write(task: T, entry: Entry, isComplete: boolean, early: readonly string[]): void {
+    const { output } = this;
+    const hasErrors = this.#count(task.name, entry).length > 0;
+    if (isComplete) output.record(task, entry);
+    else this.#incomplete += 1;
+    output.add(task.name, entry);
+
+    for (const line of intakeLines(entry)) this.#intake.set(line, [...(this.#intake.get(line) ?? []), task.name]);
+    const { rows = [], remarks = [] } = this.#linesOf(task, entry);
+    this.#remarks.push(...remarks);
+    this.#progress?.clear();
+    output.lines([...early, ...rows]);
+    this.#progress?.add(hasErrors || !isComplete);
+  }
+
+  #linesOf(task: T, entry: Entry): CaseLines {
+    const { job, output } = this;
+    if (job.lines !== undefined) return job.lines(task, entry, this.#isOnly, output.style);
+    return isFailure(entry) ? { [this.#isOnly ? "remarks" : "rows"]: failedLines(task.name, entry, output.style) } : {};
+  }
+
+  /** Counts a case, and adds its rows to the report. Returns its errors. */
+  #count(name: string, entry: Entry): string[] {
+    const errors = errorsIn(entry);
+    this.#done += 1;
+    if (errors.length > 0) this.#failed += 1;
+    this.#pictures.record(name, entry);
+    return errors;
+  }
+
+  async #draw(task: T, entry: Entry, isResumed: boolean): Promise<boolean> {
+    const { inputs } = this.job;
+    if (inputs === undefined) return true;
+    return this.#make(task, () => this.#pictures.draw(task.name, entry, isResumed, () => inputs(task, entry)));
+  }
+
+  /** Makes files of a case. Returns whether all are there. */
+  async #make(task: T, make: () => Promise<void>): Promise<boolean> {
+    try {
+      await make();
+      return true;
+    } catch (error) {
+      if (!(error instanceof OutputError)) throw error;
+      this.#progress?.clear();
+      note(`error: ${task.name}: ${error.message}`);
+      return false;
+    }
+  }
+
   /** Closes the files and prints the remarks. */
-  const end = () => {
-    progress?.clear();
-    output.end();
-    pictures.end();
-    output.lines(!isOnly && remarks.length > 0 ? ["", ...remarks] : remarks);
-    const lines = [...intake].map(([line, names]) => (isOnly ? line : `${line} (${listed(names)})`));
-    if (lines.length > 0) output.lines(["", ...lines]);
+  #end(): void {
+    const [remarks, failedBefore] = [this.#remarks, this.#failedBefore];
+    this.#progress?.clear();
+    this.output.end();
+    this.#pictures.end();
+    this.output.lines(!this.#isOnly && remarks.length > 0 ? ["", ...remarks] : remarks);
+
+    const lines = [...this.#intake].map(([line, names]) => (this.#isOnly ? line : `${line} (${listed(names)})`));
+    if (lines.length > 0) this.output.lines(["", ...lines]);
     if (failedBefore.length > 0)
       note(`failed earlier: ${listed(failedBefore)}; remove their lines from the record to try again`);
-  };
-  const interrupt = () => {
+  }
+
+  #interrupt(): void {
     try {
-      end();
+      this.#end();
     } catch (error) {
       note(`error: ${(error as Error).message}`);
     }
-    const { json, jsonl = "-", csv } = flags;
+    const { json, jsonl = "-", csv } = this.flags;
     const files = [jsonl, json, csv].filter((path) => path !== undefined && path !== "-");
     const place = files.length === 0 ? "" : `; they are in ${files.join(", ")}`;
-    note(`interrupted: ${done} of ${tasks.length} cases are done${place}`);
+    note(`interrupted: ${this.#done} of ${this.job.tasks.length} cases are done${place}`);
     const remedy = "With --jsonl FILE, a batch can be resumed: --resume skips the cases in the file.";
-    if (!isOnly) note(jsonl === "-" ? remedy : "To go on, run the same command with --resume.");
-  };
-
-  // Until all earlier cases are there, the files would hold less than before: they stay as they are.
-  const left = flags.resume ? await resume().finally(onInterruption(() => output.discard())) : tasks;
-  const { workers = "auto" } = flags;
-  // A single case is done on this thread, unless the flags ask for workers.
-  const wanted = workers === "auto" ? (isOnly ? 0 : autoWorkers(availableParallelism())) : workers;
-  const size = Math.min(wanted, isOnly ? MAX_WORKERS : left.length, MAX_WORKERS);
-  const stop = onInterruption(interrupt);
-  let aligner: Aligner | undefined;
-  try {
-    if (left.length > 0) {
-      const created = await createAligner({ workers: size });
-      aligner = created;
-      if (!isOnly) progress = new BatchProgress(process.stderr, left.length);
-      for await (const write of concurrently(left, size > 1 ? size + READ_AHEAD : 1, (task) => run(created, task))) {
-        write();
-        if (output.isClosed) break;
-      }
-    }
-  } finally {
-    aligner?.dispose();
-    stop();
-    progress?.clear();
+    if (!this.#isOnly) note(jsonl === "-" ? remedy : "To go on, run the same command with --resume.");
   }
-  end();
-  return failed === 0 && incomplete === 0;
 }
 
 /** Runs a task for each item, at most `limit` at a time, and yields the results as the tasks finish. */

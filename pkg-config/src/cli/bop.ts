@@ -6,13 +6,13 @@ import { type BopEvaluation, best, bopModelsIn, evaluateBop, grouped } from "../
 import { fromBop } from "../conventions/bop.js";
 import type { KnownPose } from "../conventions/pose-file.js";
 import type { AlignInput } from "../index.js";
-import { fixed } from "../report-page/row.js";
 import { type CaseToDo, caseJob, precise, shared } from "./align.js";
 import type { Job } from "./batch.js";
 import { absolutePath, textOf, UsageError } from "./files.js";
 import type { Flags } from "./flags.js";
 import { StatusLine } from "./progress.js";
 import { isResults } from "./result-files.js";
+import { fixed } from "./row.js";
 import type { OutputName, RunFiles } from "./run-files.js";
 import { type Pair, pairs } from "./table.js";
 import { note } from "./terminal.js";

@@ -2,9 +2,9 @@
 import type { LayoutErrors, Stretch } from "../generated/types.js";
 import type { Alignment, DepthCalibration, Evaluation, Metrics, PaperAlignment, PoseErrors } from "../index.js";
 import { unitText } from "../input/depth-kinds.js";
-import { fixed, type Message, significant } from "../report-page/row.js";
 import type { InputInfo } from "../types/results.js";
 import { type AlignEntry, type Entry, isMetric, type ViewsEntry, warningsOf } from "./entry.js";
+import { fixed, type Message, significant } from "./row.js";
 import { Lengths, type Pair, pairs } from "./table.js";
 import type { Style } from "./terminal.js";
 

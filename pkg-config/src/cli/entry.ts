@@ -5,13 +5,13 @@ import { listed } from "../case-files.js";
 import type { FoundFiles, FrameOnDisk } from "../case-folder.js";
 import type { AlignResult, PoseErrors, SceneResult, ViewsAlignment } from "../index.js";
 import { unitText } from "../input/depth-kinds.js";
-import type { Message, Row } from "../report-page/row.js";
 import type { InputInfo } from "../types/results.js";
 import { describe, failure, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/values.js";
 import { UsageError } from "./files.js";
 import { OutputError } from "./output-file.js";
+import type { Message, Row } from "./row.js";
 
 /** An entry of any kind. */
 export type Entry = Readonly<Record<string, unknown>>;
@@ -142,10 +142,6 @@ export const errorsIn = (entry: Entry): string[] =>
   isFailure(entry)
     ? [entry.error.code]
     : posesIn("", entry).flatMap((part) => (isFailure(part.entry) ? [part.entry.error.code] : []));
-
-/** The alternatives of an entry. */
-export const alternativesOf = ({ alternatives }: Entry): Entry[] =>
-  Array.isArray(alternatives) ? alternatives.filter(isRecord) : [];
 
 /** Whether the lengths of a result, or of its entry, are metres. */
 export function isMetric(result: object): boolean {

@@ -12,7 +12,6 @@ import type { AlignInput, DepthCalibration, SceneInput, SceneResult } from "../i
 import { readMesh } from "../input/mesh.js";
 import { resolveView } from "../input/resolve.js";
 import { fileReaders } from "../modules/readers.js";
-import { fixed } from "../report-page/row.js";
 import type { SceneOnDisk } from "../scene-folder.js";
 import { toMjcf } from "../simulators/mjcf.js";
 import { type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
@@ -24,6 +23,7 @@ import { isRecord } from "../values/kinds.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
 import { withoutUndefined } from "../values/values.js";
 import type { Flags } from "./flags.js";
+import { fixed } from "./row.js";
 import type { RunFiles } from "./run-files.js";
 
 /** An input in the lengths of a result. Results without a calibration leave the depth as it is. */

@@ -7,7 +7,7 @@ import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
 import type { InputInfo } from "../types/results.js";
 import { withoutUndefined } from "../values/values.js";
-import { alternativesOf, type Entry, posesIn } from "./entry.js";
+import { type Entry, posesIn } from "./entry.js";
 import { correctedInput, type ExportedAs, exportedMesh } from "./exports.js";
 import { isFile } from "./files.js";
 import type { Flags } from "./flags.js";
@@ -35,9 +35,9 @@ export class Pictures {
   ) {}
 
   /** @throws {@link UsageError} if the folder of the report has other content */
-  static async open(flags: Flags, files: RunFiles): Promise<Pictures> {
+  static open(flags: Flags, files: RunFiles): Pictures {
     const { report } = flags;
-    return new Pictures(flags, report === undefined ? undefined : await ReportFolder.open(report, files), files);
+    return new Pictures(flags, report === undefined ? undefined : ReportFolder.open(report, files), files);
   }
 
   /** Whether all files of a pose are there. */
@@ -77,8 +77,7 @@ export class Pictures {
     const { overlay, glb } = filesOfPose(this.flags, name);
     const shot = await Shot.of(await correctedInput(input, entry.depthCalibration as InputInfo["depthCalibration"]));
     try {
-      const others = alternativesOf(entry).map((other) => other.matrix as number[]);
-      if (this.report !== undefined) this.report.write(name, entry, await drawCase(shot, matrix, others));
+      if (this.report !== undefined) this.report.write(name, await drawCase(shot, matrix));
       if (overlay !== undefined) this.files.write(overlay, await drawOverlay(shot, matrix));
       if (glb !== undefined) this.files.write(glb, await posed(input, entry, this.flags.upright));
     } finally {

@@ -1,77 +1,76 @@
-/** A report: a page, its rows, and a folder of pictures for each case. It is complete after each of them. */
+/** A report: a page with a row for each pose, and a folder of pictures for each. It is complete after each of them. */
 import { createHash } from "node:crypto";
 import { existsSync } from "node:fs";
-import { readFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
-import type { CasePictures } from "../pictures/case-pictures.js";
-import { columns, type ReportDetails, type ReportRow } from "../report-page/row.js";
-import { alternativesOf, type Entry, isFailure, rowOf } from "./entry.js";
+import { casePictures } from "../pictures/case-pictures.js";
+import { type Entry, isFailure, rowOf } from "./entry.js";
 import { namesIn, UsageError } from "./files.js";
 import { OutputFile } from "./output-file.js";
+import { type Column, type ColumnName, cellOf, columns, type Message, numberIn, type Row } from "./row.js";
 import type { RunFiles } from "./run-files.js";
 
-/** The fields of a row on the page. */
-const pageFields: readonly string[] = [...Object.keys(columns), "error", "warnings", "isMetric"];
+type PictureName = keyof typeof casePictures;
+const pictureNames = Object.keys(casePictures) as PictureName[];
+
+/** The columns of numbers after the name and the warnings. Errors are empty where no true pose is known. */
+const numbers = [
+  ...(["alternatives", "scale", "iou", "boundaryF", "depthMaeM"] as const),
+  ...(["scaleError", "rotationErrorDeg", "translationErrorRelative", "timeMs"] as const),
+];
+
+/** By this, a page is known to be a report. */
+const MARKER = '<meta name="generator" content="sim3align report">';
 
 /** The files of a report. */
 export class ReportFolder {
-  readonly #rows: OutputFile;
+  readonly #page: OutputFile;
 
   private constructor(
     private readonly folder: string,
     private readonly files: RunFiles,
   ) {
-    this.#write("rows.js", '"use strict";\n');
-    // The page has the rows so far.
-    this.#rows = new OutputFile(join(folder, "rows.js"), true);
-  }
-
-  #write(name: string, content: string | Uint8Array): void {
-    this.files.write({ flag: "--report", path: join(this.folder, name) }, content);
+    const path = join(folder, "index.html");
+    const output = { flag: "--report", path, isOwn: (beginning: string) => beginning.includes(MARKER) };
+    files.write(output, pageHead(basename(resolve(folder))));
+    // Browsers close the table by themselves: the page has the rows so far.
+    this.#page = new OutputFile(path, true);
   }
 
   /**
    * Writes a page without rows, into a folder that is there. A report in it gets new rows.
    * @throws {@link UsageError} if the folder has other content
    */
-  static async open(folder: string, files: RunFiles): Promise<ReportFolder> {
+  static open(folder: string, files: RunFiles): ReportFolder {
     const names = namesIn(folder);
-    if (names.length > 0 && !names.includes("rows.js"))
+    if (names.length > 0 && !names.includes("index.html"))
       throw new UsageError(`--report ${folder}: the folder has other content. Pass a new folder.`);
-    const html = await reportHtml(basename(resolve(folder)));
-    const report = new ReportFolder(folder, files);
-    report.#write("index.html", html);
-    return report;
+    return new ReportFolder(folder, files);
   }
 
-  /** Whether the pictures of a case are there. */
+  #path(name: string, picture: PictureName): string {
+    return join(this.folder, "cases", fileName(name), `${picture}.png`);
+  }
+
+  /** Whether the pictures of a pose are there. */
   has(name: string): boolean {
-    return existsSync(join(this.folder, "cases", fileName(name), "details.js"));
+    return pictureNames.every((picture) => existsSync(this.#path(name, picture)));
   }
 
   /** Adds a row to the table; its pictures are shown if they are there. */
   add(name: string, entry: Entry): void {
-    const fields = Object.entries(rowOf(entry)).filter(([field]) => pageFields.includes(field));
     // Those of a case that fails now are of an earlier run.
-    const folder = this.has(name) && !isFailure(entry) ? { folder: fileName(name) } : {};
-    const row = { name, ...folder, ...Object.fromEntries(fields) } as ReportRow;
-    this.#rows.lines([`sim3align.rows.push(${JSON.stringify(row)});`]);
+    const hasPictures = !isFailure(entry) && this.has(name);
+    this.#page.lines([rowHtml(name, rowOf(entry), hasPictures)]);
   }
 
-  /** Writes the pictures of a case: `details.js` last: its presence means that all are there. */
-  write(name: string, entry: Entry, { files, ...known }: CasePictures): void {
-    const folder = join("cases", fileName(name));
-    for (const [file, bytes] of Object.entries(files)) this.#write(join(folder, file), bytes);
-    const alternatives = alternativesOf(entry).map(({ turnDeg, score }, k) => ({
-      ...{ file: `alternative-${k + 1}.png`, turnDeg: Number(turnDeg), score: Number(score) },
-    }));
-    const details: ReportDetails = { ...known, alternatives, matrix: entry.matrix as number[] };
-    const text = `sim3align.details[${JSON.stringify(fileName(name))}] = ${JSON.stringify(details)};\n`;
-    this.#write(join(folder, "details.js"), text);
+  /** Writes the pictures of a pose. */
+  write(name: string, pictures: Record<PictureName, Uint8Array>): void {
+    for (const picture of pictureNames)
+      this.files.write({ flag: "--report", path: this.#path(name, picture) }, pictures[picture]);
   }
 
   end(): void {
-    this.#rows.end();
+    this.#page.end();
   }
 }
 
@@ -83,83 +82,82 @@ export function fileName(name: string): string {
   return `${plain.slice(-80)}-${check}`;
 }
 
+const escaped = (text: string) => text.replace(/[&<>"]/g, (character) => `&#${character.charCodeAt(0)};`);
+
+/** A row. `data-key` is the sort key of a cell that is not its text; failures are the least certain of all. */
+function rowHtml(name: string, row: Row, hasPictures: boolean): string {
+  const { error, warnings } = row;
+  const folder = `cases/${encodeURIComponent(fileName(name))}`;
+  const images = pictureNames.map((picture) => {
+    const text = `alt="${casePictures[picture]}" title="${casePictures[picture]}"`;
+    return hasPictures ? `<td><img src="${folder}/${picture}.png" ${text} width=140 height=105 loading=lazy>` : "<td>";
+  });
+  const messages = (error === undefined ? warnings : [error, ...warnings]).map(messageHtml);
+  const cell = (column: ColumnName) => `<td data-key="${numberIn(row, column) ?? ""}">${cellOf(row, column)}`;
+  const confidence = error === undefined ? cell("confidence") : '<td class="failed" data-key="-1">failed';
+  return `<tr><th scope=row>${escaped(name)}${confidence}${images.join("")}<td>${messages.join("")}${numbers.map(cell).join("")}`;
+}
+
+const messageHtml = ({ code, message }: Message) =>
+  `<details><summary>${escaped(code)}</summary>${escaped(message)}</details>`;
+
 const style = `
-:root { color-scheme: light; font: 14px/1.45 system-ui, sans-serif; color: #1d2530; background: #f6f7f9; }
-* { box-sizing: border-box; }
-body { margin: 0; height: 100vh; display: grid; grid-template: auto 1fr / minmax(0, 1fr) 490px; }
-header { grid-column: 1 / 3; display: flex; flex-wrap: wrap; gap: 6px 22px; align-items: center; padding: 10px 16px;
-  background: #fff; border-bottom: 1px solid #dfe3e8; }
-h1 { font-size: 17px; margin: 0; } h2 { font-size: 16px; margin: 0 0 8px; overflow-wrap: anywhere; }
-h3 { font-size: 13px; margin: 16px 0 6px; color: #4a5563; }
-p { margin: 0; } #summary, #count { color: #4a5563; }
-form { display: flex; flex-wrap: wrap; gap: 6px 16px; align-items: center; margin-left: auto; }
-input[type="search"], select { font: inherit; padding: 4px 8px; border: 1px solid #98a2b0; border-radius: 5px; background: #fff; color: inherit; }
-label { white-space: nowrap; } input[type="range"] { vertical-align: middle; width: 110px; }
-main { min-width: 0; min-height: 0; display: flex; }
-#scroller { flex: 1; overflow: auto; }
-table { border-collapse: separate; border-spacing: 0; width: 100%; font-variant-numeric: tabular-nums; background: #fff; }
-thead th { position: sticky; top: 0; z-index: 1; background: #eef1f4; text-align: left; font-weight: 600; padding: 0 8px;
-  height: 38px; border-bottom: 1px solid #dfe3e8; white-space: nowrap; }
-thead button { all: unset; cursor: pointer; } thead button:focus-visible, tbody button:focus-visible { outline: 2px solid #1660c4; outline-offset: 2px; }
-th[aria-sort="ascending"] button::after { content: " ▲" / ""; font-size: 10px; } th[aria-sort="descending"] button::after { content: " ▼" / ""; font-size: 10px; }
-tbody tr { height: 48px; cursor: pointer; } tbody tr:hover { background: #f3f6fa; }
-tbody tr[aria-selected="true"] { background: #e3eefb; }
-tbody td, tbody th { padding: 0 8px; height: 48px; border-bottom: 1px solid #eceff2; text-align: left; font-weight: 400;
-  white-space: nowrap; max-width: 260px; overflow: hidden; text-overflow: ellipsis; }
-tbody th button { all: unset; cursor: pointer; font-weight: 600; } td.spacer { border: 0; padding: 0; height: auto; } td.words { color: #6a4a00; font-size: 12px; }
-td img { display: block; border-radius: 3px; }
-.bar { display: inline-block; width: 44px; height: 7px; margin-right: 7px; border-radius: 4px; background: linear-gradient(to right, #2f7fd6 calc(var(--share) * 100%), #dde3ea 0); }
-.failed, .problem { color: #a3211b; }
-aside { overflow: auto; background: #fff; border-left: 1px solid #dfe3e8; padding: 14px 16px 24px; }
-.stack { position: relative; width: 440px; max-width: 100%; aspect-ratio: 4 / 3; background: #22222a; border-radius: 6px; overflow: hidden; }
-.stack img { position: absolute; inset: 0; width: 100%; height: 100%; } [hidden] { display: none; }
-.layers { display: flex; flex-wrap: wrap; gap: 4px 14px; margin: 8px 0; }
-.legend { font-size: 12px; color: #4a5563; } .key { margin-left: 10px; white-space: nowrap; }
-.key::before { content: ""; display: inline-block; width: 10px; height: 10px; margin-right: 4px; border: 1px solid #6b7683; border-radius: 2px; }
-.key.mesh::before { background: #f08a24; } .key.mask::before { background: #fff; } .key.near::before { background: #1e64dc; } .key.far::before { background: #eb5f0a; }
-canvas { width: 440px; max-width: 100%; border: 1px solid #dfe3e8; border-radius: 6px; touch-action: none; cursor: grab; }
-canvas:focus-visible, pre:focus-visible { outline: 2px solid #1660c4; }
-.alternatives { display: flex; flex-wrap: wrap; gap: 10px; } figure { margin: 0; } figcaption { font-size: 12px; color: #4a5563; }
-figure img { display: block; border-radius: 4px; } ul.warnings { padding-left: 18px; margin: 10px 0; }
-dl { display: grid; grid-template-columns: auto 1fr; gap: 2px 14px; margin: 0; } dt { color: #4a5563; } dd { margin: 0; font-variant-numeric: tabular-nums; }
-pre { font-size: 12px; background: #f6f7f9; padding: 8px; border-radius: 5px; overflow: auto; }
-@media (max-width: 900px) { body { height: auto; grid-template: auto 60vh auto / 1fr; } header { grid-column: 1; } aside { border-left: 0; } }
+:root { color-scheme: light; font: 14px/1.4 system-ui, sans-serif; color: #1d2530; background: #f6f7f9; }
+body { margin: 0; } h1 { font-size: 17px; margin: 12px 16px; }
+table { border-collapse: collapse; background: #fff; font-variant-numeric: tabular-nums; }
+thead th { position: sticky; top: 0; background: #eef1f4; white-space: nowrap; }
+th, td { padding: 4px 8px; border-bottom: 1px solid #dfe3e8; text-align: left; vertical-align: top; font-weight: 400; }
+tbody th { font-weight: 600; max-width: 16em; overflow-wrap: anywhere; } img { display: block; border-radius: 3px; }
+thead button { all: unset; cursor: pointer; font-weight: 600; } :focus-visible { outline: 2px solid #1660c4; }
+[aria-sort="ascending"] button::after { content: " ▲" / ""; } [aria-sort="descending"] button::after { content: " ▼" / ""; }
+details { max-width: 22em; font-size: 12px; color: #6a4a00; } .failed { color: #a3211b; }
 `;
 
-/** The page: style and script are in it; rows and details are scripts beside it. */
-async function reportHtml(title: string): Promise<string> {
-  const script = await readFile(new URL("../report-page.js", import.meta.url), "utf8");
+/** Sorts the rows by a column: at first by confidence. Missing values come last in either order. */
+const script = `
+addEventListener("DOMContentLoaded", () => {
+  const [heads, body] = [[...document.querySelectorAll("thead th")], document.querySelector("tbody")];
+  const keyOf = (row, k) => row.cells[k].dataset.key ?? row.cells[k].innerText;
+  const sort = (k) => {
+    const isDescending = heads[k].ariaSort === "ascending";
+    for (const head of heads) head.ariaSort = null;
+    heads[k].ariaSort = isDescending ? "descending" : "ascending";
+    const compare = (a, b) =>
+      (a === "") - (b === "") || (isDescending ? -1 : 1) * a.localeCompare(b, "en", { numeric: true });
+    const numeric = (a, b) => (a === "") - (b === "") || (isDescending ? b - a : a - b);
+    const isNumeric = body.rows[0]?.cells[k].dataset.key !== undefined;
+    const rows = [...body.rows].map((row) => [keyOf(row, k), row]);
+    body.append(...rows.sort(([a], [b]) => (isNumeric ? numeric : compare)(a, b)).map(([, row]) => row));
+  };
+  heads.forEach((head, k) => head.querySelector("button")?.addEventListener("click", () => sort(k)));
+  sort(1);
+});
+`;
+
+/** The page up to its first row. */
+function pageHead(title: string): string {
+  const sortable = (heading: string, tooltip = "") =>
+    `<th scope=col><button type=button title="${tooltip}">${heading}</button>`;
+  const column = (name: ColumnName) => {
+    const { heading = "", title: tooltip }: Column = columns[name];
+    return sortable(heading, tooltip);
+  };
+  const heads = [
+    ...[sortable("Case"), column("confidence")],
+    ...["Photo or depth", "Overlay", "From the side"].map((heading) => `<th scope=col>${heading}`),
+    ...[sortable("Warnings"), ...numbers.map(column)],
+  ];
   return `<!doctype html>
 <html lang="en">
-<head>
 <meta charset="utf-8">
+${MARKER}
 <meta name="viewport" content="width=device-width">
 <title>${escaped(title)}</title>
 <style>${style}</style>
-</head>
-<body>
-<header>
+<script>${script}</script>
 <h1>${escaped(title)}</h1>
-<p id="summary"></p>
-<form onsubmit="return false" role="search" aria-label="Filter">
-<label>Find <input type="search" id="text" placeholder="name or warning"></label>
-<label>Confidence up to <input type="range" id="up-to" min="0" max="1" step="0.01" value="1"> <output id="up-to-value" for="up-to">1.00</output></label>
-<label>Show <select id="only"><option value="all">all</option><option value="failures">failures</option><option value="warnings">with warnings</option><option value="alternatives">with alternatives</option></select></label>
-<p id="count" role="status"></p>
-</form>
-</header>
-<main>
-<div id="scroller" tabindex="0" role="region" aria-label="Cases">
-<table id="table"><caption hidden>Cases</caption><thead id="head"></thead><tbody id="rows"></tbody></table>
-</div>
-</main>
-<aside id="detail" aria-label="Details" tabindex="0"></aside>
-<script>var sim3align = { rows: [], details: {} };</script>
-<script src="rows.js"></script>
-<script>${script.replaceAll("</script", "<\\/script")}</script>
-</body>
-</html>
+<table>
+<thead><tr>${heads.join("")}</thead>
+<tbody>
 `;
 }
-
-const escaped = (text: string) => text.replace(/[&<>"]/g, (character) => `&#${character.charCodeAt(0)};`);

@@ -1,7 +1,8 @@
 /** The files of results: JSON, and comma-separated values. They appear when the batch ends, also early. */
-import { isLength } from "../report-page/row.js";
+
 import { type Entry, isMetric, posesIn, rowFields } from "./entry.js";
 import type { OutputFile } from "./output-file.js";
+import { isLength } from "./row.js";
 
 /** An output for the entries of cases. */
 export interface EntrySink {

@@ -2,7 +2,6 @@
 import { join } from "node:path";
 import { read } from "../case-folder.js";
 import { type Aligner, type AlignInput, OPTIONS, type SceneInput, type SceneOptions } from "../index.js";
-import { cellOf, fixed } from "../report-page/row.js";
 import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
 import { parsedJson } from "../values/json.js";
 import { withoutUndefined } from "../values/values.js";
@@ -15,6 +14,7 @@ import { isFile, UsageError } from "./files.js";
 import { caseSettings, type Flags, filesOf, sceneFileFlags } from "./flags.js";
 import { type FolderToDo, foldersToDo, sam3dKind, sceneKind } from "./folders.js";
 import { optionValues } from "./option-flags.js";
+import { cellOf, fixed } from "./row.js";
 import type { RunFiles } from "./run-files.js";
 import { headings, Lengths, numeric, pairs, tableLine } from "./table.js";
 import { Style } from "./terminal.js";

@@ -1,7 +1,7 @@
 /** Tables, and lengths with or without a unit. */
 import { stripVTControlCharacters } from "node:util";
-import { type ColumnName, cellOf, columns, fixed } from "../report-page/row.js";
 import { type Entry, isFailure, rowOf } from "./entry.js";
+import { type ColumnName, cellOf, columns, fixed } from "./row.js";
 import type { Style } from "./terminal.js";
 
 /** A column of text. Longer cells shift the rest of their row. */

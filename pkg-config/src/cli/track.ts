@@ -1,7 +1,6 @@
 /** `sim3align track`: tracks an object through the frames of videos. */
 import { type FoundFiles, frameNames, openFrames } from "../case-folder.js";
 import { type Aligner, OPTIONS, type TrackedFrame, type TrackOptions } from "../index.js";
-import { fixed, significant } from "../report-page/row.js";
 import type { CaseRun, Job } from "./batch.js";
 import { depthRows } from "./details.js";
 import { type Entry, failureEntry, withFiles } from "./entry.js";
@@ -9,6 +8,7 @@ import { UsageError } from "./files.js";
 import { caseSettings, type Flags } from "./flags.js";
 import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
 import { optionValues } from "./option-flags.js";
+import { fixed, significant } from "./row.js";
 import { headings, numeric, pairs, tableLine } from "./table.js";
 import { readTransform } from "./transform-file.js";
 

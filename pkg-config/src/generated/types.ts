@@ -665,7 +665,7 @@ export type Alignment = Sim3 & {
 export type WorldFrame = "given" | "camera";
 
 /** The part of a view in the result. */
-export type ViewRole = "used" | "contradicting" | "blind";
+export type ViewRole = "used" | "contradicting" | "unusable";
 
 /** Standard deviations of the pose in the world, as all views together determine them. */
 export type WorldUncertainty = {

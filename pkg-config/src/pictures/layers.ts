@@ -1,5 +1,5 @@
 /** Layers of pictures: the observation, and drawings over it. */
-import { depthColour, differenceColour, MASK, MESH, type Rgb } from "./colours.js";
+import { depthColour, MASK, MESH, type Rgb } from "./colours.js";
 import type { Picture } from "./png.js";
 import { lightAt, outlineOf } from "./shading.js";
 import type { Shot } from "./shot.js";
@@ -69,10 +69,6 @@ export function outlines(mask: Float32Array, mesh: Float32Array, view: View): Pi
   return layer(view, (i) => (isMesh(i) ? [...MESH, 255] : isMask(i) ? [...MASK, 255] : null));
 }
 
-/** The mask, as a tint. */
-export const maskTint = (mask: Float32Array, view: View): Picture =>
-  layer(view, (i) => (mask[i] ? [60, 158, 229, 110] : null));
-
 /** The mesh, shaded by the slope of its surface. */
 export function shaded(mesh: Float32Array, view: View, focal: { fx: number; fy: number }): Picture {
   const { width, height } = view;
@@ -85,18 +81,9 @@ export function shaded(mesh: Float32Array, view: View, focal: { fx: number; fy: 
   });
 }
 
-/** The difference of the mesh's depth and the measured one, in the mask. */
-export function residual(
-  { mask, measured, mesh }: { mask: Float32Array; measured: Float32Array; mesh: Float32Array },
-  view: View,
-  limitM: number,
-): Picture {
-  return layer(view, (i) => {
-    const [drawn, seen] = [mesh[i] as number, measured[i] as number];
-    if (!mask[i] || drawn === 0 || seen === 0) return null;
-    const steps = Math.round((16 * (drawn - seen)) / limitM) / 16;
-    return [...differenceColour(steps, 1), 255] as const;
-  });
+/** A layer through which what is below stays visible. */
+export function translucent({ data, ...size }: Picture): Picture {
+  return { data: data.map((byte, i) => (i % 4 === 3 ? byte * 0.45 : byte)), ...size };
 }
 
 /** A layer over a picture, as one picture. */

@@ -42,19 +42,15 @@ export class Shot {
     return new Shot(metres, width, height, core.camera as Pinhole, inside, image, mesh);
   }
 
-  /** The depth of the mesh at a pose in a view, metres; 0 where no mesh is. */
-  async render(view: View, matrix: readonly number[]): Promise<Float32Array> {
+  /** The depth of the mesh at a pose in a view, metres; 0 where no mesh is. By default, its camera is that of the input. */
+  async render(view: View, matrix: readonly number[], camera = view.camera(this.camera)): Promise<Float32Array> {
     const core = await coreModule.load();
     const { width, height } = view;
-    return core.call((c) =>
-      c.renderDepth({ mesh: this.mesh, width, height, camera: view.camera(this.camera) }, this.ofArrays(matrix)),
-    );
+    return core.call((c) => c.renderDepth({ mesh: this.mesh, width, height, camera }, this.ofArrays(matrix)));
   }
 
   /** The matrix that places the arrays of the mesh, of one that places the mesh in its file. */
-  ofArrays(matrix: readonly number[]): readonly number[] {
-    return toOrigin(matrix, this.mesh.fileOrigin);
-  }
+  readonly ofArrays = (matrix: readonly number[]): readonly number[] => toOrigin(matrix, this.mesh.fileOrigin);
 
   /** Frees what the core keeps of the mesh. */
   async dispose(): Promise<void> {

@@ -10,7 +10,7 @@ use crate::metrics::symmetry::SymmetryGroup;
 const ROLLS: usize = 4;
 
 /// Minimum rotation between different poses, radians.
-pub const DIFFERENT: f64 = 0.26;
+pub const DISTINCT_MIN_ANGLE_RAD: f64 = 0.26;
 
 /// The symmetry of a mesh, for comparing its poses.
 #[derive(Debug, Clone, Default)]

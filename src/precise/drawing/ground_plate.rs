@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::surplus::{LeftOut, Trimmed};
+use super::removed_parts::{RemovedParts, Trimmed};
 use crate::geometry::angle::sin_cos;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::mesh_parts::MeshParts;
@@ -176,8 +176,8 @@ impl Level {
                 own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)
             };
             let is_ground = is_high && directions.iter().all(is_larger);
-            let left_out = LeftOut { ground: share, ..LeftOut::default() };
-            is_ground.then(|| Trimmed::split(mesh, left_out, &|triangle| is_plate[triangle])).flatten()
+            let removed_parts = RemovedParts { ground: share, ..RemovedParts::default() };
+            is_ground.then(|| Trimmed::split(mesh, removed_parts, &|triangle| is_plate[triangle])).flatten()
         })
     }
 }

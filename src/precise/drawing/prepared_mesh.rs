@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use super::ground_plate::without_plate;
 use super::mesh_pyramid::MeshPyramid;
-use super::surplus::{LeftOut, Trimmed};
+use super::removed_parts::{RemovedParts, Trimmed};
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::check_shape;
@@ -16,7 +16,7 @@ use crate::precise::observation::resolution::{FINE, GRIDS, Grid};
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
 /// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part
-/// of the object, and every render would transform them. So is the [surplus](super::surplus) of generators.
+/// of the object, and every render would transform them. So is the [surplus](super::removed_parts) of generators.
 pub struct PreparedMesh<'a> {
     /// As it was given.
     whole: Cow<'a, Mesh>,
@@ -100,8 +100,8 @@ impl<'a> PreparedMesh<'a> {
     }
 
     /// The parts left out of it.
-    pub fn left_out(&self) -> LeftOut {
-        self.trimmed().map_or_else(LeftOut::default, |trimmed| trimmed.left_out)
+    pub fn removed_parts(&self) -> RemovedParts {
+        self.trimmed().map_or_else(RemovedParts::default, |trimmed| trimmed.removed_parts)
     }
 
     /// The mesh without what looks like a ground plate, as the mesh decimated for `grids` shows it; `None` if it has nothing of the
@@ -109,9 +109,9 @@ impl<'a> PreparedMesh<'a> {
     pub fn without_plate(&self, grids: &[Grid; GRIDS]) -> Option<&PreparedMesh<'static>> {
         let rest = || {
             let trimmed = without_plate(self.mesh(), &self.pyramid(grids)?.fine)?;
-            let left_out = LeftOut { ground: trimmed.left_out.ground, ..self.left_out() };
+            let removed_parts = RemovedParts { ground: trimmed.removed_parts.ground, ..self.removed_parts() };
             let whole = Cow::Owned(self.whole.as_ref().clone());
-            let rest = PreparedMesh::with(whole, OnceCell::from(Some(Trimmed { left_out, ..trimmed })), None);
+            let rest = PreparedMesh::with(whole, OnceCell::from(Some(Trimmed { removed_parts, ..trimmed })), None);
             // Without those of what is left out already.
             Some(rest.with_colors(self.colors().cloned()))
         };
@@ -129,7 +129,7 @@ impl<'a> PreparedMesh<'a> {
     /// Whether every image of the mesh is compared with the same part of it. Helpers of a search, which have the mesh as it was
     /// given, take part only then.
     pub fn has_one_form(&self, grids: &[Grid; GRIDS]) -> bool {
-        self.left_out().ground == 0.0 && self.without_plate(grids).is_none()
+        self.removed_parts().ground == 0.0 && self.without_plate(grids).is_none()
     }
 
     /// The rotations that this symmetry of the object makes equal.

@@ -12,7 +12,7 @@ use wide::{f32x4, i32x4};
 use super::fill::{Corners, STEPS, Vertex, fill};
 use super::lanes::LANES;
 use super::pose::CropPose;
-use crate::geometry::counts;
+use crate::counts;
 use crate::geometry::mesh::Mesh;
 use crate::precise::observation::grid::CropGrid;
 

@@ -3,8 +3,8 @@
 //! Masks have pinholes and stray islands, depth maps have flying pixels at discontinuities, and masks include
 //! background by mistake. Doubtful pixels are excluded from the evidence.
 
+use super::mask_boundary::{BoundaryImages, boundary_offset};
 use super::ramp::ramp_width;
-use super::rim::{RimImages, rim_offset};
 use super::thinning::Thinning;
 use crate::evidence::observation::Observation;
 use crate::geometry::components::{Component, components};
@@ -76,8 +76,8 @@ pub struct CleanObservation {
     pub image: [f64; 2],
     /// Signed distance to the outline of the object, pixels, negative inside.
     pub outline: Vec<f32>,
-    /// Outward shift of the outline of the mask, pixels (see [`rim_offset`]).
-    pub rim_offset: f64,
+    /// Outward shift of the outline of the mask, pixels (see [`boundary_offset`]).
+    pub boundary_offset: f64,
     /// Depth of the object, metres; 0 elsewhere.
     pub depth: Vec<f32>,
     /// All readings, metres; 0 without a reading.
@@ -104,9 +104,9 @@ impl CleanObservation {
             / clean.camera.fx
             * clean.median_m;
         let CleanObservation { width, height, outline, scene, .. } = &clean;
-        let images = RimImages { width: *width, height: *height, outline, scene };
-        let offset = rim_offset(images, RIM_JUMP[0] * extent_m + RIM_JUMP[1] * clean.median_m);
-        clean.move_rim(offset);
+        let images = BoundaryImages { width: *width, height: *height, outline, scene };
+        let offset = boundary_offset(images, RIM_JUMP[0] * extent_m + RIM_JUMP[1] * clean.median_m);
+        clean.move_boundary(offset);
         if let Some(others) = others {
             clean.put_behind(&others);
         }
@@ -130,8 +130,8 @@ impl CleanObservation {
     }
 
     /// Moves the outline outwards.
-    fn move_rim(&mut self, offset: f64) {
-        self.rim_offset = offset;
+    fn move_boundary(&mut self, offset: f64) {
+        self.boundary_offset = offset;
         self.outline.iter_mut().for_each(|d| *d -= offset as f32);
         let inside = |d: &&f32| **d < 0.0;
         self.pixels = self.outline.iter().filter(inside).count().max(1);
@@ -263,7 +263,7 @@ impl Crop {
         let mut inner = self.inner_readings(&pixels, &outline, 0.0);
         let (median, spread) = self.densest_window(&inner, extent_px);
         let extent_m = extent_px / self.camera.fx * median;
-        let images = RimImages { width: self.width, height: self.height, outline: &outline, scene: &self.scene };
+        let images = BoundaryImages { width: self.width, height: self.height, outline: &outline, scene: &self.scene };
         let ramp = ramp_width(images, pixels.len(), [extent_m, median]);
         if ramp > 0.0 {
             inner = self.inner_readings(&pixels, &outline, RAMP_SHARE * ramp);
@@ -286,7 +286,7 @@ impl Crop {
             image: self.image,
             bounds: [0, 1].map(|axis| bounds[axis].map(|x| (x + self.origin[axis]) as f64)),
             outline,
-            rim_offset: 0.0,
+            boundary_offset: 0.0,
             depth,
             scene: self.scene,
             pixels: pixels.len(),

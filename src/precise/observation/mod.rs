@@ -4,10 +4,10 @@
 //! which holds the pixels and depths that reliably belong to the object, its grids of cells at any resolution, and where
 //! the mask is cut. Nothing here depends on the mesh: the evidence must not depend on the hypothesis that it judges.
 
-pub mod anchors;
+pub mod box_fits;
 pub mod clean;
 pub mod grid;
+pub mod mask_boundary;
 pub mod ramp;
 pub mod resolution;
-pub mod rim;
 pub mod thinning;

@@ -4,7 +4,7 @@
 //! that predicts depth, and whoever enlarges a depth map smoothly, turns steps into ramps. Readings on a ramp belong to
 //! no surface.
 
-use super::rim::{Ray, RimImages};
+use super::mask_boundary::{BoundaryImages, Ray};
 use crate::geometry::order::quantile;
 
 /// Length of a ray to either side of the outline: relative to the square root of the mask's area, and the least of it,
@@ -31,7 +31,7 @@ const RAYS: usize = 300;
 
 /// The width of the edges of the depth at the outline, pixels: the step over the steepest slope, in the median. 0 for the steps of a
 /// sensor, and where the depth shows no edges. The object is so many metres wide, and so far away.
-pub fn ramp_width(images: RimImages<'_>, pixels: usize, [extent_m, distance_m]: [f64; 2]) -> f64 {
+pub fn ramp_width(images: BoundaryImages<'_>, pixels: usize, [extent_m, distance_m]: [f64; 2]) -> f64 {
     let reach = (REACH.0 * (pixels as f64).sqrt()).max(REACH.1);
     let jump_m = JUMP[0] * extent_m + JUMP[1] * distance_m;
     let mut rays = Vec::new();

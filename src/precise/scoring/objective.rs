@@ -3,8 +3,8 @@
 use glam::Mat3;
 
 use super::prior::Prior;
+use super::scene_term::SceneTerm;
 use super::score::{Score, Scoring};
-use super::surroundings::Surroundings;
 use crate::precise::drawing::equivalence::Equivalence;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::{Canvas, Model};
@@ -23,8 +23,8 @@ pub struct Objective<'a> {
     pub prior: Prior,
     /// The equivalent poses of the mesh.
     pub equivalence: &'a Equivalence,
-    /// The surroundings of the object, if known.
-    pub surroundings: Option<&'a Surroundings>,
+    /// The scene around the object, if known.
+    pub scene: Option<&'a SceneTerm>,
 }
 
 impl Objective<'_> {
@@ -38,8 +38,8 @@ impl Objective<'_> {
         canvas.draw_stretched(self.model, pose, stretch, self.grid);
         let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
         score.total += self.prior.score(pose, self.equivalence);
-        if let Some(surroundings) = self.surroundings {
-            score.total += surroundings.score(canvas, self.grid, pose);
+        if let Some(scene) = self.scene {
+            score.total += scene.score(canvas, self.grid, pose);
         }
         score
     }

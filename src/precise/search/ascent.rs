@@ -1,6 +1,6 @@
 //! Levenberg-Marquardt ascent on a score that is bounded by a quadratic at every pose.
 
-use super::ranking::{Found, Total};
+use super::ranking::{Candidate, Total};
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::precise::drawing::pose::Step;
 
@@ -42,10 +42,10 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
     problem: &mut A,
     pose: A::Pose,
     iterations: usize,
-) -> Found<A::Pose, A::Score> {
+) -> Candidate<A::Pose, A::Score> {
     let pose = problem.allowed(pose);
     let score = problem.score(&pose);
-    let mut best = Found::of(pose, score);
+    let mut best = Candidate::of(pose, score);
     let mut equations = None;
     let mut damping = DAMPING[0];
     for _ in 0..iterations {

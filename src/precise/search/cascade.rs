@@ -1,6 +1,6 @@
 //! A cascade: poses refined on one grid after the other, of which the best distinct ones are kept.
 
-use super::ranking::{Found, Posed, Total, distinct};
+use super::ranking::{Candidate, Posed, Total, distinct};
 
 /// A stage of a cascade.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,17 +23,17 @@ impl Stage {
 }
 
 /// The subject of a cascade: poses of an object, on the evidence of one view or of several.
-pub trait Subject {
+pub trait Cascade {
     /// A pose.
     type Pose: Posed;
     /// Its score.
     type Score: Total;
 
     /// Refines poses on the grid with this index in at most `steps` steps each, or scores them as they are.
-    fn refined(&mut self, grid: usize, steps: usize, poses: &[Self::Pose]) -> Vec<Found<Self::Pose, Self::Score>>;
+    fn refined(&mut self, grid: usize, steps: usize, poses: &[Self::Pose]) -> Vec<Candidate<Self::Pose, Self::Score>>;
 
     /// The poses that the last stage keeps, best first, each with its score on the grid of that stage.
-    fn cascade(&mut self, stages: &[Stage], poses: Vec<Self::Pose>) -> Vec<Found<Self::Pose, Self::Score>> {
+    fn cascade(&mut self, stages: &[Stage], poses: Vec<Self::Pose>) -> Vec<Candidate<Self::Pose, Self::Score>> {
         let (mut poses, mut kept) = (poses, Vec::new());
         for stage in stages {
             kept = distinct(self.refined(stage.grid, stage.steps, &poses), stage.keep, stage.apart);

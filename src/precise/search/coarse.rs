@@ -3,12 +3,12 @@
 use glam::{DMat3, DQuat, DVec2, Vec3};
 use wide::f32x4;
 
-use super::ranking::Found;
+use super::ranking::Candidate;
 use crate::geometry::order::median_of_positive;
 use crate::precise::drawing::lanes::{LANES, first, four};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
-use crate::precise::observation::anchors::Anchor;
+use crate::precise::observation::box_fits::BoxFit;
 use crate::precise::observation::grid::CropGrid;
 use crate::precise::scoring::objective::Objective;
 
@@ -25,18 +25,18 @@ pub struct Coarse<'a> {
 
 impl Coarse<'_> {
     /// All poses of a rotation, one per anchor.
-    pub fn try_anchors(
+    pub fn try_box_fits(
         &self,
         canvas: &mut Canvas,
         outermost: &[Vec3],
         rotation: DQuat,
-        anchors: &[Anchor],
-        candidates: &mut Vec<Found>,
+        box_fits: &[BoxFit],
+        candidates: &mut Vec<Candidate>,
     ) {
         let (fitted, sides) = self.fit_box(outermost, rotation);
         let [[left, right], [top, bottom]] = self.objective.grid.bounds;
         let seen = DVec2::new(right - left, bottom - top) / self.objective.grid.focal;
-        for anchor in anchors {
+        for anchor in box_fits {
             let zoom = anchor.zoom * anchor.along.map_or(1.0, |axis| seen[axis] / sides[axis]);
             // The side of the box opposite to the cut is where that of the mask is.
             let room = (0.5 * (sides * zoom - seen)).max(DVec2::ZERO);
@@ -50,19 +50,19 @@ impl Coarse<'_> {
     }
 
     /// Renders a pose once, and moves it to the distance that fits the depths; the silhouette does not change.
-    pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Found {
-        let Objective { model, grid, scoring, prior, equivalence, surroundings } = &self.objective;
+    pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
+        let Objective { model, grid, scoring, prior, equivalence, scene } = &self.objective;
         canvas.draw(model, &pose, grid);
         let stretch = median_of_positive(&ratios(canvas, grid)).unwrap_or(1.0);
         let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
         let pose = prior.bounded(distant);
-        // Unlike the silhouette, the surroundings depend on the distance.
-        if (pose.size - distant.size).abs() > 1e-3 || surroundings.is_some() {
-            return Found::of(pose, self.objective.score(canvas, &pose));
+        // Unlike the silhouette, the scene term depends on the distance.
+        if (pose.size - distant.size).abs() > 1e-3 || scene.is_some() {
+            return Candidate::of(pose, self.objective.score(canvas, &pose));
         }
         let mut score = scoring.score(canvas, model, grid, stretch);
         score.total += prior.score(&pose, equivalence);
-        Found::of(pose, score)
+        Candidate::of(pose, score)
     }
 
     /// Size and position at which the perspective box of the rotated mesh matches that of the mask: equal centres,

@@ -3,11 +3,11 @@
 use super::recipe::SearchSettings;
 use super::start;
 use crate::evidence::observation::Observation;
-use crate::pauses::Pauses;
 use crate::precise;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
 use crate::progress::{Silent, Stopwatch};
+use crate::scheduler::Scheduler;
 
 /// The mesh, or the mesh without its plate: that with the better score after a search of both in all views. Most meshes have
 /// nothing that looks like a plate.
@@ -16,7 +16,7 @@ pub async fn without_invented_plate<'m>(
     mesh: &'m PreparedMesh<'m>,
     options: &AlignOptions,
     settings: &SearchSettings,
-    pauses: &Pauses,
+    scheduler: &Scheduler,
 ) -> &'m PreparedMesh<'m> {
     let Some(object) = mesh.without_plate(&settings.grids) else { return mesh };
     let mut scores = [0.0f32; 2];
@@ -25,10 +25,10 @@ pub async fn without_invented_plate<'m>(
             let host = &mut Silent;
             let stages = &mut Stopwatch::new(host, precise::PLAN);
             // The alignment reports the error of a view that cannot be searched.
-            let Ok(mut rounds) = start::begin(view, mesh, None, options, settings, stages) else { continue };
-            pauses.here().await;
-            start::run(&mut rounds, &(0.0..1.0), pauses, stages).await;
-            *score += rounds.found.first().map_or(0.0, |best| best.score.total);
+            let Ok(mut rounds) = start::start_search(view, mesh, None, options, settings, stages) else { continue };
+            scheduler.yield_point().await;
+            start::run_rounds(&mut rounds, &(0.0..1.0), scheduler, stages).await;
+            *score += rounds.candidates.first().map_or(0.0, |best| best.score.total);
         }
     }
     let [whole, alone] = scores;

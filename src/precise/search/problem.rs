@@ -4,7 +4,7 @@ use core::cell::OnceCell;
 use std::rc::Rc;
 
 use super::coarse::Coarse;
-use super::ranking::{Found, distinct};
+use super::ranking::{Candidate, distinct};
 use super::recipe::{COARSE, FINE, GRIDS, SearchSettings};
 use super::refine::Refiner;
 use crate::geometry::rotations::angle_between;
@@ -12,14 +12,14 @@ use crate::precise::drawing::equivalence::Equivalence;
 use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
-use crate::precise::observation::anchors::{Anchor, anchors};
+use crate::precise::observation::box_fits::{BoxFit, box_fits};
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::observation::grid::CropGrid;
 use crate::precise::scoring::conditioning::{Conditioning, at_known, gradient_of_scale};
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
+use crate::precise::scoring::scene_term::SceneTerm;
 use crate::precise::scoring::score::Score;
-use crate::precise::scoring::surroundings::Surroundings;
 use crate::report::Effort;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
@@ -43,7 +43,7 @@ pub struct Search {
     pub renders: usize,
     pub(crate) settings: SearchSettings,
     pub(crate) prior: Prior,
-    surroundings: Option<Surroundings>,
+    scene: Option<SceneTerm>,
     /// The equivalent poses of the mesh.
     pub equivalence: Rc<Equivalence>,
     /// The evidence on every grid, on first use.
@@ -51,7 +51,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// A search without a prior, surroundings or a symmetry.
+    /// A search without a prior, a scene term or a symmetry.
     pub fn new(observation: Rc<CleanObservation>, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
         Self {
             mesh,
@@ -61,12 +61,12 @@ impl Search {
             renders: 0,
             settings,
             prior: Prior::default(),
-            surroundings: None,
+            scene: None,
             equivalence: Rc::default(),
         }
     }
 
-    /// A search for rivals of a pose on the same grids, without the surroundings of the object.
+    /// A search for rivals of a pose on the same grids, without the scene term.
     pub(crate) fn for_rivals(&self) -> Self {
         Self {
             mesh: Rc::clone(&self.mesh),
@@ -75,7 +75,7 @@ impl Search {
             renders: 0,
             settings: self.settings.of_rival_search(),
             prior: self.prior,
-            surroundings: None,
+            scene: None,
             equivalence: Rc::clone(&self.equivalence),
             grids: Rc::clone(&self.grids),
         }
@@ -86,9 +86,9 @@ impl Search {
         self.prior = prior;
     }
 
-    /// Sets the surroundings.
-    pub fn surround(&mut self, surroundings: Surroundings) {
-        self.surroundings = Some(surroundings);
+    /// Sets the evidence of the scene around the object.
+    pub fn set_scene_term(&mut self, scene: SceneTerm) {
+        self.scene = Some(scene);
     }
 
     /// A pose and its neighbourhood: rotated about every axis, at its own distance and at that of the depths.
@@ -111,7 +111,7 @@ impl Search {
 
     /// The turns of the best of these poses that should be refined. `anchors` are sizes and positions for the half and quarter
     /// turns: a part that something hides is elsewhere after a turn.
-    pub(crate) fn turned(&mut self, poses: &[CropPose], anchors: &[Anchor]) -> Vec<CropPose> {
+    pub(crate) fn turned(&mut self, poses: &[CropPose], box_fits: &[BoxFit]) -> Vec<CropPose> {
         let Some(best) = poses.first() else { return Vec::new() };
         let mesh = Rc::clone(&self.mesh);
         if self.settings.turned <= 1 {
@@ -122,21 +122,21 @@ impl Search {
             poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)).collect();
         let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
-        let mut tried: Vec<Found> =
+        let mut tried: Vec<Candidate> =
             rolled.iter().chain(&turned).map(|pose| stage.at_its_distance(&mut canvas, *pose)).collect();
         for pose in turned {
-            stage.try_anchors(&mut canvas, &mesh.outermost, pose.rotation, anchors, &mut tried);
+            stage.try_box_fits(&mut canvas, &mesh.outermost, pose.rotation, box_fits, &mut tried);
         }
         self.renders += tried.len();
         let is_new =
-            |turned: &Found| poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > APART);
+            |turned: &Candidate| poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > APART);
         let tried = tried.into_iter().filter(is_new).collect();
         distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
     }
 
     /// Sizes and positions tried for each rotation.
-    pub fn anchors(&self) -> Vec<Anchor> {
-        anchors(self.grid(COARSE))
+    pub fn box_fits(&self) -> Vec<BoxFit> {
+        box_fits(self.grid(COARSE))
     }
 
     /// Makes all grids.
@@ -158,7 +158,7 @@ impl Search {
             scoring,
             prior: self.prior,
             equivalence: &self.equivalence,
-            surroundings: self.surroundings.as_ref(),
+            scene: self.scene.as_ref(),
         }
     }
 
@@ -185,13 +185,13 @@ impl Search {
 
     /// The conditioning of a pose by the image alone.
     pub fn conditioning_by_image(&self, pose: &CropPose) -> Option<Conditioning> {
-        let objective = Objective { surroundings: None, ..self.objective(FINE) };
+        let objective = Objective { scene: None, ..self.objective(FINE) };
         self.conditioning_by(objective, pose, false).0
     }
 
-    /// Whether the surroundings are known.
-    pub fn is_surrounded(&self) -> bool {
-        self.surroundings.is_some()
+    /// Whether the score has a scene term.
+    pub fn has_scene_term(&self) -> bool {
+        self.scene.is_some()
     }
 
     /// The conditioning of a pose whose size is free, up to the symmetry of the mesh, and the root mean square of its depth

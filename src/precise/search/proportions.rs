@@ -8,7 +8,7 @@
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::ascent::{Ascent, ascend};
-use super::ranking::Found;
+use super::ranking::Candidate;
 use super::refine::{OnGrid, Refiner};
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::geometry::rotations::exp;
@@ -235,9 +235,9 @@ impl Ascent<ALL> for InProportion<'_, '_> {
             equations.add(&jacobian, f64::from(residual), f64::from(weight));
         });
         turns.add_to(&mut equations);
-        let mut of_surroundings = NormalEquations::new();
-        refiner.add_surroundings(&mut of_surroundings, &at.pose);
-        equations.add_first(&of_surroundings);
+        let mut of_scene = NormalEquations::new();
+        refiner.add_scene_term(&mut of_scene, &at.pose);
+        equations.add_first(&of_scene);
         self.shapes.add_to(&at.proportions, &mut equations);
         equations
     }
@@ -311,16 +311,16 @@ impl Refiner<'_> {
         pose: CropPose,
         iterations: usize,
         surface: &SurfaceMoments,
-    ) -> Found {
+    ) -> Candidate {
         if self.lock_scale {
             return self.refine(canvas, pose, iterations);
         }
         let start = Stretched { pose, proportions: Proportions::default() };
-        let Found { pose, score, renders, converged } =
+        let Candidate { pose, score, renders, converged } =
             ascend(&mut InProportion::new(self, canvas, Shapes::default()), start, iterations);
         // At a bound of the scale, it stays there.
         let is_at_bound = self.objective.prior.is_at_bound(&pose.pose);
         let nearest = self.objective.prior.bounded(pose.nearest(surface, is_at_bound));
-        Found { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
+        Candidate { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
     }
 }

@@ -38,9 +38,9 @@ impl Total for f32 {
     }
 }
 
-/// A pose that was found, and its score, finally on the fine grid.
+/// A candidate: a pose and its score, finally on the fine grid.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
-pub struct Found<P = CropPose, S = Score> {
+pub struct Candidate<P = CropPose, S = Score> {
     /// The pose.
     pub pose: P,
     /// Its score.
@@ -51,7 +51,7 @@ pub struct Found<P = CropPose, S = Score> {
     pub converged: bool,
 }
 
-impl<P, S> Found<P, S> {
+impl<P, S> Candidate<P, S> {
     /// A pose that was scored as it is.
     pub fn of(pose: P, score: S) -> Self {
         Self { pose, score, renders: 1, converged: false }
@@ -59,29 +59,33 @@ impl<P, S> Found<P, S> {
 }
 
 /// The best `count` of these, best first.
-pub fn best_of<P: Posed, S: Total>(found: &[Found<P, S>], count: usize) -> Vec<Found<P, S>> {
-    let best = order::largest(found.iter().map(|found| found.score.total()), count);
-    best.into_iter().map(|i| found[i as usize].clone()).collect()
+pub fn best_of<P: Posed, S: Total>(candidates: &[Candidate<P, S>], count: usize) -> Vec<Candidate<P, S>> {
+    let best = order::largest(candidates.iter().map(|candidate| candidate.score.total()), count);
+    best.into_iter().map(|i| candidates[i as usize].clone()).collect()
 }
 
 /// The best `count` of these whose rotations differ by at least `angle`, best first.
-pub fn distinct<P: Posed, S: Total>(found: Vec<Found<P, S>>, count: usize, angle: f64) -> Vec<Found<P, S>> {
-    distinct_up_to(&Equivalence::default(), found, count, angle)
+pub fn distinct<P: Posed, S: Total>(
+    candidates: Vec<Candidate<P, S>>,
+    count: usize,
+    angle: f64,
+) -> Vec<Candidate<P, S>> {
+    distinct_up_to(&Equivalence::default(), candidates, count, angle)
 }
 
 /// The same, where a symmetry makes some rotations one.
 pub fn distinct_up_to<P: Posed, S: Total>(
     equivalence: &Equivalence,
-    found: Vec<Found<P, S>>,
+    candidates: Vec<Candidate<P, S>>,
     count: usize,
     angle: f64,
-) -> Vec<Found<P, S>> {
-    let mut kept: Vec<Found<P, S>> = Vec::new();
-    for next in best_of(&found, found.len()) {
+) -> Vec<Candidate<P, S>> {
+    let mut kept: Vec<Candidate<P, S>> = Vec::new();
+    for next in best_of(&candidates, candidates.len()) {
         if kept.len() >= count {
             break;
         }
-        let turn = |k: &Found<P, S>| equivalence.angle(k.pose.rotation(), next.pose.rotation());
+        let turn = |k: &Candidate<P, S>| equivalence.angle(k.pose.rotation(), next.pose.rotation());
         if kept.iter().all(|k| turn(k) > angle) {
             kept.push(next);
         }

@@ -9,7 +9,7 @@
 use glam::Vec3;
 
 use super::ascent::{Ascent, ascend, limited};
-use super::ranking::Found;
+use super::ranking::Candidate;
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::precise::drawing::pose::{CropPose, Step};
 use crate::precise::drawing::render::Canvas;
@@ -59,7 +59,7 @@ impl Ascent for OnGrid<'_, '_> {
 
 impl Refiner<'_> {
     /// Refines `pose` in at most `iterations` steps.
-    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Found {
+    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Candidate {
         ascend::<PARAMETERS, _>(&mut OnGrid { refiner: self, canvas }, pose, iterations)
     }
 
@@ -83,14 +83,14 @@ impl Refiner<'_> {
             equations.add(&jacobian, f64::from(residual), f64::from(weight));
         });
         turns.add_to(&mut equations);
-        self.add_surroundings(&mut equations, pose);
+        self.add_scene_term(&mut equations, pose);
         equations
     }
 
-    /// Adds the quadratic of the surroundings, if they are known, at `pose`.
-    pub(super) fn add_surroundings(&self, equations: &mut NormalEquations, pose: &CropPose) {
-        if let Some(surroundings) = self.objective.surroundings {
-            surroundings.add_to(equations, pose, self.lock_scale);
+    /// Adds the quadratic of the scene term, if there is one, at `pose`.
+    pub(super) fn add_scene_term(&self, equations: &mut NormalEquations, pose: &CropPose) {
+        if let Some(scene) = self.objective.scene {
+            scene.add_to(equations, pose, self.lock_scale);
         }
     }
 

@@ -7,146 +7,148 @@ use std::borrow::Cow;
 use glam::DQuat;
 
 use super::problem::Search;
-use super::ranking::{Found, best_of, distinct_up_to};
+use super::ranking::{Candidate, best_of, distinct_up_to};
 use super::recipe::{FINE, MIN_ROTATIONS, ROUNDS, Round, Task};
-use super::tasks::{Outcome, RoundTasks};
+use super::tasks::{RoundTasks, TaskResult};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
-use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::pose::CropPose;
-use crate::precise::observation::anchors::Anchor;
+use crate::precise::observation::box_fits::BoxFit;
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Score below the best pose at which a refined turn of it is not ranked.
-const NEAR: f32 = 0.3;
+const TURN_MAX_SCORE_LOSS: f32 = 0.3;
 /// The same, where several poses are turned: after an unsure search, whose best pose is more often wrong.
-const UNSURE: f32 = 0.5;
+const TURN_MAX_SCORE_LOSS_UNSURE: f32 = 0.5;
 
 /// Rotation from the best pose from which on a pose is elsewhere, radians.
-pub const ELSEWHERE: f64 = 0.5;
+pub const RIVAL_MIN_ANGLE_RAD: f64 = 0.5;
 /// Lead over all poses elsewhere from which on the best pose has no rival. Of 660 sure searches, the 11 with a rival led by
 /// at most 0.08, and 8 % by less than this.
-const DECIDED: f32 = 0.15;
+const DECISIVE_SCORE_LEAD: f32 = 0.15;
 
 /// The best of this many rotations are followed by the next search.
-const HOPEFUL: usize = 4;
+const KEPT_QUOTIENT: usize = 4;
 
 /// Rotation by which a search may refine a pose of another one, radians.
-const SAME: f64 = 0.25;
+const SAME_POSE_MAX_RAD: f64 = 0.25;
 
 /// Rotations after which the work of a round on the rotation grid is known.
 const PROBED_ROTATIONS: usize = 16;
 
 /// The work of a round on the rotation grid, where it is more than its allowance.
-struct TooLong(u64);
+struct BudgetExceeded {
+    estimated_work: u64,
+}
 
 /// A running search.
 pub struct Rounds {
     /// The search.
     pub search: Search,
     /// Candidates of the ranking round, best first; empty until it has ended.
-    pub found: Vec<Found>,
+    pub candidates: Vec<Candidate>,
     /// Index of the current round.
     index: usize,
     /// The rotations of the first round, if they are not those of the rotation grid.
     rotations: Vec<DQuat>,
     /// Sizes and positions tried for each rotation.
-    anchors: Vec<Anchor>,
+    box_fits: Vec<BoxFit>,
     /// Initial poses of the tasks of the round; the rotations of the first round need no list.
     poses: Vec<CropPose>,
     /// Candidates from other sources than the rotation grid, which precede those of the grid.
-    others: Vec<CropPose>,
+    extra_poses: Vec<CropPose>,
     /// The best candidate of the last round, if any.
-    best: Vec<Found>,
+    best: Vec<Candidate>,
     /// Candidates of the ranking round other than turns of the best one.
-    unturned: Vec<CropPose>,
+    unturned_poses: Vec<CropPose>,
     /// The best pose of each rotation of the first round, best first.
-    tried: Vec<Found>,
+    best_per_rotation: Vec<Candidate>,
     /// See [`Self::is_contested`].
-    lead: Option<f32>,
+    score_lead: Option<f32>,
 }
 
 impl Rounds {
     /// Starts with the rotation grid or, if the search is not `global`, only with the neighbourhood of `initial`.
     pub fn new(mut search: Search, initial: Option<CropPose>, global: bool) -> Self {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
-        let anchors = if global { search.anchors() } else { vec![Anchor::AS_IT_IS] };
+        let box_fits = if global { search.box_fits() } else { vec![BoxFit::IDENTITY] };
         let is_searched = |round: &Round| !global && round.task.is_on_rotation_grid();
         let index = search.settings.rounds.iter().take_while(|round| is_searched(round)).count();
         Self {
-            found: Vec::new(),
+            candidates: Vec::new(),
             index,
             rotations: Vec::new(),
-            anchors,
+            box_fits,
             poses: if global { Vec::new() } else { around.clone() },
-            others: around,
+            extra_poses: around,
             best: Vec::new(),
-            unturned: Vec::new(),
-            tried: Vec::new(),
-            lead: None,
+            unturned_poses: Vec::new(),
+            best_per_rotation: Vec::new(),
+            score_lead: None,
             search,
         }
     }
 
     /// Starts with these rotations instead of the rotation grid.
-    pub fn among(search: Search, rotations: Vec<DQuat>) -> Self {
+    pub fn from_rotations(search: Search, rotations: Vec<DQuat>) -> Self {
         let mut rounds = Self::new(search, None, true);
         rounds.rotations = rotations;
         rounds
     }
 
     /// A search that has ended with these candidates.
-    pub fn ended(search: Search, found: Vec<Found>) -> Self {
+    pub fn finished(search: Search, candidates: Vec<Candidate>) -> Self {
         let mut rounds = Self::new(search, None, false);
-        (rounds.found, rounds.index) = (found, ROUNDS);
+        (rounds.candidates, rounds.index) = (candidates, ROUNDS);
         rounds
     }
 
     /// Puts the candidate that is nearest to the best one of another search first, unless it is first. Returns whether the
     /// order has changed.
-    pub fn prefer(&mut self, found: &[Found]) -> bool {
-        let Some(best) = found.first() else { return false };
-        let angle = |f: &Found| f.pose.rotation.angle_between(best.pose.rotation);
-        let near = self.found.iter().position(|f| angle(f) < SAME);
+    pub fn move_to_front(&mut self, others: &[Candidate]) -> bool {
+        let Some(best) = others.first() else { return false };
+        let angle = |candidate: &Candidate| candidate.pose.rotation.angle_between(best.pose.rotation);
+        let near = self.candidates.iter().position(|candidate| angle(candidate) < SAME_POSE_MAX_RAD);
         if let Some(place) = near.filter(|place| *place > 0) {
-            self.found[..=place].rotate_right(1);
+            self.candidates[..=place].rotate_right(1);
             return true;
         }
         false
     }
 
     /// Keeps the rotations of the grid whose nearest rotation in the first round of `previous` was among its best.
-    pub fn follow(&mut self, previous: &Self) {
-        let hopeful = previous.tried.len() / HOPEFUL;
+    pub fn keep_promising_rotations(&mut self, previous: &Self) {
+        let kept = previous.best_per_rotation.len() / KEPT_QUOTIENT;
         let is_promising = |rotation: &DQuat| {
             let (mut nearest, mut most) = (0, 0.0);
-            for (i, tried) in previous.tried.iter().enumerate() {
-                let cosine = tried.pose.rotation.dot(*rotation).abs();
+            for (i, best_per_rotation) in previous.best_per_rotation.iter().enumerate() {
+                let cosine = best_per_rotation.pose.rotation.dot(*rotation).abs();
                 if cosine > most {
                     (nearest, most) = (i, cosine);
                 }
             }
-            nearest < hopeful
+            nearest < kept
         };
         let count = self.search.settings.rotations();
         self.rotations = (0..count).map(|i| super_fibonacci(i, count)).filter(is_promising).collect();
     }
 
     /// Adds poses that another search has refined to the candidates of the grid.
-    pub fn resume(&mut self, found: &[Found]) {
-        self.propose(poses_of(found));
+    pub fn add_candidates(&mut self, candidates: &[Candidate]) {
+        self.add_poses(poses_of(candidates));
     }
 
     /// Adds poses from another source to those of the first refinement.
-    pub fn propose(&mut self, poses: impl IntoIterator<Item = CropPose>) {
-        let list = if self.is_on_rotation_grid() { &mut self.others } else { &mut self.poses };
+    pub fn add_poses(&mut self, poses: impl IntoIterator<Item = CropPose>) {
+        let list = if self.is_on_rotation_grid() { &mut self.extra_poses } else { &mut self.poses };
         list.extend(poses);
     }
 
-    /// The work of the current round that its inputs may ask for; see [`Outcome::work`].
+    /// The work of the current round that its inputs may ask for; see [`TaskResult::work`].
     fn allowed(&self, round: Round) -> u64 {
         let settings = &self.search.settings;
         let per_task = match round.task {
-            Task::Rotate => self.anchors.len(),
+            Task::Rotate => self.box_fits.len(),
             Task::Place => 1,
             Task::Refine | Task::Fit => round.work + 1,
             Task::Turn => round.work + 2,
@@ -191,28 +193,33 @@ impl Rounds {
         }
     }
 
-    /// Runs the current round, with a pause point after each of its tasks, and begins the next one.
-    pub fn run<'a>(&'a mut self, pauses: &'a Pauses) -> Boxed<'a, ()> {
+    /// Runs the current round, with a yield point after each of its tasks, and begins the next one.
+    pub fn run<'a>(&'a mut self, scheduler: &'a Scheduler) -> Boxed<'a, ()> {
         boxed(async move {
             let Some(mut round) = self.round() else { return };
             let allowance = self.allowed(round);
-            let outcomes = loop {
-                match self.outcomes(round, allowance, pauses).await {
-                    Ok(outcomes) => break outcomes,
-                    Err(TooLong(work)) => round = self.rotate_less(work, allowance),
+            let results = loop {
+                match self.run_tasks(round, allowance, scheduler).await {
+                    Ok(results) => break results,
+                    Err(BudgetExceeded { estimated_work }) => round = self.rotate_less(estimated_work, allowance),
                 }
             };
-            self.end_round(round, outcomes);
+            self.end_round(round, results);
         })
     }
 
     /// The results of the tasks of a round, in order, of as many as its allowance is enough for.
-    async fn outcomes(&self, round: Round, allowance: u64, pauses: &Pauses) -> Result<Vec<Found>, TooLong> {
+    async fn run_tasks(
+        &self,
+        round: Round,
+        allowance: u64,
+        scheduler: &Scheduler,
+    ) -> Result<Vec<Candidate>, BudgetExceeded> {
         let search = &self.search;
         let tasks = RoundTasks {
             view: search.view,
             effort: search.settings.effort,
-            is_surrounded: search.is_surrounded(),
+            has_scene_term: search.has_scene_term(),
             task: round.task,
             grid: round.grid,
             work: round.work,
@@ -221,9 +228,9 @@ impl Rounds {
             poses: Cow::Borrowed(&self.poses),
         };
         let count = tasks.count();
-        let (mut work, mut done, mut too_long) = (0, 0, None);
-        let ends = |outcome: &Outcome| {
-            work += outcome.work;
+        let (mut work, mut done, mut exceeded) = (0, 0, None);
+        let ends = |result: &TaskResult| {
+            work += result.work;
             done += 1;
             if round.task != Task::Rotate {
                 // The poses are sorted, so that the best ones have had their turn.
@@ -231,12 +238,12 @@ impl Rounds {
             }
             let all = work * count as u64 / done as u64;
             if done == PROBED_ROTATIONS && all > allowance && count > MIN_ROTATIONS {
-                too_long = Some(TooLong(all));
+                exceeded = Some(BudgetExceeded { estimated_work: all });
             }
-            too_long.is_some()
+            exceeded.is_some()
         };
-        let outcomes = pauses.list(&mut tasks.on(search), ends).await;
-        too_long.map_or_else(|| Ok(outcomes.into_iter().flat_map(|outcome| outcome.found).collect()), Err)
+        let results = scheduler.run_tasks(&mut tasks.on(search), ends).await;
+        exceeded.map_or_else(|| Ok(results.into_iter().flat_map(|result| result.candidates).collect()), Err)
     }
 
     /// Reduces the rotation grid to as many rotations as are allowed if all of them take this much `work`. The first
@@ -252,85 +259,99 @@ impl Rounds {
     }
 
     /// Selects the poses of the next round.
-    fn end_round(&mut self, round: Round, outcomes: Vec<Found>) {
-        let equivalence = &self.search.equivalence;
-        self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
-        let best = core::mem::replace(&mut self.best, best_of(&outcomes, 1));
+    fn end_round(&mut self, round: Round, results: Vec<Candidate>) {
+        self.search.renders += results.iter().map(|result| result.renders).sum::<usize>();
         if round.task == Task::Rotate {
-            for of_rotation in outcomes.chunks(self.anchors.len()) {
-                self.tried.extend(best_of(of_rotation, 1));
-            }
-            self.tried = best_of(&self.tried, outcomes.len());
+            self.best_per_rotation = self.best_of_each_rotation(&results);
         }
-        if round.task == Task::Refine && self.lead.is_none() {
-            let lead = match distinct_up_to(equivalence, outcomes.clone(), 2, ELSEWHERE).as_slice() {
-                // Around an initial pose alone, nothing is known of poses elsewhere.
-                _ if best.is_empty() => 0.0,
-                [best, other] => best.score.total - other.score.total,
-                _ => f32::INFINITY,
-            };
-            self.lead = Some(lead);
+        if round.task == Task::Refine && self.score_lead.is_none() {
+            self.score_lead = Some(self.lead_over_rivals(&results));
         }
-        match round.task {
-            Task::Turn => {
-                // Of the same grid, so that their scores are comparable.
-                self.best = best_of(&[best.as_slice(), self.best.as_slice()].concat(), 1);
-                let near = if self.search.settings.turned > 1 { UNSURE } else { NEAR };
-                let least = best.first().map_or(0.0, |best| best.score.total) - near;
-                let alike = outcomes.into_iter().filter(|turned| turned.score.total > least).collect();
-                self.poses = core::mem::take(&mut self.unturned);
-                self.poses.extend(poses_of(&distinct_up_to(equivalence, alike, round.keep, round.apart)));
-            }
-            Task::Fit if self.found.is_empty() => {
-                self.found = distinct_up_to(equivalence, outcomes, usize::MAX, round.apart);
-                self.poses = poses_of(&self.found[..round.keep.min(self.found.len())]);
-            }
-            Task::Fit => {
-                // Keeps the scores of the ranking, because scores of different grids are not comparable.
-                for (best, polished) in self.found.iter_mut().zip(outcomes) {
-                    best.pose = polished.pose;
-                    best.converged |= polished.converged;
-                }
-                self.poses = Vec::new();
-            }
+
+        let previous_best = core::mem::replace(&mut self.best, best_of(&results, 1));
+        self.poses = match round.task {
+            Task::Turn => self.end_turns(round, results, &previous_best),
+            Task::Fit if !self.candidates.is_empty() => self.end_polish(results),
+            Task::Fit => self.end_ranking(round, results),
             // The last round of a search that is not ranked.
-            _ if round.keep == 0 => {
-                self.found = distinct_up_to(equivalence, outcomes, usize::MAX, round.apart);
-                self.poses = Vec::new();
+            _ if round.keep == 0 => self.end_ranking(round, results),
+            _ if round.apart > 0.0 => {
+                poses_of(&distinct_up_to(&self.search.equivalence, results, round.keep, round.apart))
             }
-            _ => {
-                let kept = if round.apart > 0.0 {
-                    distinct_up_to(equivalence, outcomes, round.keep, round.apart)
-                } else {
-                    best_of(&outcomes, round.keep)
-                };
-                self.poses = poses_of(&kept);
-            }
-        }
+            _ => poses_of(&best_of(&results, round.keep)),
+        };
+
         self.index += 1;
         if self.task() == Some(Task::Turn) {
-            let turned = self.search.turned(&self.poses, &self.anchors);
-            self.unturned = core::mem::replace(&mut self.poses, turned);
+            let turned = self.search.turned(&self.poses, &self.box_fits);
+            self.unturned_poses = core::mem::replace(&mut self.poses, turned);
         }
         if round.task == Task::Place {
-            self.poses.splice(0..0, core::mem::take(&mut self.others));
+            self.poses.splice(0..0, core::mem::take(&mut self.extra_poses));
         }
+    }
+
+    /// The best pose of each rotation, best first.
+    fn best_of_each_rotation(&self, results: &[Candidate]) -> Vec<Candidate> {
+        let best: Vec<Candidate> =
+            results.chunks(self.box_fits.len()).flat_map(|of_rotation| best_of(of_rotation, 1)).collect();
+        best_of(&best, results.len())
+    }
+
+    /// The lead of the best pose over all that are elsewhere, when the candidates of the rotation grid are first refined.
+    fn lead_over_rivals(&self, results: &[Candidate]) -> f32 {
+        if self.best.is_empty() {
+            // Around an initial pose alone, nothing is known of poses elsewhere.
+            return 0.0;
+        }
+        match *distinct_up_to(&self.search.equivalence, results.to_vec(), 2, RIVAL_MIN_ANGLE_RAD) {
+            [best, rival] => best.score.total - rival.score.total,
+            _ => f32::INFINITY,
+        }
+    }
+
+    /// Ends a round of turns: those that are about as good as the best pose join the poses that were turned.
+    fn end_turns(&mut self, round: Round, results: Vec<Candidate>, previous_best: &[Candidate]) -> Vec<CropPose> {
+        // Of the same grid, so that their scores are comparable.
+        self.best = best_of(&[previous_best, self.best.as_slice()].concat(), 1);
+        let max_loss = if self.search.settings.turned > 1 { TURN_MAX_SCORE_LOSS_UNSURE } else { TURN_MAX_SCORE_LOSS };
+        let min_score = previous_best.first().map_or(0.0, |best| best.score.total) - max_loss;
+        let turns = results.into_iter().filter(|turn| turn.score.total > min_score).collect();
+
+        let mut poses = core::mem::take(&mut self.unturned_poses);
+        poses.extend(poses_of(&distinct_up_to(&self.search.equivalence, turns, round.keep, round.apart)));
+        poses
+    }
+
+    /// Ends the round that ranks the candidates; the best ones are polished next.
+    fn end_ranking(&mut self, round: Round, results: Vec<Candidate>) -> Vec<CropPose> {
+        self.candidates = distinct_up_to(&self.search.equivalence, results, usize::MAX, round.apart);
+        poses_of(&self.candidates[..round.keep.min(self.candidates.len())])
+    }
+
+    /// Ends the last round, which keeps the scores of the ranking: scores of different grids are not comparable.
+    fn end_polish(&mut self, results: Vec<Candidate>) -> Vec<CropPose> {
+        for (candidate, polished) in self.candidates.iter_mut().zip(results) {
+            candidate.pose = polished.pose;
+            candidate.converged |= polished.converged;
+        }
+        Vec::new()
     }
 
     /// Whether a pose elsewhere came close to the best one when the candidates of the rotation grid were first refined, or
     /// there were none.
     pub fn is_contested(&self) -> bool {
-        self.lead.is_none_or(|lead| lead < DECIDED)
+        self.score_lead.is_none_or(|score_lead| score_lead < DECISIVE_SCORE_LEAD)
     }
 
     /// The best pose so far, and its score on the grid of its round: scores of different grids are not comparable.
     pub fn best(&self) -> Option<(Similarity, f64)> {
         // The order is final after the ranking.
-        let best = self.found.first().or(self.best.first())?;
+        let best = self.candidates.first().or(self.best.first())?;
         Some((best.pose.similarity(&self.search.mesh.frame), f64::from(best.score.total)))
     }
 }
 
-fn poses_of(found: &[Found]) -> Vec<CropPose> {
-    found.iter().map(|f| f.pose).collect()
+fn poses_of(candidates: &[Candidate]) -> Vec<CropPose> {
+    candidates.iter().map(|candidate| candidate.pose).collect()
 }

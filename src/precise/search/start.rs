@@ -1,4 +1,4 @@
-//! Start: a search from the rotation grid, from the poses of another search, or for rivals of its best pose.
+//! The start of a search: from the rotation grid, from the candidates of an earlier search, or for rivals of its best pose.
 
 use core::ops::Range;
 use std::rc::Rc;
@@ -6,16 +6,15 @@ use std::rc::Rc;
 use serde::{Deserialize, Serialize};
 
 use super::problem::Search;
-use super::ranking::Found;
+use super::ranking::Candidate;
 use super::recipe::{SURE, SearchSettings};
-use super::rounds::{ELSEWHERE, Rounds};
+use super::rounds::{RIVAL_MIN_ANGLE_RAD, Rounds};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::Symmetry;
-use crate::pauses::Pauses;
-use crate::precise::drawing::equivalence::DIFFERENT;
+use crate::precise::drawing::equivalence::DISTINCT_MIN_ANGLE_RAD;
 use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::{CropPose, MeshFrame};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
@@ -23,22 +22,23 @@ use crate::precise::no_candidate;
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::{AlignOptions, Quality, SearchScope};
 use crate::precise::scoring::prior::Prior;
-use crate::precise::scoring::surroundings::{Neighbourhood, Surroundings};
+use crate::precise::scoring::scene_term::{SceneContext, SceneTerm};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Effort;
+use crate::scheduler::Scheduler;
 
 /// Score below that of the best pose down to which a pose is its rival.
-const RIVAL: f32 = 0.05;
+const RIVAL_MAX_SCORE_LOSS: f32 = 0.05;
 
 /// Number of poses that are put down on the ground.
-const PUT_DOWN: usize = 4;
+const MAX_GROUNDED_CANDIDATES: usize = 4;
 
 /// A search before its first round. The poses that a `previous` search has found are added to the candidates of the grid.
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
 /// behind the camera, [`ErrorCode::DegenerateMask`] for a mask thinner than the cells of the search.
-pub fn begin(
+pub fn start_search(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
     previous: Option<&Rounds>,
@@ -47,7 +47,7 @@ pub fn begin(
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
     let clean = previous.map(|rounds| rounds.search.observation.clone());
-    let search = prepared(observation, clean, mesh, options, settings, stages)?;
+    let search = prepare_search(observation, clean, mesh, options, settings, stages)?;
     let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame, INITIAL)).transpose()?;
     let mut rounds = Rounds::new(search, initial, options.search == SearchScope::Global);
     if !rounds.shows_mask() {
@@ -55,10 +55,10 @@ pub fn begin(
     }
     if let Some(previous) = previous {
         if options.search == SearchScope::Global {
-            rounds.follow(previous);
+            rounds.keep_promising_rotations(previous);
         }
         rounds.search.renders += previous.search.renders;
-        rounds.resume(&previous.found);
+        rounds.add_candidates(&previous.candidates);
     }
     stages.enter(Stage::Search);
     Ok(rounds)
@@ -67,36 +67,42 @@ pub fn begin(
 /// A search for rivals of the best pose of another search, if that is contested: from rotations between those of its grid,
 /// far from the pose.
 pub fn rival_search(rounds: &Rounds) -> Option<Rounds> {
-    let best = rounds.found.first().filter(|_| rounds.is_contested())?;
+    let best = rounds.candidates.first().filter(|_| rounds.is_contested())?;
     let search = &rounds.search;
     let again = search.for_rivals();
     let count = again.settings.rotations();
     let rotations = (0..count).map(|i| super_fibonacci(i, count));
-    let rotations =
-        rotations.filter(|rotation| search.equivalence.angle(best.pose.rotation, *rotation) > ELSEWHERE).collect();
-    let mut look = Rounds::among(again, rotations);
-    look.propose([best.pose]);
-    Some(look)
+    let rotations = rotations
+        .filter(|rotation| search.equivalence.angle(best.pose.rotation, *rotation) > RIVAL_MIN_ANGLE_RAD)
+        .collect();
+    let mut rival_rounds = Rounds::from_rotations(again, rotations);
+    rival_rounds.add_poses([best.pose]);
+    Some(rival_rounds)
 }
 
-/// Whether a search for rivals has found a pose that explains the image about as well as the best one of a search. It is then added to
-/// those of the search.
-pub fn has_rival(rounds: &mut Rounds, look: &Rounds) -> bool {
-    rounds.search.renders += look.search.renders;
-    let Some(best) = rounds.found.first().copied() else { return false };
-    let angle = |found: &Found| look.search.equivalence.angle(best.pose.rotation, found.pose.rotation);
-    let Some(own) = look.found.iter().find(|found| angle(found) <= DIFFERENT) else { return true };
-    let is_rival = |found: &&Found| angle(found) > DIFFERENT && found.score.total > own.score.total - RIVAL;
-    let rivals: Vec<Found> = look.found.iter().filter(is_rival).copied().collect();
-    rounds.found.extend(&rivals);
+/// Adds the rivals that a search for them has found to the candidates: poses that explain the image about as well as the
+/// best one. Returns whether there are any, or the best pose was not found again.
+pub fn take_rivals(rounds: &mut Rounds, rival_rounds: &Rounds) -> bool {
+    rounds.search.renders += rival_rounds.search.renders;
+    let Some(best) = rounds.candidates.first().copied() else { return false };
+    let angle =
+        |candidate: &Candidate| rival_rounds.search.equivalence.angle(best.pose.rotation, candidate.pose.rotation);
+    let Some(own) = rival_rounds.candidates.iter().find(|candidate| angle(candidate) <= DISTINCT_MIN_ANGLE_RAD) else {
+        return true;
+    };
+    let is_rival = |candidate: &&Candidate| {
+        angle(candidate) > DISTINCT_MIN_ANGLE_RAD && candidate.score.total > own.score.total - RIVAL_MAX_SCORE_LOSS
+    };
+    let rivals: Vec<Candidate> = rival_rounds.candidates.iter().filter(is_rival).copied().collect();
+    rounds.candidates.extend(&rivals);
     !rivals.is_empty()
 }
 
-/// The results of a search, for a later one of the same object.
+/// The state in which a search of an object ended, from which a later one starts.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Findings {
+pub struct SearchState {
     /// The poses, best first.
-    pub found: Vec<Found>,
+    pub candidates: Vec<Candidate>,
     /// Its effort.
     pub effort: Effort,
     /// Number of images that it drew.
@@ -105,7 +111,7 @@ pub struct Findings {
     pub confidence: f64,
 }
 
-impl Findings {
+impl SearchState {
     /// Whether the search was sure of its best pose.
     pub fn is_sure(&self) -> bool {
         self.confidence >= SURE
@@ -115,48 +121,49 @@ impl Findings {
 /// The start of a later search of the same object.
 pub struct WarmStart<'a> {
     /// The results of the earlier one.
-    pub findings: &'a Findings,
-    /// The surroundings of the object, where they have become known since.
-    pub surroundings: Neighbourhood,
+    pub earlier: &'a SearchState,
+    /// The scene around the object, where it has become known since.
+    pub context: SceneContext,
 }
 
-/// A search among the poses that another one has found, with the surroundings of the object. Without
-/// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
+/// A search among the poses that another one has found, with the scene around the object. Without
+/// a scene, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
 /// the ground are searched as well. `clean` is the observation, where it has been cleaned already.
 ///
 /// # Errors
-/// As [`begin`].
-pub fn resume(
+/// As [`start_search`].
+pub fn restart_search(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
     clean: Option<Rc<CleanObservation>>,
-    WarmStart { findings, surroundings: known }: WarmStart<'_>,
+    WarmStart { earlier, context }: WarmStart<'_>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
-    let mut search = prepared(observation, clean, mesh, options, settings, stages)?;
-    let Findings { found, renders, .. } = findings;
+    let mut search = prepare_search(observation, clean, mesh, options, settings, stages)?;
+    let SearchState { candidates, renders, .. } = earlier;
     search.renders = *renders;
-    if known.is_empty() {
-        return Ok(Rounds::ended(search, found.clone()));
+    if context.is_empty() {
+        return Ok(Rounds::finished(search, candidates.clone()));
     }
-    let surroundings = Surroundings::new(known, &search.mesh, &search.observation);
-    let put_down: Vec<CropPose> = found.iter().take(PUT_DOWN).flat_map(|f| surroundings.put_down(&f.pose)).collect();
+    let scene = SceneTerm::new(context, &search.mesh, &search.observation);
+    let put_down: Vec<CropPose> =
+        candidates.iter().take(MAX_GROUNDED_CANDIDATES).flat_map(|candidate| scene.put_down(&candidate.pose)).collect();
     // Where the search was unsure, the ground leaves few rotations.
     let standing =
-        if findings.is_sure() || options.search == SearchScope::Local { Vec::new() } else { surroundings.standing() };
-    search.surround(surroundings);
+        if earlier.is_sure() || options.search == SearchScope::Local { Vec::new() } else { scene.standing() };
+    search.set_scene_term(scene);
     let mut rounds =
-        if standing.is_empty() { Rounds::new(search, None, false) } else { Rounds::among(search, standing) };
-    rounds.resume(found);
-    rounds.propose(put_down);
+        if standing.is_empty() { Rounds::new(search, None, false) } else { Rounds::from_rotations(search, standing) };
+    rounds.add_candidates(candidates);
+    rounds.add_poses(put_down);
     stages.enter(Stage::Search);
     Ok(rounds)
 }
 
 /// A search with its prior, prepared.
-pub fn prepared(
+pub fn prepare_search(
     observation: &Observation,
     clean: Option<Rc<CleanObservation>>,
     mesh: &PreparedMesh<'_>,
@@ -177,7 +184,7 @@ pub fn prepared(
 ///
 /// # Errors
 /// [`DegenerateMesh`](ErrorCode::DegenerateMesh).
-pub fn prepare(mesh: &PreparedMesh<'_>) -> Result<()> {
+pub fn prepare_mesh(mesh: &PreparedMesh<'_>) -> Result<()> {
     mesh.check()?;
     if let Some(&first) = Quality::default().efforts().first() {
         let SearchSettings { grids, .. } = first.into();
@@ -204,12 +211,12 @@ pub fn decimate(
 }
 
 /// Runs a search to its end. `share` is the progress at its start and end, 0 to 1.
-pub async fn run(rounds: &mut Rounds, share: &Range<f64>, pauses: &Pauses, stages: &mut Stopwatch<'_>) {
+pub async fn run_rounds(rounds: &mut Rounds, share: &Range<f64>, scheduler: &Scheduler, stages: &mut Stopwatch<'_>) {
     while let Some(round) = rounds.round() {
         if !round.task.is_on_rotation_grid() && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
-        rounds.run(pauses).await;
+        rounds.run(scheduler).await;
         stages.reach(share.start + (share.end - share.start) * round.done, rounds.best());
     }
 }

@@ -6,19 +6,19 @@ use glam::{DQuat, DVec2};
 
 use super::coarse::Coarse;
 use super::problem::Search;
-use super::ranking::Found;
+use super::ranking::Candidate;
 use super::recipe::Task;
 use super::refine::Refiner;
 use crate::geometry::rotations::super_fibonacci;
 use crate::helpers::{Tasks, put};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
-use crate::precise::observation::anchors::Anchor;
+use crate::precise::observation::box_fits::BoxFit;
 use crate::precise::scoring::score::Score;
 use crate::report::Effort;
 
 /// Score below the best pose at which a turn of it is not refined.
-const FAR: f32 = 0.8;
+const TURN_MAX_SCORE_LOSS: f32 = 0.8;
 
 /// The tasks of a round.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,8 +27,8 @@ pub struct RoundTasks<'a> {
     pub view: usize,
     /// Its effort, on which its grids depend.
     pub effort: Effort,
-    /// Whether it has the surroundings of the object.
-    pub is_surrounded: bool,
+    /// Whether the score has a scene term.
+    pub has_scene_term: bool,
     /// Kind of the tasks.
     pub task: Task,
     /// Index of the grid.
@@ -44,9 +44,9 @@ pub struct RoundTasks<'a> {
 }
 
 /// The result of a task.
-pub struct Outcome {
+pub struct TaskResult {
     /// One pose; for a rotation, one for each anchor.
-    pub found: Vec<Found>,
+    pub candidates: Vec<Candidate>,
     /// See [`Canvas::work`].
     pub work: u64,
 }
@@ -56,7 +56,7 @@ pub struct Run<'a> {
     tasks: &'a RoundTasks<'a>,
     search: &'a Search,
     /// Of [`Task::Rotate`].
-    anchors: Vec<Anchor>,
+    box_fits: Vec<BoxFit>,
     coarse: Coarse<'a>,
     refiner: Refiner<'a>,
     canvas: Canvas,
@@ -77,14 +77,14 @@ impl RoundTasks<'_> {
         let objective = search.objective(self.grid);
         let coarse = Coarse { objective, median_m: search.observation.median_m };
         let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
-        let anchors = if self.task == Task::Rotate { search.anchors() } else { Vec::new() };
-        Run { tasks: self, search, anchors, coarse, refiner, canvas: Canvas::default() }
+        let box_fits = if self.task == Task::Rotate { search.box_fits() } else { Vec::new() };
+        Run { tasks: self, search, box_fits, coarse, refiner, canvas: Canvas::default() }
     }
 
     /// Writes the tasks as numbers, without loss.
     pub fn write(&self, message: &mut Vec<f64>) {
-        let Self { view, effort, is_surrounded, task, grid, work, best, rotations, poses } = self;
-        let settings = [*view, *effort as usize, usize::from(*is_surrounded), *task as usize, *grid, *work];
+        let Self { view, effort, has_scene_term, task, grid, work, best, rotations, poses } = self;
+        let settings = [*view, *effort as usize, usize::from(*has_scene_term), *task as usize, *grid, *work];
         put(message, &settings.map(|x| x as f64));
         put(message, &[best.map_or(f64::NAN, f64::from)]);
         put(message, &[rotations.len(), poses.len()].map(|x| x as f64));
@@ -100,14 +100,14 @@ impl RoundTasks<'_> {
     pub fn read(message: &[f64]) -> Option<RoundTasks<'static>> {
         const EFFORTS: [Effort; 3] = [Effort::Fast, Effort::Balanced, Effort::Best];
         const TASKS: [Task; 5] = [Task::Rotate, Task::Place, Task::Refine, Task::Turn, Task::Fit];
-        let (&[view, effort, is_surrounded, task, grid, work, best, rotations, poses], lists) =
+        let (&[view, effort, has_scene_term, task, grid, work, best, rotations, poses], lists) =
             message.split_first_chunk()?;
         let (rotations, lists) = lists.split_at_checked(4 * rotations as usize)?;
         let (poses, _) = lists.split_at_checked(POSE * poses as usize)?;
         Some(RoundTasks {
             view: view as usize,
             effort: *EFFORTS.iter().find(|known| **known as usize as f64 == effort)?,
-            is_surrounded: is_surrounded != 0.0,
+            has_scene_term: has_scene_term != 0.0,
             task: *TASKS.iter().find(|known| **known as usize as f64 == task)?,
             grid: grid as usize,
             work: work as usize,
@@ -119,7 +119,7 @@ impl RoundTasks<'_> {
 }
 
 impl Tasks for Run<'_> {
-    type Result = Outcome;
+    type Result = TaskResult;
 
     fn count(&self) -> usize {
         self.tasks.count()
@@ -127,66 +127,66 @@ impl Tasks for Run<'_> {
 
     // Each of its callers would have a copy of the search.
     #[inline(never)]
-    fn run(&mut self, task: usize) -> Outcome {
-        let Self { tasks, search, anchors, coarse, refiner, canvas } = self;
+    fn run(&mut self, task: usize) -> TaskResult {
+        let Self { tasks, search, box_fits, coarse, refiner, canvas } = self;
         let RoundTasks { work, rotations, poses, best, .. } = tasks;
-        let mut found = Vec::new();
+        let mut candidates = Vec::new();
         canvas.work = 0;
         match tasks.task {
             Task::Rotate => {
                 let rotation = rotations.get(task).copied();
                 let rotation = rotation.unwrap_or_else(|| super_fibonacci(task, *work));
-                coarse.try_anchors(canvas, &search.mesh.outermost, rotation, anchors, &mut found);
+                coarse.try_box_fits(canvas, &search.mesh.outermost, rotation, box_fits, &mut candidates);
             }
-            Task::Place => found.push(coarse.at_its_distance(canvas, poses[task])),
+            Task::Place => candidates.push(coarse.at_its_distance(canvas, poses[task])),
             Task::Turn | Task::Refine => {
                 let (mut pose, mut steps) = (poses[task], *work);
                 if tasks.task == Task::Turn {
                     let turned = coarse.at_its_distance(canvas, pose);
                     pose = turned.pose;
-                    if best.is_some_and(|best| turned.score.total < best - FAR) {
+                    if best.is_some_and(|best| turned.score.total < best - TURN_MAX_SCORE_LOSS) {
                         steps = 0;
                     }
                 }
-                found.push(refiner.refine(canvas, pose, steps));
+                candidates.push(refiner.refine(canvas, pose, steps));
             }
             Task::Fit => {
-                found.push(refiner.refine_in_proportion(canvas, poses[task], *work, &search.mesh.surface));
+                candidates.push(refiner.refine_in_proportion(canvas, poses[task], *work, &search.mesh.surface));
             }
         }
-        Outcome { found, work: canvas.work }
+        TaskResult { candidates, work: canvas.work }
     }
 
     fn write(&self, message: &mut Vec<f64>) {
         self.tasks.write(message);
     }
 
-    fn write_result(Outcome { found, work }: &Outcome, message: &mut Vec<f64>) {
-        put(message, &[found.len() as f64, *work as f64]);
-        for Found { pose, score, renders, converged } in found {
+    fn write_result(TaskResult { candidates, work }: &TaskResult, message: &mut Vec<f64>) {
+        put(message, &[candidates.len() as f64, *work as f64]);
+        for Candidate { pose, score, renders, converged } in candidates {
             put(message, &pose_numbers(pose));
             put(message, &score_numbers(score).map(f64::from));
             put(message, &[*renders as f64, f64::from(u8::from(*converged))]);
         }
     }
 
-    fn read_result(message: &mut &[f64]) -> Option<Outcome> {
-        let (&[count, work], found) = message.split_first_chunk()?;
-        let (numbers, rest) = found.split_at_checked(FOUND * count as usize)?;
+    fn read_result(message: &mut &[f64]) -> Option<TaskResult> {
+        let (&[count, work], candidates) = message.split_first_chunk()?;
+        let (numbers, rest) = candidates.split_at_checked(FOUND * count as usize)?;
         *message = rest;
-        let mut found = Vec::with_capacity(count as usize);
+        let mut candidates = Vec::with_capacity(count as usize);
         for numbers in numbers.as_chunks::<FOUND>().0 {
             let (pose, numbers) = numbers.split_first_chunk()?;
             let (score, numbers) = numbers.split_first_chunk::<SCORE>()?;
             let &[renders, converged] = numbers.first_chunk()?;
             let (pose, score) = (pose_of(pose), score_of(score.map(|x| x as f32)));
-            found.push(Found { pose, score, renders: renders as usize, converged: converged != 0.0 });
+            candidates.push(Candidate { pose, score, renders: renders as usize, converged: converged != 0.0 });
         }
-        Some(Outcome { found, work: work as u64 })
+        Some(TaskResult { candidates, work: work as u64 })
     }
 }
 
-/// Numbers of a pose, of a score, and of a pose that was found.
+/// Numbers of a pose, of a score, and of a pose that was candidates.
 const POSE: usize = 8;
 const SCORE: usize = 11;
 const FOUND: usize = POSE + SCORE + 2;

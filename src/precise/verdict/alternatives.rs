@@ -2,10 +2,10 @@
 
 use super::color::Rival;
 use crate::geometry::rotations::angle_between;
-use crate::precise::drawing::equivalence::{DIFFERENT, Equivalence};
+use crate::precise::drawing::equivalence::{DISTINCT_MIN_ANGLE_RAD, Equivalence};
 use crate::precise::scoring::score::NOISE;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::report::Alternative;
 
 /// Score below an unsure best pose down to which poses are alternatives: where such a pose is wrong, the right one scores lower
@@ -20,11 +20,12 @@ const CLEAR: f64 = 0.5;
 
 /// The poses after the first whose scores are within `margin` of it. Poses near it or near each other, and those that the
 /// symmetry of the mesh makes equivalent, are excluded.
-pub(crate) fn alternatives(found: &[Found], search: &Search, margin: f32) -> Vec<Alternative> {
-    let Some((best, others)) = found.split_first() else { return Vec::new() };
+pub(crate) fn alternatives(candidates: &[Candidate], search: &Search, margin: f32) -> Vec<Alternative> {
+    let Some((best, others)) = candidates.split_first() else { return Vec::new() };
     let mut kept = vec![best];
     for other in others.iter().filter(|other| other.score.total > best.score.total - margin) {
-        let differs = |k: &&Found| search.equivalence.angle(k.pose.rotation, other.pose.rotation) > DIFFERENT;
+        let differs =
+            |k: &&Candidate| search.equivalence.angle(k.pose.rotation, other.pose.rotation) > DISTINCT_MIN_ANGLE_RAD;
         if kept.len() <= MOST && kept.iter().all(differs) {
             kept.push(other);
         }
@@ -33,7 +34,7 @@ pub(crate) fn alternatives(found: &[Found], search: &Search, margin: f32) -> Vec
 }
 
 /// A pose as an alternative to the best one.
-fn alternative(best: &Found, other: &Found, color_margin: Option<f64>, search: &Search) -> Alternative {
+fn alternative(best: &Candidate, other: &Candidate, color_margin: Option<f64>, search: &Search) -> Alternative {
     Alternative {
         camera_from_mesh: (&other.pose.similarity(&search.mesh.frame)).into(),
         score: f64::from(other.score.total),
@@ -46,21 +47,23 @@ fn alternative(best: &Found, other: &Found, color_margin: Option<f64>, search: &
 /// shape does not.
 pub(crate) fn add_rivals<'a>(
     alternatives: &mut Vec<Alternative>,
-    best: &Found,
+    best: &Candidate,
     rivals: impl IntoIterator<Item = &'a Rival>,
     search: &Search,
 ) {
     let rotation = |other: &Alternative| glam::DQuat::from_array(other.camera_from_mesh.rotation);
     let mut added = 0;
     for rival in rivals {
-        let near = |other: &&mut Alternative| angle_between(rotation(other), rival.found.pose.rotation) < DIFFERENT;
+        let near = |other: &&mut Alternative| {
+            angle_between(rotation(other), rival.candidate.pose.rotation) < DISTINCT_MIN_ANGLE_RAD
+        };
         match alternatives.iter_mut().find(near) {
             Some(known) => {
                 known.color_margin.get_or_insert(rival.margin);
             }
             None if added < MAX_RIVALS && rival.margin < CLEAR => {
                 added += 1;
-                alternatives.push(alternative(best, &rival.found, Some(rival.margin), search));
+                alternatives.push(alternative(best, &rival.candidate, Some(rival.margin), search));
             }
             None => {}
         }
@@ -69,8 +72,14 @@ pub(crate) fn add_rivals<'a>(
 
 /// The lead of a pose over the best of the others that is different, in units of the score, at most [`NOISE`]. `score`
 /// gives the scores to be compared.
-pub fn lead(equivalence: &Equivalence, best: &Found, others: &[Found], score: impl Fn(&Found) -> f32) -> f64 {
-    let differs = |other: &&Found| equivalence.angle(best.pose.rotation, other.pose.rotation) > DIFFERENT;
+pub fn lead(
+    equivalence: &Equivalence,
+    best: &Candidate,
+    others: &[Candidate],
+    score: impl Fn(&Candidate) -> f32,
+) -> f64 {
+    let differs =
+        |other: &&Candidate| equivalence.angle(best.pose.rotation, other.pose.rotation) > DISTINCT_MIN_ANGLE_RAD;
     let rival = others.iter().filter(differs).map(&score).fold(f32::NEG_INFINITY, f32::max);
     f64::from((score(best) - rival).min(NOISE))
 }

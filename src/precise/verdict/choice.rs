@@ -11,7 +11,7 @@ pub const SHAPE: f64 = 0.5;
 const MIN_GAIN: f64 = 0.02;
 /// Factor of the correlation in the logarithm of the odds of two poses.
 const ODDS: f64 = 15.0;
-/// Minimum certainty of the pose where none agrees with the photo.
+/// Minimum probability of the pose where none agrees with the photo.
 pub const UNMATCHED: f64 = 0.5;
 
 /// The score of a pose by colour.
@@ -57,7 +57,7 @@ impl Choice {
 
     /// Probability that the chosen pose is right, given that it or one of these rivals is. `gain` is by how much its agreement
     /// has grown since.
-    pub fn certainty(&self, gain: f64, rivals: impl Iterator<Item = usize>) -> f64 {
+    pub fn probability(&self, gain: f64, rivals: impl Iterator<Item = usize>) -> f64 {
         let odds: f64 = rivals.map(|rival| libm::exp(-ODDS * self.lead(rival, gain))).sum();
         1.0 / (1.0 + odds)
     }

@@ -15,7 +15,6 @@ use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise::drawing::equivalence::{self, Equivalence};
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
@@ -24,30 +23,31 @@ use crate::precise::observation::clean::CleanObservation;
 use crate::precise::scoring::appearance::{Appearance, PhotoCells};
 use crate::precise::scoring::score::{NOISE, Score};
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{COLORED, FINE, SearchSettings};
 use crate::precise::search::refine::Refiner;
 use crate::precise::search::rounds::Rounds;
 use crate::report::{ColorReport, Effort};
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Contrast between two poses, relative to the noise, from which on they look different.
-pub const DIFFERENT: f64 = 2.0;
+pub const DISTINCT_MIN_CONTRAST: f64 = 2.0;
 /// Minimum rotation between poses that are rivals, radians.
-const RIVAL: f64 = 0.35;
+const RIVAL_MIN_ANGLE_RAD: f64 = 0.35;
 /// Standard deviation of a rotation, radians, from which on colour refines it.
-pub const LOOSE: f64 = 0.05;
+pub const LOOSE_MIN_SD_RAD: f64 = 0.05;
 
 /// A pose whose shape is within noise of the best one.
 struct Compared {
-    found: Found,
+    candidate: Candidate,
     appearance: Appearance,
-    look: ColorScore,
+    agreement: ColorScore,
 }
 
 /// A pose of about the same shape score as the chosen one, but of other colours.
 pub struct Rival {
     /// The pose, with the score of its shape.
-    pub found: Found,
+    pub candidate: Candidate,
     /// By how much its agreement with the photo is below that of the chosen pose.
     pub margin: f64,
     /// Whether a symmetry of the shape makes it equivalent to the chosen pose.
@@ -57,11 +57,11 @@ pub struct Rival {
 /// The verdict of colour.
 pub struct Judgment {
     /// The chosen pose; `None` if it is that of shape.
-    pub chosen: Option<Found>,
+    pub chosen: Option<Candidate>,
     /// Other poses that look different, best first.
     pub rivals: Vec<Rival>,
     /// Probability that the chosen pose is right up to the symmetry of the shape, given that it is one of those compared.
-    pub certainty: f64,
+    pub probability: f64,
     /// Probability that it is the right one of the poses that this symmetry makes equivalent; `None` where these look alike.
     pub turn: Option<f64>,
     /// For the result.
@@ -70,71 +70,73 @@ pub struct Judgment {
     pub is_used: bool,
 }
 
-/// The verdict of the photo on the poses of a search, with a pause point after each comparison.
+/// The verdict of the photo on the poses of a search, with a yield point after each comparison.
 pub fn judgment<'a>(
     rounds: &'a Rounds,
     photo: &'a Photo,
     colors: &'a SurfaceColors,
-    pauses: &'a Pauses,
+    scheduler: &'a Scheduler,
 ) -> Boxed<'a, Judgment> {
     boxed(async move {
         let photo = cells(photo, &rounds.search);
-        let compared = compared(rounds, &photo, colors, pauses).await;
+        let compared = compared(rounds, &photo, colors, scheduler).await;
         chosen(rounds, &photo, colors, &compared)
     })
 }
 
 /// Chooses among the compared poses.
 fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared: &[Compared]) -> Judgment {
-    let scores = compared.iter().map(|compared| compared.look).collect();
+    let scores = compared.iter().map(|compared| compared.agreement).collect();
     let differ = |a: usize, b: usize| {
         let [a, b] = [a, b].map(|k| &compared[k]);
-        are_rivals(a.found.pose.rotation, b.found.pose.rotation) && a.appearance.difference(&b.appearance) > DIFFERENT
+        are_rivals(a.candidate.pose.rotation, b.candidate.pose.rotation)
+            && a.appearance.difference(&b.appearance) > DISTINCT_MIN_CONTRAST
     };
     let Some(choice) = Choice::among(scores, differ) else { return Judgment::none() };
     let is_changed = choice.chosen != 0;
-    let mut found = compared[choice.chosen].found;
+    let mut candidate = compared[choice.chosen].candidate;
     if is_changed {
-        found.pose = polished(rounds, found.pose);
+        candidate.pose = polished(rounds, candidate.pose);
     }
-    let axis = if choice.is_used { loose_axis(&rounds.search, &found.pose, LOOSE) } else { None };
-    let rolled = axis.and_then(|axis| roll(&rounds.search, photo, colors, found.pose, axis));
+    let axis = if choice.is_used { loose_axis(&rounds.search, &candidate.pose, LOOSE_MIN_SD_RAD) } else { None };
+    let rolled = axis.and_then(|axis| roll(&rounds.search, photo, colors, candidate.pose, axis));
     let gain = rolled.map_or(0.0, |(_, gain)| gain);
     if let Some((pose, _)) = rolled {
-        found.pose = pose;
+        candidate.pose = pose;
     }
-    let pose_of = |k: usize| compared.get(k).map(|compared| compared.found);
+    let pose_of = |k: usize| compared.get(k).map(|compared| compared.candidate);
     let is_other = is_changed || rolled.is_some();
-    Judgment::new(&choice, (found, is_other), pose_of, gain, &rounds.search.equivalence)
+    Judgment::new(&choice, (candidate, is_other), pose_of, gain, &rounds.search.equivalence)
 }
 
 /// The poses of a search with about the shape score of the best one, which is the first, and their colours. Empty if
 /// nothing can be compared.
-async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, pauses: &Pauses) -> Vec<Compared> {
+async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, scheduler: &Scheduler) -> Vec<Compared> {
     let search = &rounds.search;
     let mut canvas = Canvas::default();
     let look_at = |canvas: &mut Canvas, pose: CropPose| {
         let score = search.objective(FINE).score(canvas, &pose);
         Some((score, photo.compare(canvas, colors, &search.mesh.frame, search.grid(FINE))?))
     };
-    let Some(best) = rounds.found.first() else { return Vec::new() };
+    let Some(best) = rounds.candidates.first() else { return Vec::new() };
     let Some((of_best, appearance)) = look_at(&mut canvas, best.pose) else { return Vec::new() };
-    let look = ColorScore::new(appearance.agreement, 0.0);
+    let agreement = ColorScore::new(appearance.agreement, 0.0);
     let score = Score { total: best.score.total, ..of_best };
-    let mut list = vec![Compared { found: Found { score, ..*best }, appearance, look }];
+    let mut list = vec![Compared { candidate: Candidate { score, ..*best }, appearance, agreement }];
     let [rough, _] = COLORED;
     let refiner = Refiner { objective: search.objective(rough.grid), lock_scale: search.settings.lock_scale };
     for Lookalike { pose, likeness } in lookalikes(rounds) {
         let is_rough = likeness == Likeness::Rough;
         // A turn of the best pose doubles its error. The poses of the search near the turn are more accurate.
-        let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
-        let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
+        let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL_MIN_ANGLE_RAD;
+        let known = rounds.candidates.iter().skip(1).find(|candidate| is_near(&candidate.pose, &pose));
         let pose = match known {
-            Some(found) => found.pose,
+            Some(candidate) => candidate.pose,
             None if is_rough => refiner.refine(&mut canvas, pose, rough.steps).pose,
             None => pose,
         };
-        let is_compared = |other: &Compared| other.found.pose == pose || is_rough && is_near(&other.found.pose, &pose);
+        let is_compared =
+            |other: &Compared| other.candidate.pose == pose || is_rough && is_near(&other.candidate.pose, &pose);
         if !list.iter().any(is_compared)
             && let Some((mut score, appearance)) = look_at(&mut canvas, pose)
         {
@@ -144,18 +146,18 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, p
             score.total = best.score.total + shape;
             // What a symmetry makes equivalent is compared, whatever the inaccuracy of the mesh takes off its score.
             if likeness == Likeness::Equal || score.total > best.score.total - NOISE {
-                let look = ColorScore::new(appearance.agreement, shape);
-                list.push(Compared { found: Found { pose, score, ..*best }, appearance, look });
+                let agreement = ColorScore::new(appearance.agreement, shape);
+                list.push(Compared { candidate: Candidate { pose, score, ..*best }, appearance, agreement });
             }
         }
-        pauses.here().await;
+        scheduler.yield_point().await;
     }
     list
 }
 
 /// Whether two poses are so far apart that one of them is wrong.
 pub fn are_rivals(a: DQuat, b: DQuat) -> bool {
-    angle_between(a, b) > RIVAL
+    angle_between(a, b) > RIVAL_MIN_ANGLE_RAD
 }
 
 /// The axis about which shape leaves the rotation open, by at least `loose` radians.
@@ -188,28 +190,29 @@ impl Judgment {
     /// From a choice and the pose that it ends with, which `is_other` than the best by shape. `pose_of` gives that of a rival.
     pub fn new(
         choice: &Choice,
-        (end, is_other): (Found, bool),
-        pose_of: impl Fn(usize) -> Option<Found>,
+        (end, is_other): (Candidate, bool),
+        pose_of: impl Fn(usize) -> Option<Candidate>,
         gain: f64,
         equivalence: &Equivalence,
     ) -> Self {
         let rival = |&k: &usize| {
-            let found = pose_of(k)?;
-            let is_turn = equivalence.angle(end.pose.rotation, found.pose.rotation) <= equivalence::DIFFERENT;
-            Some((k, Rival { found, margin: choice.margin(k, gain), is_turn }))
+            let candidate = pose_of(k)?;
+            let is_turn =
+                equivalence.angle(end.pose.rotation, candidate.pose.rotation) <= equivalence::DISTINCT_MIN_ANGLE_RAD;
+            Some((k, Rival { candidate, margin: choice.margin(k, gain), is_turn }))
         };
         let (indices, rivals): (Vec<usize>, Vec<Rival>) = choice.rivals.iter().filter_map(rival).unzip();
-        let certainty = |are_turns: bool| {
+        let probability = |are_turns: bool| {
             let these = indices.iter().zip(&rivals).filter(|(_, rival)| rival.is_turn == are_turns);
-            let known = choice.certainty(gain, these.map(|(k, _)| *k));
+            let known = choice.probability(gain, these.map(|(k, _)| *k));
             // Where no pose agrees, the colours of the mesh as likely as not mean nothing, and all turns are right; but which of
             // them colour would choose is open.
             if are_turns || choice.is_used { known } else { known.max(UNMATCHED) }
         };
         Self {
             chosen: is_other.then_some(end),
-            certainty: certainty(false),
-            turn: rivals.iter().any(|rival| rival.is_turn).then(|| certainty(true)),
+            probability: probability(false),
+            turn: rivals.iter().any(|rival| rival.is_turn).then(|| probability(true)),
             report: choice.report(gain),
             is_used: choice.is_used,
             rivals,
@@ -227,7 +230,7 @@ impl Judgment {
 
     /// Nothing can be compared.
     fn none() -> Self {
-        Self { chosen: None, rivals: Vec::new(), certainty: 1.0, turn: None, report: HIDDEN, is_used: false }
+        Self { chosen: None, rivals: Vec::new(), probability: 1.0, turn: None, report: HIDDEN, is_used: false }
     }
 }
 

@@ -4,21 +4,21 @@ use std::borrow::Cow;
 
 use super::alternatives::{UNSURE, add_rivals, alternatives};
 use super::color::Judgment;
-use super::confidence::confidence;
+use super::confidence::{Confidence, shape_confidence};
 use crate::error::Result;
 use crate::precise::no_candidate;
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::score::NOISE;
 use crate::precise::search::problem::Search;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::SURE;
 use crate::precise::search::rounds::Rounds;
 use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Solution, Uncertainty};
 
-/// The reliability of the pose.
-pub struct Certainty {
-    /// See [`Alignment::confidence`](crate::report::Alignment::confidence).
-    pub confidence: f64,
+/// The verdict on the best pose of a search.
+pub struct Verdict {
+    /// The confidence in it, without the calibration of the depth.
+    pub confidence: Confidence,
     /// See [`Alignment::turn_confidence`](crate::report::Alignment::turn_confidence).
     pub turn_confidence: Option<f64>,
     /// Alternative poses.
@@ -37,10 +37,8 @@ pub struct Certainty {
 
 /// The confidence in the best of several poses, and its alternatives.
 pub struct Reliability {
-    /// Probability that the pose is right, by shape alone.
-    pub by_shape: f64,
-    /// The same, by shape and colour.
-    pub confidence: f64,
+    /// The confidence in the pose, without the calibration of the depth.
+    pub confidence: Confidence,
     /// Other poses that explain the evidence nearly as well.
     pub alternatives: Vec<Alternative>,
 }
@@ -50,35 +48,38 @@ pub struct Reliability {
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) without a pose.
 pub fn reliability(
-    found: &[Found],
+    candidates: &[Candidate],
     color: Option<&Judgment>,
     conditioning: Option<&Conditioning>,
     search: &Search,
 ) -> Result<Reliability> {
-    let best = found.first().ok_or_else(no_candidate)?;
+    let best = candidates.first().ok_or_else(no_candidate)?;
     let listed = |margin: f32, with_turns: bool| {
-        let mut list = alternatives(found, search, margin);
+        let mut list = alternatives(candidates, search, margin);
         let rivals = color.iter().flat_map(|color| &color.rivals).filter(|rival| with_turns || !rival.is_turn);
         add_rivals(&mut list, best, rivals, search);
         list
     };
-    let by_shape = confidence(best, &listed(NOISE, false), conditioning);
-    let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
-    let alternatives = listed(if confidence < SURE { UNSURE } else { NOISE }, true);
-    Ok(Reliability { by_shape, confidence, alternatives })
+    let confidence = Confidence {
+        shape: shape_confidence(best, &listed(NOISE, false), conditioning),
+        color: color.map_or(1.0, |color| color.probability),
+        relief_deviation: 0.0,
+    };
+    let alternatives = listed(if confidence.overall() < SURE { UNSURE } else { NOISE }, true);
+    Ok(Reliability { confidence, alternatives })
 }
 
 /// The best pose of the search, or the one that colour chose, and its reliability.
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose overlaps the mask.
-pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, Certainty)> {
+pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, Verdict)> {
     let search = &rounds.search;
-    let mut found = Cow::Borrowed(&rounds.found);
+    let mut candidates = Cow::Borrowed(&rounds.candidates);
     if let Some(chosen) = color.and_then(|color| color.chosen) {
-        found.to_mut().insert(0, chosen);
+        candidates.to_mut().insert(0, chosen);
     }
-    let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+    let best = candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
@@ -88,10 +89,10 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
     };
     // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
     // wrong; it is evidence of which of several poses is the better one.
-    let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
+    let by_image = if search.has_scene_term() { search.conditioning_by_image(&best.pose) } else { conditioning };
     let as_fixed = if search.settings.lock_scale { search.conditioning_as_fixed(&best.pose) } else { conditioning };
-    let Reliability { confidence, alternatives, .. } = reliability(&found, color, by_image.as_ref(), search)?;
-    let certainty = Certainty {
+    let Reliability { confidence, alternatives } = reliability(&candidates, color, by_image.as_ref(), search)?;
+    let verdict = Verdict {
         confidence,
         turn_confidence: color.and_then(|color| color.turn),
         alternatives,
@@ -108,5 +109,5 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, 
         effort: search.settings.effort,
         color: color.map(|color| color.report),
     };
-    Ok((solution, certainty))
+    Ok((solution, verdict))
 }

@@ -8,7 +8,7 @@
 use super::choice::SHAPE;
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::score::NOISE;
-use crate::precise::search::ranking::Found;
+use crate::precise::search::ranking::Candidate;
 use crate::report::Alternative;
 
 /// Intercept and coefficients of the regression: overlap, depth, outline, the margin relative to [`NOISE`], and the
@@ -23,24 +23,46 @@ const ROTATION_DEG: [f64; 2] = [0.03, 90.0];
 /// Relative error of the relief that turns a pose by about 10°: as much as it turns a surface that is slanted by 45°.
 const WRONG_RELIEF: f64 = 0.43;
 
+/// The confidence in a pose: the probabilities of its independent parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Confidence {
+    /// The probability that the pose is right, by the shape of the object.
+    pub shape: f64,
+    /// The probability that it is the right one of the poses that shape leaves, by colour; 1 without colours.
+    pub color: f64,
+    /// The relative standard deviation of the relief of the depth; 0 for metric depth.
+    pub relief_deviation: f64,
+}
+
+impl Confidence {
+    /// The probability that the pose is right.
+    pub fn overall(&self) -> f64 {
+        self.shape * self.color * depth_calibration_reliability(self.relief_deviation)
+    }
+}
+
 /// The probability that the relief of an observation is not so wrong that the pose is, given the standard deviation of its
 /// estimate: at least this, by Chebyshev's inequality. The errors of such estimates have long tails.
-pub(crate) fn certainty_of_relief(deviation: f64) -> f64 {
+fn depth_calibration_reliability(deviation: f64) -> f64 {
     let share = deviation / WRONG_RELIEF;
     (1.0 - share * share).max(0.0)
 }
 
-/// The probability that a pose is correct, 0 to 1.
-pub(crate) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
+/// The probability that a pose is right by the shape of the object, given its alternatives.
+pub(crate) fn shape_confidence(
+    best: &Candidate,
+    alternatives: &[Alternative],
+    conditioning: Option<&Conditioning>,
+) -> f64 {
     let score = f64::from(best.score.total);
     // Colour has lowered the odds of poses that shape alone cannot exclude.
     let lead = |other: &Alternative| score - other.score + other.color_margin.unwrap_or(0.0).max(0.0) / SHAPE;
     let margin = alternatives.iter().fold(f64::from(NOISE), |margin, other| margin.min(lead(other)));
-    sureness(best, margin, conditioning)
+    pose_probability(best, margin, conditioning)
 }
 
 /// The same, given the lead over the next best placement, of which no more than [`NOISE`] counts.
-pub(crate) fn sureness(best: &Found, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
+pub(crate) fn pose_probability(best: &Candidate, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
     let Some(conditioning) = conditioning else { return 0.0 };
     let margin = lead.min(f64::from(NOISE));
     let log = |x: f64, [low, high]: [f64; 2]| libm::log(x.max(low).min(high));

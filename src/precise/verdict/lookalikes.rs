@@ -5,7 +5,7 @@ use glam::DQuat;
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
-use crate::precise::search::ranking::{Found, Posed, Total, best_of};
+use crate::precise::search::ranking::{Candidate, Posed, Total, best_of};
 use crate::precise::search::recipe::COARSE;
 use crate::precise::search::rounds::Rounds;
 
@@ -44,14 +44,14 @@ pub struct Lookalike<P> {
 /// The turns of the best pose that look about the same, and the other poses that the search has found.
 pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike<CropPose>> {
     let search = &rounds.search;
-    let Some((best, others)) = rounds.found.split_first() else { return Vec::new() };
+    let Some((best, others)) = rounds.candidates.split_first() else { return Vec::new() };
     let mut canvas = Canvas::default();
     let objective = search.objective(COARSE);
     let score = objective.score(&mut canvas, &best.pose).total;
     let turns = &search.mesh.turns;
     let turned = turns.about_axes(&best.pose, ROLLS);
     let poses = others.iter().map(|other| other.pose).chain(turned);
-    let scored = poses.map(|pose| Found::of(pose, objective.score(&mut canvas, &pose)));
+    let scored = poses.map(|pose| Candidate::of(pose, objective.score(&mut canvas, &pose)));
     let equal = search.equivalence.others(best.pose.rotation, ROLLS);
     let equal = equal.into_iter().map(|rotation| turns.turned(&best.pose, rotation));
     among(best.pose.rotation, score, scored, equal)
@@ -62,10 +62,10 @@ pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike<CropPose>> {
 pub fn among<P: Posed, S: Total>(
     best: DQuat,
     score: f32,
-    scored: impl Iterator<Item = Found<P, S>>,
+    scored: impl Iterator<Item = Candidate<P, S>>,
     equal: impl Iterator<Item = P>,
 ) -> Vec<Lookalike<P>> {
-    let likely: Vec<Found<P, S>> = scored.filter(|pose| pose.score.total() > score - FAR).collect();
+    let likely: Vec<Candidate<P, S>> = scored.filter(|pose| pose.score.total() > score - FAR).collect();
     let mut alike: Vec<Lookalike<P>> = equal.map(|pose| Lookalike { pose, likeness: Likeness::Equal }).collect();
     let mut kept: Vec<DQuat> = vec![best];
     kept.extend(alike.iter().map(|equal| equal.pose.rotation()));

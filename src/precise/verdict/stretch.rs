@@ -98,9 +98,9 @@ pub fn climb<A: Ascent<ALL>>(
             if by[k] / reach < FREE {
                 continue;
             }
-            let found = ascend(problem, stretched(best.pose, by), STEPS[1]);
-            if found.score.total() > best.score.total() {
-                best = found;
+            let candidate = ascend(problem, stretched(best.pose, by), STEPS[1]);
+            if candidate.score.total() > best.score.total() {
+                best = candidate;
             }
         }
     }

@@ -101,7 +101,7 @@ impl Helpers {
         self.link.is_some()
     }
 
-    /// Runs tasks, with a pause point after each, until `ends` is true of a result: it gets them in order. `pause(true)` pauses in
+    /// Runs tasks, with a yield point after each, until `ends` is true of a result: it gets them in order. `pause(true)` pauses in
     /// any case, `pause(false)` if it is time.
     pub async fn run<T: Tasks, P: Future<Output = ()>>(
         &self,

@@ -38,7 +38,7 @@ const MAX_TRIANGLES: usize = 500_000;
 
 /// The parts left out of a mesh: their number, and their share of its surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LeftOut {
+pub struct RemovedParts {
     /// Parts far from all others.
     pub floating: (usize, f64),
     /// Parts inside, which are seen from nowhere.
@@ -55,34 +55,34 @@ pub struct Trimmed {
     /// The triangles that were left out.
     pub surplus: Mesh,
     /// The parts left out.
-    pub left_out: LeftOut,
+    pub removed_parts: RemovedParts,
 }
 
 impl Trimmed {
     /// A mesh, whose vertices are all used, without floaters and inner shells; `None` if it has neither.
     pub fn of(mesh: &Mesh) -> Option<Self> {
         let parts = MeshParts::of(mesh)?;
-        let mut is_left_out = floaters(mesh, &parts)?;
-        let mut left_out = LeftOut::default();
+        let mut is_removed = floaters(mesh, &parts)?;
+        let mut removed_parts = RemovedParts::default();
         let all = sum(&parts, &|_| true).area;
-        let shells = shells(mesh, &parts, &is_left_out).unwrap_or_default();
+        let shells = shells(mesh, &parts, &is_removed).unwrap_or_default();
         for (k, part) in parts.parts.iter().enumerate() {
             let is_shell = shells.get(k).is_some_and(|shell| *shell);
-            let (count, share) = if is_shell { &mut left_out.inside } else { &mut left_out.floating };
-            if is_shell || is_left_out[k] {
-                is_left_out[k] = true;
+            let (count, share) = if is_shell { &mut removed_parts.inside } else { &mut removed_parts.floating };
+            if is_shell || is_removed[k] {
+                is_removed[k] = true;
                 *count += 1;
                 *share += part.area / all;
             }
         }
-        if !is_left_out.contains(&true) {
+        if !is_removed.contains(&true) {
             return None;
         }
-        Self::split(mesh, left_out, &|triangle| is_left_out[parts.of_triangle(mesh.triangles()[triangle])])
+        Self::split(mesh, removed_parts, &|triangle| is_removed[parts.of_triangle(mesh.triangles()[triangle])])
     }
 
     /// A mesh without these of its triangles; `None` if they are none, or the rest is no shape.
-    pub fn split(mesh: &Mesh, left_out: LeftOut, is_surplus: &dyn Fn(usize) -> bool) -> Option<Self> {
+    pub fn split(mesh: &Mesh, removed_parts: RemovedParts, is_surplus: &dyn Fn(usize) -> bool) -> Option<Self> {
         let [mut kept, mut surplus] = [Vec::new(), Vec::new()];
         for (index, triangle) in mesh.triangles().iter().enumerate() {
             if is_surplus(index) { &mut surplus } else { &mut kept }.push(*triangle);
@@ -92,7 +92,7 @@ impl Trimmed {
         }
         let rest = mesh.of_triangles(&kept);
         check_shape(&rest).ok()?;
-        Some(Self { mesh: rest, surplus: mesh.of_triangles(&surplus), left_out })
+        Some(Self { mesh: rest, surplus: mesh.of_triangles(&surplus), removed_parts })
     }
 }
 

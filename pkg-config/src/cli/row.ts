@@ -1,5 +1,4 @@
 /** The row of a pose in tables, on a terminal and in a report: its values, and the format of each column. */
-import type { CasePictures } from "../pictures/case-pictures.js";
 
 /** A column: its headings on a terminal and in a report. A column without the second is not in reports. */
 export interface Column {
@@ -61,25 +60,6 @@ export interface Row extends Readonly<Partial<Record<ColumnName, number | null>>
   warnings: readonly Message[];
   /** Whether lengths are metric; otherwise, their unit is unknown. */
   isMetric: boolean;
-}
-
-/** A case in the table. */
-export interface ReportRow extends Row {
-  name: string;
-  /** The folder of its pictures; missing where there are none. */
-  folder?: string;
-}
-
-/** The details of a case, which the page loads on demand. */
-export interface ReportDetails extends Omit<CasePictures, "files"> {
-  alternatives: { file: string; turnDeg: number; score: number }[];
-  matrix: number[];
-}
-
-/** The global object that the scripts of a report call. */
-export interface ReportHost {
-  rows: ReportRow[];
-  details: Record<string, ReportDetails>;
 }
 
 /** Whether the name is that of a length, in metres. */

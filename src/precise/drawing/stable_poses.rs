@@ -1,4 +1,4 @@
-//! Rests: the attitudes in which a mesh stands on a plane.
+//! Stable poses: the attitudes in which a mesh stands on a plane.
 //!
 //! A body at rest has its centre of mass as low as it gets by small turns. From many directions, the mesh rolls down to
 //! such attitudes; the plane of a face that touches the ground then gives the direction more exactly than the few
@@ -15,7 +15,7 @@ use crate::geometry::symmetric_eigen::SymmetricEigen;
 
 /// A stable attitude of a mesh on a plane, in the normalised frame of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
+pub struct StablePose {
     /// The unit direction that points into the plane.
     pub down: DVec3,
     /// The centre of what touches the plane.
@@ -23,7 +23,7 @@ pub struct Rest {
     /// Two unit axes about which the object may tip, perpendicular to `down` and to each other.
     pub axes: [DVec3; 2],
     /// The stability about each axis, 0 (it rolls) to 1.
-    pub firmness: [f64; 2],
+    pub stability: [f64; 2],
 }
 
 /// Directions in which extreme vertices are found.
@@ -47,30 +47,30 @@ const FACING: f32 = 0.85;
 const BASE_AREA: f64 = 0.004;
 /// Maximum difference between the face and the direction of the descent.
 const FACE_TILT: f64 = 0.2;
-/// The tilt at which firmness is measured, radians, and the radius of a base that stands firmly, relative to the
+/// The tilt at which stability is measured, radians, and the radius of a base that stands securely, relative to the
 /// diagonal.
 const TIP: f64 = 0.1;
 const FIRM_RADIUS: f64 = 0.1;
 /// The rise below which it falls over, relative to the diagonal and the tilt.
-const FALLS: f64 = -0.02;
+const FALL_RISE: f64 = -0.02;
 
 /// The attitudes of a mesh in its normalised frame.
-pub fn rests(mesh: &Mesh) -> Vec<Rest> {
+pub fn stable_poses(mesh: &Mesh) -> Vec<StablePose> {
     let center = SurfaceMoments::of(mesh).centroid;
     let extremes = extremes(mesh.positions(), center);
-    let mut rests: Vec<Rest> = Vec::new();
+    let mut stable_poses: Vec<StablePose> = Vec::new();
     for k in 0..STARTS {
         let down = rolled(&extremes, fibonacci_sphere(k, STARTS));
         // Compared before the face is fitted, which takes longer.
-        if rests.len() >= MOST || rests.iter().any(|known| (known.down - down).length() < APART) {
+        if stable_poses.len() >= MOST || stable_poses.iter().any(|known| (known.down - down).length() < APART) {
             continue;
         }
-        let Some(rest) = standing(mesh, center, &extremes, down) else { continue };
-        if rests.iter().all(|known| (known.down - rest.down).length() >= APART) {
-            rests.push(rest);
+        let Some(stable) = standing(mesh, center, &extremes, down) else { continue };
+        if stable_poses.iter().all(|known| (known.down - stable.down).length() >= APART) {
+            stable_poses.push(stable);
         }
     }
-    rests
+    stable_poses
 }
 
 /// The extreme vertices, relative to the centre.
@@ -95,7 +95,7 @@ fn lowest(points: &[DVec3], down: DVec3) -> DVec3 {
     best.1
 }
 
-/// The direction in which the mesh comes to rest when it is put down in the direction `down`.
+/// The direction in which the mesh comes to stable when it is put down in the direction `down`.
 fn rolled(points: &[DVec3], mut down: DVec3) -> DVec3 {
     let mut step = FIRST_STEP;
     for _ in 0..STEPS {
@@ -110,7 +110,7 @@ fn rolled(points: &[DVec3], mut down: DVec3) -> DVec3 {
 
 /// The attitude near a direction: the face that touches the ground, and how firmly it stands; `None` where it falls over,
 /// balanced on an edge.
-fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Option<Rest> {
+fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Option<StablePose> {
     let mut down = rolled;
     let mut base = center + down * lowest(extremes, down).dot(down);
     for _ in 0..2 {
@@ -133,7 +133,7 @@ fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Op
     let angles = (0..8).map(|k| core::f64::consts::PI * f64::from(k) / 8.0);
     let loosest =
         angles.map(|angle| (rise(angle), angle)).fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
-    if loosest.0 < FALLS {
+    if loosest.0 < FALL_RISE {
         return None;
     }
     let firm = |radius: f64| (radius / FIRM_RADIUS).clamp(0.0, 1.0);
@@ -142,7 +142,7 @@ fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Op
     // To move `down` along `moves`, it tips about the axis perpendicular to it.
     let tips = down.cross(moves);
     let along = rise(loosest.1 + core::f64::consts::FRAC_PI_2);
-    Some(Rest { down, base, axes: [tips, moves], firmness: [firm(loosest.0), firm(along)] })
+    Some(StablePose { down, base, axes: [tips, moves], stability: [firm(loosest.0), firm(along)] })
 }
 
 /// The unit normal, outwards, and the centre of the face that touches the ground.

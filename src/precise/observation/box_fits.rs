@@ -14,7 +14,7 @@ const ZOOMS: [f64; 2] = [1.25, 1.6];
 
 /// A size relative to the box of the mask, and the direction, −1 to 1, in which the mesh extends beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Anchor {
+pub struct BoxFit {
     /// The axis whose side of the box determines the size: 0 for columns, 1 for rows, `None` for both.
     pub along: Option<usize>,
     /// Relative size.
@@ -23,35 +23,35 @@ pub struct Anchor {
     pub towards: [f64; 2],
 }
 
-impl Anchor {
+impl BoxFit {
     /// The unchanged box of the mask.
-    pub const AS_IT_IS: Self = Self { along: None, zoom: 1.0, towards: [0.0; 2] };
+    pub const IDENTITY: Self = Self { along: None, zoom: 1.0, towards: [0.0; 2] };
 }
 
 /// The hypotheses for a grid: the unchanged box, a slightly larger one and, if it is cut, boxes extended towards the
 /// cut.
-pub fn anchors(grid: &CropGrid) -> Vec<Anchor> {
-    let plain = |zoom| Anchor { zoom, ..Anchor::AS_IT_IS };
-    let mut anchors = vec![plain(1.0), plain(1.12)];
+pub fn box_fits(grid: &CropGrid) -> Vec<BoxFit> {
+    let plain = |zoom| BoxFit { zoom, ..BoxFit::IDENTITY };
+    let mut box_fits = vec![plain(1.0), plain(1.12)];
     let sides = cut_sides(grid);
     if sides.is_empty() {
-        return anchors;
+        return box_fits;
     }
     // A cut along one axis leaves both sides along the other axis.
     for axis in [0, 1] {
         if sides.iter().all(|side| side[axis] == 0.0) {
-            anchors.extend(sides.iter().map(|&towards| Anchor { along: Some(axis), towards, ..Anchor::AS_IT_IS }));
+            box_fits.extend(sides.iter().map(|&towards| BoxFit { along: Some(axis), towards, ..BoxFit::IDENTITY }));
         }
     }
     for zoom in ZOOMS {
-        anchors.push(plain(zoom));
-        anchors.extend(sides.iter().map(|&towards| Anchor { zoom, towards, ..Anchor::AS_IT_IS }));
+        box_fits.push(plain(zoom));
+        box_fits.extend(sides.iter().map(|&towards| BoxFit { zoom, towards, ..BoxFit::IDENTITY }));
         let (across, along): (Vec<[f64; 2]>, Vec<_>) = sides.iter().partition(|s| s[0] != 0.0);
         for a in &across {
-            anchors.extend(along.iter().map(|b| Anchor { zoom, towards: [a[0], b[1]], ..Anchor::AS_IT_IS }));
+            box_fits.extend(along.iter().map(|b| BoxFit { zoom, towards: [a[0], b[1]], ..BoxFit::IDENTITY }));
         }
     }
-    anchors
+    box_fits
 }
 
 /// The sides of the mask's box on which it is cut; none if the cut is too small.

@@ -35,7 +35,7 @@ const SHIFT: f64 = 2.0;
 
 /// The images that the rim is found in, row by row.
 #[derive(Clone, Copy)]
-pub struct RimImages<'a> {
+pub struct BoundaryImages<'a> {
     /// Pixels in a row.
     pub width: usize,
     /// Rows.
@@ -48,7 +48,7 @@ pub struct RimImages<'a> {
 
 /// The most likely offset of the outline from that of the mask, pixels: positive if the mask is too small; 0 if the depth map
 /// does not show it.
-pub fn rim_offset(images: RimImages<'_>, jump_m: f64) -> f64 {
+pub fn boundary_offset(images: BoundaryImages<'_>, jump_m: f64) -> f64 {
     let (mut rim, mut offsets, mut side) = (0usize, Vec::new(), [0.0, 0.0]);
     images.rays(|ray| {
         rim += 1;
@@ -81,7 +81,7 @@ fn most_likely(measured: f64, variance: f64) -> f64 {
     if mean > 0.0 { measured * mean / (usual.0 + rare.0) } else { 0.0 }
 }
 
-impl<'a> RimImages<'a> {
+impl<'a> BoundaryImages<'a> {
     /// Visits the rays across the rim: one for each of the outermost pixels of the mask, `None` where the outline has no
     /// direction.
     pub fn rays(self, mut visit: impl FnMut(Option<Ray<'a>>)) {
@@ -106,7 +106,7 @@ impl<'a> RimImages<'a> {
 
 /// A line across the rim.
 pub struct Ray<'a> {
-    images: RimImages<'a>,
+    images: BoundaryImages<'a>,
     start: [f64; 2],
     direction: [f64; 2],
 }

@@ -1,4 +1,4 @@
-//! Surroundings: what an object stands on and what stands around it, as evidence for its pose.
+//! Scene term: the support plane of an object and its neighbours, as evidence for its pose.
 //!
 //! Both are weighed, never enforced. Contact is credit that a pose loses as it leaves the ground, so that objects that
 //! hang or lean are not pulled down; it hardly grows where the pose is far from standing.
@@ -13,13 +13,13 @@ use crate::geometry::rotations::exp;
 use crate::precise::drawing::mesh_pyramid::MeshPyramid;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
-use crate::precise::drawing::rests::{Rest, rests};
+use crate::precise::drawing::stable_poses::{StablePose, stable_poses};
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::observation::grid::CropGrid;
 
 /// The plane that an object may stand on.
 #[derive(Debug, Clone)]
-pub struct Ground {
+pub struct ContactPrior {
     /// Unit normal, camera frame, towards the objects.
     pub normal: DVec3,
     /// Height of the camera above the plane, metres: n·x + offset is the height of a point.
@@ -27,7 +27,7 @@ pub struct Ground {
     /// Gap that halves the credit of the contact, metres.
     pub gap_m: f64,
     /// The attitudes of the mesh.
-    pub rests: Rc<[Rest]>,
+    pub stable_poses: Rc<[StablePose]>,
     /// The extreme vertices of the mesh.
     pub points: Rc<[Vec3]>,
     /// Weight of the contact, relative to the terms of the image.
@@ -48,36 +48,36 @@ pub struct Layer {
 
 /// The plane that an object may stand on, as far as it does not depend on the mesh.
 #[derive(Debug, Clone, Copy)]
-pub struct Floor {
-    /// See [`Ground`].
+pub struct SupportPlane {
+    /// See [`ContactPrior`].
     pub normal: DVec3,
-    /// See [`Ground`].
+    /// See [`ContactPrior`].
     pub offset_m: f64,
-    /// See [`Ground`].
+    /// See [`ContactPrior`].
     pub gap_m: f64,
 }
 
-/// The surroundings of an object, as known before its search.
+/// The scene around an object, as known before its search.
 #[derive(Debug, Clone, Default)]
-pub struct Neighbourhood {
+pub struct SceneContext {
     /// The plane on which it may stand.
-    pub ground: Option<Floor>,
+    pub plane: Option<SupportPlane>,
     /// The other objects, at the size of the whole image.
     pub layers: Vec<Rc<Layer>>,
 }
 
-impl Neighbourhood {
+impl SceneContext {
     /// Whether it is empty.
     pub fn is_empty(&self) -> bool {
-        self.ground.is_none() && self.layers.is_empty()
+        self.plane.is_none() && self.layers.is_empty()
     }
 }
 
-/// The surroundings of an object.
+/// The evidence of the scene around an object, for one mesh.
 #[derive(Debug, Clone, Default)]
-pub struct Surroundings {
+pub struct SceneTerm {
     /// The plane on which it may stand.
-    pub ground: Option<Ground>,
+    pub ground: Option<ContactPrior>,
     /// The other objects.
     pub layers: Vec<Rc<Layer>>,
     /// Depth inside another object from which on the two share volume, metres.
@@ -93,9 +93,9 @@ const MAX_TILT: f64 = 0.5;
 const NEAR_GROUND: f64 = 3.0;
 /// Depth in the ground, in units of the gap that halves the credit, from which on a pose loses no more: √(1 + 3²).
 const DEEPEST: f64 = 3.162_277_660_168_379_5;
-/// Firmness of the attitudes in which a mesh is put on the ground, their number, and the headings of each.
-const FIRM: f64 = 0.3;
-const ATTITUDES: usize = 10;
+/// Stability of the attitudes in which a mesh is put on the ground, their number, and the headings of each.
+const MIN_STABILITY: f64 = 0.3;
+const MAX_STABLE_POSES: usize = 10;
 const HEADINGS: usize = 30;
 /// Shares of the gap and of the attitude in the credit of the contact.
 const SHARES: [f64; 2] = [0.5, 0.5];
@@ -112,50 +112,50 @@ const SHARED_VOLUME: f32 = 0.6;
 /// A pose relative to the ground.
 struct Stand<'a> {
     /// The attitude; `None` if the pose is far from all of them.
-    rest: Option<&'a Rest>,
+    stable: Option<&'a StablePose>,
     /// The points that touch the ground, in the normalised frame of the mesh.
     base: DVec3,
     /// Height of the base over the plane, in units of the gap that halves the credit.
     gap: f64,
-    /// Tilt about the axes of the rest.
+    /// Tilt about the axes of the stable.
     tilt: [f64; 2],
 }
 
-impl Ground {
+impl ContactPrior {
     /// The nearest attitude of a pose.
     fn stand(&self, pose: &CropPose) -> Stand<'_> {
         let (scale, translation) = pose.scale_translation();
         let height = |p: DVec3| self.normal.dot(pose.rotation * p * scale + translation) + self.offset_m;
-        let mut best: Option<(f64, &Rest)> = None;
-        for rest in self.rests.iter() {
-            let error = (pose.rotation * rest.down + self.normal).length_squared();
+        let mut best: Option<(f64, &StablePose)> = None;
+        for stable in self.stable_poses.iter() {
+            let error = (pose.rotation * stable.down + self.normal).length_squared();
             if error < best.map_or(MAX_TILT * MAX_TILT, |(least, _)| least) {
-                best = Some((error, rest));
+                best = Some((error, stable));
             }
         }
-        let Some((_, rest)) = best else {
+        let Some((_, stable)) = best else {
             let points = self.points.iter().map(|p| p.as_dvec3());
             let lowest =
                 points.map(|p| (height(p), p)).fold((f64::INFINITY, DVec3::ZERO), |a, b| if b.0 < a.0 { b } else { a });
-            return Stand { rest: None, base: lowest.1, gap: lowest.0 / self.gap_m, tilt: [0.0; 2] };
+            return Stand { stable: None, base: lowest.1, gap: lowest.0 / self.gap_m, tilt: [0.0; 2] };
         };
-        let error = pose.rotation * rest.down + self.normal;
+        let error = pose.rotation * stable.down + self.normal;
         // The tilt about an axis moves `down` along the other one.
-        let [a, b] = rest.axes.map(|axis| (pose.rotation * axis).dot(error));
-        let tilt = [b * rest.firmness[0].sqrt(), a * rest.firmness[1].sqrt()];
-        Stand { rest: Some(rest), base: rest.base, gap: height(rest.base) / self.gap_m, tilt }
+        let [a, b] = stable.axes.map(|axis| (pose.rotation * axis).dot(error));
+        let tilt = [b * stable.stability[0].sqrt(), a * stable.stability[1].sqrt()];
+        Stand { stable: Some(stable), base: stable.base, gap: height(stable.base) / self.gap_m, tilt }
     }
 
     /// The credit of the contact, at most the weight; negative for a pose that is sunk in.
     fn score(&self, pose: &CropPose) -> f64 {
-        let Stand { rest, gap, tilt, .. } = self.stand(pose);
-        let level = rest.map_or(0.0, |rest| near_ground(gap) * firmness(rest) * level(tilt));
+        let Stand { stable, gap, tilt, .. } = self.stand(pose);
+        let level = stable.map_or(0.0, |stable| near_ground(gap) * stability(stable) * level(tilt));
         self.weight * (SHARES[0] * touch(gap).0 + SHARES[1] * level)
     }
 
     /// Adds the quadratic of the credit at a pose.
     fn add_to(&self, equations: &mut NormalEquations, pose: &CropPose, lock_scale: bool) {
-        let Stand { rest, base, gap, tilt } = self.stand(pose);
+        let Stand { stable, base, gap, tilt } = self.stand(pose);
         let (scale, translation) = pose.scale_translation();
         let arm = pose.rotation * base * scale;
         let point = arm + translation;
@@ -170,33 +170,34 @@ impl Ground {
         let jacobian = [turn.x, turn.y, turn.z, size, place.x, place.y, distance];
         equations.add(&jacobian, gap, self.weight * SHARES[0] * touch(gap).1);
 
-        let Some(rest) = rest else { return };
+        let Some(stable) = stable else { return };
         let credit = level(tilt);
         let weight =
-            2.0 * self.weight * SHARES[1] * near_ground(gap) * firmness(rest) * credit * credit / (TILT * TILT);
+            2.0 * self.weight * SHARES[1] * near_ground(gap) * stability(stable) * credit * credit / (TILT * TILT);
         for (k, error) in tilt.into_iter().enumerate() {
-            let axis = pose.rotation * rest.axes[1 - k] * rest.firmness[k].sqrt();
+            let axis = pose.rotation * stable.axes[1 - k] * stable.stability[k].sqrt();
             // The tilt is axis·n, because the axis is perpendicular to `down`, and δ(axis) = ω × axis.
             let turn = axis.cross(self.normal);
             equations.add(&[turn.x, turn.y, turn.z, 0.0, 0.0, 0.0, 0.0], error, weight);
         }
     }
 
-    /// The rotations in which the mesh stands on the ground: its firm attitudes, turned about the normal.
+    /// The rotations in which the mesh stands on the ground: its steadiest attitudes, turned about the normal.
     fn standing(&self) -> Vec<DQuat> {
-        let mut firm: Vec<&Rest> = self.rests.iter().filter(|rest| firmness(rest) > FIRM).collect();
-        let total = |rest: &Rest| rest.firmness[0] + rest.firmness[1];
-        while firm.len() > ATTITUDES {
-            let least = firm.iter().map(|rest| total(rest)).fold(f64::INFINITY, f64::min);
-            let Some(loosest) = firm.iter().rposition(|rest| total(rest) == least) else { break };
-            firm.remove(loosest);
+        let mut steady: Vec<&StablePose> =
+            self.stable_poses.iter().filter(|stable| stability(stable) > MIN_STABILITY).collect();
+        let total = |stable: &StablePose| stable.stability[0] + stable.stability[1];
+        while steady.len() > MAX_STABLE_POSES {
+            let least = steady.iter().map(|stable| total(stable)).fold(f64::INFINITY, f64::min);
+            let Some(loosest) = steady.iter().rposition(|stable| total(stable) == least) else { break };
+            steady.remove(loosest);
         }
-        let turned = |rest: &Rest| {
-            let upright = DQuat::from_rotation_arc(rest.down, -self.normal);
+        let turned = |stable: &StablePose| {
+            let upright = DQuat::from_rotation_arc(stable.down, -self.normal);
             let turn = core::f64::consts::TAU / HEADINGS as f64;
             (0..HEADINGS).map(move |k| (exp(self.normal * (turn * k as f64)) * upright).normalize()).collect::<Vec<_>>()
         };
-        firm.into_iter().flat_map(turned).collect()
+        steady.into_iter().flat_map(turned).collect()
     }
 }
 
@@ -220,39 +221,39 @@ fn level([a, b]: [f64; 2]) -> f64 {
     1.0 / (1.0 + (a * a + b * b) / (TILT * TILT))
 }
 
-fn firmness(rest: &Rest) -> f64 {
-    rest.firmness[0].max(rest.firmness[1])
+fn stability(stable: &StablePose) -> f64 {
+    stable.stability[0].max(stable.stability[1])
 }
 
-impl Surroundings {
-    /// The surroundings of a mesh and its observation.
-    pub fn new(known: Neighbourhood, mesh: &MeshPyramid, observation: &CleanObservation) -> Self {
-        let ground = known.ground.map(|Floor { normal, offset_m, gap_m }| Ground {
+impl SceneTerm {
+    /// The scene term of a mesh and its observation.
+    pub fn new(context: SceneContext, mesh: &MeshPyramid, observation: &CleanObservation) -> Self {
+        let ground = context.plane.map(|SupportPlane { normal, offset_m, gap_m }| ContactPrior {
             normal,
             offset_m,
             gap_m,
-            rests: rests(&mesh.fine).into(),
+            stable_poses: stable_poses(&mesh.fine).into(),
             points: mesh.outermost.as_slice().into(),
             weight: CONTACT,
         });
-        Self { ground, layers: known.layers, margin_m: (MARGIN * observation.diagonal_m) as f32 }
+        Self { ground, layers: context.layers, margin_m: (MARGIN * observation.diagonal_m) as f32 }
     }
 
     /// A pose, put down on the ground in the attitude that it almost has: level, at the distance at which it touches the
     /// ground, and both. The silhouette hardly changes.
     pub fn put_down(&self, pose: &CropPose) -> Vec<CropPose> {
         let Some(ground) = &self.ground else { return Vec::new() };
-        let Some(rest) = ground.stand(pose).rest else { return Vec::new() };
-        let down = pose.rotation * rest.down;
+        let Some(stable) = ground.stand(pose).stable else { return Vec::new() };
+        let down = pose.rotation * stable.down;
         let level = DQuat::from_rotation_arc(down, -ground.normal);
         let leveled = CropPose { rotation: (level * pose.rotation).normalize(), ..*pose };
         let touching = |pose: &CropPose| {
             let (scale, translation) = pose.scale_translation();
-            let base = pose.rotation * rest.base * scale + translation;
+            let base = pose.rotation * stable.base * scale + translation;
             let stretch = libm::log(-ground.offset_m / ground.normal.dot(base));
             (stretch.abs() < MAX_STRETCH).then_some(CropPose { distance: pose.distance + stretch, ..*pose })
         };
-        let is_tilted = firmness(rest) > 0.2;
+        let is_tilted = stability(stable) > 0.2;
         let mut poses: Vec<CropPose> = touching(pose).into_iter().collect();
         if is_tilted {
             poses.push(leveled);
@@ -263,7 +264,7 @@ impl Surroundings {
 
     /// The rotations in which the mesh stands on the ground; none without ground.
     pub fn standing(&self) -> Vec<DQuat> {
-        self.ground.as_ref().map_or_else(Vec::new, Ground::standing)
+        self.ground.as_ref().map_or_else(Vec::new, ContactPrior::standing)
     }
 
     /// The credit of the contact of a pose with the ground; 0 without ground.
@@ -271,7 +272,7 @@ impl Surroundings {
         self.ground.as_ref().map_or(0.0, |ground| ground.score(pose))
     }
 
-    /// The part of the surroundings in the score of the last render.
+    /// The scene term in the score of the last render.
     pub fn score(&self, canvas: &Canvas, grid: &CropGrid, pose: &CropPose) -> f32 {
         self.contact(pose) as f32 - SHARED_VOLUME * self.shared(canvas, grid)
     }

@@ -1,6 +1,7 @@
-//! Pauses and bounds of calls that are written as they run: straight-line code that awaits a pause point.
+//! Cooperative scheduling of long calls, which are straight-line code that awaits a yield point here and there, and the
+//! bound on their work.
 //!
-//! A call never waits for anything but its caller, so that no executor is needed: a step polls it until its next pause.
+//! A call never waits for anything but its caller, so that no executor is needed: a step polls it until it next yields.
 
 use core::cell::Cell;
 use core::future::Future;
@@ -11,8 +12,8 @@ use std::rc::Rc;
 use crate::error::{Error, ErrorCode, Result};
 use crate::helpers::{Helpers, Tasks};
 
-/// The pause points of a call, and the work that it has left. Results depend on the work, never on the pauses.
-pub struct Pauses {
+/// The yield points of a call, and the work that it has left. Results depend on the work, never on the yields.
+pub struct Scheduler {
     clock: fn() -> f64,
     until: Cell<f64>,
     left: Cell<f64>,
@@ -25,8 +26,8 @@ pub struct Pauses {
 /// Work after which the clock is asked: it is a function of JavaScript, which takes as long as several distances.
 const GRAIN: f64 = 1.0;
 
-impl Pauses {
-    /// Pauses by a clock, and a bound on the work, if there is one.
+impl Scheduler {
+    /// Yields by a clock, with a bound on the work, if there is one.
     pub fn new(clock: fn() -> f64, work_budget: Option<f64>) -> Self {
         let [until, left] = [f64::INFINITY, work_budget.unwrap_or(f64::INFINITY)].map(Cell::new);
         Self { clock, until, left, since: Cell::new(0.0), most: Cell::new(0.0), helpers: Helpers::default() }
@@ -37,8 +38,8 @@ impl Pauses {
         Self { helpers, ..self }
     }
 
-    /// No pause, and no bound.
-    pub fn none() -> Self {
+    /// Never yields, and has no bound.
+    pub fn unbounded() -> Self {
         Self::new(|| 0.0, None)
     }
 
@@ -48,26 +49,26 @@ impl Pauses {
         self.since.set(self.since.get() + work);
     }
 
-    /// Pauses if it is time, after work of so many units: about milliseconds on a laptop.
-    pub fn point(&self, work: f64) -> Point {
+    /// Yields if it is time, after work of so many units: about milliseconds on a laptop.
+    pub fn yield_after(&self, work: f64) -> YieldPoint {
         self.spend(work);
-        Point { is_due: self.since.get() >= GRAIN && self.is_time() }
+        YieldPoint { is_due: self.since.get() >= GRAIN && self.is_time() }
     }
 
-    /// Pauses if it is time, whatever the work was: for calls that have another bound.
-    pub fn here(&self) -> Point {
-        Point { is_due: self.is_time() }
+    /// Yields if it is time, whatever the work was: for calls that have another bound.
+    pub fn yield_point(&self) -> YieldPoint {
+        YieldPoint { is_due: self.is_time() }
     }
 
-    /// Asks for helpers, where there may be some, and pauses: long lists of tasks are to come.
-    pub fn ask_for_help(&self) -> Point {
-        Point { is_due: self.helpers.ask() }
+    /// Asks for helpers, where there may be some, and yields: long lists of tasks are to come.
+    pub fn ask_for_help(&self) -> YieldPoint {
+        YieldPoint { is_due: self.helpers.ask() }
     }
 
-    /// The results of independent tasks in their order, with a pause point after each task. `ends` sees them in this order,
+    /// The results of independent tasks in their order, with a yield point after each task. `ends` sees them in this order,
     /// and is true of the last one that is needed.
-    pub async fn list<T: Tasks>(&self, tasks: &mut T, ends: impl FnMut(&T::Result) -> bool) -> Vec<T::Result> {
-        self.helpers.run(tasks, ends, |always| Point { is_due: always || self.is_time() }).await
+    pub async fn run_tasks<T: Tasks>(&self, tasks: &mut T, ends: impl FnMut(&T::Result) -> bool) -> Vec<T::Result> {
+        self.helpers.run(tasks, ends, |always| YieldPoint { is_due: always || self.is_time() }).await
     }
 
     #[inline(never)]
@@ -77,18 +78,18 @@ impl Pauses {
         (self.clock)() >= self.until.get()
     }
 
-    /// Whether the call goes on: there is work left, or it has no result yet.
-    pub fn goes_on(&self, has_result: bool) -> bool {
+    /// Whether the call continues: there is work left, or it has no result yet.
+    pub fn may_continue(&self, has_result: bool) -> bool {
         !has_result || self.left.get() > 0.0
     }
 }
 
-/// A pause point, to be awaited.
-pub struct Point {
+/// A yield point, to be awaited.
+pub struct YieldPoint {
     is_due: bool,
 }
 
-impl Future for Point {
+impl Future for YieldPoint {
     type Output = ();
 
     fn poll(mut self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<()> {
@@ -98,29 +99,32 @@ impl Future for Point {
 
 /// A call in steps.
 pub struct Task<'a, T> {
-    pauses: Rc<Pauses>,
+    scheduler: Rc<Scheduler>,
     call: Option<Boxed<'a, Result<T>>>,
 }
 
 impl<'a, T: 'a> Task<'a, T> {
     /// A call that has not begun.
-    pub fn new<F: Future<Output = Result<T>> + 'a>(pauses: Pauses, call: impl FnOnce(Rc<Pauses>) -> F) -> Self {
-        let pauses = Rc::new(pauses);
-        Self { call: Some(boxed(call(pauses.clone()))), pauses }
+    pub fn new<F: Future<Output = Result<T>> + 'a>(
+        scheduler: Scheduler,
+        call: impl FnOnce(Rc<Scheduler>) -> F,
+    ) -> Self {
+        let scheduler = Rc::new(scheduler);
+        Self { call: Some(boxed(call(scheduler.clone()))), scheduler }
     }
 
-    /// The most work that was done so far without a pause point.
+    /// The most work that was done so far without a yield point.
     pub fn longest_block(&self) -> f64 {
-        self.pauses.most.get()
+        self.scheduler.most.get()
     }
 
-    /// Continues until the call is finished, and returns its result, or until its first pause point after a time of its
+    /// Continues until the call is finished, and returns its result, or until its first yield point after a time of its
     /// clock.
     ///
     /// # Errors
     /// Those of the call, which then ends.
     pub fn step(&mut self, until: f64) -> Result<Option<T>> {
-        self.pauses.until.set(until);
+        self.scheduler.until.set(until);
         let Some(call) = &mut self.call else {
             return Err(Error::new(
                 ErrorCode::Internal,
@@ -149,7 +153,7 @@ pub fn boxed<'a, F: Future + 'a>(call: F) -> Boxed<'a, F::Output> {
     Box::pin(call)
 }
 
-/// Runs a call to its end, without a pause.
+/// Runs a call to its end, without yielding.
 pub fn finished<T>(call: impl Future<Output = T>) -> T {
     let mut call = pin!(call);
     loop {
