@@ -5,7 +5,7 @@ import { draft } from "./input/draft.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
 import { Header, isHelpOpen, pageCommands } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
-import { HandPanel, OptionsPanel } from "./panels/later.js";
+import { HandPanel, OptionsPanel } from "./panels/lazy-panels.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
@@ -36,9 +36,9 @@ const ScenesPanel = lazy(
   () => import("./panels/scene-list.js").then(({ ScenesPanel }) => ScenesPanel),
 );
 
-const Kept = lazy(
+const StorageWarnings = lazy(
   () => notKept.value !== null || othersScenes.value.length > 0,
-  () => import("./panels/kept.js").then(({ Kept }) => Kept),
+  () => import("./panels/storage-warnings.js").then(({ StorageWarnings }) => StorageWarnings),
 );
 
 const HelpDialog = lazy(
@@ -57,7 +57,7 @@ export function App() {
         <main class="page" data-large={large} data-scene={scene.value?.name ?? ""} data-fixing={gizmo.value !== null}>
           {/* First, so that the Tab key reaches it first. */}
           <aside class="side" aria-label="Scene">
-            <Kept />
+            <StorageWarnings />
             <RunBar />
             <ScenesPanel />
             <StartPanel />

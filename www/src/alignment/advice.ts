@@ -1,18 +1,17 @@
 /** The cause of a result that is not right, and what helps: what the package warns of, and what the page measures. An unknown cause is not guessed. */
 import type { DepthKind, Metrics, WarningCode } from "sim3align";
 import { unitText } from "sim3align/input/depth-kinds";
-import { otherSize, scaled } from "../input/camera-size.js";
+import { otherSize, scaled } from "../input/depth-view.js";
 import { type Evidence, evidenceOf } from "../pictures/evidence.js";
 import { type Inputs, withInverted } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
 import { SURE } from "../state/progress.js";
-import { isMetric } from "../state/raw-view.js";
 import type { Scene } from "../state/scene.js";
+import { isMetric } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
-import { centimetres, depth, percent, significant } from "../ui/format.js";
-import { alignSelected } from "./align.js";
-import { applyAlternative } from "./alternatives.js";
+import { centimetres, depth, percent, significant } from "../ui/texts.js";
+import { alignSelected, applyAlternative } from "./align.js";
 
 export type Cause =
   | "moved"

@@ -1,7 +1,6 @@
 /** The commands with keys, of the page and of an embedded element. The help lists them. */
 
-import { alignAll, alignSelected, refine } from "../alignment/align.js";
-import { applyAlternative } from "../alignment/alternatives.js";
+import { alignAll, alignSelected, applyAlternative, refine } from "../alignment/align.js";
 import type { Workspace } from "../state/workspace.js";
 import { accept, decideOn, next } from "./decisions.js";
 import { nudgeByKey } from "./nudges.js";

@@ -237,3 +237,7 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
     this.#theme.value = isDark ? "dark" : "light";
   }
 }
+
+// On servers, where a page is rendered, there are no elements.
+const elements = globalThis.customElements as CustomElementRegistry | undefined;
+if (elements?.get("sim3-align") === undefined) elements?.define("sim3-align", Sim3AlignElement);

@@ -4,13 +4,11 @@ import { type CameraFile, type MeshFromFile, readCamera, readPose } from "sim3al
 import type { ImageSize } from "sim3align/values/pixels";
 import type { CameraSource, Field, Inputs, NamedFile } from "../state/inputs.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
-import type { RawView } from "../state/raw-view.js";
-import type { Scene } from "../state/scene.js";
-import { visibleExtent } from "../state/visible-extent.js";
+import type { RawView, Scene } from "../state/scene.js";
+import { visibleExtent } from "../state/scene.js";
 import { cameraOf, knownCamera, type ReadCamera, readDepthMap, viewOf } from "./depth-view.js";
 import { baseName } from "./files.js";
-import { atSize, maskOf } from "./masks.js";
-import { meshOf } from "./meshes.js";
+import { atSize, maskOf, meshOf } from "./object-files.js";
 import { type Photo, readPhoto } from "./photo.js";
 import { errorOf, type Problem } from "./problems.js";
 

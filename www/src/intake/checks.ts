@@ -1,13 +1,13 @@
 /** What is missing, contradictory or implausible in the inputs of a scene. */
 import type { PixelArray } from "sim3align";
 import { doubtOfSize } from "sim3align/camera/pinhole";
-import { otherSize, scaled } from "../input/camera-size.js";
+import { otherSize, scaled } from "../input/depth-view.js";
 import { baseName, folderOf } from "../input/files.js";
 import { doubt, error, type Problem, type Remedy, withoutObject } from "../input/problems.js";
 import type { Reading, ReadObject } from "../input/reading.js";
 import { depthRange } from "../pictures/colours.js";
 import { type Inputs, withInverted } from "../state/inputs.js";
-import { visibleExtent } from "../state/visible-extent.js";
+import { visibleExtent } from "../state/scene.js";
 import { isNamedPhoto, isUnassigned } from "./file-roles.js";
 
 /** A typical vertical field of view of phones and laptops. */

@@ -1,7 +1,7 @@
 /** The mask tool: clicks and strokes of a brush on the photo. */
 import { useEffect, useRef, useState } from "preact/hooks";
 import { Check } from "../ui/controls.js";
-import { percent } from "../ui/format.js";
+import { percent } from "../ui/texts.js";
 import { Finder } from "./finder.js";
 import type { View } from "./grid.js";
 import { drawMarks } from "./marks-picture.js";

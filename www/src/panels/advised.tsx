@@ -4,7 +4,6 @@ import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { warningsOf } from "./sureness.js";
 
 interface OfObject {
   object: ObjectModel | null;
@@ -71,3 +70,15 @@ function contactText(whole: Scene | null, object: ObjectModel): string | null {
   if (restsOn === "level") return "Stands on a level above the ground.";
   return `Stands on ${whole?.objects[restsOn]?.name ?? "another object"}.`;
 }
+
+/** A refinement that could go on concerns nobody whose result is sure. */
+const isQuiet = (code: string, object: ObjectModel) =>
+  code === "NOT_CONVERGED" && (object.precise?.confidence ?? 0) >= SURE;
+
+const all = ({ alignment }: ObjectModel) => alignment.value?.warnings ?? [];
+
+/** The warnings beside the result. */
+export const warningsOf = (object: ObjectModel) => all(object).filter(({ code }) => !isQuiet(code, object));
+
+/** The warnings among the details. */
+export const quietWarningsOf = (object: ObjectModel) => all(object).filter(({ code }) => isQuiet(code, object));

@@ -2,13 +2,12 @@
 import type { Stage } from "sim3align";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
-import { orDash, significant, small } from "../ui/format.js";
 import { metricTexts } from "../ui/metric-texts.js";
-import { overlapText, stageTitles } from "../ui/texts.js";
+import { orDash, overlapText, significant, small, stageTitles } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
+import { quietWarningsOf } from "./advised.js";
 import { inputRows } from "./input-rows.js";
-import { MetricTable } from "./metrics.js";
-import { quietWarningsOf } from "./sureness.js";
+import { MetricTable } from "./result-panel.js";
 
 export function Details({ object }: { object: ObjectModel | null }) {
   return (

@@ -1,7 +1,7 @@
 /** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
 import { formatsText } from "sim3align/input/formats";
-import { type Theme, theme } from "../state/theme.js";
+import { type Theme, theme } from "../state/page.js";
 import { Choices } from "../ui/controls.js";
 import { isHelpOpen, pageCommands } from "./header.js";
 

@@ -2,8 +2,14 @@
 import { defaultOptions, MAX_SEED, type Options, choices as values } from "../state/options.js";
 import type { Workspace } from "../state/workspace.js";
 import { Choices, Tip } from "../ui/controls.js";
-import { qualityTitles } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
+
+const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
+  auto: "Automatic",
+  fast: "Fast",
+  balanced: "Balanced",
+  best: "Best",
+};
 
 /** An option that is chosen from a list. */
 interface Choice {

@@ -2,9 +2,9 @@
 import type { DepthCalibration, DepthKind, Support } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import { baseName } from "../input/files.js";
-import { doubtOf } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, NamedFile, Role } from "../state/inputs.js";
+import { doubtOf } from "../state/object-model.js";
 import { applyToObject, type ObjectWork, stateOf, verdictOf } from "../state/object-work.js";
 import type { Options } from "../state/options.js";
 import { isResult } from "../state/pose.js";

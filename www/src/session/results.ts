@@ -6,8 +6,7 @@ import type { Inputs } from "../state/inputs.js";
 import type { ObjectModel, Verdict } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import type { PoseSource } from "../state/pose.js";
-import { isMetric } from "../state/raw-view.js";
-import { type Scene, unitOf } from "../state/scene.js";
+import { isMetric, type Scene, unitOf } from "../state/scene.js";
 import type { VideoWork } from "../state/video.js";
 
 const { options } = page;

@@ -131,3 +131,13 @@ export const withInverted = (index: number) =>
 
 /** The input fields. */
 export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";
+
+/** Makes the value of a key at its first use, and keeps it for as long as the key exists. */
+export function once<K extends object, V>(make: (key: K) => V): (key: K) => V {
+  const made = new WeakMap<K, V>();
+  return (key) => {
+    const value = made.get(key) ?? make(key);
+    made.set(key, value);
+    return value;
+  };
+}

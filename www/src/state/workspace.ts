@@ -5,9 +5,8 @@ import { displayState } from "./display.js";
 import { historyState } from "./history.js";
 import { openedState } from "./opened.js";
 import { optionsState } from "./options.js";
-import { runningState } from "./running.js";
+import { runningState, statusState } from "./running.js";
 import { sceneState } from "./scene.js";
-import { statusState } from "./status.js";
 import { videoState } from "./video.js";
 
 /** The state of the 3D view. */

@@ -2,22 +2,18 @@
 
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
-import { cropOf } from "./crop.js";
-import { description } from "./description.js";
 import { Gizmo } from "./gizmo.js";
-import { whileHidden } from "./hidden.js";
 import { markOf } from "./label.js";
 import { type Measure, Measures } from "./measures.js";
 import { Model } from "./model.js";
+import { release, whileHidden } from "./parts.js";
 import { pick } from "./picker.js";
 import { PlaneViews, SHARE } from "./plane-views.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
-import { release } from "./release.js";
 import { Sizes } from "./sizes.js";
 import { Stage } from "./stage.js";
-import { Surroundings } from "./surroundings.js";
-import { colours } from "./theme.js";
+import { colours, Surroundings } from "./surroundings.js";
 import { Group, HemisphereLight, Sphere, Vector3 } from "./three.js";
 import type {
   Animation,
@@ -31,7 +27,7 @@ import type {
   SceneInput,
   ViewEvents,
 } from "./types.js";
-import { Viewpoint } from "./viewpoint.js";
+import { cropOf, description, Viewpoint } from "./viewpoint.js";
 
 /** Screens resolve no more points, and software renderers draw no more in acceptable time. */
 const maxPoints = { hardware: 400_000, software: 80_000 };

@@ -2,9 +2,8 @@
 import { useEffect, useRef } from "preact/hooks";
 import { samples, sampleUrl } from "../opening/samples.js";
 import type { Display3d } from "../state/display.js";
-import { Check, Menu } from "../ui/controls.js";
-import { size, type Unit } from "../ui/format.js";
-import { Picture } from "../ui/picture.js";
+import { Check, Menu, Picture } from "../ui/controls.js";
+import { size, type Unit } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 

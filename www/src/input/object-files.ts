@@ -1,12 +1,35 @@
-/** Reads mesh files, each once, with the files that they refer to. */
+/** Reads the mask and the mesh of an object, each file once, with the files that a mesh refers to. */
 import { type MeshFormat, Sim3AlignError } from "sim3align";
+import { resizedMask } from "sim3align/conventions/resize";
 import { externalResources, type MeshFromFile } from "sim3align/formats";
 import { refersToFiles } from "sim3align/input/formats";
-import type { MeshSource } from "../state/inputs.js";
-import { once } from "../state/once.js";
+import type { MaskSource, MeshSource, NamedFile } from "../state/inputs.js";
+import { once } from "../state/inputs.js";
 import { MAX_BYTES } from "./allowance.js";
 import { extension } from "./files.js";
-import { readMesh } from "./reader.js";
+import { type ReadMask, readMask, readMesh } from "./reader.js";
+
+const markedBy = once(async (file: NamedFile): Promise<ReadMask> => readMask(await file.bytes()));
+
+/** The mask of a source. */
+export async function maskOf(source: MaskSource): Promise<ReadMask> {
+  const mask = await markedBy(source.file);
+  if (source.isInverted !== true) return mask;
+  return { ...mask, data: mask.data.map((inside) => (inside === 0 ? 1 : 0)), reading: "inverted" };
+}
+
+/** The mask at the size of the depth map. */
+export function atSize(mask: ReadMask, width: number, height: number, resize: boolean): Uint8Array {
+  if (mask.width === width && mask.height === height) return mask.data;
+  if (resize) return resizedMask(mask, { width, height }).data;
+  throw new Sim3AlignError({
+    code: "SIZE_MISMATCH",
+    argument: "mask",
+    found: `${mask.width} × ${mask.height} pixels`,
+    expected: `${width} × ${height}, the size of the depth map`,
+    remedy: "Export the mask at the size of the depth map, or resize it.",
+  });
+}
 
 /** A mesh, and its bytes if it is a GLB. */
 export interface LoadedMesh {
