@@ -11,10 +11,10 @@ import { sampleOf, samples } from "./opening/samples.js";
 import { hasSession, page } from "./state/page.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
 import "../style/theme.css";
-import "../style/layout.css";
 import "../style/controls.css";
 import "../style/views.css";
 import "../style/panels.css";
+import "../style/layout.css";
 import "../style/page.css";
 import "../style/intake.css";
 

@@ -2,96 +2,20 @@
 
 import { alignAll } from "../alignment/align.js";
 import { openVideo, trackAll } from "../alignment/video.js";
-import { extractArchives } from "../input/archives.js";
 import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../input/draft.js";
-import { baseName } from "../input/files.js";
-import { error, errorOf, type Problem } from "../input/problems.js";
+import type { Problem } from "../input/problems.js";
 import { readInputs, sceneOf } from "../input/reading.js";
 import { asListed, isVideo } from "../input/video-frames.js";
-import { isSession } from "../session/pack.js";
-import { openProject } from "../session/project.js";
-import {
-  type Inputs,
-  type MeshSource,
-  type NamedFile,
-  noInputs,
-  type ObjectFiles,
-  type Role,
-  type Typed,
-  withId,
-} from "../state/inputs.js";
+import { type Inputs, type NamedFile, noInputs, type Role, type Typed, withId } from "../state/inputs.js";
 import { page } from "../state/page.js";
+import { filesOf, ownName, rebuilt, replaced } from "./changed-files.js";
 import { problemsOf } from "./checks.js";
-import { fromSam3d, isUnassigned, rolesOf } from "./file-roles.js";
-import { scenesOf } from "./grouping.js";
+import { rolesOf } from "./file-roles.js";
 
 const { announce, enlist, inputs, scene, show, video } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
-
-/** Whether a draft waits for its depth map. */
-const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
-
-/** The files of a drop with their roles, and how their depth is read where that is known. */
-interface Drop {
-  typed: readonly Typed[];
-  more: Partial<Pick<Inputs, "depthKind" | "resizeMasks">>;
-}
-
-/** Drops are read one after the other, so that a second one joins the first. */
-let lastDrop: Promise<unknown> = Promise.resolve();
-
-/** Proposes files as one or several scenes. A draft that is open takes them. */
-export async function propose(files: readonly NamedFile[]): Promise<void> {
-  const reading = lastDrop.then(() => readDrop(files));
-  lastDrop = reading.catch(() => {});
-  try {
-    const drop = await reading;
-    if (drop !== null) await place(drop);
-  } catch (cause) {
-    refuse(errorOf("files", cause));
-  }
-}
-
-/** Reads which files there are; null for a project, which is opened. */
-async function readDrop(files: readonly NamedFile[]): Promise<Drop | null> {
-  const extracted = await extractArchives(files);
-  if (extracted.some(isSession)) {
-    if (!(await openProject(extracted))) throw new Error("The project was saved by another version of this page.");
-    draft.value = null;
-    return null;
-  }
-  const converted = await fromSam3d(extracted);
-  if (converted === null) return { typed: rolesOf(extracted), more: {} };
-  const { files: made, depthKind, left } = converted;
-  const typed = [...rolesOf(made), ...left.map((file): Typed => ({ file, role: "unused" }))];
-  // Point maps of large images are smaller than the images.
-  return { typed, more: { depthKind, resizeMasks: true } };
-}
-
-/** Makes the files of a drop a draft, or a part of the draft that is open. */
-async function place({ typed, more }: Drop): Promise<void> {
-  if (typed.every((one) => (one.role === "unused" && !isUnassigned(one)) || one.role === "resource")) {
-    const names = typed.slice(0, 3).map(({ file }) => file.path);
-    return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
-  }
-  const scenes = scenesOf(typed).map((one) => ({ ...one, ...more }));
-  const open = draft.peek();
-  if (open !== null) {
-    const depths = typed.filter(({ role }) => role === "depth").length;
-    if (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open)))) {
-      return rebuild(replaced(draftInputs(open).files, typed));
-    }
-    const others = open.isEdit ? [] : open.scenes.filter(({ files }) => files.length > 0);
-    return proposeScenes([...others, ...scenes], others.length);
-  }
-  const shown = inputs.peek();
-  if (shown.sample === null && shown.depth !== null && canReplace(typed)) {
-    return set({ scenes, index: 0, isVideo: false, isEdit: false, forShown: typed });
-  }
-  await proposeScenes(scenes);
-}
 
 /** Proposes scenes, one of which is looked at. */
 export function proposeScenes(scenes: readonly Inputs[], index = 0): Promise<void> {
@@ -214,59 +138,13 @@ export function dismiss(): void {
   announce("Nothing was changed.");
 }
 
-/** What can be put into a scene that is there: all but its depth map, with which a new scene begins. */
-const replaceable: readonly Role[] = ["photo", "camera", "mask", "mesh", "resource", "truth"];
-
-/** Whether files can be put into a scene that is there. */
-const canReplace = (typed: readonly Typed[]): boolean =>
-  typed.some(({ role }) => role !== "resource" && replaceable.includes(role)) &&
-  typed.every(({ role }) => role === "unused" || replaceable.includes(role));
-
-/** The files with others in place of those of the same role and name; there is one photo, and one camera. */
-function replaced(before: readonly Typed[], typed: readonly Typed[]): Typed[] {
-  const gone = typed.flatMap(({ file: { path }, role }) => {
-    const alike = before.filter((one) => one.role === role);
-    if (role === "photo" || role === "camera") return alike;
-    const namesakes = alike.filter(({ file }) => baseName(file.path) === baseName(path));
-    const same = namesakes.find(({ file }) => file.path === path);
-    return same === undefined && namesakes.length > 1 ? [] : [same ?? namesakes[0]];
-  });
-  return [...before.filter((one) => !gone.includes(one)), ...typed];
-}
-
 /** Makes the scene of the draft anew from its files. */
-async function rebuild(files: readonly Typed[]): Promise<void> {
+export async function rebuild(files: readonly Typed[]): Promise<void> {
   const open = draft.peek();
   if (open !== null) await change(() => rebuilt(draftInputs(open), files), true);
 }
 
-/** The scene of other files. What was entered stays, and so do pairs of files that are still there. */
-function rebuilt(before: Inputs, files: readonly Typed[]): Inputs {
-  const [after] = scenesOf(files);
-  if (after === undefined) return before;
-  const { depthScale, depthKind, resizeMasks } = before;
-  const camera = before.camera?.kind === "file" ? after.camera : (after.camera ?? before.camera);
-  const paired = new Set<MeshSource>();
-  const objects = after.objects.map((object) => {
-    const known = before.objects.find(({ mask }) => mask !== null && mask.file === object.mask?.file);
-    if (known === undefined) return object;
-    const mesh = after.meshes.find(({ file }) => file === known.mesh?.file) ?? object.mesh;
-    if (mesh !== null) paired.add(mesh);
-    return { ...object, name: known.name, mask: known.mask, mesh };
-  });
-  // A mesh of which a pair is kept is that of no other object.
-  const isTaken = ({ mask, mesh }: ObjectFiles) => mesh !== null && paired.has(mesh) && mask === null;
-  return {
-    ...after,
-    ...{ id: before.id, imageId: before.imageId ?? after.imageId, objects: objects.filter((one) => !isTaken(one)) },
-    ...{ depthScale, depthKind, resizeMasks, camera, ...ownName(before) },
-  };
-}
-
-/** A sample with other files is no sample. */
-const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : "Own files" });
-
-async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens = true): Promise<void> {
+export async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens = true): Promise<void> {
   const change = ++lastChange;
   let progress = { done: 0, total: 0 };
   draft.value = { ...next, reading: null, problems: [], progress };
@@ -288,7 +166,7 @@ const hasWork = () =>
   scene.peek()?.sample !== null && scene.peek()?.objects.some(({ pose }) => pose.peek().source === "hand") === true;
 
 /** Shows what is wrong with the files as a whole. */
-function refuse(problem: Problem): void {
+export function refuse(problem: Problem): void {
   const open = draft.peek();
   const empty = {
     scenes: [{ ...noInputs, name: "New scene" }],
@@ -300,20 +178,4 @@ function refuse(problem: Problem): void {
   };
   draft.value = { ...(open ?? empty), problems: [problem] };
   announce(problem.message, "failed");
-}
-
-/** The files of inputs with their roles, also of a sample. */
-function filesOf(inputs: Inputs): Typed[] {
-  if (inputs.files.length > 0) return [...inputs.files];
-  const typed: (Typed | null)[] = [
-    inputs.depth && { file: inputs.depth, role: "depth" },
-    inputs.photo && { file: inputs.photo, role: "photo" },
-    inputs.camera?.kind === "file" ? { file: inputs.camera.file, role: "camera" } : null,
-    ...inputs.objects.flatMap(({ mask, mesh, truth }): (Typed | null)[] => [
-      mask && { file: mask.file, role: "mask" },
-      mesh && { file: mesh.file, role: "mesh" },
-      truth && { file: truth, role: "truth" },
-    ]),
-  ];
-  return typed.filter((one) => one !== null);
 }

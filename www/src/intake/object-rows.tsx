@@ -62,7 +62,7 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
           />
         ))}
       </ul>
-      {inputs.depth !== null && ground !== null && !inputs.objects.some(({ mask }) => mask !== null) && (
+      {ground !== null && !inputs.objects.some(({ mask }) => mask !== null) && (
         <MarkButton i={0} id="mark-mask" title={`Mark it on the ${open.reading?.photo ? "photo" : "depth map"}`} />
       )}
     </section>

@@ -8,9 +8,9 @@ import type { Inputs, Role } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { Check, Choices, FileButton } from "../ui/controls.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
-import { accept, assign, asVideo, change, dismiss, look, propose, putIntoShown } from "./draft.js";
+import { accept, assign, asVideo, change, dismiss, look, putIntoShown } from "./draft.js";
+import { propose } from "./drop.js";
 import { isUnassigned } from "./file-roles.js";
-import { FromPhoto } from "./from-photo.js";
 import { Marking } from "./marking.js";
 import { ObjectRows } from "./object-rows.js";
 import { Problems } from "./problem-list.js";
@@ -60,7 +60,7 @@ export function Sheet() {
       <div class="intake-body">
         <Problems field="files" />
         <ForShown open={open} />
-        {inputs.depth === null && <FromPhoto inputs={inputs} canMark={shown !== null} />}
+        {inputs.depth === null && inputs.photo !== null && <FromPhoto />}
         <section aria-label="View" class="cards">
           <DepthCard open={open} ground={ground} />
           <PhotoCard open={open} />
@@ -84,6 +84,17 @@ export function Sheet() {
     </dialog>
   );
 }
+
+/** Where depth map, mask and mesh of a photo come from. */
+const FromPhoto = () => (
+  <p class="from-photo">
+    Drop the depth map, the mask and the mesh of this photo when you have them. The guide{" "}
+    <a href="docs/from-a-photo.html" target="_blank" rel="noreferrer">
+      From one photo
+    </a>{" "}
+    names models that make them, and says what to expect.
+  </p>
+);
 
 /** Files that may belong to the scene that is shown. */
 function ForShown({ open: { forShown } }: { open: Draft }) {

@@ -44,7 +44,7 @@ const intake = () => import("../intake/draft.js");
 export async function openFiles(files: readonly NamedFile[]): Promise<void> {
   if (files.length === 0) return;
   announce("Reading files …", "working");
-  await attempt(async () => (await intake()).propose(files));
+  await attempt(async () => (await import("../intake/drop.js")).propose(files));
 }
 
 /** Parts of the page that were not needed before cannot be loaded without a connection. */

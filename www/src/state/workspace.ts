@@ -21,10 +21,6 @@ export type Workspace = ReturnType<typeof createWorkspace>;
 
 export function createWorkspace({ theme }: Surroundings) {
   const [scene, display, status] = [sceneState(), displayState(), statusState()];
-  // What was measured in a scene is not of another one, nor of its next scale.
-  scene.scene.subscribe(() => {
-    if (display.measured.peek() !== null) display.measured.value = [];
-  });
   return {
     ...scene,
     ...display,

@@ -1,4 +1,4 @@
-/** Lines with their lengths: the sides of a bounding box, or the distance of two points. */
+/** Lines with their lengths: the sides of a bounding box. */
 import type { ColorRepresentation, Sprite, Vector3 } from "three/webgpu";
 import { labelOf, lengthText } from "./label.js";
 import { geometryOf, linesOf } from "./lines.js";
