@@ -9,7 +9,7 @@ import { failure, Sim3AlignError } from "./values/error.js";
 import { numbersIn, parsedJson, shown } from "./values/json.js";
 import { isRecord } from "./values/kinds.js";
 import { naturally } from "./values/order.js";
-import { record, withoutUndefined } from "./values/values.js";
+import { record, withoutUndefined } from "./values/validation.js";
 
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;

@@ -17,7 +17,7 @@ import { refersToFiles } from "./input/formats.js";
 import type { AlignInput, CameraInput, MeshFile } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
 import { naturally } from "./values/order.js";
-import { withoutUndefined } from "./values/values.js";
+import { withoutUndefined } from "./values/validation.js";
 
 export type { ReadCaseOptions } from "./case-files.js";
 

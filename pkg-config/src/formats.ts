@@ -31,7 +31,7 @@ import { plainArgument } from "./values/border.js";
 import type { JsonFile } from "./values/json.js";
 import { isRecord } from "./values/kinds.js";
 import type { PixelArray } from "./values/pixels.js";
-import { optionsOf } from "./values/values.js";
+import { optionsOf } from "./values/validation.js";
 import type { ColorSamples, Exif, ExternalResources } from "./wasm/formats.js";
 
 export type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";

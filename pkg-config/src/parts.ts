@@ -54,5 +54,5 @@ export type { BlobLike, NodeWorkerLike, SignalLike, UrlLike, WebWorkerLike, Work
 export type { LabelMap, SceneMetrics } from "./types/scene.js";
 export type { ErrorParts } from "./values/error.js";
 export type { DepthPixels, ImageSize, MaskPixels } from "./values/pixels.js";
-export type { Quaternion, Vector3 } from "./values/values.js";
+export type { Quaternion, Vector3 } from "./values/validation.js";
 export type { ColorSamples } from "./wasm/formats.js";

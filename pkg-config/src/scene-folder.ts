@@ -9,7 +9,7 @@ import type { KnownPose } from "./conventions/pose-file.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type { SceneInput, SceneObjectInput } from "./types/scene.js";
-import { oncePerKey, withoutUndefined } from "./values/values.js";
+import { oncePerKey, withoutUndefined } from "./values/validation.js";
 
 /** A scene on disk. */
 export interface SceneOnDisk extends Pick<SceneCase, "input" | "truths"> {

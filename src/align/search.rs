@@ -190,7 +190,7 @@ impl<'a> Search<'a> {
         self.scheduler.yield_point().await;
 
         let progress = efforts::share(index, efforts.len());
-        start::run_rounds(&mut rounds, &progress, self.scheduler, &mut self.stages).await;
+        start::run_rounds(&mut rounds, progress, self.scheduler, &mut self.stages).await;
         Ok(rounds)
     }
 
@@ -199,7 +199,7 @@ impl<'a> Search<'a> {
         let Some(mut rival_rounds) = start::rival_search(rounds) else { return false };
 
         let progress = efforts::share(index + 1, self.request.efforts.len() + 1);
-        start::run_rounds(&mut rival_rounds, &progress, self.scheduler, &mut self.stages).await;
+        start::run_rounds(&mut rival_rounds, progress, self.scheduler, &mut self.stages).await;
         start::take_rivals(rounds, &rival_rounds)
     }
 
@@ -211,7 +211,7 @@ impl<'a> Search<'a> {
         let earlier = start.earlier;
         let mut rounds = self.restart(start, None)?;
         self.scheduler.yield_point().await;
-        start::run_rounds(&mut rounds, &efforts::share(0, 1), self.scheduler, &mut self.stages).await;
+        start::run_rounds(&mut rounds, efforts::share(0, 1), self.scheduler, &mut self.stages).await;
 
         let mut result = SearchResult::new(rounds)?;
         if result.confidence() < earlier.confidence - MAX_CONFIDENCE_LOSS

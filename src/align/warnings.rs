@@ -59,22 +59,18 @@ struct Facts<'a> {
 /// Warnings about depth and mask.
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let facts = Facts::of(observation);
-    let warnings = [
-        facts.about_millimetres(),
-        facts.about_size(),
-        facts.about_small_depth(),
-        facts.about_inverted_depth(),
-        facts.about_normalised_depth(),
-        facts.about_inverted_mask(),
-        facts.about_whole_image(),
-        facts.about_border(),
-        facts.about_sparse_depth(),
+    let messages = [
+        (WarningCode::DepthLooksLikeMillimetres, facts.about_millimetres()),
+        (WarningCode::SizeDoubtful, facts.about_size()),
+        (WarningCode::DepthLooksTooSmall, facts.about_small_depth()),
+        (WarningCode::DepthLooksInverted, facts.about_inverted_depth()),
+        (WarningCode::DepthLooksNormalised, facts.about_normalised_depth()),
+        (WarningCode::MaskLooksInverted, facts.about_inverted_mask()),
+        (WarningCode::MaskCoversImage, facts.about_whole_image()),
+        (WarningCode::MaskTouchesBorder, facts.about_border()),
+        (WarningCode::SparseDepth, facts.about_sparse_depth()),
     ];
-    warnings.into_iter().flatten().collect()
-}
-
-fn warning(code: WarningCode, message: impl Into<String>) -> Warning {
-    Warning { code, message: message.into() }
+    messages.into_iter().filter_map(|(code, message)| Some(Warning { code, message: message? })).collect()
 }
 
 impl<'a> Facts<'a> {
@@ -110,16 +106,16 @@ impl<'a> Facts<'a> {
         !self.covers_image() && self.border_pixels as f64 > WHOLE_BORDER * border as f64
     }
 
-    fn about_millimetres(&self) -> Option<Warning> {
+    fn about_millimetres(&self) -> Option<String> {
         let median = self.median_m.filter(|median| *median > IMPLAUSIBLE_DEPTH_M)?;
         let message = format!(
             "The object's median depth is {} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001.",
             number(f64::from(median))
         );
-        Some(warning(WarningCode::DepthLooksLikeMillimetres, message))
+        Some(message)
     }
 
-    fn about_size(&self) -> Option<Warning> {
+    fn about_size(&self) -> Option<String> {
         let is_metric = |median: &f32| (IMPLAUSIBLY_NEAR_M..IMPLAUSIBLE_DEPTH_M).contains(median);
         let distance = f64::from(self.median_m.filter(is_metric)?);
         let pixels = self.observation.bounds().map(|[first, last]| (last - first) as f64);
@@ -133,19 +129,19 @@ impl<'a> Facts<'a> {
             number(size),
             number(distance)
         );
-        Some(warning(WarningCode::SizeDoubtful, message))
+        Some(message)
     }
 
-    fn about_small_depth(&self) -> Option<Warning> {
+    fn about_small_depth(&self) -> Option<String> {
         let median = self.median_m.filter(|median| *median < IMPLAUSIBLY_NEAR_M)?;
         let message = format!(
             "The object's median depth is {} m. Integers are taken as millimetres: for integers in metres pass depthScale 1. Floats are in metres.",
             number(f64::from(median))
         );
-        Some(warning(WarningCode::DepthLooksTooSmall, message))
+        Some(message)
     }
 
-    fn about_inverted_depth(&self) -> Option<Warning> {
+    fn about_inverted_depth(&self) -> Option<String> {
         let share = steps_towards_camera(self.observation, self.mask_pixels)?;
         if share < TOWARDS_CAMERA || self.is_mask_inverted() {
             return None;
@@ -154,42 +150,42 @@ impl<'a> Facts<'a> {
             "{} % of the steps of the depth at the object's outline go towards the camera: the object seems to be behind its surroundings. If near is large in this depth map, pass depthKind \"affine-invariant-disparity\".",
             number((100.0 * share).round())
         );
-        Some(warning(WarningCode::DepthLooksInverted, message))
+        Some(message)
     }
 
-    fn about_normalised_depth(&self) -> Option<Warning> {
+    fn about_normalised_depth(&self) -> Option<String> {
         let message = "The depth map spans exactly the range from 0 to 1, or that of 16 bits, as one that was normalised: its values are no lengths. Pass depthKind \"affine-invariant-disparity\" if near is large in it, otherwise \"affine-invariant\".";
-        looks_normalised(self.observation.depth().data()).then(|| warning(WarningCode::DepthLooksNormalised, message))
+        looks_normalised(self.observation.depth().data()).then_some(message.into())
     }
 
-    fn about_inverted_mask(&self) -> Option<Warning> {
+    fn about_inverted_mask(&self) -> Option<String> {
         let message = "The mask covers the border of the image: it seems to be that of the background. Invert it.";
-        self.is_mask_inverted().then(|| warning(WarningCode::MaskLooksInverted, message))
+        self.is_mask_inverted().then_some(message.into())
     }
 
-    fn about_whole_image(&self) -> Option<Warning> {
+    fn about_whole_image(&self) -> Option<String> {
         let [mask, image] = [self.mask_pixels, self.image_pixels()];
         let message = || {
             format!(
                 "The mask covers {mask} of the image's {image} pixels: it selects everything, not an object. It may be inverted, or not a mask."
             )
         };
-        self.covers_image().then(|| warning(WarningCode::MaskCoversImage, message()))
+        self.covers_image().then(|| message().into())
     }
 
-    fn about_border(&self) -> Option<Warning> {
+    fn about_border(&self) -> Option<String> {
         let message = "The mask touches the image border: part of the object may be outside the image, and the initial scale may be too small.";
-        (self.border_pixels > 0).then(|| warning(WarningCode::MaskTouchesBorder, message))
+        (self.border_pixels > 0).then_some(message.into())
     }
 
-    fn about_sparse_depth(&self) -> Option<Warning> {
+    fn about_sparse_depth(&self) -> Option<String> {
         let [readings, mask] = [self.readings, self.mask_pixels];
         let message = || {
             format!(
                 "Only {readings} of the mask's {mask} pixels have a depth reading; the pose depends on these alone."
             )
         };
-        (2 * readings < mask).then(|| warning(WarningCode::SparseDepth, message()))
+        (2 * readings < mask).then(|| message().into())
     }
 }
 

@@ -80,7 +80,7 @@ impl CalibrationObject<'_> {
     ) -> Result<Vec<(f64, RefinedPose)>> {
         let observation = self.observation(view, calibration)?;
         let mut rounds = start::start_search(&observation, self.mesh, None, &self.options, &self.settings(), stages)?;
-        start::run_rounds(&mut rounds, &(0.0..1.0), scheduler, stages).await;
+        start::run_rounds(&mut rounds, 0.0..1.0, scheduler, stages).await;
         let median = rounds.search.observation.median_m;
         let pictured = |candidate: &Candidate| {
             (f64::from(candidate.score.total), RefinedPose { pose: candidate.pose, focal: calibration.focal, median })

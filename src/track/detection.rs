@@ -81,7 +81,7 @@ impl Detection {
                     next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
                 }
                 scheduler.yield_point().await;
-                start::run_rounds(&mut next, &(0.2..0.85), scheduler, stages).await;
+                start::run_rounds(&mut next, 0.2..0.85, scheduler, stages).await;
                 let best = next.candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
                 let (conditioning, _) = next.search.conditioning(&best.pose);
                 let lead = lead(&next.search.equivalence, best, &next.candidates[1..], |other| other.score.total);

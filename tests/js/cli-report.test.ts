@@ -25,12 +25,15 @@ for (const name of ["frame_0", "frame_1"]) writeCase(join("several", name), fram
 /** The rows of a report: the text of each cell, its sort key, and the folder of the pictures. */
 function rowsOf(report: string) {
   const page = read(join(report, "index.html"));
-  return page.split("<tr>").slice(2).map((row) => ({
-    name: /<th scope=row>(.*?)<td/.exec(row)?.[1] ?? "",
-    keys: Array.from(row.matchAll(/data-key="(.*?)"/g), ([, key = ""]) => (key === "" ? null : Number(key))),
-    folder: /src="(cases\/[^/]*)\/photo\.png"/.exec(row)?.[1],
-    codes: Array.from(row.matchAll(/<summary>(.*?)</g), ([, code]) => code),
-  }));
+  return page
+    .split("<tr>")
+    .slice(2)
+    .map((row) => ({
+      name: /<th scope=row>(.*?)<td/.exec(row)?.[1] ?? "",
+      keys: Array.from(row.matchAll(/data-key="(.*?)"/g), ([, key = ""]) => (key === "" ? null : Number(key))),
+      folder: /src="(cases\/[^/]*)\/photo\.png"/.exec(row)?.[1],
+      codes: Array.from(row.matchAll(/<summary>(.*?)</g), ([, code]) => code),
+    }));
 }
 
 const names = ["one", "Photo", "obj", "several/frame_0", "several/frame_1", "broken"];
@@ -69,7 +72,7 @@ test("from the side, the mesh is where the measured points are", async () => {
     const [red = 0, green = 0, blue = 0] = data.subarray(3 * i, 3 * i + 3);
     // The mesh is orange, depth is yellow to violet, and what nobody has seen is nearly white.
     const sum = red - blue > 90 && green < 0.7 * red ? sums.mesh : red < 240 || blue < 200 ? sums.points : undefined;
-    if (sum !== undefined) [i % width, Math.floor(i / width), 1].forEach((x, k) => (sum[k] = (sum[k] ?? 0) + x));
+    for (const [k, x] of [i % width, Math.floor(i / width), 1].entries()) if (sum) sum[k] = (sum[k] ?? 0) + x;
   }
   for (const [what, [, , count = 0]] of Object.entries(sums)) assert.ok(count > 300, `${count} pixels of ${what}`);
   const middle = ([u = 0, v = 0, n = 1]: number[]) => [u / n, v / n];

@@ -5,7 +5,7 @@ import type { LazyModules, WasmModules } from "../modules/modules.js";
 import type { CreateWorker, SignalLike, UrlLike, WorkerLike } from "../types/platform.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isKind } from "../values/kinds.js";
-import { checkNames, record, withoutUndefined } from "../values/values.js";
+import { checkNames, record, withoutUndefined } from "../values/validation.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {

@@ -33,7 +33,7 @@ import { disposed, failure, internalError, Sim3AlignError, withStackOf } from ".
 import { isRecord } from "../values/kinds.js";
 import { nextMeshId, PreparedMesh, withArrays } from "../values/prepared-mesh.js";
 import { copied } from "../values/transfer.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import { alignAll } from "./align-all.js";
 import {
   type AlignerOptions,
@@ -112,6 +112,11 @@ export class Aligner {
    * The result includes a calibrated probability (`confidence`), other poses that explain the observation almost as
    * well (`alternatives`), and the uncertainty of each part of the pose (`uncertainty`). With `preset: "paper"` it has
    * none of these; with `metrics: false` it has no `metrics`.
+   * @example
+   * ```ts
+   * const { matrix, scale, confidence } = await aligner.align({ depth, width, height, mask, camera: { fx, fy, cx, cy }, mesh });
+   * object3d.matrix.fromArray(matrix); // column-major, in the camera frame of OpenCV
+   * ```
    * @throws {@link Sim3AlignError} for invalid input, `INVALID_OPTION` for contradictory options, `UNKNOWN_OPTION` for
    * options of the other preset, and `NO_CONSENSUS` if no pose is supported by the data
    */
@@ -155,8 +160,8 @@ export class Aligner {
 
   /**
    * Aligns the objects of a scene: one depth map, a mask and a mesh per object. Each is first aligned alone, as by
-   * `align`; then with what the others and the plane that they stand on tell of it: who hides whom, whose volume is
-   * taken, how high the ground is. Contact is evidence, not a rule: what hangs, leans or lies on something else stays so.
+   * `align`; then jointly, with mutual occlusion, shared volume and the support plane. Contact is evidence, not
+   * a rule: what hangs, leans or lies on something else stays so.
    * Poses, frames and units are those of `align`; `contact` of each object says what it rests on.
    *
    * In workers, objects are aligned side by side; the result has the same bits for any number of workers. There is no
@@ -192,6 +197,16 @@ export class Aligner {
    * pose in the world, and in each camera. A view may lack a mask, and one that contradicts the others, or whose mask cannot
    * be used, is left out (`role`). Without camera poses, the views have one size in common and a pose each; the world is then the camera of
    * the first view that agrees with that size, and `views[i].camera` the pose of each camera that follows from it.
+   * @example
+   * ```ts
+   * const { matrix, scale, views } = await aligner.alignViews({ // matrix: world from mesh
+   *   mesh,
+   *   views: [
+   *     { depth: depths[0], mask: masks[0], camera, cameraToWorld: poses[0] },
+   *     { depth: depths[1], mask: masks[1], camera, cameraToWorld: poses[1] },
+   *   ],
+   * });
+   * ```
    * @throws {@link Sim3AlignError} for invalid input, whose argument names the view (`views[1].depth`), and
    * `NO_CONSENSUS` if no pose is supported by the data
    */
@@ -203,6 +218,15 @@ export class Aligner {
   /**
    * Opens a tracker, which follows the object of a mesh through the frames of a video. With workers, it has a worker of
    * its own, until it is disposed.
+   * @example
+   * ```ts
+   * const tracker = await aligner.track(mesh);
+   * for await (const { depth, mask } of frames) {
+   *   const { state, matrix } = await tracker.next({ depth, mask, camera });
+   *   if (state === "tracking") show(matrix);
+   * }
+   * tracker.dispose();
+   * ```
    * @throws {@link Sim3AlignError} for an invalid mesh or invalid options
    */
   async track(mesh: MeshInput, options?: TrackOptions): Promise<Tracker> {
@@ -222,6 +246,11 @@ export class Aligner {
 
   /**
    * Computes the metrics of a transform and, if `options.truth` is given, its errors.
+   * @example
+   * ```ts
+   * const { metrics, errors } = await aligner.evaluate({ depth, mask, camera, mesh }, pose, { truth });
+   * console.log(metrics.iou, errors?.rotationErrorDeg);
+   * ```
    * @param transform camera from mesh, metres
    * @throws {@link Sim3AlignError} for invalid input, `INVALID_TRANSFORM` if the transform is not a similarity
    */
@@ -236,6 +265,10 @@ export class Aligner {
    * Aligns a point cloud with another that overlaps it at least partially: y = s·R·x + t.
    * Points with NaN or infinite coordinates, as organised clouds of depth cameras have them, are skipped and counted in
    * `diagnostics`.
+   * @example
+   * ```ts
+   * const { scale, matrix } = await aligner.register(scan, model, { scale: [0.5, 2] });
+   * ```
    * @param source interleaved x, y, z, in any unit
    * @param target interleaved x, y, z, in any unit
    * @throws {@link Sim3AlignError} for invalid input, and `NO_CONSENSUS` if no transform is supported by the data. A free
@@ -269,6 +302,12 @@ export class Aligner {
   /**
    * Reads, validates and decimates a mesh once for many calls: frames of a video, several views, or several instances
    * of the object. Pass the result as `mesh`.
+   * @example
+   * ```ts
+   * const mesh = await aligner.prepareMesh(glbBytes);
+   * const results = await Promise.all(frames.map((frame) => aligner.align({ ...frame, mesh })));
+   * mesh.dispose();
+   * ```
    * @throws {@link Sim3AlignError} for an invalid mesh, `DEGENERATE_MESH` for a mesh without volume
    */
   async prepareMesh(mesh: MeshInput, options: Pick<CallOptions, "signal"> = {}): Promise<PreparedMesh> {

@@ -9,7 +9,7 @@ import { failure, invalidArgument } from "../values/error.js";
 import { isNumber, numbersIn, parsedJson, shown } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { naturally } from "../values/order.js";
-import { oncePerKey } from "../values/values.js";
+import { oncePerKey } from "../values/validation.js";
 
 /** BOP's lengths are in millimetres. */
 export const METRES_PER_UNIT = 0.001;

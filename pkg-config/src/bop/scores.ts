@@ -7,7 +7,7 @@ import { resolveFrame } from "../input/resolve.js";
 import type { CoreFrame } from "../modules/core-input.js";
 import { registrationModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
-import { oncePerKey } from "../values/values.js";
+import { oncePerKey } from "../values/validation.js";
 import { type BopDataset, type BopPlace, type BopTarget, imageKey, readBopModel, targetKey } from "./dataset.js";
 import type { BopResult } from "./files.js";
 

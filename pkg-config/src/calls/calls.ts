@@ -26,7 +26,7 @@ import type {
 } from "../types/results.js";
 import { failure, isOfInput } from "../values/error.js";
 import { isTypedArray } from "../values/kinds.js";
-import { withoutUndefined, wrongKind } from "../values/values.js";
+import { withoutUndefined, wrongKind } from "../values/validation.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
 import { DOUBT, sourcesOf, withNotes } from "./notes.js";

@@ -4,7 +4,7 @@
  */
 import { type Matrix3, rotationOfUnit, turned } from "../conventions/rotation.js";
 import { isRecord } from "../values/kinds.js";
-import type { Quaternion, Vector3 } from "../values/values.js";
+import type { Quaternion, Vector3 } from "../values/validation.js";
 
 /** x, y, z of the origin in the mesh file. */
 export type Origin = readonly number[];

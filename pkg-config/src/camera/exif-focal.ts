@@ -1,7 +1,7 @@
 /** The focal length of a photo in pixels, from its EXIF data. */
 
 import type { ImageSize } from "../values/pixels.js";
-import { finite, positive, record, withoutUndefined } from "../values/values.js";
+import { finite, positive, record, withoutUndefined } from "../values/validation.js";
 import type { Exif } from "../wasm/formats.js";
 
 /** A focal length from EXIF data. */

@@ -1,7 +1,7 @@
 /** Pinhole intrinsics from four numbers, a matrix, or a field of view. */
 import { describe, failure, invalidArgument } from "../values/error.js";
 import type { ImageSize } from "../values/pixels.js";
-import { finiteNumbers, flattened, part } from "../values/values.js";
+import { finiteNumbers, flattened, part } from "../values/validation.js";
 
 /** Pinhole intrinsics in pixels; pixel centres have integer coordinates. */
 export interface Pinhole {

@@ -24,7 +24,7 @@ import {
 import { extensionsOf } from "../input/formats.js";
 import type { OptionsOf } from "../types/options.js";
 import type { InputInfo } from "../types/results.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
 import { alignDetails, viewsDetails, warningLine, withMeans } from "./details.js";
 import {

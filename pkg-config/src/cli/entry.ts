@@ -8,7 +8,7 @@ import { unitText } from "../input/depth-kinds.js";
 import type { InputInfo } from "../types/results.js";
 import { describe, failure, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import { UsageError } from "./files.js";
 import { OutputError } from "./output-file.js";
 import type { Message, Row } from "./row.js";

@@ -21,7 +21,7 @@ import type { Sim3Like } from "../types/argument-types.js";
 import type { MeshArrays, MeshInput } from "../types/inputs.js";
 import { isRecord } from "../values/kinds.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import type { Flags } from "./flags.js";
 import { fixed } from "./row.js";
 import type { RunFiles } from "./run-files.js";

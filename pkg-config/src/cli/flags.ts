@@ -5,7 +5,7 @@ import type { CameraInput, Preset } from "../index.js";
 import { depthKindNames } from "../input/formats.js";
 import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
 import type { DepthKind } from "../types/inputs.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import { UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
 import { isCsv, isResults } from "./result-files.js";

@@ -6,7 +6,7 @@ import type { AlignInput } from "../index.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
 import type { InputInfo } from "../types/results.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import { type Entry, posesIn } from "./entry.js";
 import { correctedInput, type ExportedAs, exportedMesh } from "./exports.js";
 import { isFile } from "./files.js";

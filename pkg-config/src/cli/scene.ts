@@ -4,7 +4,7 @@ import { read } from "../case-folder.js";
 import { type Aligner, type AlignInput, OPTIONS, type SceneInput, type SceneOptions } from "../index.js";
 import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
 import { parsedJson } from "../values/json.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
 import { depthRows, proportionsRows, warningLine } from "./details.js";

@@ -3,7 +3,7 @@ import { read } from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
 import { failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
-import { oncePerKey } from "../values/values.js";
+import { oncePerKey } from "../values/validation.js";
 
 const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
 

@@ -1,6 +1,6 @@
 /** Poses in the format of the BOP benchmark. */
 import type { Sim3, Sim3Like } from "../input/sim3.js";
-import { finiteNumbers, optionsOf, positive, record, vector3, whole } from "../values/values.js";
+import { finiteNumbers, optionsOf, positive, record, vector3, whole } from "../values/validation.js";
 import { type Matrix3, rotationOf } from "./rotation.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 

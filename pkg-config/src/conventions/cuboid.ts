@@ -1,7 +1,7 @@
 /** Cuboids for annotation tools. */
 
 import type { Sim3 } from "../input/sim3.js";
-import { finiteNumbers, oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../values/values.js";
+import { finiteNumbers, oneOf, optionsOf, positive, record, type Vector3, vector3 } from "../values/validation.js";
 import { type CameraFrame, turnTo } from "./frames.js";
 import type { OrientedBoundingBox } from "./oriented-bounding-box.js";
 import {

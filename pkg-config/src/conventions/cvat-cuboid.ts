@@ -1,5 +1,5 @@
 /** Cuboids of CVAT's 3D tasks. */
-import { finiteNumbers, positive, record, type Vector3, vector3 } from "../values/values.js";
+import { finiteNumbers, positive, record, type Vector3, vector3 } from "../values/validation.js";
 import type { Cuboid } from "./cuboid.js";
 import { type Matrix3, quaternionOf, rotationFromQuaternion } from "./rotation.js";
 

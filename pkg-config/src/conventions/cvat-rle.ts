@@ -5,7 +5,7 @@ import { plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { type PixelArray, sizeOf } from "../values/pixels.js";
-import { flattened, whole } from "../values/values.js";
+import { flattened, whole } from "../values/validation.js";
 
 /** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */
 export interface CvatMaskElement {

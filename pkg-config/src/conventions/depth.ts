@@ -4,7 +4,7 @@ import { depthOfRays } from "../camera/ray-distance.js";
 import { depthKindNames } from "../input/formats.js";
 import type { CameraInput, DepthKind } from "../types/inputs.js";
 import { type PixelArray, pixelsOf } from "../values/pixels.js";
-import { finite, oneOf, positive, record } from "../values/values.js";
+import { finite, oneOf, positive, record } from "../values/validation.js";
 
 /** See `src/calibrate/calibration.rs`. */
 const FARTHEST = 1e3;

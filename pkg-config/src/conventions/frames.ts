@@ -1,6 +1,6 @@
 /** Camera frames of other tools. */
 import type { Sim3, Sim3Like } from "../input/sim3.js";
-import { oneOf } from "../values/values.js";
+import { oneOf } from "../values/validation.js";
 import { type Matrix3, transposed } from "./rotation.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 

@@ -1,6 +1,6 @@
 /** The frames of the files that generators of meshes write. */
 import type { Sim3 } from "../input/sim3.js";
-import type { Vector3 } from "../values/values.js";
+import type { Vector3 } from "../values/validation.js";
 
 /** The frame of a file. */
 export type GeneratorFrame = {

@@ -4,7 +4,7 @@ import { isContent } from "../input/bytes.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { failure } from "../values/error.js";
-import { oneOf, optionsOf } from "../values/values.js";
+import { oneOf, optionsOf } from "../values/validation.js";
 import { inFrame } from "./frames.js";
 import { readGlb, writeGlb } from "./glb-file.js";
 import { GltfDocument, objectsOf, shownNodes } from "./gltf-document.js";

@@ -1,7 +1,7 @@
 /** Growing glTF documents, which other files and meshes are added to. Nothing is decoded: indices are moved. */
 import { describe, failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
-import { oncePerKey, stringsIn } from "../values/values.js";
+import { oncePerKey, stringsIn } from "../values/validation.js";
 import { binaryChunk, type GlbFile, padded } from "./glb-file.js";
 import { bounds, type Mesh } from "./mesh.js";
 

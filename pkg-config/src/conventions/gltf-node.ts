@@ -2,7 +2,7 @@
 import type { Sim3Like } from "../input/sim3.js";
 import { plainArgument } from "../values/border.js";
 import { isRecord } from "../values/kinds.js";
-import { optionsOf, type Quaternion, text, type Vector3 } from "../values/values.js";
+import { optionsOf, type Quaternion, text, type Vector3 } from "../values/validation.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 

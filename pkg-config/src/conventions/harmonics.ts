@@ -1,5 +1,5 @@
 /** Rotation of spherical harmonics, in the order and with the signs of 3D Gaussian Splatting. */
-import type { Vector3 } from "../values/values.js";
+import type { Vector3 } from "../values/validation.js";
 import { type Matrix3, transposed, turned } from "./rotation.js";
 
 /** The harmonics of each degree from 1 on, at a unit vector: real, orthonormal, m from −l to l, odd m negative. */

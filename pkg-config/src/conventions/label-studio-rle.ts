@@ -2,7 +2,7 @@
 
 import { describe, failure } from "../values/error.js";
 import { type PixelArray, sizeOf } from "../values/pixels.js";
-import { flattened } from "../values/values.js";
+import { flattened } from "../values/validation.js";
 
 /** Decodes the bytes of a brush annotation. */
 export function decodedLabelStudio(rle: unknown, image: unknown): PixelArray<Uint8Array> {

@@ -4,7 +4,7 @@ import type { MeshArrays } from "../types/inputs.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isTypedArray } from "../values/kinds.js";
-import { record, type Vector3, wrongKind } from "../values/values.js";
+import { record, type Vector3, wrongKind } from "../values/validation.js";
 
 /** A triangle mesh whose indices are in range. */
 export interface Mesh {

@@ -1,6 +1,6 @@
 /** The axes of a small oriented box around a mesh. */
 
-import type { Vector3 } from "../values/values.js";
+import type { Vector3 } from "../values/validation.js";
 import type { Mesh } from "./mesh.js";
 import { principalAxes } from "./principal-axes.js";
 import { column, dot, fromColumns, identity, type Matrix3, plus, scaled } from "./rotation.js";

@@ -4,7 +4,7 @@ import { pinholeOf } from "../camera/pinhole.js";
 import type { PinholeCamera } from "../types/inputs.js";
 import { isTypedArray } from "../values/kinds.js";
 import { checkCount, type ImageSize, type PixelArray, pixelsOf, pointKinds, sizeOf } from "../values/pixels.js";
-import { finiteNumbers, flattened, record } from "../values/values.js";
+import { finiteNumbers, flattened, record } from "../values/validation.js";
 
 /** The output of MoGe, with tensors as arrays. */
 export interface MogeOutput extends ImageSize {

@@ -2,7 +2,7 @@
 
 import type { Sim3, Sim3Like } from "../input/sim3.js";
 import type { MeshArrays } from "../types/inputs.js";
-import { oneOf, optionsOf, type Vector3 } from "../values/values.js";
+import { oneOf, optionsOf, type Vector3 } from "../values/validation.js";
 import { type Mesh, meshOf, triangleCount, vertexAt } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";
 import { identity, type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";

@@ -1,6 +1,6 @@
 /** Principal axes: the eigenvectors of symmetric matrices, and those of a mesh's surface. */
 
-import type { Vector3 } from "../values/values.js";
+import type { Vector3 } from "../values/validation.js";
 import { type Mesh, triangleCount, vertexAt } from "./mesh.js";
 import {
   column,

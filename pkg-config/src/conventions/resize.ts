@@ -16,7 +16,7 @@ import {
   pointKinds,
   sizeOf,
 } from "../values/pixels.js";
-import { record, whole } from "../values/values.js";
+import { record, whole } from "../values/validation.js";
 
 /** A region of an image, in integer pixels. */
 export interface PixelBox extends ImageSize {

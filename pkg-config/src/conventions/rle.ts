@@ -3,7 +3,7 @@ import { decodedRle } from "../input/coco-rle.js";
 import type { CocoRle } from "../types/inputs.js";
 import { plainArgument } from "../values/border.js";
 import type { ImageSize, PixelArray } from "../values/pixels.js";
-import { oneOf } from "../values/values.js";
+import { oneOf } from "../values/validation.js";
 import { type CvatMaskElement, decodedCvat } from "./cvat-rle.js";
 import { decodedLabelStudio } from "./label-studio-rle.js";
 

@@ -1,6 +1,6 @@
 /** Vectors, 3×3 matrices, and rotations as matrices and as quaternions in either order. */
 import { failure } from "../values/error.js";
-import { finiteNumbers, type Quaternion, type Vector3 } from "../values/values.js";
+import { finiteNumbers, type Quaternion, type Vector3 } from "../values/validation.js";
 
 type Vector = Readonly<Vector3>;
 

@@ -2,7 +2,7 @@
 
 import type { Sim3, Sim3Like } from "../input/sim3.js";
 import { failure } from "../values/error.js";
-import { finiteNumbers, flattened, oneOf, optionsOf, type Quaternion, record, vector3 } from "../values/values.js";
+import { finiteNumbers, flattened, oneOf, optionsOf, type Quaternion, record, vector3 } from "../values/validation.js";
 import { turnTo } from "./frames.js";
 import { type Matrix3, product, quaternionOf, rotationFromQuaternion, transposed, turned, wFirst } from "./rotation.js";
 import { sim3Of, similarityOf } from "./similarity.js";

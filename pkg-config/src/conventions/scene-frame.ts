@@ -1,6 +1,6 @@
 /** The parts that exports of scenes share: the objects, the camera, and the frame on the ground. */
 import { invalidArgument } from "../values/error.js";
-import { finite, flattened, positive, record, text, type Vector3, vector3 } from "../values/values.js";
+import { finite, flattened, positive, record, text, type Vector3, vector3 } from "../values/validation.js";
 import { cross, dot, type Matrix3, meanOf, minus, norm, scaled, turned, unit } from "./rotation.js";
 import type { Similarity } from "./similarity.js";
 

@@ -3,7 +3,7 @@
 import type { Sim3Like } from "../types/argument-types.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { isRecord } from "../values/kinds.js";
-import { optionsOf, type Vector3 } from "../values/values.js";
+import { optionsOf, type Vector3 } from "../values/validation.js";
 import { withChildren } from "./glb.js";
 import { readGlb, writeGlb } from "./glb-file.js";
 import { GltfDocument } from "./gltf-document.js";

@@ -4,7 +4,7 @@ import type { Sim3, Sim3Like } from "../input/sim3.js";
 import { checkAttached, plainArgument } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
-import { finiteNumbers, flattened, type Vector3, vector3, wrongKind } from "../values/values.js";
+import { finiteNumbers, flattened, type Vector3, vector3, wrongKind } from "../values/validation.js";
 import {
   determinant,
   entry,

@@ -4,7 +4,7 @@ import { bytesOfFile } from "../input/bytes.js";
 import { isPly, isSplatFile, plyHeader, RECORD_BYTES, rotationIn } from "../input/splat-files.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import { failure } from "../values/error.js";
-import { optionsOf, type Vector3 } from "../values/values.js";
+import { optionsOf, type Vector3 } from "../values/validation.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { harmonicRotation, MAX_DEGREE } from "./harmonics.js";
 import { quaternionOf, turned } from "./rotation.js";

@@ -3,7 +3,7 @@
 import { isContent } from "../input/bytes.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { failure } from "../values/error.js";
-import { finiteNumbers, record, type Vector3 } from "../values/values.js";
+import { finiteNumbers, record, type Vector3 } from "../values/validation.js";
 import { underNode } from "./glb.js";
 import { mappedMesh, meshOf } from "./mesh.js";
 import { eigenvectors } from "./principal-axes.js";

@@ -2,10 +2,10 @@
 
 import { checkAttached } from "../values/border.js";
 import { describe, failure } from "../values/error.js";
+import { withForeignObject } from "../values/foreign-objects.js";
 import { isKind, isRecord, isTypedArray, typedArrayKind } from "../values/kinds.js";
-import { withLive } from "../values/live.js";
 import { checkCount, type PixelArray } from "../values/pixels.js";
-import { flattened, oneOf, record, whole, wrongKind } from "../values/values.js";
+import { flattened, oneOf, record, whole, wrongKind } from "../values/validation.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */
 export interface TensorLike {
@@ -18,7 +18,7 @@ export interface TensorLike {
 function dimensions(tensor: unknown) {
   const expected = "a tensor: { data, dims }";
   // Those of transformers.js do not have their properties themselves.
-  const { data, dims: given } = withLive("tensor", expected, () => {
+  const { data, dims: given } = withForeignObject("tensor", expected, () => {
     const { data, dims } = Object(tensor) as TensorLike;
     return record("tensor", typeof tensor === "object" && tensor !== null ? { data, dims } : tensor, expected);
   });
@@ -81,7 +81,7 @@ export function fromTensor(
 }
 
 function maskFrom(tensor: unknown, choice: MaskChoice): PixelArray<Uint8Array> {
-  const { index, scores } = withLive("choice", "{ index } or { scores }", () => {
+  const { index, scores } = withForeignObject("choice", "{ index } or { scores }", () => {
     const { data = choice?.scores } = Object(choice?.scores) as { data?: unknown };
     return record("choice", isRecord(choice) ? { ...choice, scores: data } : choice, "{ index } or { scores }");
   }) as { index?: number; scores?: ArrayLike<number> };

@@ -3,7 +3,7 @@
 import type { Sim3 } from "../generated/types.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import type { MeshArrays } from "../types/inputs.js";
-import { oneOf, optionsOf, record, type Vector3 } from "../values/values.js";
+import { oneOf, optionsOf, record, type Vector3 } from "../values/validation.js";
 import { underNode } from "./glb.js";
 import { type Mesh, mappedMesh, meshOf } from "./mesh.js";
 import { outermost, smallestBoxAxes, smallestRectangle } from "./minimal-box.js";

@@ -4,7 +4,7 @@ import type { LoadedModule } from "../modules/module.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure, invalidArgument, messageOf } from "../values/error.js";
 import { isBuffer, isKind, isTypedArray } from "../values/kinds.js";
-import { wrongKind } from "../values/values.js";
+import { wrongKind } from "../values/validation.js";
 
 /** An array of bytes. */
 export type Bytes = Uint8Array | Uint8ClampedArray;

@@ -6,7 +6,7 @@ import type { Warning } from "../generated/types.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import type { ImageSize } from "../values/pixels.js";
-import { stringsIn } from "../values/values.js";
+import { stringsIn } from "../values/validation.js";
 import { fileBytes } from "./bytes.js";
 import { checkSides } from "./depth.js";
 import { type CameraHints, foundCamera } from "./lens.js";

@@ -5,7 +5,7 @@ import { describe, failure, type Sim3AlignError } from "../values/error.js";
 import { type JsonFile, numbersIn, parsedJson } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, type PixelArray, pixelsOf } from "../values/pixels.js";
-import { finiteNumbers, flattened, optionsOf, part, whole } from "../values/values.js";
+import { finiteNumbers, flattened, optionsOf, part, whole } from "../values/validation.js";
 
 /**
  * Encodes a mask in COCO's run-length encoding, like pycocotools.

@@ -5,7 +5,7 @@ import type { FileReaders } from "../modules/readers.js";
 import type { DepthImage, DepthKind, ReadDepthOptions } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
-import { withoutUndefined, wrongKind } from "../values/values.js";
+import { withoutUndefined, wrongKind } from "../values/validation.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
 import { formatsText, isAffineInvariant } from "./formats.js";
 

@@ -3,7 +3,7 @@
 import type { LoadFormats } from "../modules/readers.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isKind, isRecord, isTypedArray } from "../values/kinds.js";
-import { wrongKind } from "../values/values.js";
+import { wrongKind } from "../values/validation.js";
 import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isBytes } from "./bytes.js";
 import { decodedRle, isPolygons, polygons, readRleFile } from "./coco-rle.js";
 import type { SizedArray } from "./depth.js";

@@ -5,7 +5,7 @@ import type { MeshFile } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
-import { oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/values.js";
+import { oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/validation.js";
 import type { ColorSamples, MeshArrays, ReadMeshOptions } from "../wasm/formats.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";

@@ -6,7 +6,7 @@ import type { FileReaders } from "../modules/readers.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
-import { checkNames, part, withoutUndefined } from "../values/values.js";
+import { checkNames, part, withoutUndefined } from "../values/validation.js";
 import { readMask } from "./mask.js";
 import { type MeshAndWarnings, readCoreMesh } from "./mesh.js";
 import { coreSim3 } from "./sim3.js";

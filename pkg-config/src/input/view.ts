@@ -6,7 +6,7 @@ import type { DepthImage } from "../types/inputs.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
-import { oneOf, withoutUndefined } from "../values/values.js";
+import { oneOf, withoutUndefined } from "../values/validation.js";
 import { cameraOf, type ResolvedCamera } from "./camera.js";
 import { checkSides, DEFAULT_SCALE, readDepth, readPointMap, type SizedArray, unknownUnit } from "./depth.js";
 import { depthKindNames, isAffineInvariant } from "./formats.js";

@@ -1,6 +1,6 @@
 /** Workers whose script is on another origin, such as that of a CDN. */
 
-import { oncePerKey } from "../values/values.js";
+import { oncePerKey } from "../values/validation.js";
 
 /** The address of a script that imports the one at an address: the browser would keep another one for each worker. */
 const importing = oncePerKey((address: string) =>

@@ -36,7 +36,7 @@ export class HelperBroker {
   end(slot: Slot): void {
     const longJob = this.#longJobs.get(slot);
     this.#longJobs.delete(slot);
-    for (const helper of longJob?.helpers ?? []) helper.last.tell({ type: "stop" });
+    for (const helper of longJob?.helpers ?? []) helper.last.post({ type: "stop" });
   }
 
   /** Lends the workers that are idle, each to the job with the fewest helpers. */
@@ -56,7 +56,7 @@ export class HelperBroker {
     const helpers = this.#inOrder().at(-1)?.[1].helpers;
     for (const helper of helpers ?? []) {
       helpers?.delete(helper);
-      helper.last.tell({ type: "stop" });
+      helper.last.post({ type: "stop" });
       return;
     }
   }
@@ -72,11 +72,11 @@ export class HelperBroker {
       const modules = new Map([[module, await this.compiled(module)]]);
       // After the pool has ended, nothing would end a new worker.
       if (!isWanted()) return;
-      await helper.hire().ready();
+      await helper.ensureWorker().ready();
       if (!isWanted()) return;
       const { port1, port2 } = new MessageChannel();
       place = longJob.count++;
-      slot.last.tell({ type: "helper", helper: place, port: port1 }, [port1]);
+      slot.last.post({ type: "helper", helper: place, port: port1 }, [port1]);
       const cached = job.meshId === undefined ? undefined : { id: job.meshId, module };
       const mesh = cached === undefined || helper.last.hasMesh(cached) ? undefined : copied(preparedMesh(job));
       const help = { method: "help", data: { port: port2, mesh } } as const;
@@ -87,7 +87,7 @@ export class HelperBroker {
       longJob.mayHaveHelp = false;
     } finally {
       longJob.helpers.delete(helper);
-      if (isRunning() && place !== undefined) slot.last.tell({ type: "helper", helper: place });
+      if (isRunning() && place !== undefined) slot.last.post({ type: "helper", helper: place });
       this.queue.release(helper);
       this.lend();
     }

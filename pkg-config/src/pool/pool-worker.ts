@@ -134,7 +134,7 @@ export class PoolWorker {
   }
 
   /** Sends a message that needs no answer. */
-  tell(message: ToWorker, transfer: Transferable[] = []): void {
+  post(message: ToWorker, transfer: Transferable[] = []): void {
     if (this.#end === undefined) this.#port?.post(message, transfer);
   }
 
@@ -192,7 +192,7 @@ export class Slot {
   }
 
   /** Its worker, or another one if that has ended. */
-  hire(): PoolWorker {
+  ensureWorker(): PoolWorker {
     if (this.#worker.hasEnded) this.#worker = new PoolWorker(this.setup);
     return this.#worker;
   }

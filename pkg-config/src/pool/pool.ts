@@ -43,7 +43,7 @@ export class WorkerPool implements Engine {
     const slot = await this.#queue.acquire(signals, call.isBatched);
     const stop = (reason: unknown) => {
       slot.last.end(reason);
-      if (!this.#ended.signal.aborted) slot.hire();
+      if (!this.#ended.signal.aborted) slot.ensureWorker();
     };
     const unfollow = onAnyAbort(signals, stop);
     try {
@@ -91,7 +91,7 @@ export class WorkerPool implements Engine {
         // A call that has ended must not start a worker, which nothing would end.
         checkSignals(signals);
         for (const name of needed) modules.set(name, await beforeAbort(compiled(name), signals));
-        await slot.hire().ready();
+        await slot.ensureWorker().ready();
         const answer = await this.#send(slot, job, modules, call, signals);
         if (answer === undefined) {
           // A tracker lives in its worker, which does not need the rest: what a pose then lacks is an error there.

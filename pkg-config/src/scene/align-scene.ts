@@ -12,7 +12,7 @@ import type { Progress } from "../types/options.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "../types/scene.js";
 import { isOfInput, Sim3AlignError } from "../values/error.js";
 import { withArrays } from "../values/prepared-mesh.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 import { othersOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 
 type PlacedOrError = Placed | Sim3AlignError;

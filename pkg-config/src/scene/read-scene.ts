@@ -9,7 +9,7 @@ import type { SceneInput, SceneObjectInput } from "../types/scene.js";
 import { describe, failure, invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { nearest } from "../values/pixels.js";
-import { checkNames, part, withoutUndefined } from "../values/values.js";
+import { checkNames, part, withoutUndefined } from "../values/validation.js";
 
 /** A scene whose images have been read. */
 export interface ReadScene {

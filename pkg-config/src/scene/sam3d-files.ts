@@ -9,7 +9,7 @@ import { failure, renamed, Sim3AlignError } from "../values/error.js";
 import { parsedJson } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { naturally } from "../values/order.js";
-import { flattened } from "../values/values.js";
+import { flattened } from "../values/validation.js";
 import { viewOfPointMap } from "./point-map-file.js";
 import { type SceneCase, sceneFrom } from "./scene-files.js";
 

@@ -3,7 +3,7 @@ import { type CaseFiles, fileNotFound, filesOf, meshFile, type ReadCaseOptions }
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import type { SceneInput, SceneObjectInput } from "../types/scene.js";
 import { naturally } from "../values/order.js";
-import { withoutUndefined } from "../values/values.js";
+import { withoutUndefined } from "../values/validation.js";
 
 /** A scene whose files have been read, but not decoded. */
 export interface SceneCase {

@@ -3,7 +3,16 @@ import { Names } from "../conventions/names.js";
 import { type Matrix3, product, rotationOfUnit, transposed } from "../conventions/rotation.js";
 import { invalidArgument } from "../values/error.js";
 import { isTypedArray } from "../values/kinds.js";
-import { finite, finiteNumbers, positive, type Quaternion, record, text, vector3, whole } from "../values/values.js";
+import {
+  finite,
+  finiteNumbers,
+  positive,
+  type Quaternion,
+  record,
+  text,
+  vector3,
+  whole,
+} from "../values/validation.js";
 import type { ConvexPart, SimulatorBody, SimulatorPose, SimulatorScene } from "./scene.js";
 
 /** A body, with the names of its parts. Its own name is that of its surface as well. */

@@ -11,7 +11,7 @@ import type { WasmSource } from "../types/platform.js";
 import type { Plane } from "../types/scene.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
-import { optionsOf, positive, type Quaternion, type Vector3, whole } from "../values/values.js";
+import { optionsOf, positive, type Quaternion, type Vector3, whole } from "../values/validation.js";
 
 /** An object of a scene for a simulator. */
 export interface SimulatorObject {

@@ -2,7 +2,7 @@
 import { bounds } from "../conventions/mesh.js";
 import { wFirst } from "../conventions/rotation.js";
 import { lightOf } from "../input/colors.js";
-import type { Quaternion } from "../values/values.js";
+import type { Quaternion } from "../values/validation.js";
 import { type ExportedBody, exportedScene, spaced, viewRotation } from "./exported.js";
 import type { SimulatorScene } from "./scene.js";
 

@@ -4,9 +4,9 @@ import { pinholeOf } from "../camera/pinhole.js";
 import type { CameraInput } from "../types/inputs.js";
 import { plainArgument } from "../values/border.js";
 import { failure } from "../values/error.js";
-import { withLive } from "../values/live.js";
+import { withForeignObject } from "../values/foreign-objects.js";
 import { type ImageSize, sizeOf } from "../values/pixels.js";
-import { positive, record } from "../values/values.js";
+import { positive, record } from "../values/validation.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
 /** The image size, and the near and far planes. */
@@ -89,7 +89,7 @@ export function cameraFromPinhole(camera: CameraInput, lens: LensOptions): Three
  */
 export function applyPinhole(target: PerspectiveCameraLike, camera: CameraInput, lens: LensOptions): void {
   const { fov, aspect, near, far, view } = cameraFromPinhole(camera, lens);
-  withLive("target", "a PerspectiveCamera", () => {
+  withForeignObject("target", "a PerspectiveCamera", () => {
     Object.assign(target, { fov, near, far, zoom: 1, filmOffset: 0 });
     target.setViewOffset(view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height);
     // setViewOffset has set the aspect for square pixels.

@@ -3,8 +3,8 @@
 import { cofactors, determinant, type Matrix3, matrixOf as matrix3Of, turned } from "../conventions/rotation.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { describe, failure } from "../values/error.js";
-import { withLive } from "../values/live.js";
-import { finiteNumbers, oneOf, optionsOf, whole } from "../values/values.js";
+import { withForeignObject } from "../values/foreign-objects.js";
+import { finiteNumbers, oneOf, optionsOf, whole } from "../values/validation.js";
 import { surfaceSamples } from "./surface-samples.js";
 import { type Texels, texelsOf } from "./texels.js";
 import { type AttributeLike, type GeometryLike, isObject, type MeshTree, type PlacedObject } from "./types.js";
@@ -58,7 +58,7 @@ export function meshInputFromThree(
   source: GeometryLike | MeshTree,
   options: { frame?: "object" | "world" | undefined } = {},
 ): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
-  return withLive("source", "a BufferGeometry or an Object3D", () => meshOf(source, options));
+  return withForeignObject("source", "a BufferGeometry or an Object3D", () => meshOf(source, options));
 }
 
 function meshOf(

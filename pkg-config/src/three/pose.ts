@@ -2,8 +2,8 @@
 import { fromFrame, toFrame } from "../conventions/frames.js";
 import { compose, invert, toSim3 } from "../conventions/similarity.js";
 import type { Sim3, Sim3Like } from "../input/sim3.js";
-import { withLive } from "../values/live.js";
-import { finiteNumbers, knownOptions, oneOf } from "../values/values.js";
+import { withForeignObject } from "../values/foreign-objects.js";
+import { finiteNumbers, knownOptions, oneOf } from "../values/validation.js";
 import type { PlacedObject, PosableObject } from "./types.js";
 
 /** Options of {@link applyToObject3D} and {@link transformFromObject3D}. */
@@ -41,7 +41,7 @@ export function applyToObject3D(
   transform: Sim3Like,
   options: PoseOptions = {},
 ): void {
-  withLive("object", OBJECT, () => place(object, transform, options));
+  withForeignObject("object", OBJECT, () => place(object, transform, options));
 }
 
 function place(
@@ -77,7 +77,7 @@ function place(
  * @throws {@link Sim3AlignError} `INVALID_TRANSFORM` for an object with a non-uniform scale or a reflection
  */
 export function transformFromObject3D(object: PosableObject, options: PoseOptions = {}): Sim3 {
-  return withLive("object", OBJECT, () => {
+  return withForeignObject("object", OBJECT, () => {
     const { frame = "opengl", camera } = knownOptions(options, ["frame", "camera"]);
     oneOf("options.frame", frame, framesOfScenes);
     if (camera !== undefined)
@@ -89,7 +89,7 @@ export function transformFromObject3D(object: PosableObject, options: PoseOption
 
 /** The transform of an object in its scene. */
 const worldFrom = (argument: string, object: PlacedObject): Sim3 =>
-  withLive(argument, OBJECT, () => {
+  withForeignObject(argument, OBJECT, () => {
     object.updateWorldMatrix(true, false);
     return toSim3(numbersOf(`${argument}.matrixWorld`, object.matrixWorld));
   });

@@ -3,7 +3,7 @@
 import { checkAttached } from "./border.js";
 import { failure } from "./error.js";
 import { isTypedArray } from "./kinds.js";
-import { record, whole, wrongKind } from "./values.js";
+import { record, whole, wrongKind } from "./validation.js";
 
 /** Pixels and their size: `data` has width × height values, row-major from the top left. */
 export interface PixelArray<T> {

@@ -27,7 +27,7 @@ pub async fn without_invented_plate<'m>(
             // The alignment reports the error of a view that cannot be searched.
             let Ok(mut rounds) = start::start_search(view, mesh, None, options, settings, stages) else { continue };
             scheduler.yield_point().await;
-            start::run_rounds(&mut rounds, &(0.0..1.0), scheduler, stages).await;
+            start::run_rounds(&mut rounds, 0.0..1.0, scheduler, stages).await;
             *score += rounds.candidates.first().map_or(0.0, |best| best.score.total);
         }
     }

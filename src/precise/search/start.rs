@@ -25,7 +25,7 @@ use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::scene_term::{SceneContext, SceneTerm};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Effort;
-use crate::scheduler::Scheduler;
+use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Score below that of the best pose down to which a pose is its rival.
 const RIVAL_MAX_SCORE_LOSS: f32 = 0.05;
@@ -211,14 +211,21 @@ pub fn decimate(
 }
 
 /// Runs a search to its end. `share` is the progress at its start and end, 0 to 1.
-pub async fn run_rounds(rounds: &mut Rounds, share: &Range<f64>, scheduler: &Scheduler, stages: &mut Stopwatch<'_>) {
-    while let Some(round) = rounds.round() {
-        if !round.task.is_on_rotation_grid() && stages.running() != Some(Stage::Refine) {
-            stages.enter(Stage::Refine);
+pub fn run_rounds<'a>(
+    rounds: &'a mut Rounds,
+    share: Range<f64>,
+    scheduler: &'a Scheduler,
+    stages: &'a mut Stopwatch<'_>,
+) -> Boxed<'a, ()> {
+    boxed(async move {
+        while let Some(round) = rounds.round() {
+            if !round.task.is_on_rotation_grid() && stages.running() != Some(Stage::Refine) {
+                stages.enter(Stage::Refine);
+            }
+            rounds.run(scheduler).await;
+            stages.reach(share.start + (share.end - share.start) * round.done, rounds.best());
         }
-        rounds.run(scheduler).await;
-        stages.reach(share.start + (share.end - share.start) * round.done, rounds.best());
-    }
+    })
 }
 
 /// The error of an initial pose, which callers may have in another camera frame.

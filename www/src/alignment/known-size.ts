@@ -1,6 +1,6 @@
 /** Makes a length of an object known. */
 import { compose, toSim3 } from "sim3align/conventions";
-import type { Vector3 } from "sim3align/values/values";
+import type { Vector3 } from "sim3align/values/validation";
 import { inCalibration } from "../state/calibration.js";
 import type { AnyAlignment, ObjectModel, PreciseAlignment } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";

@@ -1,5 +1,5 @@
 /** Small changes of a pose, as buttons and as keys. */
-import type { Vector3 } from "sim3align/values/values";
+import type { Vector3 } from "sim3align/values/validation";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
 import type { Workspace } from "../state/workspace.js";

@@ -1,7 +1,7 @@
 /** The pose in numbers: the centre, and turns about the axes of the camera. */
 
 import { useState } from "preact/hooks";
-import type { Vector3 } from "sim3align/values/values";
+import type { Vector3 } from "sim3align/values/validation";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
 import { Choices } from "../ui/controls.js";

@@ -11,7 +11,7 @@ import type {
   Sim3Like,
   Stage,
 } from "sim3align";
-import type { Vector3 } from "sim3align/values/values";
+import type { Vector3 } from "sim3align/values/validation";
 import { boundsOf, isResult, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
 
 /** The state of an alignment. */

@@ -1,11 +1,11 @@
-/** Objects that are alive, such as those of three.js and the tensors of transformers.js. */
+/** Reads objects of other libraries, such as those of three.js and the tensors of transformers.js, without copying them. */
 import { failure, messageOf, Sim3AlignError } from "./error.js";
 
 /**
- * Reads or sets objects that are alive: nothing of them is copied.
+ * Reads or changes an object of another library.
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT` for what they throw, and for what they lack
  */
-export function withLive<T>(argument: string, expected: string, work: () => T): T {
+export function withForeignObject<T>(argument: string, expected: string, work: () => T): T {
   try {
     return work();
   } catch (cause) {
