@@ -17,7 +17,7 @@ import {
   WIDTH,
 } from "../support/page-files.js";
 import { mesh, pinhole, render } from "../support/scene.js";
-import { pageTests, type SitePage } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();
 
@@ -61,9 +61,9 @@ test("a file whose name says nothing is asked about, and a second drop joins the
   const { "mask.png": mask, "camera.json": camera, ...rest } = files;
   await drop(opened, { ...rest, "1.png": mask as Uint8Array });
   await drop(opened, { "camera.json": camera as Uint8Array });
+  await page.locator('[data-field="camera"]', { hasText: "camera.json" }).waitFor(PATIENCE);
   const sheet = await opened.sheet();
   assert.match((await sheet.textContent()) ?? "", /1\.png: not used\. Choose below what each file is\./);
-  assert.match((await sheet.locator('[data-field="camera"]').textContent()) ?? "", /camera\.json/);
   await page.getByLabel("Use of 1.png").selectOption("mask");
   await opened.shows("Own files");
 });
@@ -91,6 +91,10 @@ test("images of one folder, and case folders, are scenes of their own", async (o
   assert.deepEqual(meshes, ["mesh/box.obj", "mesh/cup.obj"]);
   // Another drop is beside them.
   await dropFolder(opened, { ...inFolder("a", files), ...inFolder("b", farther(0.01)) });
+  await page
+    .locator("#scene-choice option")
+    .nth(3)
+    .waitFor({ ...PATIENCE, state: "attached" });
   await opened.sheet();
   assert.deepEqual(
     (await page.locator("#scene-choice option").allTextContents()).map((text) => text.replace(/^.*: | \(.*$/g, "")),

@@ -2,8 +2,7 @@
 import type { DepthKind } from "sim3align";
 import { doubtOfSize } from "sim3align/camera/pinhole";
 import { depthOfRays } from "sim3align/camera/ray-distance";
-import { type DepthImage, type ReadDepthOptions, readCamera, readExif } from "sim3align/formats";
-import { foundCamera } from "sim3align/input/lens";
+import type { DepthImage, ReadDepthOptions } from "sim3align/formats";
 import type { ImageSize } from "sim3align/values/pixels";
 import { corrected, provisional } from "../state/calibration.js";
 import type { CameraSource, NamedFile } from "../state/inputs.js";
@@ -38,24 +37,6 @@ export interface ReadCamera {
   source: string | null;
   focalUncertainty: number;
   warnings: readonly string[];
-}
-
-/** The camera of a depth map for which none was given. */
-export async function cameraOf(
-  { width, height, camera }: ImageSize & { camera?: DepthImage["camera"] | undefined },
-  photo: { bytes: Uint8Array; width: number; height: number } | null,
-): Promise<ReadCamera> {
-  const exif = photo === null ? undefined : await readExif(photo.bytes).catch(() => undefined);
-  const hints = { inDepth: camera, photo: exif && photo ? { exif, size: photo } : undefined };
-  const found = foundCamera({ width, height }, hints);
-  const warnings = found.warnings.map(({ message }) => message);
-  return { camera: found.camera, source: found.source, focalUncertainty: found.focalDeviation ?? 0, warnings };
-}
-
-/** Intrinsics of a file, an entry of a dataset or a field of view, which are known. */
-export async function knownCamera(...given: Parameters<typeof readCamera>): Promise<ReadCamera> {
-  const { fx, fy, cx, cy, warnings } = await readCamera(...given);
-  return { camera: { fx, fy, cx, cy }, source: null, focalUncertainty: 0, warnings };
 }
 
 /** The depth map as it is shown until it is calibrated, and what there is to calibrate. */

@@ -21,9 +21,7 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
   // What a wrong depth map does to the objects is not their fault.
   const seen = depth.length === 0 ? reading : { ...reading, depth: null };
   return [
-    ...reading.problems.map((one) =>
-      one.field === "camera" && one.code === "SIZE_MISMATCH" ? stretched(one, reading) : one,
-    ),
+    ...reading.problems,
     ...unassigned(inputs),
     ...several(inputs),
     ...missing(inputs),
@@ -76,14 +74,6 @@ function several({ files, camera, photo }: Inputs): Problem[] {
     const names = own === null ? [] : files.filter(isRival).map(({ file }) => baseName(file.path));
     return names.length === 0 ? [] : [doubt(role, `${baseName(own?.path ?? "")} is used, ${names.join(", ")} not.`)];
   });
-}
-
-/** The camera of an image of another shape, whose intrinsics cannot be scaled. */
-function stretched(problem: Problem, { cameraSize: from, size: to }: Reading): Problem {
-  if (from === null || to === null) return problem;
-  const factors = [to.width / from.width, to.height / from.height].map((factor) => Number(factor.toPrecision(3)));
-  const message = `The camera is that of an image of ${from.width} × ${from.height}, and this one is ${to.width} × ${to.height}: cropped or stretched (${factors[0]} in x, ${factors[1]} in y), so its intrinsics cannot be scaled. Choose the camera of this image.`;
-  return { ...problem, message };
 }
 
 /** What was taken for granted, and decides about the sizes. */

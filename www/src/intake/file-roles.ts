@@ -12,7 +12,7 @@ import type { NamedFile, Role, Typed } from "../state/inputs.js";
 const words: readonly (readonly [Role, FileKind, RegExp])[] = [
   ["depth", "depth", /(^|[^a-z])(depth|disparity)/],
   ["mask", "mask", /(^|[^a-z])mask/],
-  ["photo", "photo", /(^|[^a-z])(rgb|photo|image|img|colou?r)/],
+  ["photo", "photo", /(^|[^a-z])(rgb|photo|picture|image|img|colou?r)/],
   ["camera", "camera", /(^|[^a-z])(cam|intrinsic|calib)/],
   ["truth", "camera", /^(gt|truth)[^a-z].*json$/],
 ];

@@ -83,7 +83,10 @@ export async function openListed({ id }: Inputs): Promise<void> {
   announce(`Reading ${listed.name} …`, "working");
   await attempt(async () => {
     const { reopen } = await import("../session/index.js");
-    if (!(await reopen(listed))) await (await intake()).proposeScenes([listed]);
+    if (await reopen(listed)) return;
+    const { acceptIfClear, proposeScenes } = await intake();
+    await proposeScenes([listed]);
+    await acceptIfClear();
   });
 }
 
