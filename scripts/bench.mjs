@@ -2,8 +2,8 @@
  * `npm run bench [-- --quick]`: the paper's tables: generated scenes (or case folders), our presets and their ablations,
  * other libraries beside them, general registration. An interrupted run is resumed.
  */
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { basename, join, resolve } from "node:path";
+import { rmSync, writeFileSync } from "node:fs";
+import { join, resolve } from "node:path";
 import { command, count } from "./bench/command.mjs";
 import { notes, ownRows, tableMarkdown, tables } from "./bench/paper.mjs";
 import { meshMethods, pairMethods, runPeers, versionsOf } from "./bench/peers.mjs";
@@ -22,7 +22,6 @@ import { step } from "./lib/step.mjs";
  * @property {number} setSeed
  * @property {string} [cases]
  * @property {string[]} import
- * @property {string[]} data
  * @property {boolean} peers
  * @property {string} python
  * @property {string} [out]
@@ -42,7 +41,6 @@ await command("bench", (program) =>
     .option("--set-seed <s>", "seed of the generated scenes", Number, 0)
     .option("--cases <dir>", "case folders in place of the generated scenes")
     .option("--import <name=dir>", "answers of another program, a JSON file a case; may be repeated", collect, [])
-    .option("--data <dir>", "3DMatch, 3DLoMatch or KITTI for general registration; may be repeated", collect, [])
     .option("--no-peers", "leave out the other libraries, and the Python that they need")
     .option("--python <program>", "the Python (3.11 or 3.12) that installs the other libraries", "python3")
     .option("--out <dir>", "where results are kept; benches/results/… by default")
@@ -61,31 +59,24 @@ async function benchmark(options) {
   await step("Programs", buildLab);
   if (hasPeers) await pythonWith("peers", options.python);
   const code = labCode();
-  const clouds = await datasets(options, code);
-  openResults(out, { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null, clouds }, options.fresh);
-  const folders =
-    options.cases === undefined ? await writeScenes(scenes, options.setSeed, code) : { given: options.cases };
+  openResults(out, { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null }, options.fresh);
+  const folder = options.cases ?? (await writeScenes(scenes, options.setSeed, code));
 
-  const [[prior, folder] = ["", ""]] = Object.entries(folders);
   const answers = join(out, "answers");
   const methods = hasPeers ? meshMethods(options.quick) : [];
   const peers = { cases: [folder], out: answers, methods, python: options.python };
   const answered = hasPeers ? await step("Other libraries", () => runPeers(peers)) : [];
   const imports = [...answered.map((method) => `${method}=${join(answers, method)}`), ...options.import];
-  const file = (/** @type {string} */ of) => join(out, `${of}.jsonl`);
-  for (const [each, cases] of Object.entries(folders)) {
-    const args = ownRows(each === prior).flatMap((row) => ["--row", row]);
-    if (each === prior) args.push(...imports.flatMap((one) => ["--import", one]));
-    await step(`Rows on ${each} meshes`, () =>
-      runLab(["bench", "--cases", cases, ...args, "--json", file(each), ...threadArguments(options.threads)]),
-    );
-  }
-  const results = new Map(Object.keys(folders).map((each) => [each, readResults(file(each))]));
-  const names = imports.map((one) => one.split("=")[0] ?? "");
-  const sections = tables(names, Object.keys(folders)).map(
-    (table) => `## ${table.title}\n\n${tableMarkdown(table, (each) => results.get(each) ?? [])}`,
+  const file = join(out, "scenes.jsonl");
+  const rows = [...ownRows.flatMap((row) => ["--row", row]), ...imports.flatMap((one) => ["--import", one])];
+  await step("Rows", () =>
+    runLab(["bench", "--cases", folder, ...rows, "--json", file, ...threadArguments(options.threads)]),
   );
-  for (const set of clouds) sections.push(await registration(set, out, hasPeers ? options.python : null));
+  const results = readResults(file);
+  const sections = tables(imports.map((one) => one.split("=")[0] ?? "")).map(
+    (table) => `## ${table.title}\n\n${tableMarkdown(table, results)}`,
+  );
+  sections.push(await registration(options, out));
 
   const { commit, date, machine, system, node, rustc } = await environment();
   const libraries = hasPeers ? Object.entries(versionsOf(answers)).map((library) => library.join(" ")) : [];
@@ -100,84 +91,40 @@ async function benchmark(options) {
 }
 
 /**
- * Case folders of both mesh priors, below target/.
+ * Case folders of the objects of scenes, below target/.
  * @param {number} scenes
  * @param {number} seed
  * @param {string} code
  */
 async function writeScenes(scenes, seed, code) {
   const folder = at("target", "bench", `scenes-${scenes}-seed-${seed}`);
-  const folders = { detailed: join(folder, "detailed"), smooth: join(folder, "smooth") };
-  await step("Scenes", async () => {
-    const size = ["--count", `${scenes}`, "--seed", `${seed}`];
-    await generated(folders.detailed, code, ["bench", "--set", "clutter", ...size, "--write", folders.detailed]);
-    await generated(folders.smooth, code, ["bench", "--set", "clutter-smooth", ...size, "--write", folders.smooth]);
-  });
-  return folders;
+  await step("Scenes", () =>
+    cached(`${folder}.done`, code, [folder], async () => {
+      rmSync(folder, { recursive: true, force: true });
+      const size = ["--count", `${scenes}`, "--seed", `${seed}`];
+      await runLab(["bench", "--set", "scenes", ...size, "--split", "--write", folder]);
+    }),
+  );
+  return folder;
 }
 
 /**
- * Inputs that the lab writes to a folder; again if its code has changed.
- * @param {string} folder
- * @param {string} code
- * @param {readonly string[]} args
- */
-async function generated(folder, code, args) {
-  await cached(`${folder}.done`, code, [folder], async () => {
-    rmSync(folder, { recursive: true, force: true });
-    await runLab(args);
-  });
-}
-
-/** @typedef {{ id: string, title: string, data: string, every: number }} Dataset every n-th pair is taken */
-
-/**
- * The pairs of clouds of a run: rooms and streets of its seed, and folders of the caller's.
- * @param {{ quick: boolean, smallest: boolean, setSeed: number, data: readonly string[] }} options
- * @param {string} code
- * @returns {Promise<Dataset[]>}
- */
-async function datasets({ quick, smallest, setSeed, data }, code) {
-  const scenes = quick || smallest ? 1 : 2;
-  /** @type {Dataset[]} */
-  const made = [];
-  for (const [kind, title] of [
-    ["rooms", "rooms in 3DMatch's layout"],
-    ["lidar", "streets in KITTI's layout"],
-  ]) {
-    const folder = at("target", "bench", `${kind}-${scenes}-seed-${setSeed}`);
-    const size = ["--seed", `${setSeed}`, "--scenes", `${scenes}`];
-    await generated(folder, code, ["registration", "write", `${kind}`, folder, ...size]);
-    made.push({ id: `${kind}`, title: `generated ${title}`, data: folder, every: smallest ? 12 : quick ? 3 : 1 });
-  }
-  return [
-    ...made,
-    ...data.map((path) => ({ id: basename(path), title: basename(path), data: resolve(path), every: 1 })),
-  ];
-}
-
-/**
- * The table of general registration.
- * @param {Dataset} set
+ * The table of general registration: pairs of scans of generated rooms.
+ * @param {BenchmarkOptions} options
  * @param {string} out
- * @param {string | null} python the Python of the other libraries, or none of them
  */
-async function registration({ id, title, data, every }, out, python) {
-  const folder = join(out, "registration", id);
-  mkdirSync(folder, { recursive: true });
-  const args = ["registration", "run", "--data", data, "--every", `${every}`];
-  const methods = ["--method", "register"];
-  if (python !== null) {
-    const [pairs, answers] = [join(folder, "pairs.json"), join(folder, "answers")];
-    await runLab([...args, "--pairs-json", pairs]);
-    const peers = { pairs, out: answers, methods: pairMethods, python };
-    const answered = await step(`Other libraries, ${title}`, () => runPeers(peers));
-    methods.push(...answered.flatMap((name) => ["--method", `${name}=import:${join(answers, name)}`]));
+async function registration({ quick, smallest, setSeed, peers, python, threads }, out) {
+  const [rooms, every] = smallest ? [1, 12] : quick ? [1, 3] : [2, 1];
+  const args = ["bench", "--rooms", `${rooms}`, "--every", `${every}`, "--seed", `${setSeed}`];
+  const rows = ["--row", "register:"];
+  if (peers && !smallest) {
+    const [pairs, answers] = [join(out, "rooms"), join(out, "room-answers")];
+    await runLab([...args, "--write", pairs]);
+    const run = { pairs: join(pairs, "pairs.json"), out: answers, methods: pairMethods, python };
+    const answered = await step("Other libraries, rooms", () => runPeers(run));
+    rows.push(...answered.flatMap((name) => ["--import", `${name}=${join(answers, name)}`]));
   }
-  const table = join(folder, "table.md");
-  await step(`General registration, ${title}`, async () => {
-    const records = ["--records", join(folder, "records.jsonl")];
-    writeFileSync(table, await runLab([...args, "--measure-overlap", ...methods, ...records]));
-  });
-  return `## General registration, ${title}\n\n${readFileSync(table, "utf8").trim()}`;
+  const json = ["--json", join(out, "rooms.jsonl"), ...threadArguments(threads)];
+  const table = await step("General registration", () => runLab([...args, ...rows, ...json]));
+  return `## General registration, generated rooms\n\n${table.trim()}`;
 }

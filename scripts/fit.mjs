@@ -23,9 +23,13 @@ import { reliability, summaries } from "./record/summary.mjs";
 const PENALTY = 1e-3;
 const MAX_STEPS = 100;
 /** Both searches of the default quality: the confidence of the first decides whether there is a second. */
-const ROWS = ["--row", "fast: quality=fast color=false", "--row", "best: quality=best color=false"];
+const ROWS = ["fast: quality=fast color=false", "best: quality=best color=false"];
 /** General cases, those with the mesh of another object, where no pose is right, and those with effects of sensors: shares. */
-const SETS = { general: 1 / 2, misfits: 1 / 6, sensors: 1 / 3 };
+const SETS = {
+  general: { set: "general", part: 1 / 2, suffix: "" },
+  misfits: { set: "general", part: 1 / 6, suffix: " misfit=true" },
+  sensors: { set: "sensors", part: 1 / 3, suffix: "" },
+};
 
 /** The constants of the sources, which are declared there alone. @returns {Model} */
 function currentModel() {
@@ -138,12 +142,14 @@ function solve(system) {
  * @param {string} name
  * @param {readonly string[]} cases arguments of the lab
  * @param {FitOptions} options
+ * @param {string} [suffix] further options of the rows
  * @returns {Promise<Sample[]>}
  */
-async function samplesOf(name, cases, { threads, keep }) {
+async function samplesOf(name, cases, { threads, keep }, suffix = "") {
   mkdirSync(keep, { recursive: true });
   const json = join(resolve(keep), `${name}.jsonl`);
-  await runLab(["bench", ...cases, ...ROWS, "--json", json, ...threadArguments(threads)]);
+  const rows = ROWS.flatMap((row) => ["--row", row + suffix]);
+  await runLab(["bench", ...cases, ...rows, "--json", json, ...threadArguments(threads)]);
   const model = currentModel();
   return readResults(json).flatMap((result) => {
     const features = featuresOf(result, model);
@@ -161,9 +167,9 @@ async function samplesOf(name, cases, { threads, keep }) {
 /** @param {string} name @param {number} cases @param {number} seed @param {FitOptions} options */
 async function generated(name, cases, seed, options) {
   const all = [];
-  for (const [set, part] of Object.entries(SETS)) {
+  for (const [kind, { set, part, suffix }] of Object.entries(SETS)) {
     const count = ["--count", `${Math.ceil(cases * part)}`, "--seed", `${seed}`];
-    all.push(...(await samplesOf(`${name}-${set}`, ["--set", set, ...count], options)));
+    all.push(...(await samplesOf(`${name}-${kind}`, ["--set", set, ...count], options, suffix)));
   }
   return all;
 }

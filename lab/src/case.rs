@@ -3,11 +3,7 @@
 use std::sync::Arc;
 
 use crate::prelude::*;
-use sim3align::scene::plane::Plane;
 use sim3align::views::View;
-
-/// Class of objects without a right pose.
-pub const MISFIT: &str = "misfit";
 
 /// Images of objects. A single object, a scene, several views and a video differ in the numbers of both.
 #[derive(Debug, Clone)]
@@ -22,8 +18,6 @@ pub struct Case {
     pub objects: Vec<CaseObject>,
     /// The images.
     pub frames: Vec<CaseFrame>,
-    /// The support of the objects in the first image, if it is known.
-    pub plane: Option<Plane>,
 }
 
 /// An object of a case.
@@ -52,6 +46,8 @@ pub struct CaseFrame {
     pub name: String,
     /// Depth.
     pub depth: DepthMap,
+    /// Depth without errors, of a generated case with one object.
+    pub exact: Option<DepthMap>,
     /// Intrinsics.
     pub camera: Pinhole,
     /// The photo, if there is one.
@@ -64,8 +60,6 @@ pub struct CaseFrame {
     pub truths: Vec<Option<Similarity>>,
     /// Fraction of the object that the image shows, 0 to 1; of several objects, the smallest.
     pub visible: f64,
-    /// Whether the pose of the camera is wrong on purpose.
-    pub is_wrong: bool,
 }
 
 impl Case {

@@ -6,7 +6,7 @@ use crate::prelude::*;
 
 named! {
     /// Tier of difficulty of a case.
-    pub enum Tier: "tier" {
+    pub enum Tier {
         /// Good conditions: exact masks, good depth, accurate meshes.
         Easy = "easy",
         /// Typical output of current models.
@@ -57,7 +57,7 @@ pub enum Framing {
 
 named! {
     /// A source of depth: a sensor or a depth model.
-    pub enum DepthSource: "source" {
+    pub enum DepthSource {
         /// Stereo matching of blocks, with a projected texture.
         ActiveStereo = "active-stereo",
         /// A projected pattern, matched to a reference.
@@ -71,7 +71,7 @@ named! {
 
 named! {
     /// A source of masks.
-    pub enum MaskSource: "source" {
+    pub enum MaskSource {
         /// A segmentation network.
         Network = "network-mask",
         /// A person who draws polygons.
@@ -97,18 +97,6 @@ pub enum DepthFault {
     Quantised,
 }
 
-named! {
-    /// Parts that a generator adds.
-    pub enum Surplus: "surplus" {
-        /// Two to four blobs beside the object.
-        Floaters = "floaters",
-        /// A plate below it, a part of its own.
-        Plate = "plate",
-        /// A plate below it that hangs together with it.
-        FusedPlate = "fused-plate",
-    }
-}
-
 /// Faults of a generated mesh beyond those of its tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshFault {
@@ -119,8 +107,6 @@ pub enum MeshFault {
     MissingPart,
     /// Something that the object does not have.
     ExtraPart,
-    /// Parts that aligners should leave out.
-    Surplus(Surplus),
 }
 
 /// A class of cases: what it changes of the typical case of its tier.
@@ -130,7 +116,7 @@ pub struct Class {
     /// The pool of its objects; `None` for that of the tier.
     pub pool: Option<Pool>,
     pub framing: Framing,
-    /// Sources of depth, equally likely; empty for exact depth.
+    /// Sources of depth, equally likely.
     pub depth: &'static [DepthSource],
     pub depth_fault: DepthFault,
     /// The source of its masks; `None` for any.
@@ -196,7 +182,7 @@ pub const EXTRA_PART: Class = Class { name: "extra-part", mesh_fault: MeshFault:
 pub const WARPED: Class = Class { name: "warped", mesh_fault: MeshFault::Warped, ..PLAIN };
 /// The mask has holes, islands, lost and foreign regions.
 pub const RAGGED_MASK: Class = Class { name: "ragged-mask", is_ragged: true, ..PLAIN };
-/// Also the conditions of videos and of several views.
+/// Also the conditions of videos.
 pub const SPARSE_SENSOR: Class =
     Class { name: "sparse-sensor", depth: SENSOR, depth_fault: DepthFault::Sparse, ..PLAIN };
 /// Videos of a mesh that is stretched, bent and warped.
@@ -211,10 +197,6 @@ const fn sensor(name: &'static str, depth: &'static [DepthSource]) -> Class {
 
 const fn faulty(name: &'static str, depth_fault: DepthFault) -> Class {
     Class { name, depth: SENSOR, depth_fault, ..PLAIN }
-}
-
-const fn surplus(name: &'static str, kind: Surplus) -> Class {
-    Class { name, mesh_fault: MeshFault::Surplus(kind), ..PLAIN }
 }
 
 /// Classes of the general set by tier.
@@ -261,28 +243,6 @@ pub const COLORS: &[Class] = &[
     PRINTED,
     Class { name: "wrong-colors", has_wrong_colors: true, needs_color: false, ..PRINTED },
 ];
-/// Parts that generators add, of every tier.
-pub const SURPLUS: &[Class] = &[
-    surplus("floaters", Surplus::Floaters),
-    surplus("plate", Surplus::Plate),
-    surplus("fused-plate", Surplus::FusedPlate),
-];
-const fn exact(class: Class) -> Class {
-    Class { depth: &[], ..class }
-}
-/// Exact depth, from which the rows of the monocular set make that of depth models.
-pub const MONOCULAR: &[Class] = &[
-    exact(PLAIN),
-    exact(OCCLUDED),
-    exact(THIN),
-    exact(PLAIN),
-    exact(RAGGED_MASK),
-    exact(BORDER_CUT),
-    exact(MISSING_PART),
-    exact(TINY),
-    exact(WARPED),
-];
-
 /// A tier and a class.
 #[derive(Debug, Clone, Copy)]
 pub struct Conditions {

@@ -7,9 +7,8 @@ pub use std::path::{Path, PathBuf};
 pub use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3, Vec3};
 pub use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-pub(crate) use crate::draws::{between, chance, mixed, normal, sign};
-pub use crate::names::Named;
 pub(crate) use crate::names::named;
+pub(crate) use crate::numbers::{between, chance, mixed, normal, sign};
 pub use sim3align::evidence::frame::Frame;
 pub use sim3align::evidence::observation::Observation;
 pub use sim3align::evidence::photo::Photo;

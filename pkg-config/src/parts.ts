@@ -31,7 +31,6 @@ export type {
   ExtentAxis,
   GuardMode,
   Icp,
-  LayoutErrors,
   PaperDiagnostics,
   PreciseDiagnostics,
   Proportions,

@@ -6,7 +6,6 @@ import { fixed, markdownTable, mean, median, percent, share } from "./table.mjs"
  * @typedef {object} Table
  * @property {string} title
  * @property {readonly string[]} rows names
- * @property {readonly string[]} priors the kinds of mesh
  */
 
 const ours = {
@@ -37,32 +36,22 @@ const guard = Object.fromEntries(
   }),
 );
 
-/**
- * The rows of our own that run on the cases of a kind of mesh, as `sim3align-lab bench --row` takes them.
- * @param {boolean} isFirst whether it is the kind of all tables but one
- */
-export const ownRows = (isFirst) =>
-  Object.entries(
-    isFirst ? { ...ours, ...refinement, ...voxels, ...guard } : { precise: ours.precise, paper: ours.paper },
-  ).map(([name, options]) => `${name}: ${options}`);
+/** The rows of our own, as `sim3align-lab bench --row` takes them. */
+export const ownRows = Object.entries({ ...ours, ...refinement, ...voxels, ...guard }).map(
+  ([name, options]) => `${name}: ${options}`,
+);
 
 /**
  * All tables.
  * @param {readonly string[]} imported names of the rows of other programs
- * @param {readonly string[]} priors the kinds of mesh; all but one table are about the first
  * @returns {Table[]}
  */
-export function tables(imported, priors) {
-  const first = priors.slice(0, 1);
-  const swap = { title: "Mesh prior", rows: ["precise", "paper"], priors };
-  return [
-    { title: "Main table", rows: [...Object.keys(ours), ...imported], priors: first },
-    { title: "ICP and scale", rows: Object.keys(refinement), priors: first },
-    { title: "Voxel size", rows: Object.keys(voxels), priors: first },
-    ...(priors.length > 1 ? [swap] : []),
-    { title: "Scale guard", rows: Object.keys(guard), priors: first },
-  ];
-}
+export const tables = (imported) => [
+  { title: "Main table", rows: [...Object.keys(ours), ...imported] },
+  { title: "ICP and scale", rows: Object.keys(refinement) },
+  { title: "Voxel size", rows: Object.keys(voxels) },
+  { title: "Scale guard", rows: Object.keys(guard) },
+];
 
 /**
  * Columns by the name of the metric. Of a share of 1, a pose that shows nothing has none; of a distance it has no number.
@@ -114,22 +103,18 @@ function cells(results) {
 /**
  * A table as Markdown: every metric as mean (median), and errors. The last row has the metrics of the true poses: no pose can be expected to do better.
  * @param {Table} table
- * @param {(prior: string) => readonly ResultRow[]} resultsOf
+ * @param {readonly ResultRow[]} results
  */
-export function tableMarkdown({ rows, priors }, resultsOf) {
-  const dashes = (/** @type {number} */ count) => Array.from({ length: count }, () => "–");
-  const lines = priors.flatMap((prior) => {
-    const label = (/** @type {string} */ name) => (priors.length > 1 ? `${name}, ${prior} meshes` : name);
-    const measured = rows.map((name) => ({ name, results: resultsOf(prior).filter(({ row }) => row === name) }));
-    const own = measured.filter(({ results }) => results.length > 0);
-    const truths = own[0]?.results.filter(({ truthMetrics }) => truthMetrics) ?? [];
-    const truth = metricCells(truths.map(({ truthMetrics }) => truthMetrics));
-    return [
-      ...own.map(({ name, results }) => [label(name), ...cells(results)]),
-      ...(truths.length > 0 ? [[label("(the true pose)"), ...truth, ...dashes(8), `${truths.length}`]] : []),
-    ];
-  });
-  return markdownTable(head, lines);
+export function tableMarkdown({ rows }, results) {
+  const measured = rows.map((name) => ({ name, found: results.filter(({ row }) => row === name) }));
+  const own = measured.filter(({ found }) => found.length > 0);
+  const truths = own[0]?.found.filter(({ truthMetrics }) => truthMetrics) ?? [];
+  const dashes = Array.from({ length: 8 }, () => "–");
+  const truth = metricCells(truths.map(({ truthMetrics }) => truthMetrics));
+  return markdownTable(head, [
+    ...own.map(({ name, found }) => [name, ...cells(found)]),
+    ...(truths.length > 0 ? [["(the true pose)", ...truth, ...dashes, `${truths.length}`]] : []),
+  ]);
 }
 
 export const notes = `Every metric is the mean over the cases, with the median in brackets. A case without an answer, or whose pose shows nothing where

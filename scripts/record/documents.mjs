@@ -16,14 +16,10 @@ const titles = {
   ...{ "coloured, with a photo": "colors, align", "frames of a video": "videos, all masks" },
   ...{ "by shape": "colors, shape alone", "with colour": "colors, align" },
   ...{ "desks, alone": "scenes, alone", "desks, together": "scenes, together" },
-  ...{ "arranged, alone": "arranged, alone", "arranged, together": "arranged, together" },
-  ...{ "measured depth": "monocular, filled", "affine-invariant depth": "monocular, shifted" },
-  ...{ "affine-invariant disparity": "monocular, disparity", "metric depth, no camera": "monocular, focal-unknown" },
-  "affine-invariant disparity, no camera": "monocular, disparity-focal-unknown",
-  ...{ "blurred across edges": "monocular, blurred", "bent by 2 %": "monocular, bent" },
-  ...{ "the simulated placement": "placements, the generator's own", "`align`": "placements, align" },
-  ...{ "`align`, initial": "placements, align, initial", "`align`, up": "placements, align, up" },
-  ...{ "`alignScene`": "placements, alignScene", "`alignScene`, initial": "placements, alignScene, initial" },
+  ...{ "affine-invariant depth": "models, affine", "affine-invariant disparity": "models, disparity" },
+  "metric depth, no camera": "models, no-camera",
+  "affine-invariant disparity, no camera": "models, disparity-no-camera",
+  ...{ "with placements, alone": "placements, alone", "with placements, together": "placements, together" },
 };
 
 /** The columns of a row in documents: from the number of cases to the confident ones. */

@@ -32,7 +32,7 @@ const sets = [
   { set: "general", part: 0.3, objects: 1 },
   { set: "sensors", part: 0.2, objects: 1 },
   { set: "colors", part: 0.2, objects: 1 },
-  { set: "clutter", part: 0.3, objects: 2 },
+  { set: "scenes", part: 0.3, objects: 2 },
 ];
 /** The largest share of false alarms of a doubt. */
 const MOST = 0.01;
@@ -90,7 +90,7 @@ async function written(set, count) {
   const folder = at("target", "bench", "doubts", `${set}-${count}`);
   await cached(`${folder}.done`, labCode(), [folder], async () => {
     rmSync(folder, { recursive: true, force: true });
-    await runLab(["bench", "--set", set, "--count", `${count}`, "--seed", "11", "--write", folder]);
+    await runLab(["bench", "--set", set, "--count", `${count}`, "--seed", "11", "--split", "--write", folder]);
   });
   return folder;
 }
@@ -101,7 +101,7 @@ async function inputsIn(places, most) {
     ["case-folder.js", "scene-folder.js", "input/resolve.js", "modules/readers.js"].map(compiledModule),
   );
   const isScene = (/** @type {string} */ folder) => existsSync(join(folder, "objects"));
-  const isCase = (/** @type {string} */ folder) => existsSync(join(folder, "mesh.glb"));
+  const isCase = (/** @type {string} */ folder) => existsSync(join(folder, "camera.json"));
   const inputs = [];
   for (const folder of foldersOf(places, (path) => isScene(path) || isCase(path))) {
     const { input, truth, truths } = isScene(folder) ? await readSceneFolder(folder) : await readCaseFolder(folder);
@@ -129,7 +129,7 @@ async function doubtedOf(aligner, inputs) {
     const { name, input, truth } = /** @type {Clean} */ (inputs[index]);
     let codes = alignment.warnings.map((/** @type {{ code: string }} */ { code }) => code);
     if (codes.includes("MESH_DOUBTFUL") && truth !== null) {
-      const known = { truth: truth.transform, symmetry: truth.symmetry, layout: false };
+      const known = { truth: truth.transform, symmetry: truth.symmetry };
       const { errors } = await aligner.evaluate(input, alignment, known);
       const of = [errors.scaleError, errors.rotationErrorDeg, errors.translationErrorRelative];
       const isRight = of.every((error, i) => error <= (RIGHT[i] ?? 0));

@@ -5,7 +5,7 @@
  */
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { environment } from "../bench/results.mjs";
+import { environment, readResults } from "../bench/results.mjs";
 import { markdownTable } from "../bench/table.mjs";
 import { cached } from "../lib/cache.mjs";
 import { labCode, runLab, threadArguments } from "../lib/lab.mjs";
@@ -15,7 +15,7 @@ import { step } from "../lib/step.mjs";
 import { sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
 import { losses } from "./guard.mjs";
 import { extendHistory } from "./history.mjs";
-import { givenSet, resultsOf, sets } from "./sets.mjs";
+import { givenSet, sets } from "./sets.mjs";
 import { cellsOf, head, reliability, rounded, summaries } from "./summary.mjs";
 
 /** The quick record that changes are compared with. */
@@ -50,13 +50,11 @@ export async function record({ quick = false, check, save, out, fresh = false, o
     const file = join(folder, `${set.name}.jsonl`);
     await step(set.title, async (say) => {
       const ran = await cached(`${file}.done`, code, [file], async () => {
-        const prepared = await set.prepare?.(join(folder, set.name));
-        const keep = set.name === "registration" ? "--records" : "--json";
-        await runLab([...set.args(count), ...(prepared ?? []), keep, file, ...threadArguments(threads)]);
+        await runLab([...set.args(count), "--json", file, ...threadArguments(threads)]);
       });
       if (!ran) say("done before");
     });
-    if (existsSync(file)) found.push({ set: set.name, results: resultsOf(set, file) });
+    if (existsSync(file)) found.push({ set: set.name, results: readResults(file) });
   }
   const rows = found.flatMap(({ set, results }) => summaries(set, results));
   console.log(`\n${markdownTable(head, rows.map(cellsOf))}\n`);

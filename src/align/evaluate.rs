@@ -10,8 +10,7 @@ use crate::evidence::observation::Observation;
 use crate::evidence::sample::{MEASURED, Sampling};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
-use crate::metrics::layout::LayoutErrors;
-use crate::metrics::pose_error::{PoseComparison, PoseErrors};
+use crate::metrics::pose_error::{PoseErrors, pose_errors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
 use crate::options::{Options, options};
@@ -27,8 +26,6 @@ options! {
         /// The object's symmetry: the rotation error is the smallest over it. `"auto"` finds it on the surface of the
         /// mesh, once for all calls with the mesh.
         symmetry: Symmetry = Symmetry::Auto, Symmetry;
-        /// Whether to compute `layout` if `truth` is given. Calls that leave it out are several times faster.
-        layout: bool = true, Flag;
         /// Seed of all random draws. The same input and seed give the same bits.
         seed: u32 = 0, Count(0..=u32::MAX);
         /// Upper bound on the depth readings used. Above it, an even random subset is drawn.
@@ -70,8 +67,6 @@ pub struct Evaluation {
     pub metrics: Metrics,
     /// The errors against the truth; `null` where no truth was given.
     pub errors: Option<PoseErrors>,
-    /// The errors of layout against the truth; `null` where no truth was given, or `layout` is false.
-    pub layout: Option<LayoutErrors>,
     /// Conditions that the caller should know about; the result stands.
     pub warnings: Vec<Warning>,
     /// How the scale compares with the initial one.
@@ -137,16 +132,11 @@ pub fn evaluate_prepared(
     warnings.extend(warnings::about_mesh(&prepared.removed_parts()));
     let compared = options.truth.map(|truth| {
         let symmetry = prepared.symmetry(&options.symmetry)?;
-        let comparison = PoseComparison::new(mesh, camera_from_mesh, &truth, &symmetry)?;
-        let errors = comparison.errors()?;
-        let layout = options.layout.then(|| LayoutErrors::of(&comparison, &errors)).transpose()?;
-        Ok((errors, layout))
+        pose_errors(mesh, camera_from_mesh, &truth, &symmetry)
     });
-    let (errors, layout) = compared.transpose()?.unzip();
     Ok(Evaluation {
         metrics,
-        errors,
-        layout: layout.flatten(),
+        errors: compared.transpose()?,
         warnings,
         diagnostics: EvaluationDiagnostics { initial_scale, scale_ratio, collapsed: is_collapsed(scale_ratio) },
     })

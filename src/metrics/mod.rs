@@ -1,13 +1,10 @@
 //! Metrics: agreement of a transform with the observation (as in the paper), and errors relative to the true pose.
 //!
 //! In: an observation, a mesh, a pose, and the evidence sampled from both. Out: [`Metrics`], and errors where the truth is known.
-//! They follow the definitions of the paper and of BOP, not those of the score that a search maximises: a method must not be
+//! They follow the definitions of the paper, not those of the score that a search maximises: a method must not be
 //! judged by its own objective.
 
-pub mod bop;
-pub mod layout;
 pub mod mesh_symmetry;
-pub mod oriented_box;
 pub mod pose_error;
 pub mod silhouette;
 pub mod surface;

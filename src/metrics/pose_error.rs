@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::searchable;
 use super::surface::Mean;
-use super::symmetry::{Symmetry, SymmetryGroup};
+use super::symmetry::SymmetryGroup;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
@@ -41,85 +41,53 @@ pub struct PoseErrors {
 /// under the symmetries of the object, the one with the nearest rotation is used.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`] for a mesh without area, [`ErrorCode::InvalidTransform`] if the distance
-/// between the two overflows f32, and those of [`Symmetry::group`].
-pub fn pose_errors(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symmetry: &Symmetry) -> Result<PoseErrors> {
-    PoseComparison::new(mesh, estimate, truth, &symmetry.group(mesh)?)?.errors()
+/// [`ErrorCode::DegenerateMesh`] for a mesh without area, and [`ErrorCode::InvalidTransform`] if the distance between the
+/// poses overflows f32.
+pub fn pose_errors(
+    mesh: &Mesh,
+    estimate: &Similarity,
+    truth: &Similarity,
+    symmetry: &SymmetryGroup,
+) -> Result<PoseErrors> {
+    let samples = sample_surface(mesh, SAMPLES, 0)?.points;
+    let relative = UnitQuaternion::from_rotation_matrix(&(truth.rotation.inverse() * estimate.rotation));
+    let rotation = symmetry.nearest(&relative);
+
+    // Mesh from mesh: the symmetry rotation about the centroid of the surface.
+    let centroid = SurfaceMoments::of(mesh).centroid;
+    let center = Vector3::from(centroid.to_array());
+    let symmetric =
+        Similarity { scale: 1.0, rotation: rotation.to_rotation_matrix(), translation: center - rotation * center };
+    let truth = truth.compose(&symmetric);
+
+    let at_centroid = || Bounds { min: centroid.as_vec3(), max: centroid.as_vec3() };
+    let bounds = Bounds::of(mesh.positions()).unwrap_or_else(at_centroid);
+    let center = vector3(bounds.min).lerp(&vector3(bounds.max), 0.5);
+    let translation_error_m = (estimate.apply(center) - truth.apply(center)).norm();
+    Ok(PoseErrors {
+        scale_error: (estimate.scale / truth.scale - 1.0).abs(),
+        rotation_error_deg: truth.rotation_angle_to(estimate).to_degrees(),
+        translation_error_m,
+        translation_error_relative: translation_error_m / (mesh.diagonal() * truth.scale),
+        add_s_m: mean_distance(mesh, &samples, &truth, estimate)?,
+    })
 }
 
-/// An estimate next to the equivalent true pose that is nearest to it, with the surface of the mesh.
-pub struct PoseComparison {
-    pub(super) estimate: Similarity,
-    /// The true pose after the symmetry of the mesh that brings it nearest.
-    pub(super) truth: Similarity,
-    /// The box of the mesh, in its frame.
-    pub(super) bounds: Bounds,
-    /// Points on the surface, in the frame of the mesh.
-    pub(super) samples: Vec<Vec3>,
-    /// The surface, in the frame of the mesh.
-    pub(super) tree: TriangleTree,
-    diagonal: f64,
-}
-
-impl PoseComparison {
-    /// Compares poses of a mesh, both camera from mesh.
-    ///
-    /// # Errors
-    /// [`ErrorCode::DegenerateMesh`] for a mesh without area.
-    pub fn new(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symmetry: &SymmetryGroup) -> Result<Self> {
-        let samples = sample_surface(mesh, SAMPLES, 0)?.points;
-        let relative = UnitQuaternion::from_rotation_matrix(&(truth.rotation.inverse() * estimate.rotation));
-        let rotation = symmetry.nearest(&relative);
-
-        // Mesh from mesh: the symmetry rotation about the centroid of the surface.
-        let centroid = SurfaceMoments::of(mesh).centroid;
-        let center = Vector3::from(centroid.to_array());
-        let symmetric =
-            Similarity { scale: 1.0, rotation: rotation.to_rotation_matrix(), translation: center - rotation * center };
-        let at_centroid = || Bounds { min: centroid.as_vec3(), max: centroid.as_vec3() };
-        Ok(Self {
-            estimate: *estimate,
-            truth: truth.compose(&symmetric),
-            bounds: Bounds::of(mesh.positions()).unwrap_or_else(at_centroid),
-            samples,
-            tree: TriangleTree::new(&searchable(mesh)),
-            diagonal: mesh.diagonal(),
-        })
-    }
-
-    /// The errors of the estimate.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidTransform`] if the distance between the poses overflows f32.
-    pub fn errors(&self) -> Result<PoseErrors> {
-        let (estimate, truth) = (&self.estimate, &self.truth);
-        let center = vector3(self.bounds.min).lerp(&vector3(self.bounds.max), 0.5);
-        let translation_error_m = (estimate.apply(center) - truth.apply(center)).norm();
-        Ok(PoseErrors {
-            scale_error: (estimate.scale / truth.scale - 1.0).abs(),
-            rotation_error_deg: truth.rotation_angle_to(estimate).to_degrees(),
-            translation_error_m,
-            translation_error_relative: translation_error_m / (self.diagonal * truth.scale),
-            add_s_m: self.mean_distance(truth, estimate)?,
-        })
-    }
-
-    /// Mean distance of surface points under one pose to the surface under another, metres.
-    pub(super) fn mean_distance(&self, points: &Similarity, surface: &Similarity) -> Result<f64> {
-        let mesh_from_camera = surface.inverse();
-        let mut distance = Mean::default();
-        let query = |i: usize| (vec3(&mesh_from_camera.apply(points.apply(vector3(self.samples[i])))), None);
-        self.tree.nearest_of_each(self.samples.len(), &query, &mut |_, nearest| {
-            distance.add(nearest.map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt() * surface.scale));
-        });
-        distance.value().ok_or_else(|| {
-            Error::new(
-                ErrorCode::InvalidTransform,
-                "transform",
-                "a transform too far from the true pose to measure the distance",
-                "two transforms in the same scene",
-                "Check the units of both: translations are in metres.",
-            )
-        })
-    }
+/// Mean distance of surface points of a mesh under one pose to its surface under another, metres.
+fn mean_distance(mesh: &Mesh, samples: &[Vec3], points: &Similarity, surface: &Similarity) -> Result<f64> {
+    let mesh_from_camera = surface.inverse();
+    let mut distance = Mean::default();
+    let query = |i: usize| (vec3(&mesh_from_camera.apply(points.apply(vector3(samples[i])))), None);
+    TriangleTree::new(&searchable(mesh)).nearest_of_each(samples.len(), &query, &mut |_, nearest| {
+        distance.add(nearest.map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt() * surface.scale));
+    });
+    distance.value().ok_or_else(|| {
+        Error::new(
+            ErrorCode::InvalidTransform,
+            "transform",
+            "a transform too far from the true pose to measure the distance",
+            "two transforms in the same scene",
+            "Check the units of both: translations are in metres.",
+        )
+    })
 }

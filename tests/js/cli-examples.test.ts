@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { chmodSync, cpSync, readdirSync, readFileSync, symlinkSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { before, test } from "node:test";
-import { bopResults, segmentation, writeBop } from "../support/bop.js";
+import { segmentation, writeBop } from "../support/bop.js";
 import { files, folder, pixels, run, shell, writeCase } from "../support/command-line.js";
 import { commandLine, installDir, repository } from "../support/environment.js";
 import { glb, npy, obj, png, writeFiles } from "../support/files.js";
@@ -51,7 +51,6 @@ before(async () => {
     // A target is enough.
     "bop/lmo/test_targets_bop19.json": [{ scene_id: 2, im_id: 3, obj_id: 3, inst_count: 1 }],
     "cnos_lmo-test.json": [{ ...detection, segmentation: await segmentation("000002/mask_visib/000003_000000.png") }],
-    "other_lmo-test.csv": bopResults,
     "bin/sim3align": `#!/bin/sh\nexec "${process.execPath}" "${commandLine}" "$@"\n`,
     "bin/npx": `#!/bin/sh\nexec "$@"\n`,
     "bin/jq": `#!/bin/sh\nexec "${process.execPath}" -p '${follow}' "$1"\n`,

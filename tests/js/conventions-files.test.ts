@@ -141,10 +141,6 @@ test("a scene of several GLB files: extensions and further buffers keep what the
     extensions: {
       KHR_lights_punctual: { lights: [{ type: "point" }] },
       KHR_materials_variants: { variants: [{ name: "red" }, { name: "blue" }] },
-      EXT_structural_metadata: {
-        schema: { id: "facts" },
-        propertyTables: [{ count: 2, properties: { age: { values: 1, offset: 2 } } }],
-      },
     },
   };
   const object = { mesh: glbOf(file, new Uint8Array(36)), transform: truth };
@@ -168,11 +164,17 @@ test("a scene of several GLB files: extensions and further buffers keep what the
   const [channel] = merged.animations[1].channels;
   assert.deepEqual([channel.sampler, channel.target.extensions.KHR_animation_pointer], [0, pointTo(1)]);
   assert.deepEqual(merged.animations[1].samplers, [{ input: 2, output: 3 }]);
-  const { KHR_lights_punctual, KHR_materials_variants, EXT_structural_metadata } = merged.extensions;
+  const { KHR_lights_punctual, KHR_materials_variants } = merged.extensions;
   assert.deepEqual([KHR_lights_punctual.lights.length, KHR_materials_variants.variants.length], [2, 4]);
-  assert.deepEqual(EXT_structural_metadata.schema, { id: "facts" });
-  assert.deepEqual(EXT_structural_metadata.propertyTables[1].properties.age, { values: 3, offset: 2 });
   assert.deepEqual(merged.extensionsUsed, file.extensionsUsed);
+  // Extensions with references that are not moved.
+  const outlined = { ...file, extensions: { ...file.extensions, EXT_structural_metadata: { propertyTables: [] } } };
+  const other = { mesh: glbOf(outlined, new Uint8Array(36)), transform: truth };
+  assert.throws(() => exportSceneGlb([object, other]), {
+    code: "UNSUPPORTED_FORMAT",
+    message: /EXT_structural_metadata/,
+  });
+  assert.ok(exportSceneGlb([other]).length > 0);
 });
 
 test("PLY: three.js reads the vertices and triangles", () => {

@@ -53,8 +53,8 @@ export const views = async (aligner: Aligner, input: ViewsInput) => {
 export const tracked = async (tracker: Tracker) =>
   [await tracker.next({} as never), await tracker.correct({} as never)] as const;
 export const evaluated = async (aligner: Aligner, input: AlignInput) => {
-  const { errors, layout, diagnostics } = await aligner.evaluate(input, {} as never);
-  return { errors, layout, diagnostics };
+  const { errors, diagnostics } = await aligner.evaluate(input, {} as never);
+  return { errors, diagnostics };
 };
 export const registered = async (aligner: Aligner) => {
   const { diagnostics } = await aligner.register(mesh.positions, mesh.positions);

@@ -81,7 +81,7 @@ const values: Record<Method, Record<string, unknown>> = {
   },
   alignViews: { ...shared, ...sizes, quality: "balanced", symmetry: "none", proportions: "axes", metrics: false },
   track: { ...sizes, quality: "best", initial: truth, metrics: true },
-  evaluate: { ...shared, measuredPoints: 64, truth: halfTurned, symmetry: "none", layout: false },
+  evaluate: { ...shared, measuredPoints: 64, truth: halfTurned, symmetry: "none" },
   register: {
     ...{ ...clouds, maxPoints: 200, voxelSize: 0.3, voxelDivisions: 10, fpfhRadiusVoxels: 3 },
     ...{ inlierDistanceVoxels: 0.5, icp: "none", icpIterations: 1, workBudget: 1 },

@@ -67,7 +67,7 @@ pub fn turn_deg(a: &Similarity, b: &Similarity) -> f64 {
 }
 
 pub fn errors(mesh: &Mesh, found: &Similarity, truth: &Similarity) -> PoseErrors {
-    pose_errors(mesh, found, truth, &Symmetry::None).unwrap()
+    pose_errors(mesh, found, truth, &Symmetry::None.group(mesh).unwrap()).unwrap()
 }
 
 /// Panics unless a pose is right: size and place within 5 %, rotation within 10°.

@@ -31,7 +31,7 @@ fn declared(axes: &[([f64; 3], Option<u32>)]) -> Symmetry {
 }
 
 fn errors(mesh: &Mesh, estimate: &Similarity, symmetry: &Symmetry) -> PoseErrors {
-    pose_errors(mesh, estimate, &truth(), symmetry).unwrap()
+    pose_errors(mesh, estimate, &truth(), &symmetry.group(mesh).unwrap()).unwrap()
 }
 
 #[wasm_bindgen_test]

@@ -1,14 +1,12 @@
 /**
  * The dataset of tests/fixtures/bop: three objects (an uneven one, a brick and a can) in four images, each of which hides a
- * part of another; results for it, and the errors and scores that the official toolkit (bop_toolkit_lib) computes for them.
+ * part of another.
  */
 import { cpSync } from "node:fs";
 import { join } from "node:path";
 import { readMask } from "sim3align/formats";
 import { repository } from "./environment.js";
 import { cocoRle, fixture } from "./files.js";
-
-export const bopResults = new TextDecoder().decode(fixture("bop/test_tudl-test.csv"));
 
 /** Writes the dataset; its name is that of the folder. */
 export function writeBop(folder: string): void {

@@ -1,9 +1,11 @@
 //! The calls of the benchmark, and the errors of their poses.
 
 use super::imported::imported;
-use super::options::{Call, Row};
-use super::result::{ResultRow, by_name, codes, three};
-use crate::case::{Case, CaseFrame, CaseObject, MISFIT};
+use super::result::{ResultRow, by_name, codes, described, three};
+use super::row::{Call, Row};
+use super::variants::varied;
+use crate::case::{Case, CaseFrame, CaseObject};
+use crate::clouds::Pair;
 use crate::cost::Meter;
 use crate::effects::monocular::DepthModel;
 use crate::prelude::*;
@@ -13,6 +15,7 @@ use sim3align::align::{align_paper, align_prepared};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
 use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::pose_error::pose_errors;
+use sim3align::register::register;
 use sim3align::report::{Preset, Sim3};
 use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
@@ -22,19 +25,21 @@ use sim3align::track::tracker::Tracker;
 use sim3align::views::align_views;
 use sim3align::views::options::ViewsOptions;
 
-/// Error of the up direction of `up=true`, degrees: about the tilt of a generator's objects.
-const UP_ERROR_DEG: f64 = 5.0;
 /// Fraction of the object that a frame of a video must show for it to count.
 const SHOWN: f64 = 0.4;
+/// Largest errors of a registered pair: the root mean squared distance of the benchmark 3DMatch, metres; and of a free scale,
+/// which is as much at 4 m, the range of a depth camera.
+const RMSE_M: f64 = 0.2;
+const SCALE: f64 = 0.05;
 
 /// The results of a row for a case.
 pub fn run(case: &Case, row: &Row) -> Vec<ResultRow> {
-    let outcome = match (&row.import, row.call) {
-        (None, Call::Scene) => scene(case, row),
-        (None, Call::Views) => views(case, row),
-        (None, Call::Track) => track(case, row),
-        _ => (0..case.objects.len()).map(|k| alone(case, k, row)).collect(),
-    };
+    let outcome = varied(case, row).and_then(|case| match (&row.import, row.call) {
+        (None, Call::Scene) => scene(&case, row),
+        (None, Call::Views) => views(&case, row),
+        (None, Call::Track) => track(&case, row),
+        _ => (0..case.objects.len()).map(|k| alone(&case, k, row)).collect(),
+    });
     outcome.unwrap_or_else(|error| (0..case.objects.len()).map(|k| blank(case, 0, k).with_error(&error)).collect())
 }
 
@@ -53,10 +58,8 @@ fn blank(case: &Case, frame: usize, k: usize) -> ResultRow {
 /// The result with the errors of a pose.
 fn judged(result: ResultRow, object: &CaseObject, frame: &CaseFrame, k: usize, pose: &Similarity) -> ResultRow {
     let Some(truth) = &frame.truths[k] else { return result };
-    if object.class == MISFIT {
-        return result;
-    }
-    let errors = pose_errors(&object.mesh, pose, truth, &object.symmetry);
+    let symmetry = object.symmetry.group(&object.mesh);
+    let errors = symmetry.and_then(|symmetry| pose_errors(&object.mesh, pose, truth, &symmetry));
     result.with_errors(errors.ok().as_ref().map(three))
 }
 
@@ -66,17 +69,8 @@ fn similarity(pose: &Sim3) -> Result<Similarity> {
 
 /// The options of a row for an object.
 fn options_of(case: &Case, k: usize, row: &Row) -> AlignOptions {
-    let object = &case.objects[k];
-    let mut options = row.precise.clone();
-    if row.initial {
-        options.initial = object.initial;
-    }
-    if let (true, Some(plane), Some(truth)) = (row.up, case.plane, &case.frames[0].truths[k]) {
-        let off = Rotation3::from_scaled_axis(Vector3::x() * UP_ERROR_DEG.to_radians());
-        let up = off * (truth.rotation.inverse() * Vector3::from(plane.normal.to_array()));
-        (options.camera_up, options.mesh_up) = (Some(plane.normal.to_array()), Some(up.into()));
-    }
-    options
+    let initial = case.objects[k].initial.filter(|_| row.initial);
+    AlignOptions { initial, ..row.precise.clone() }
 }
 
 /// One object alone.
@@ -89,16 +83,9 @@ fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
     let evaluated = |pose: &Similarity| evaluate(&observation, &object.mesh, pose, &EvaluateOptions::default()).ok();
     let truth = frame.truths[k].as_ref().and_then(evaluated);
     let result = ResultRow { truth_metrics: truth.map(|found| by_name(&found.metrics)), ..result };
-    let given = match (&row.import, row.call) {
-        (Some(folder), _) => {
-            let (pose, seconds) = imported(&result.name, folder);
-            Some((pose, seconds.map(|seconds| 1000.0 * seconds)))
-        }
-        (None, Call::Placement) => object.initial.map(|pose| (Ok(pose), None)),
-        _ => None,
-    };
-    if let Some((pose, ms)) = given {
-        let result = ResultRow { ms, ..result };
+    if let Some(folder) = &row.import {
+        let (pose, seconds) = imported(&result.name, folder);
+        let result = ResultRow { ms: seconds.map(|seconds| 1000.0 * seconds), ..result };
         return Ok(match pose {
             Ok(pose) => {
                 let found = evaluated(&pose);
@@ -130,10 +117,11 @@ fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
 }
 
 /// An object in depth as a depth model gives it, calibrated first.
-fn modelled(case: &Case, k: usize, row: &Row, model: &DepthModel) -> Result<ResultRow> {
+fn modelled(case: &Case, k: usize, row: &Row, model: DepthModel) -> Result<ResultRow> {
     let (frame, object, result) = (&case.frames[0], &case.objects[k], blank(case, 0, k));
     let masks: Vec<&Mask> = frame.masks.iter().flatten().collect();
-    let view = model.predict(&case.name, &frame.depth, &masks, frame.camera)?;
+    let depth = frame.exact.as_ref().unwrap_or(&frame.depth);
+    let view = model.predict(&case.name, depth, &masks, frame.camera)?;
     let (mesh, options) = (object.prepared(row.color), options_of(case, k, row));
     let mask = frame.observation(k, false)?.mask().clone();
     let called = Object { mask: &mask, others: frame.others(k), mesh: &mesh, options: &options };
@@ -217,8 +205,11 @@ fn scene(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
 /// One object in several images.
 fn views(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
     let object = &case.objects[0];
-    let frames = &case.frames[..row.views.unwrap_or(usize::MAX).min(case.frames.len())];
-    let mut views: Vec<_> = frames.iter().map(|frame| frame.view(row.color)).collect();
+    let shown: Vec<usize> = (0..case.frames.len()).filter(|k| case.frames[*k].visible >= SHOWN).collect();
+    let every = shown.len().div_ceil(row.views.unwrap_or(usize::MAX)).max(1);
+    let places: Vec<usize> = shown.into_iter().step_by(every).collect();
+    let frames = || places.iter().map(|k| &case.frames[*k]);
+    let mut views: Vec<_> = frames().map(|frame| frame.view(row.color)).collect();
     let is_known = row.cameras && views.iter().all(|view| view.world_from_camera.is_some());
     if !is_known {
         views.iter_mut().for_each(|view| view.world_from_camera = None);
@@ -230,15 +221,11 @@ fn views(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
     let found = align_views(views, &object.prepared(row.color), &options, &mut Silent)?;
     let (ms, work) = meter.cost();
     let mut results = Vec::new();
-    for (k, (view, frame)) in found.views.iter().zip(frames).enumerate() {
-        // With known cameras, the pose in a wrong view follows from the wrong pose of its camera.
-        if frame.is_wrong && is_known {
-            continue;
-        }
+    for (view, &k) in found.views.iter().zip(&places) {
         let warnings = codes(&found.warnings);
         let scale_sd = found.uncertainty.as_ref().map(|found| found.scale);
         let result = ResultRow { confidence: Some(view.confidence), scale_sd, ms, work, warnings, ..blank(case, k, 0) };
-        results.push(judged(result, object, frame, 0, &similarity(&view.camera_from_mesh)?));
+        results.push(judged(result, object, &case.frames[k], 0, &similarity(&view.camera_from_mesh)?));
     }
     Ok(results)
 }
@@ -272,4 +259,32 @@ fn track(case: &Case, row: &Row) -> Result<Vec<ResultRow>> {
         }
     }
     Ok(results)
+}
+
+/// The result of a row for a pair of clouds: `register`, or another program's answer.
+pub fn registered(pair: &Pair, row: &Row) -> ResultRow {
+    let meter = Meter::start();
+    let (pose, ms) = match &row.import {
+        Some(folder) => {
+            let (pose, seconds) = imported(&pair.name, folder);
+            (pose, seconds.map(|seconds| 1000.0 * seconds))
+        }
+        None => {
+            let [source, target] = [&pair.source, &pair.target]
+                .map(|points| points.iter().flat_map(|p| p.to_array()).map(f64::from).collect::<Vec<_>>());
+            let found = register(&source, &target, &row.register, &mut Silent);
+            let pose = found.and_then(|found| similarity(&found.target_from_source));
+            (pose.map_err(|error| described(&error)), meter.cost().0)
+        }
+    };
+    let result = ResultRow { name: pair.name.clone(), class: pair.overlap.into(), ms, ..ResultRow::default() };
+    let pose = match pose {
+        Ok(pose) => pose,
+        Err(error) => return ResultRow { error: Some(error), ..result.with_errors(None) },
+    };
+    let (truth, rmse) = (&pair.target_from_source, pair.rmse_m(&pose));
+    let (scale, rotation) = ((pose.scale / truth.scale - 1.0).abs(), truth.rotation_angle_to(&pose).to_degrees());
+    let diagonal = Bounds::of(&pair.source).map_or(1.0, |bounds| f64::from((bounds.max - bounds.min).length()));
+    let is_right = Some(rmse <= RMSE_M && scale <= SCALE);
+    ResultRow { strict: is_right, loose: is_right, errors: Some([scale, rotation, rmse / diagonal]), ..result }
 }

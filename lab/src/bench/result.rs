@@ -16,7 +16,8 @@ const STRICT: Errors = [0.05, 10.0, 0.05];
 const LOOSE: Errors = [0.1, 20.0, 0.1];
 
 /// Errors of scale (a share), rotation (degrees, up to symmetry) and place (of the diameter). With depth of a depth model,
-/// those of the apparent size, and of the place in the image relative to the apparent diameter.
+/// those of the apparent size, and of the place in the image relative to the apparent diameter. Of clouds, the last one is the
+/// root mean squared distance of the common surface, relative to the diagonal.
 pub type Errors = [f64; 3];
 
 /// Metrics by their names in the package.

@@ -9,7 +9,6 @@ use crate::prelude::*;
 pub const CAMERA: &str = "camera.json";
 pub const TRUTH: &str = "gt.json";
 pub const CAMERA_POSE: &str = "pose.json";
-pub const PLANE: &str = "plane.json";
 pub const META: &str = "meta.json";
 pub const INITIAL: &str = "initial.json";
 pub const OBJECTS: &str = "objects";
@@ -80,13 +79,6 @@ pub struct MetaFile {
 pub struct CameraPoseFile {
     /// 4 × 4, by rows.
     pub camera_to_world: [[f64; 4]; 4],
-}
-
-/// The content of [`PLANE`]: n·x + d = 0 in the camera frame.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct PlaneFile {
-    pub normal: [f64; 3],
-    pub d: f64,
 }
 
 /// The content of a JSON file.

@@ -7,13 +7,12 @@ use std::sync::Arc;
 use serde::de::DeserializeOwned;
 
 use super::files::{
-    CAMERA, CAMERA_POSE, CameraFile, CameraPoseFile, INITIAL, META, MetaFile, OBJECTS, PLANE, PlaneFile, PoseFile,
-    TRUTH, TruthFile, parsed,
+    CAMERA, CAMERA_POSE, CameraFile, CameraPoseFile, INITIAL, META, MetaFile, OBJECTS, PoseFile, TRUTH, TruthFile,
+    parsed,
 };
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::files::{entries, listed};
 use crate::prelude::*;
-use sim3align::scene::plane::Plane;
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh};
@@ -89,7 +88,6 @@ pub fn read(folder: &Path) -> Result<Case> {
         tags: meta.tags,
         objects: objects.iter().map(|path| object(path, frames.first(), &class)).collect::<Result<_>>()?,
         frames: frames.iter().map(read_frame).collect::<Result<_>>()?,
-        plane: json(folder, PLANE)?.and_then(|PlaneFile { normal, d }| Plane::new(normal.into(), d)),
     })
 }
 
@@ -128,12 +126,12 @@ fn frame(folder: &Path, owners: &[PathBuf]) -> Result<CaseFrame> {
         name: last_name(folder),
         camera: Pinhole::new(camera.fx, camera.fy, camera.cx, camera.cy)?,
         depth,
+        exact: None,
         photo: photo.map(Arc::new),
         world_from_camera: pose.map(|pose| rigid(&pose.camera_to_world)).transpose()?,
         masks: owners.iter().map(mask).collect::<Result<_>>()?,
         truths: owners.iter().map(truth).collect::<Result<_>>()?,
         visible: 1.0,
-        is_wrong: false,
     })
 }
 

@@ -6,11 +6,9 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use serde::Serialize;
-use serde_json::json;
 
 use super::files::{
-    CAMERA, CAMERA_POSE, CameraFile, CameraPoseFile, INITIAL, META, MetaFile, OBJECTS, PLANE, PlaneFile, PoseFile,
-    TRUTH, TruthFile,
+    CAMERA, CAMERA_POSE, CameraFile, CameraPoseFile, INITIAL, META, MetaFile, OBJECTS, PoseFile, TRUTH, TruthFile,
 };
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::files::write;
@@ -28,7 +26,7 @@ impl Case {
         let is_scene = self.objects.len() > 1;
         for (k, object) in self.objects.iter().enumerate() {
             let own = if is_scene { folder.join(OBJECTS).join(&object.name) } else { folder.to_owned() };
-            write(&own.join("mesh.glb"), &glb(&object.mesh))?;
+            write(&own.join("mesh.ply"), &ply(object.mesh.positions(), object.mesh.triangles()))?;
             if let Some(initial) = &object.initial {
                 write_json(&own.join(INITIAL), &PoseFile::from(initial))?;
             }
@@ -40,10 +38,6 @@ impl Case {
         for frame in &self.frames {
             let own = if self.frames.len() > 1 { folder.join(&frame.name) } else { folder.to_owned() };
             frame.write(&own, self.frames.len() > 1)?;
-        }
-        if let Some(plane) = &self.plane {
-            let file = PlaneFile { normal: plane.normal.to_array(), d: plane.d };
-            write_json(&folder.join(PLANE), &file)?;
         }
         let class = self.objects.first().map(|object| object.class.clone());
         let meta = MetaFile { tier: Some(self.tier.clone()), class, tags: self.tags.clone() };
@@ -152,46 +146,20 @@ fn not_encoded(kind: &'static str, error: &dyn core::error::Error) -> Error {
     Error::new(ErrorCode::Internal, "file", format!("an encoder error: {error}"), kind, "Please report it.")
 }
 
-/// Points as binary PLY: float x, y, z.
-pub fn ply_points(points: &[Vec3]) -> Vec<u8> {
-    let (count, xyz) = (points.len(), "property float x\nproperty float y\nproperty float z\n");
-    let header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{xyz}end_header\n");
+/// Points, and triangles if there are any, as binary PLY.
+pub fn ply(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u8> {
+    let (vertices, faces) = (points.len(), triangles.len());
+    let mut header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {vertices}\n");
+    header += "property float x\nproperty float y\nproperty float z\n";
+    if faces > 0 {
+        header += &format!("element face {faces}\nproperty list uchar int vertex_indices\n");
+    }
+    header += "end_header\n";
     let mut bytes = header.into_bytes();
     bytes.extend(points.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
-    bytes
-}
-
-/// A mesh as GLB: one node, one mesh, float positions and 32-bit indices.
-pub fn glb(mesh: &Mesh) -> Vec<u8> {
-    let positions = mesh.positions();
-    let corners = mesh.triangles().as_flattened();
-    let mut binary: Vec<u8> = positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes).collect();
-    let vertex_bytes = binary.len();
-    binary.extend(corners.iter().flat_map(|i| i.to_le_bytes()));
-    let bound = |pick: fn(Vec3, Vec3) -> Vec3| positions.iter().copied().reduce(pick).unwrap_or_default().to_array();
-    let content = json!({
-        "asset": { "version": "2.0", "generator": "sim3align" },
-        "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
-        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
-        "accessors": [
-            { "bufferView": 0, "componentType": 5126, "count": positions.len(), "type": "VEC3",
-                "min": bound(Vec3::min), "max": bound(Vec3::max) },
-            { "bufferView": 1, "componentType": 5125, "count": corners.len(), "type": "SCALAR" },
-        ],
-        "bufferViews": [
-            { "buffer": 0, "byteLength": vertex_bytes },
-            { "buffer": 0, "byteOffset": vertex_bytes, "byteLength": binary.len() - vertex_bytes },
-        ],
-        "buffers": [{ "byteLength": binary.len() }],
-    });
-    let mut text = content.to_string();
-    text.extend(core::iter::repeat_n(' ', text.len().next_multiple_of(4) - text.len()));
-    let mut bytes = b"glTF".to_vec();
-    for word in [2, 28 + text.len() + binary.len(), text.len()] {
-        bytes.extend((word as u32).to_le_bytes());
+    for triangle in triangles {
+        bytes.push(3);
+        bytes.extend(triangle.iter().flat_map(|i| i.to_le_bytes()));
     }
-    bytes.extend([b"JSON".as_slice(), text.as_bytes()].concat());
-    bytes.extend((binary.len() as u32).to_le_bytes());
-    bytes.extend([b"BIN\0".as_slice(), &binary].concat());
     bytes
 }

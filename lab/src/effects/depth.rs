@@ -3,9 +3,9 @@
 use super::edges::edges;
 use super::noise::{Noise, disc};
 use crate::conditions::{Conditions, DepthFault, DepthSource, Tier};
+use crate::numbers::mean;
 use crate::objects::mesh::face;
 use crate::prelude::*;
-use crate::statistics::mean;
 use crate::world::Placed;
 use crate::world::view::Rendering;
 use sim3align_geometry::components::{Component, components};
@@ -45,10 +45,6 @@ pub fn read(
 ) -> Result<Readings> {
     let Conditions { tier, class } = conditions;
     let view = &rendering.view;
-    if class.depth.is_empty() {
-        let depth = DepthMap::from_metres(view.width, view.height, rendering.depth.clone())?;
-        return Ok(Readings { depth, bias: 1.0, tags: vec!["exact"], drifts: vec![0.0; things.len()] });
-    }
     let source = class.depth[random.below(class.depth.len())];
     let is_wide = class.depth_fault == DepthFault::WideShadow;
     let source = if is_wide { DepthSource::StructuredLight } else { source };

@@ -1,44 +1,18 @@
-//! Simulates generative models that reconstruct an object from one photo: two styles of being wrong.
+//! Simulates generative models that reconstruct an object from one photo: detailed and right where seen up to
+//! a slight warp, the rest invented, some small part lost or added. The truth is the similarity of the object's own frame: what
+//! the faults do to size and pose of the whole is taken out before the mesh gets a frame of its own.
 
 use crate::conditions::{Conditions, EXTRA_PART, MISSING_PART, MeshFault, PLAIN, Tier, WARPED};
-use crate::objects::mesh::{
-    bounds, box_of, clustered, compact, corners_of, face, joined, mapped, neighbors, normals, paths, with_vertices,
-};
+use crate::objects::mesh::{bounds, clustered, compact, corners_of, face, joined, neighbors, normals, paths};
 use crate::objects::solid::Solid;
 use crate::prelude::*;
 use crate::world::Placed;
 use crate::world::view::Rendering;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-use sim3align_geometry::decimate::decimate;
 
 /// Random streams of a mesh, and of the quality of the meshes of scenes.
 pub const MESH_STREAM: u64 = 3;
 const QUALITY_STREAM: u64 = 19;
-/// Pixels over which the smooth prior's best fit is taken, at most.
-const FITTED_PIXELS: usize = 4000;
-/// Passes of smoothing that melt details.
-const MELTING_PASSES: usize = 3;
-/// Triangles of a smooth prior, about.
-const SMOOTH_TRIANGLES: usize = 8000;
-
-named! {
-    /// The style of the generated mesh.
-    ///
-    /// The truth of both is the similarity of the object's own frame: what a prior's faults do to the size and the pose of
-    /// the whole is taken out before the mesh gets a frame of its own.
-    pub enum Prior: "prior" {
-        /// As SAM 3D Objects: detailed and right where seen up to a slight warp, the rest invented, some small part lost or
-        /// added. Fitted back to the object by area.
-        Detailed = "detailed",
-        /// As TripoSR, whose volume is coarse: details melt, thin parts thicken, and the mesh is flattened along the line of
-        /// sight to 0.6 to 0.85 of its depth.
-        ///
-        /// No similarity undoes a flattening. The truth is the one that brings the flattened side that was *seen* back to
-        /// where it was: turn and place by the least squared distance over its pixels, size by that across the line of
-        /// sight, so that the picture agrees as far as it can.
-        Smooth = "smooth",
-    }
-}
 
 /// A generated mesh in the world frame, and its simulated errors.
 #[derive(Debug)]
@@ -48,27 +22,21 @@ pub struct Generated {
     pub tags: Vec<&'static str>,
 }
 
-impl Prior {
-    /// The mesh of an object of a scene, whose quality is drawn.
-    pub fn generate(self, placed: &Placed, rendering: &Rendering, seed: u64) -> Result<Generated> {
-        let random = &mut Random::new(seed, QUALITY_STREAM);
-        if self == Self::Smooth {
-            return smooth(placed, rendering, random);
-        }
-        let tier = match random.uniform() {
-            u if u < 0.3 => Tier::Easy,
-            u if u < 0.85 => Tier::Medium,
-            _ => Tier::Hard,
-        };
-        let class = match random.uniform() {
-            u if u < 0.1 => &MISSING_PART,
-            u if u < 0.18 => &EXTRA_PART,
-            u if u < 0.28 => &WARPED,
-            _ => &PLAIN,
-        };
-        let random = &mut Random::new(seed, MESH_STREAM);
-        generate(placed, rendering, Conditions { tier, class }, random)
-    }
+/// The mesh of an object of a scene, whose quality is drawn.
+pub fn generate_any(placed: &Placed, rendering: &Rendering, seed: u64) -> Result<Generated> {
+    let random = &mut Random::new(seed, QUALITY_STREAM);
+    let tier = match random.uniform() {
+        u if u < 0.3 => Tier::Easy,
+        u if u < 0.85 => Tier::Medium,
+        _ => Tier::Hard,
+    };
+    let class = match random.uniform() {
+        u if u < 0.1 => &MISSING_PART,
+        u if u < 0.18 => &EXTRA_PART,
+        u if u < 0.28 => &WARPED,
+        _ => &PLAIN,
+    };
+    generate(placed, rendering, Conditions { tier, class }, &mut Random::new(seed, MESH_STREAM))
 }
 
 /// Magnitude of each error.
@@ -114,7 +82,7 @@ pub fn generate(
     let (Conditions { tier, class }, object, original) = (conditions, &placed.object, &placed.mesh);
     let is_symmetric = !placed.symmetry.is_empty();
     // Decimation would tear a thin object.
-    let is_thin = matches!(object.family, "spoon" | "scissors");
+    let is_thin = object.family == "spoon";
     let warped = class.mesh_fault == MeshFault::Warped;
     let strength = Strength::draw(random, tier, warped, is_symmetric, is_thin);
     let diagonal = object.diagonal();
@@ -252,57 +220,4 @@ fn blob(positions: &[Vec3], diagonal: f64, random: &mut Random) -> Solid {
     let mut solid = Solid::default();
     solid.at(DAffine3::from_translation(spot)).ellipsoid(radii);
     solid
-}
-
-fn smooth(placed: &Placed, rendering: &Rendering, random: &mut Random) -> Result<Generated> {
-    let blur = if chance(random, 0.25) { between(random, 0.014, 0.018) } else { between(random, 0.01, 0.014) };
-    let flattened = between(random, 0.6, 0.85);
-    let mesh = decimate(&melted(&placed.mesh, blur)?, SMOOTH_TRIANGLES);
-    let (view, world_from_camera) = (&rendering.view, rendering.view.camera_from_world.inverse());
-    let shown: Vec<usize> = rendering.object_pixels().map(|(i, _)| i).collect();
-    let every = shown.len().div_ceil(FITTED_PIXELS).max(1);
-    let point = |&i: &usize| view.world_point(&world_from_camera, i, rendering.object_depth[i]);
-    let seen: Vec<Vector3<f64>> = shown.iter().step_by(every).map(|i| Vector3::from(point(i).to_array())).collect();
-    let middle = seen.iter().sum::<Vector3<f64>>() / seen.len().max(1) as f64;
-    let away = (middle - world_from_camera.translation).normalize();
-    let flatten = Matrix3::identity() - away * away.transpose() * (1.0 - flattened);
-    let flat = |p: Vector3<f64>| middle + flatten * (p - middle);
-    let back = best_fit(&seen, flat, middle, away)?;
-    Ok(Generated { mesh: mapped(&mesh, |p| vec3(&back.apply(flat(vector3(*p)))))?, tags: vec!["melted", "flattened"] })
-}
-
-/// A mesh whose details melt and whose thin parts thicken: inflated by a share of its longest side, and smoothed over about
-/// as much.
-fn melted(mesh: &Mesh, share: f64) -> Result<Mesh> {
-    let (low, high) = box_of(mesh);
-    let cell = share * (high - low).max_element();
-    let coarse = clustered(mesh, cell, DVec3::ZERO)?;
-    let around = neighbors(&coarse);
-    let points = coarse.positions().iter().zip(normals(&coarse));
-    let mut positions: Vec<DVec3> = points.map(|(p, normal)| p.as_dvec3() + normal * (0.7 * cell)).collect();
-    for _ in 0..MELTING_PASSES {
-        positions = smoothed(&positions, &around);
-    }
-    with_vertices(&coarse, positions.iter().map(|p| p.as_vec3()))
-}
-
-/// The similarity that best brings the seen side, which became flat, back to where it was: in its turn and its place by
-/// the distance in space, in its size by that across the line of sight. (By the distance in space, a deep object would
-/// be too large in the picture, to make up for some of the depth that it lost.)
-fn best_fit(
-    seen: &[Vector3<f64>],
-    flat: impl Fn(Vector3<f64>) -> Vector3<f64>,
-    middle: Vector3<f64>,
-    away: Vector3<f64>,
-) -> Result<Similarity> {
-    let pairs = seen.iter().map(|&p| Pair { source: flat(p), target: p, weight: 1.0 });
-    let rotation = umeyama(pairs, ScaleMode::Free).unwrap_or_else(|_| Similarity::identity()).rotation;
-    let across = |v: Vector3<f64>| v - away * away.dot(&v);
-    let (mut product, mut square) = (0.0, 0.0);
-    for &p in seen {
-        let (from, to) = (across(rotation * (flat(p) - middle)), across(p - middle));
-        (product, square) = (product + from.dot(&to), square + from.norm_squared());
-    }
-    let scale = if square > 0.0 { product / square } else { 1.0 };
-    Similarity::from_parts(scale, *rotation.matrix(), middle - rotation * middle * scale)
 }

@@ -9,4 +9,3 @@ pub mod monocular;
 pub mod noise;
 pub mod painter;
 pub mod photo;
-pub mod surplus;

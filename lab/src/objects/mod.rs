@@ -1,11 +1,9 @@
 //! Procedural objects: metres, z up, standing on the plane z = 0.
 
-mod figures;
-mod kitchen;
+mod families;
 pub mod mesh;
 pub mod print;
 pub mod solid;
-mod tools;
 
 use solid::Solid;
 
@@ -46,14 +44,12 @@ pub enum Pool {
     Detailed,
     All,
     Thin,
-    /// Objects that look almost the same after a half turn: phone, toy car, banana.
+    /// Objects that look almost the same after a half turn.
     Ambiguous,
     /// Objects that can lose a part without losing their orientation.
     Losable,
     /// Shapes that do not determine the orientation.
     Symmetric,
-    /// All that fit on a desk.
-    Desk,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,7 +57,6 @@ enum Kind {
     Common,
     Thin,
     Ambiguous,
-    Furniture,
     Symmetric,
 }
 
@@ -70,27 +65,24 @@ struct Family(&'static str, fn(&mut Draft, &mut Random), Kind);
 
 /// The box, which is the most common symmetric shape, is drawn twice as often.
 const FAMILIES: &[Family] = &[
-    Family("mug", kitchen::mug, Kind::Common),
-    Family("bottle", kitchen::bottle, Kind::Common),
-    Family("bowl", kitchen::bowl, Kind::Common),
-    Family("teapot", kitchen::teapot, Kind::Common),
-    Family("spoon", kitchen::spoon, Kind::Thin),
-    Family("hammer", tools::hammer, Kind::Common),
-    Family("drill", tools::drill, Kind::Common),
-    Family("scissors", tools::scissors, Kind::Thin),
-    Family("box", tools::carton, Kind::Common),
-    Family("phone", tools::phone, Kind::Ambiguous),
-    Family("chair", figures::chair, Kind::Furniture),
-    Family("shoe", figures::shoe, Kind::Common),
-    Family("animal", figures::animal, Kind::Common),
-    Family("car", figures::car, Kind::Ambiguous),
-    Family("banana", figures::banana, Kind::Ambiguous),
-    Family("box", tools::carton, Kind::Symmetric),
-    Family("block", tools::block, Kind::Symmetric),
-    Family("book", tools::book, Kind::Symmetric),
-    Family("can", kitchen::can, Kind::Symmetric),
-    Family("bottle", kitchen::bottle, Kind::Symmetric),
-    Family("box", tools::carton, Kind::Symmetric),
+    Family("mug", families::mug, Kind::Common),
+    Family("bottle", families::bottle, Kind::Common),
+    Family("bowl", families::bowl, Kind::Common),
+    Family("box", families::carton, Kind::Common),
+    Family("drill", families::drill, Kind::Common),
+    Family("shoe", families::shoe, Kind::Common),
+    Family("animal", families::animal, Kind::Common),
+    Family("spoon", families::spoon, Kind::Thin),
+    Family("hammer", families::hammer, Kind::Thin),
+    Family("phone", families::phone, Kind::Ambiguous),
+    Family("car", families::car, Kind::Ambiguous),
+    Family("banana", families::banana, Kind::Ambiguous),
+    Family("box", families::carton, Kind::Symmetric),
+    Family("block", families::block, Kind::Symmetric),
+    Family("book", families::book, Kind::Symmetric),
+    Family("can", families::can, Kind::Symmetric),
+    Family("bottle", families::bottle, Kind::Symmetric),
+    Family("box", families::carton, Kind::Symmetric),
 ];
 
 impl Family {
@@ -101,16 +93,14 @@ impl Family {
     }
 
     fn is_in(&self, pool: Pool) -> bool {
-        let is_common = matches!(self.2, Kind::Common | Kind::Furniture);
         match pool {
-            Pool::Common => is_common,
-            Pool::Detailed => is_common || self.2 == Kind::Thin,
+            Pool::Common => self.2 == Kind::Common,
+            Pool::Detailed => matches!(self.2, Kind::Common | Kind::Thin),
             Pool::All => self.2 != Kind::Symmetric,
             Pool::Thin => self.2 == Kind::Thin,
             Pool::Ambiguous => self.2 == Kind::Ambiguous,
-            Pool::Losable => self.2 != Kind::Symmetric && !self.draft(&mut Random::new(0, 0)).losable.is_empty(),
+            Pool::Losable => !self.draft(&mut Random::new(0, 0)).losable.is_empty(),
             Pool::Symmetric => self.2 == Kind::Symmetric,
-            Pool::Desk => !matches!(self.2, Kind::Symmetric | Kind::Furniture),
         }
     }
 }

@@ -50,7 +50,7 @@ impl Solid {
             circle(segments).map(|[x, y]| DVec3::new(radius * scale[0] * x, radius * scale[1] * y, z)).collect()
         };
         let rings: Vec<Vec<DVec3>> = middle.iter().map(ring).collect();
-        self.skin(&rings, Some([DVec3::new(0.0, 0.0, first[1]), DVec3::new(0.0, 0.0, last[1])]));
+        self.skin(&rings, [DVec3::new(0.0, 0.0, first[1]), DVec3::new(0.0, 0.0, last[1])]);
     }
 
     /// An ellipsoid about the frame's origin.
@@ -101,16 +101,7 @@ impl Solid {
                 ring(point, tangent, across, radius(share).map(|r| r * cap), segments)
             })
             .collect();
-        self.skin(&rings, Some([first, last]));
-    }
-
-    /// An ellipse moved along a closed path; the last point is not the first again.
-    pub fn ring(&mut self, path: &[DVec3], across: DVec3, radii: [f64; 2], segments: u32) {
-        let n = path.len();
-        let rings: Vec<Vec<DVec3>> = (0..n)
-            .map(|i| ring(path[i], (path[(i + 1) % n] - path[(i + n - 1) % n]).normalize(), across, radii, segments))
-            .collect();
-        self.skin(&rings, None);
+        self.skin(&rings, [first, last]);
     }
 
     /// A box about the frame's origin with edges and corners rounded by `rounding`.
@@ -138,33 +129,21 @@ impl Solid {
         self.outward(start);
     }
 
-    /// Joins rings of equally many points to each other, and either the outermost to a point each or the last to the
-    /// first.
-    fn skin(&mut self, rings: &[Vec<DVec3>], ends: Option<[DVec3; 2]>) {
+    /// Joins rings of equally many points to each other, and the outermost to a point each.
+    fn skin(&mut self, rings: &[Vec<DVec3>], ends: [DVec3; 2]) {
+        let Some(n) = rings.first().map(|ring| ring.len() as u32) else { return };
         let start = self.triangles.len();
-        let starts: Vec<u32> = rings
-            .iter()
-            .map(|ring| {
-                let first = self.positions.len() as u32;
-                ring.iter().for_each(|&p| {
-                    self.vertex(p);
-                });
-                first
-            })
-            .collect();
-        let (Some(&low), Some(&high), Some(n)) = (starts.first(), starts.last(), rings.first().map(|r| r.len() as u32))
-        else {
-            return;
-        };
-        let ends = ends.map(|ends| ends.map(|p| self.vertex(p)));
-        let closing = if ends.is_none() { vec![[high, low]] } else { Vec::new() };
-        let bands: Vec<[u32; 2]> = starts.windows(2).map(|w| [w[0], w[1]]).chain(closing).collect();
+        let low = self.positions.len() as u32;
+        rings.iter().flatten().for_each(|&p| {
+            self.vertex(p);
+        });
+        let high = self.positions.len() as u32 - n;
+        let [first, last] = ends.map(|p| self.vertex(p));
         for k in 0..n {
             let next = (k + 1) % n;
-            if let Some([first, last]) = ends {
-                self.triangles.extend([[first, low + next, low + k], [last, high + k, high + next]]);
-            }
-            for [from, to] in &bands {
+            self.triangles.extend([[first, low + next, low + k], [last, high + k, high + next]]);
+            for from in (low..high).step_by(n as usize) {
+                let to = from + n;
                 self.triangles.extend([[from + k, from + next, to + k], [from + next, to + next, to + k]]);
             }
         }
@@ -240,16 +219,6 @@ fn along(path: &[DVec3], lengths: &[f64], length: f64) -> (DVec3, DVec3) {
     let span = (lengths[i + 1] - lengths[i]).max(1e-12);
     let share = ((length - lengths[i]) / span).clamp(0.0, 1.0);
     (path[i].lerp(path[i + 1], share), direction(i).lerp(direction(i + 1), share).normalize_or_zero())
-}
-
-/// Points on an arc of an ellipse about the frame's origin, in the plane of two vectors, both ends included.
-pub fn arc(centre: DVec3, cosine_axis: DVec3, sine_axis: DVec3, from: f64, to: f64, steps: u32) -> Vec<DVec3> {
-    (0..=steps)
-        .map(|i| {
-            let (sine, cosine) = libm::sincos(from + (to - from) * f64::from(i) / f64::from(steps));
-            centre + cosine_axis * cosine + sine_axis * sine
-        })
-        .collect()
 }
 
 /// A path of straight pieces with their corners cut round: Chaikin's scheme, three times.

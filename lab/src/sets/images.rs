@@ -3,19 +3,19 @@
 use std::sync::Arc;
 
 use crate::case::{CaseFrame, CaseObject};
-use crate::conditions::{Conditions, MeshFault};
+use crate::conditions::Conditions;
 use crate::effects::depth;
 use crate::effects::generator::Generated;
 use crate::effects::mask::mask_of;
 use crate::effects::painter::paint;
 use crate::effects::photo::take;
-use crate::objects::mesh::{canonicalise, declared, mapped};
+use crate::objects::mesh::{canonicalise, declared};
 use crate::prelude::*;
 use crate::world::view::{Rendering, View};
 use crate::world::{Placed, World};
 use sim3align_geometry::order::median;
 
-/// Image size of scenes, views and videos.
+/// Image size of scenes and videos.
 pub const SIZE: [usize; 2] = [640, 480];
 
 /// Random streams of the parts of a case, besides that of the mesh: a change to one part leaves the others unchanged.
@@ -76,13 +76,13 @@ pub fn image(
     let frame = CaseFrame {
         name,
         depth: readings.depth,
+        exact: None,
         camera: view.camera,
         photo: photo.map(Arc::new),
         world_from_camera: Some(view.camera_from_world.inverse()),
         masks,
         truths,
         visible: 1.0 - renderings.first().map_or(0.0, |rendering| rendering.hidden),
-        is_wrong: false,
     };
     Ok(Made { frame, tags, missing })
 }
@@ -98,19 +98,11 @@ pub fn object(
 ) -> Result<(CaseObject, Similarity)> {
     let random = &mut Random::new(seed, COLOR_STREAM + 1);
     let (mesh, world_from_mesh) = canonicalise(&generated.mesh, seed)?;
-    let surplus = match conditions.class.mesh_fault {
-        MeshFault::Surplus(kind) => {
-            let mesh_from_world = world_from_mesh.inverse();
-            let with_parts = kind.added_to(&generated.mesh, random)?;
-            Some(mapped(&with_parts, |p| vec3(&mesh_from_world.apply(vector3(*p))))?)
-        }
-        _ => None,
-    };
     let eye = rendering.view.eye();
     let colors =
         placed.print.as_ref().map(|print| paint(&mesh, &world_from_mesh, (placed, print), eye, conditions, random));
     let needs_color = conditions.class.needs_color;
     let symmetry = if needs_color { Symmetry::None } else { declared(&placed.symmetry, &world_from_mesh) };
     let colors = colors.transpose()?;
-    Ok((CaseObject { name, class, mesh, surplus, colors, symmetry, initial: None }, world_from_mesh))
+    Ok((CaseObject { name, class, mesh, surplus: None, colors, symmetry, initial: None }, world_from_mesh))
 }

@@ -4,11 +4,10 @@ use super::images::{OBJECT_STREAM, SCENE_STREAM, SIZE, image, object};
 use super::single::MIN_MASK_PX;
 use crate::case::Case;
 use crate::conditions::{Conditions, PLAIN, RAGGED_MASK, Tier};
-use crate::effects::generator::Prior;
+use crate::effects::generator::generate_any;
 use crate::prelude::*;
 use crate::world::view::{Rendering, View};
 use crate::world::{World, unit};
-use sim3align::scene::plane::Plane;
 
 /// Range of the distance of the middle of the objects, metres.
 const DISTANCE_M: [f64; 2] = [0.5, 1.6];
@@ -20,14 +19,6 @@ const LEAST_VISIBLE: f64 = 0.35;
 const MOST_CUT: f64 = 0.2;
 /// The largest share of an object without a reading.
 const MOST_MISSING: f64 = 0.45;
-/// Objects of the arranged scenes, in turn.
-const ARRANGED: [usize; 8] = [4, 2, 6, 3, 8, 5, 12, 7];
-/// Standard deviations of simulated placements: of the logarithm of the size, of the turn about each axis (degrees) and of
-/// the place along each (of the diameter). Their medians are those of 16 objects that SAM 3D Objects placed: 3.6 %, 5.8°,
-/// 4.4 %.
-const PLACEMENT: (f64, f64, f64) = (0.0534, 3.77, 0.0286);
-const PLACEMENT_STREAM: u64 = 33;
-
 /// The number of objects of a scene: of 50 scenes, 26 have four, 17 three and 7 two, which makes 338 of 100 scenes.
 fn objects_of(index: usize) -> usize {
     match 21 * index % 50 {
@@ -38,48 +29,20 @@ fn objects_of(index: usize) -> usize {
 }
 
 /// A scene; `None` if no camera shows enough of its objects.
-pub fn draw(index: usize, seed: u64, is_arranged: bool, prior: Prior) -> Result<Option<Case>> {
-    let objects = if is_arranged { ARRANGED[index % ARRANGED.len()] } else { objects_of(index) };
-    let world = World::desk(objects, is_arranged, &mut Random::new(seed, OBJECT_STREAM))?;
+pub fn draw(index: usize, seed: u64) -> Result<Option<Case>> {
+    let world = World::desk(objects_of(index), &mut Random::new(seed, OBJECT_STREAM))?;
     let random = &mut Random::new(seed, SCENE_STREAM);
-    // Every tenth scene or so may show an object that the border cuts; of the arranged ones, every fourth.
-    let too_near = chance(random, if is_arranged { 0.25 } else { 0.1 });
+    // Every tenth scene or so may show an object that the border cuts.
+    let too_near = chance(random, 0.1);
     for view in 0..VIEWS {
         let (renderings, together) = camera(&world, too_near, random)?.see(&world);
-        let masked = shown_enough(&world, &renderings, if too_near { MOST_CUT } else { 0.0 }, random);
-        let count = masked.iter().filter(|masked| **masked).count();
-        // An object that an arranged scene hardly shows is one of the things without a mask.
-        let is_enough = if is_arranged { count >= 2 && 3 * count >= 2 * objects } else { count == objects };
-        if is_enough {
-            let seed = mixed([seed, view]);
-            if let Some(case) = read(index, &world, (&renderings, &together), &masked, prior, seed)? {
-                return Ok(Some(case));
-            }
+        if shows_enough(&world, &renderings, if too_near { MOST_CUT } else { 0.0 }, random)
+            && let Some(case) = read(index, &world, (&renderings, &together), mixed([seed, view]))?
+        {
+            return Ok(Some(case));
         }
     }
     Ok(None)
-}
-
-/// A scene whose meshes are placed with about the errors of SAM 3D Objects.
-pub fn placed(index: usize, seed: u64) -> Result<Option<Case>> {
-    let Some(mut case) = draw(index, seed, false, Prior::Detailed)? else { return Ok(None) };
-    for (k, object) in case.objects.iter_mut().enumerate() {
-        let random = &mut Random::new(mixed([seed, k as u64]), PLACEMENT_STREAM);
-        let truth = case.frames[0].truths[k];
-        object.initial = truth.map(|truth| misplaced(&object.mesh, &truth, random)).transpose()?;
-    }
-    Ok(Some(case))
-}
-
-/// A pose with the errors of a simulated placement, about the middle of the mesh.
-fn misplaced(mesh: &Mesh, truth: &Similarity, random: &mut Random) -> Result<Similarity> {
-    let middle = Bounds::of(mesh.positions()).map_or(Vec3::ZERO, |bounds| bounds.center());
-    let (size, turn, place) = PLACEMENT;
-    let mut vector = |deviation: f64| Vector3::from_fn(|_, _| deviation * normal(random));
-    let scale = truth.scale * libm::exp(vector(size).x);
-    let rotation = truth.rotation * Rotation3::from_scaled_axis(vector(turn.to_radians()));
-    let moved = truth.apply(vector3(middle)) + vector(place * truth.scale * mesh.diagonal());
-    Similarity::from_parts(scale, *rotation.matrix(), moved - rotation * vector3(middle) * scale)
 }
 
 /// A camera that looks at the objects on a desk, so close in some cases that the border may cut them.
@@ -98,8 +61,8 @@ fn camera(world: &World, too_near: bool, random: &mut Random) -> Result<View> {
     View::at(SIZE, camera, eye, target - eye, between(random, -4.0, 4.0).to_radians())
 }
 
-/// For each object, whether the image shows enough of it to determine its pose.
-fn shown_enough(world: &World, renderings: &[Rendering], most_cut: f64, random: &mut Random) -> Vec<bool> {
+/// Whether the image shows enough of each object to determine its pose.
+fn shows_enough(world: &World, renderings: &[Rendering], most_cut: f64, random: &mut Random) -> bool {
     let is_shown = |(rendering, placed): (&Rendering, _)| {
         rendering.visible_px() >= MIN_MASK_PX
             && rendering.visible_share() >= LEAST_VISIBLE
@@ -108,7 +71,7 @@ fn shown_enough(world: &World, renderings: &[Rendering], most_cut: f64, random: 
             // A mug whose handle is out of sight: no case to count on, though one that occurs.
             && (rendering.shows_key(placed) || chance(random, 0.15))
     };
-    renderings.iter().zip(&world.objects).map(is_shown).collect()
+    renderings.iter().zip(&world.objects).all(is_shown)
 }
 
 /// Depth, masks and meshes of a view; `None` where they leave too little of an object.
@@ -116,8 +79,6 @@ fn read(
     index: usize,
     world: &World,
     (renderings, together): (&[Rendering], &Rendering),
-    masked: &[bool],
-    prior: Prior,
     seed: u64,
 ) -> Result<Option<Case>> {
     let random = &mut Random::new(seed, SCENE_STREAM);
@@ -130,36 +91,27 @@ fn read(
     let of_masks: Vec<Conditions> = renderings.iter().map(|_| of_mask(random)).collect();
     let made = image("frame_00".into(), world, (renderings, together), (of_depth, &of_masks), seed)?;
     let mut frame = made.frame;
-    let (mut objects, mut masks, mut truths) = (Vec::new(), Vec::new(), Vec::new());
-    for k in (0..renderings.len()).filter(|k| masked[*k]) {
-        let (rendering, placed) = (&renderings[k], &world.objects[k]);
+    let mut objects = Vec::new();
+    for (k, (rendering, placed)) in renderings.iter().zip(&world.objects).enumerate() {
         let pixels = frame.masks[k].iter().flat_map(|mask| mask.data()).filter(|m| **m != 0).count();
         if pixels < MIN_MASK_PX || made.missing[k] > MOST_MISSING {
             return Ok(None);
         }
-        let seed = mixed([seed, k as u64, prior as u64]);
-        let generated = prior.generate(placed, rendering, seed)?;
-        let name = format!("{k}-{}", placed.object.family);
-        let class = placed.stance.as_str().to_owned();
-        let (object, world_from_mesh) = object(name, class, (placed, rendering), &generated, of_depth, seed)?;
+        let seed = mixed([seed, k as u64]);
+        let generated = generate_any(placed, rendering, seed)?;
+        let family = placed.object.family;
+        let (object, world_from_mesh) =
+            object(format!("{k}-{family}"), family.into(), (placed, rendering), &generated, of_depth, seed)?;
         objects.push(object);
-        masks.push(frame.masks[k].take());
-        truths.push(frame.truths[k].map(|camera_from_world| camera_from_world.compose(&world_from_mesh)));
+        frame.truths[k] = frame.truths[k].map(|camera_from_world| camera_from_world.compose(&world_from_mesh));
     }
-    // The objects rest on z = 0 of the world; each has a metric of its own, of which that of the first counts.
-    let pose = frame.truths[0].unwrap_or_else(Similarity::identity);
-    let normal = pose.rotation * Vector3::z();
-    let plane = Plane::new(DVec3::from_array(normal.into()), -normal.dot(&pose.translation));
-    let visible =
-        renderings.iter().zip(masked).filter(|(_, masked)| **masked).map(|(rendering, _)| rendering.visible_share());
-    let visible = visible.fold(1.0, f64::min);
-    let tier = match visible {
+    frame.visible = renderings.iter().map(Rendering::visible_share).fold(1.0, f64::min);
+    let tier = match frame.visible {
         v if v > 0.85 => Tier::Easy,
         v if v > 0.6 => Tier::Medium,
         _ => Tier::Hard,
     };
-    frame = crate::case::CaseFrame { masks, truths, visible, ..frame };
     let tags = made.tags.into_iter().map(str::to_owned).collect();
     let name = format!("{index:03}");
-    Ok(Some(Case { name, tier: tier.as_str().into(), tags, objects, frames: vec![frame], plane }))
+    Ok(Some(Case { name, tier: tier.as_str().into(), tags, objects, frames: vec![frame] }))
 }

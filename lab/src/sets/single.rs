@@ -48,6 +48,8 @@ pub fn draw(index: usize, seed: u64, conditions: Conditions) -> Result<Option<Ca
     let (object, world_from_mesh) =
         object(family.into(), class.name.into(), (placed, rendering), &generated, conditions, seed)?;
     let mut frame = made.frame;
+    let View { width, height, .. } = view;
+    frame.exact = Some(DepthMap::from_metres(width, height, together.depth)?);
     frame.truths[0] = frame.truths[0].map(|camera_from_world| camera_from_world.compose(&world_from_mesh));
     let tags = made.tags.into_iter().chain(generated.tags).map(str::to_owned).collect();
     Ok(Some(Case {
@@ -56,7 +58,6 @@ pub fn draw(index: usize, seed: u64, conditions: Conditions) -> Result<Option<Ca
         tags,
         objects: vec![object],
         frames: vec![frame],
-        plane: None,
     }))
 }
 

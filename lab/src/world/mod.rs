@@ -1,6 +1,6 @@
 //! Scenes: objects and what stands around them, and cameras that see them.
 
-pub mod arrangement;
+mod desk;
 pub mod things;
 pub mod view;
 
@@ -11,20 +11,6 @@ use crate::objects::mesh::{bounds, box_of, mapped, random_rotation, shifted, tur
 use crate::objects::print::{Print, PrintKind};
 use crate::objects::{Axis, Object};
 use crate::prelude::*;
-
-named! {
-    /// How an object is supported.
-    pub enum Stance: "stance" {
-        /// It stands on the desk.
-        Stands = "stands",
-        /// It touches the desk, tilted, and leans on something that is not seen.
-        Leans = "leans",
-        /// It hangs over the desk.
-        Hangs = "hangs",
-        /// It stands on another object.
-        OnTop = "on top",
-    }
-}
 
 /// An object at its place.
 #[derive(Debug, Clone)]
@@ -37,7 +23,6 @@ pub struct Placed {
     pub symmetry: Vec<Axis>,
     /// Its print, if it is coloured.
     pub print: Option<Print>,
-    pub stance: Stance,
 }
 
 /// A scene before a camera sees it: metres, z up, the table at z = 0.
@@ -45,8 +30,6 @@ pub struct Placed {
 pub struct World {
     pub objects: Vec<Placed>,
     pub others: Vec<Mesh>,
-    /// At which height the depth map shows the table, metres; `None` if it shows nothing but objects and things.
-    pub table: Option<f64>,
     /// The wall: its normal, and its distance behind the origin.
     pub wall: (Vector3<f64>, f64),
     /// The middle of the box of the objects.
@@ -65,7 +48,7 @@ impl Placed {
         let down = ((low + high) * 0.5).with_z(low.z);
         let mesh = shifted(&turned, -down)?;
         let symmetry = turned_axes(rotation, &object.symmetry);
-        Ok(Self { object: Arc::new(object), mesh, symmetry, print: None, stance: Stance::Stands })
+        Ok(Self { object: Arc::new(object), mesh, symmetry, print: None })
     }
 
     /// An object on z = 0: mostly upright, else on a side or as it fell.
@@ -87,12 +70,6 @@ impl Placed {
         let print = kind.map(|kind| Print::draw(&self.mesh, &self.symmetry, kind, random));
         Self { print, ..self }
     }
-
-    /// Translates the object.
-    pub fn shift(&mut self, by: DVec3) -> Result<()> {
-        self.mesh = shifted(&self.mesh, by)?;
-        Ok(())
-    }
 }
 
 impl World {
@@ -105,7 +82,7 @@ impl World {
         let all = points(&objects).chain(others.iter().flat_map(|mesh| mesh.positions()).map(|p| p.as_dvec3()));
         let depth = all.fold(0.0f64, |far, p| far.max(-p.dot(faces)));
         let wall = (Vector3::from(faces.to_array()), depth + behind);
-        Self { objects, others, table: Some(0.0), wall, center, reach, front }
+        Self { objects, others, wall, center, reach, front }
     }
 }
 

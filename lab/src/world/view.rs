@@ -96,9 +96,7 @@ impl View {
 
     /// z-depth of a mesh alone, 0 beside it.
     pub fn depth_of(&self, mesh: &Mesh) -> Vec<f32> {
-        let mut rasteriser = Rasteriser::new();
-        rasteriser.render(mesh, &self.camera_from_world, &self.camera, self.width, self.height);
-        rasteriser.depth().to_vec()
+        self.render(mesh).0
     }
 
     /// The images of each object, and of all objects as one.
@@ -108,17 +106,9 @@ impl View {
         let alone: Vec<_> = world.objects.iter().map(|placed| self.render(&placed.mesh)).collect();
         let mut together = vec![0.0; self.pixels()];
         alone.iter().for_each(|(object, _)| put_before(&mut together, object));
-        let mut depth = world.table.map_or_else(|| vec![0.0; self.pixels()], |height| self.background(height, world));
+        let mut depth = self.background(world);
         put_before(&mut depth, &others);
         put_before(&mut depth, &together);
-        if world.table.is_some_and(|height| height > 0.0) {
-            // A table that the depth map shows too high does not hide what stands on it.
-            for ((depth, other), object) in depth.iter_mut().zip(&others).zip(&together) {
-                if in_front(*object, *other) {
-                    *depth = *object;
-                }
-            }
-        }
         let renderings = (0..alone.len()).map(|i| {
             let mut before = others.clone();
             alone.iter().enumerate().filter(|(k, _)| *k != i).for_each(|(_, (z, _))| put_before(&mut before, z));
@@ -160,8 +150,8 @@ impl View {
         count(&Self { width, height, camera: Pinhole { cx, cy, ..self.camera }, ..*self }.depth_of(mesh))
     }
 
-    /// z-depth of the table, which is at a height, and of the wall behind it.
-    fn background(&self, table: f64, world: &World) -> Vec<f32> {
+    /// z-depth of the table, and of the wall behind it.
+    fn background(&self, world: &World) -> Vec<f32> {
         let Pinhole { fx, fy, cx, cy } = self.camera;
         let pose = &self.camera_from_world;
         // n·p = d in the world's frame, as 1/z = (n·ray)/d in the camera's.
@@ -169,7 +159,7 @@ impl View {
             let normal = pose.rotation * normal;
             normal / (distance + normal.dot(&pose.translation))
         };
-        let planes = [inverse_depth(Vector3::z(), table), inverse_depth(world.wall.0, -world.wall.1)];
+        let planes = [inverse_depth(Vector3::z(), 0.0), inverse_depth(world.wall.0, -world.wall.1)];
         let depth = |i: usize| {
             let [u, v] = self.place(i).map(|x| x as f64);
             let (x, y) = ((u - cx) / fx, (v - cy) / fy);
@@ -260,11 +250,7 @@ pub fn count(depth: &[f32]) -> usize {
     depth.iter().filter(|z| **z > 0.0).count()
 }
 
-fn in_front(z: f32, other: f32) -> bool {
-    z > 0.0 && (other == 0.0 || z <= other)
-}
-
 /// For each pixel, whether it shows the object rather than the others.
 pub fn shown(object: &[f32], others: &[f32]) -> Vec<bool> {
-    object.iter().zip(others).map(|(&z, &other)| in_front(z, other)).collect()
+    object.iter().zip(others).map(|(&z, &other)| z > 0.0 && (other == 0.0 || z <= other)).collect()
 }

@@ -9,8 +9,6 @@ use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
 use sim3align::calibrate::calibration::{CalibrationUncertainty, DepthCalibration};
 use sim3align::metrics::Metrics;
-use sim3align::metrics::bop::BopErrors;
-use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::options::scale::ScaleOption;
@@ -284,7 +282,7 @@ fn types() -> String {
             .into(),
     );
     add! { types:
-        ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, LayoutErrors, BopErrors, SearchCounts,
+        ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, SearchCounts,
         Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, Stretch, EvaluationDiagnostics, Diagnostics,
         PaperDiagnostics, PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole,
         WorldUncertainty, CameraPose, ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame,

@@ -1,8 +1,5 @@
-//! The exports of the registration module: `register`, `estimateSim3` and the preset `paper`, which all match descriptors,
-//! and the pose errors of BOP.
+//! The exports of the registration module: `register`, `estimateSim3` and the preset `paper`, which all match descriptors.
 //! Each reads its arguments, calls the crate `sim3align`, and returns a plain object.
-
-pub mod bop;
 
 use core::cell::RefCell;
 

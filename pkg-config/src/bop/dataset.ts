@@ -6,7 +6,7 @@ import { namesInFolder, read, readMeshFile } from "../case-folder.js";
 import type { BopPose } from "../conventions/bop.js";
 import type { MeshFile } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
-import { isNumber, numbersIn, parsedJson, shown } from "../values/json.js";
+import { isNumber, parsedJson, shown } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { naturally } from "../values/order.js";
 import { oncePerKey } from "../values/validation.js";
@@ -177,15 +177,6 @@ export async function bopModels(folder: string, places: readonly string[]): Prom
   throw fileNotFound("models", `no folder of models at ${folder}`, "models beside the scene, or --models");
 }
 
-/** An entry of `models_info.json`; its symmetries are in millimetres, as the model. */
-export interface BopModelInfo {
-  diameterM: number;
-  /** Discrete symmetries: 16 numbers each, row by row. */
-  discrete: Float64Array;
-  /** Axes of revolution: direction and a point on the axis, six numbers each. */
-  continuous: Float64Array;
-}
-
 /** A split of a dataset. */
 export class BopDataset {
   /** The names of the dataset and of the split: those of their folders. */
@@ -212,11 +203,6 @@ export class BopDataset {
     return bopModels(this.#folder, ["models", "models_cad", "models_eval"]);
   }
 
-  /** The folder of the models that errors are measured with. */
-  modelsOfErrors(): Promise<string> {
-    return bopModels(this.#folder, ["models_eval", "models"]);
-  }
-
   /**
    * The targets in a file; without one, those of the dataset if the split is a test split and has some, or else all objects
    * that are visible enough.
@@ -238,11 +224,17 @@ export class BopDataset {
     return entries.map(targetOf);
   }
 
-  /** The entries of `models_info.json`, by the id of the object. */
-  async info(): Promise<ReadonlyMap<number, BopModelInfo>> {
-    const json = parsedJson(paths.info, await read(paths.info, join(await this.modelsOfErrors(), paths.info)));
-    const entries = isRecord(json) ? Object.entries(json) : [];
-    return new Map(entries.map(([id, entry]) => [Number(id), infoOf(id, entry)]));
+  /** The ids of the objects that `models_info.json` calls symmetric; none without that file. */
+  async symmetricObjects(): Promise<ReadonlySet<number>> {
+    const models = await bopModels(this.#folder, ["models_eval", "models"]).catch(() => null);
+    const file = models && (await read(paths.info, join(models, paths.info)).catch(() => null));
+    const info = file && parsedJson(paths.info, file);
+    const entries = isRecord(info) ? Object.entries(info) : [];
+    const symmetric = entries.filter(([, object]) => {
+      const { symmetries_discrete, symmetries_continuous } = isRecord(object) ? object : {};
+      return [symmetries_discrete, symmetries_continuous].some((list) => Array.isArray(list) && list.length > 0);
+    });
+    return new Set(symmetric.map(([id]) => Number(id)));
   }
 }
 
@@ -258,22 +250,4 @@ function noTarget(found: unknown) {
   const expected = "a list of { scene_id, im_id, obj_id, inst_count }";
   const advice = "Pass the targets of localization, such as test_targets_bop19.json.";
   return failure("CORRUPT_FILE", "targets", shown(found), expected, advice);
-}
-
-function infoOf(id: string, entry: unknown): BopModelInfo {
-  const invalid = (found: unknown, expected: string) =>
-    failure("CORRUPT_FILE", `${paths.info}: ${id}`, shown(found), expected, remedy);
-  const { diameter, symmetries_discrete = [], symmetries_continuous = [] } = isRecord(entry) ? entry : {};
-  if (!isNumber(diameter) || diameter <= 0) throw invalid(diameter, "a diameter in millimetres");
-  const numbers = (list: unknown, name: string, count: number, flat = (row: unknown) => row) => {
-    const rows = Array.isArray(list) ? list.map((row) => numbersIn(flat(row), count)) : [null];
-    if (rows.includes(null)) throw invalid(list, `a list of ${count} numbers each as ${name}`);
-    return Float64Array.from(rows.flat() as number[]);
-  };
-  const axis = (row: unknown) => (isRecord(row) ? [row.axis, row.offset] : null);
-  return {
-    diameterM: METRES_PER_UNIT * diameter,
-    discrete: numbers(symmetries_discrete, "symmetries_discrete", 16),
-    continuous: numbers(symmetries_continuous, "symmetries_continuous", 6, axis),
-  };
 }

@@ -1,12 +1,9 @@
 /** Files that methods exchange with BOP: 2D detections, and the results of the leaderboard. */
-import { type Matrix3, rotationOf } from "../conventions/rotation.js";
-import { sim3Of } from "../conventions/similarity.js";
-import type { Sim3 } from "../generated/types.js";
 import type { CocoRle } from "../types/inputs.js";
 import { failure } from "../values/error.js";
 import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
-import { type BopPlace, imageKey, METRES_PER_UNIT } from "./dataset.js";
+import { type BopPlace, imageKey } from "./dataset.js";
 
 /** An object that a detector found, such as CNOS. */
 export interface Detection extends BopPlace {
@@ -48,45 +45,6 @@ function noDetection(found: string) {
 
 /** The first line of a results file. */
 export const RESULTS_HEADER = "scene_id,im_id,obj_id,score,R,t,time";
-/** Number of values in each column. */
-const COUNTS = [1, 1, 1, 1, 9, 3, 1];
-
-/** A row of a results file. */
-export interface BopResult extends BopPlace {
-  score: number;
-  /** Camera from model, metres. */
-  pose: Sim3;
-  /** Seconds for the whole image; −1 if unknown. */
-  seconds: number;
-}
-
-/**
- * Reads a results file.
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` for other content
- */
-export const readResults = (text: string): BopResult[] =>
-  text
-    .split(/\r?\n/)
-    .flatMap((line, i) =>
-      line.trim() === "" || (i === 0 && line.includes(RESULTS_HEADER)) ? [] : [resultOf(line, i)],
-    );
-
-function resultOf(line: string, index: number): BopResult {
-  const numbers = line.split(",").map((cell) => cell.trim().split(/\s+/).map(Number));
-  const isComplete = numbers.length === COUNTS.length && COUNTS.every((count, i) => numbers[i]?.length === count);
-  if (!isComplete || numbers.flat().some((x) => !Number.isFinite(x))) {
-    const remedy = "Check the line: R has nine numbers, row by row, and t three, in millimetres.";
-    throw failure("CORRUPT_FILE", "results", `line ${index + 1}: ${line.slice(0, 60)}`, RESULTS_HEADER, remedy);
-  }
-  const [sceneId = 0, imageId = 0, objectId = 0, score = 0, ...rest] = numbers.flat();
-  const [rotation, [x = 0, y = 0, z = 0], seconds = -1] = [rest.slice(0, 9), rest.slice(9, 12), rest[12]];
-  const pose = sim3Of({
-    scale: METRES_PER_UNIT,
-    rotation: rotationOf("results.R", rotation as unknown as Matrix3),
-    translation: [x / 1000, y / 1000, z / 1000],
-  });
-  return { sceneId, imageId, objectId, score, pose, seconds };
-}
 
 /** The place of a result: an instance of a target. */
 export interface BopInstance extends BopPlace {

@@ -224,7 +224,7 @@ export async function errorsOf(
   if (truth === null || truth === undefined || !isMetric(pose)) return null;
   const { transform, symmetry } = truth;
   const measured = await correctedInput(input, pose.depthCalibration);
-  return (await aligner.evaluate(measured, pose, { truth: transform, symmetry, layout: false })).errors;
+  return (await aligner.evaluate(measured, pose, { truth: transform, symmetry })).errors;
 }
 
 /** The options set by `--options` and by flags. */

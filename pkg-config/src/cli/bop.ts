@@ -1,20 +1,18 @@
-/** `sim3align bop`: aligns the targets of a BOP dataset, writes the results file of the leaderboard, and scores it. */
+/** `sim3align bop`: aligns the targets of a BOP dataset, and writes the results file of the leaderboard. */
 import { basename, resolve } from "node:path";
-import { BopDataset, type BopModelInfo, type BopTarget, METRES_PER_UNIT, targetKey } from "../bop/dataset.js";
-import { type BopInstance, BopResults, RESULTS_HEADER, readDetections, readResults } from "../bop/files.js";
-import { type BopEvaluation, best, bopModelsIn, evaluateBop, grouped } from "../bop/scores.js";
+import { BopDataset, type BopTarget, METRES_PER_UNIT, readBopModel, targetKey } from "../bop/dataset.js";
+import { type BopInstance, BopResults, RESULTS_HEADER, readDetections } from "../bop/files.js";
 import { fromBop } from "../conventions/bop.js";
 import type { KnownPose } from "../conventions/pose-file.js";
 import type { AlignInput } from "../index.js";
+import { readMesh } from "../input/mesh.js";
+import { fileReaders } from "../modules/readers.js";
+import { oncePerKey } from "../values/validation.js";
 import { type CaseToDo, caseJob, precise, shared } from "./align.js";
 import type { Job } from "./batch.js";
 import { absolutePath, textOf, UsageError } from "./files.js";
 import type { Flags } from "./flags.js";
-import { StatusLine } from "./progress.js";
-import { isResults } from "./result-files.js";
-import { fixed } from "./row.js";
 import type { OutputName, RunFiles } from "./run-files.js";
-import { type Pair, pairs } from "./table.js";
 import { note } from "./terminal.js";
 
 /** The options of `align` that apply to targets of known size. */
@@ -26,9 +24,8 @@ export const bopOptions = [...shared, ...precise].filter(({ name }) =>
  * The results file that is written: `METHOD_DATASET-SPLIT[_SUFFIX].csv`, as the leaderboard reads it.
  * @throws {@link UsageError} for names that would be read as other parts
  */
-export function resultsFile([dataset = ""]: readonly string[], flags: Flags): OutputName[] {
-  const { method = "", suffix, split = "", evaluate } = flags;
-  if (typeof evaluate === "string") return [];
+export function resultsFile([dataset = ""]: readonly string[], flags: Flags): [OutputName] {
+  const { method = "", suffix, split = "" } = flags;
   for (const [flag, part] of Object.entries({ method, suffix })) {
     if (part !== undefined && !/^[A-Za-z0-9-]+$/.test(part))
       throw new UsageError(
@@ -40,18 +37,12 @@ export function resultsFile([dataset = ""]: readonly string[], flags: Flags): Ou
   return [{ flag: "the results file", path: `${name}${suffix === undefined ? "" : `_${suffix}`}.csv`, isOwn }];
 }
 
-/** Whether a file begins like the output of --scores or of --json. */
-export const isScores = (beginning: string) => beginning.startsWith('{\n  "averageRecall":') || isResults(beginning);
-
-/** The job of a command line; without cases if `--evaluate` names a file, which is only scored. */
+/** The job of a command line. */
 export async function bopJob(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<CaseToDo>> {
   const [folder = ""] = args;
   const dataset = new BopDataset(folder, flags.split ?? "");
   const targets = await dataset.targets(flags.targets);
   const [file] = resultsFile(args, flags);
-  const whole = { folders: dataset.folders, isDeep: true };
-  const scored = (path: string) => score(dataset, targets, path, flags, files);
-  if (file === undefined) return { ...caseJob([], flags), ...whole, after: () => scored(String(flags.evaluate)) };
   const place = `${absolutePath(folder)}/${flags.split}#`;
   const { cases, instances } = await casesOf(dataset, targets, flags, place);
   if (cases.length === 0) throw new UsageError(`${folder}: there is nothing to align; check --targets and --masks.`);
@@ -60,12 +51,10 @@ export async function bopJob(args: readonly string[], flags: Flags, files: RunFi
   return {
     flags,
     ...caseJob(cases, { ...flags, options: { scale: METRES_PER_UNIT, ...flags.options } }),
-    ...whole,
+    folders: dataset.folders,
+    isDeep: true,
     sinks: [{ add: (name, entry) => results.add(name, entry), end }],
-    async after() {
-      note(`results: ${file.path}`);
-      if (flags.evaluate === true) await scored(file.path);
-    },
+    after: async () => note(`results: ${file.path}`),
   };
 }
 
@@ -75,7 +64,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
   const detections = masks === "gt" ? undefined : grouped(readDetections(textOf("--masks", masks)), targetKey);
   const withPhoto = flags.image !== false;
   const modelOf = bopModelsIn(flags.models ?? (await dataset.models()), withPhoto);
-  const info = await dataset.info().catch(() => new Map<number, BopModelInfo>());
+  const symmetric = await dataset.symmetricObjects();
   const instances = new Map<string, BopInstance>();
   const cases: CaseToDo[] = [];
   const add = (
@@ -103,7 +92,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
       continue;
     }
     const scene = await dataset.scene(target.sceneId);
-    const symmetry = symmetryOf(info.get(objectId));
+    const symmetry: KnownPose["symmetry"] = symmetric.has(objectId) ? "auto" : "none";
     for (const place of scene.mostVisible(target, count)) {
       const entry = scene.posesIn(imageId)[place];
       const truth = entry === undefined ? null : { transform: fromBop(entry), symmetry };
@@ -113,37 +102,26 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
   return { cases, instances };
 }
 
-/** The symmetry with which the true pose is compared. */
-function symmetryOf(info: BopModelInfo | undefined): KnownPose["symmetry"] {
-  return info === undefined || info.discrete.length + info.continuous.length === 0 ? "none" : "auto";
-}
+/** The models in a folder by their ids, each read once: arrays in millimetres, and the warnings of the reader. */
+const bopModelsIn = (folder: string, withColors: boolean): ((objectId: number) => Promise<object>) =>
+  oncePerKey(async (objectId) => {
+    const file = await readBopModel(folder, objectId);
+    const { mesh, warnings } = await readMesh(file, fileReaders, withColors);
+    return { ...mesh, warnings };
+  });
 
-/** Scores a results file, and prints and writes the scores. */
-async function score(
-  dataset: BopDataset,
-  targets: readonly BopTarget[],
-  path: string,
-  flags: Flags,
-  files: RunFiles,
-): Promise<void> {
-  const status = new StatusLine(process.stderr);
-  const results = readResults(textOf("--evaluate", path));
-  const evaluation = await evaluateBop(dataset, targets, results, (done) =>
-    status.show(`evaluated ${done} of ${targets.length} targets`),
-  ).finally(() => status.clear());
-  if (flags.scores !== undefined)
-    files.write({ flag: "--scores", path: flags.scores, isOwn: isScores }, `${JSON.stringify(evaluation, null, 2)}\n`);
-  const lines = [path, ...scoreLines(evaluation)].map((line) => `${line}\n`).join("");
-  (flags.scores === "-" ? process.stderr : process.stdout).write(lines);
-}
+/** The detections with the highest scores, in their order; of equal scores, those that come first. */
+const best = <T extends { score: number }>(detections: readonly T[], count: number): T[] =>
+  [...detections].sort((a, b) => b.score - a.score).slice(0, count);
 
-function scoreLines(evaluation: BopEvaluation): string[] {
-  const { averageRecall, vsd, mssd, mspd, add, addS, targets, estimates, secondsPerImage } = evaluation;
-  const recalls = { AR: averageRecall, "AR VSD": vsd, "AR MSSD": mssd, "AR MSPD": mspd };
-  const shares = { ...recalls, "ADD < 0.1 d": add, "ADD-S < 0.1 d": addS };
-  return pairs([
-    ["poses", `${estimates} of ${targets} targets`],
-    ...Object.entries(shares).map(([name, share]): Pair => [name, fixed(share, 4)]),
-    ["time per image", secondsPerImage === null ? "–" : `${fixed(secondsPerImage, 2)} s`],
-  ]);
+/** Items by their keys, in their order. */
+function grouped<T, K>(items: readonly T[], keyOf: (item: T) => K): Map<K, T[]> {
+  const groups = new Map<K, T[]>();
+  for (const item of items) {
+    const key = keyOf(item);
+    const group = groups.get(key);
+    if (group === undefined) groups.set(key, [item]);
+    else group.push(item);
+  }
+  return groups;
 }

@@ -3,7 +3,7 @@ import { OPTIONS } from "../index.js";
 import { formatsText } from "../input/formats.js";
 import { alignJob, paper, precise, shared } from "./align.js";
 import { type Job, runBatch } from "./batch.js";
-import { bopJob, bopOptions, isScores, resultsFile } from "./bop.js";
+import { bopJob, bopOptions, resultsFile } from "./bop.js";
 import { evaluateJob, evaluateOptions } from "./evaluate.js";
 import { isFile, isOrdinary, UsageError } from "./files.js";
 import {
@@ -20,7 +20,6 @@ import {
   recordFlags,
   sceneFileFlags,
   settingsOf,
-  writes,
 } from "./flags.js";
 import { alignHelp, bopHelp, evaluateHelp, sceneHelp, trackHelp } from "./help.js";
 import { inFlags, optionFlags } from "./option-flags.js";
@@ -145,7 +144,7 @@ export const commands: readonly CommandRow[] = [
   },
   {
     name: "bop",
-    summary: "align the targets of a BOP dataset, and score poses as BOP does",
+    summary: "align the targets of a BOP dataset",
     description:
       "Aligns each target of a BOP dataset, at its known size, and writes the results file of the leaderboard.",
     argument: ["<dataset>", "the folder of the dataset"],
@@ -165,12 +164,6 @@ export const commands: readonly CommandRow[] = [
         { default: "sim3align", isIndifferent: true },
       ],
       ["--suffix <name>", "the last part of the name of the results file", { isIndifferent: true }],
-      ["--evaluate [file]", "score the results, or only those of a file", ofCase],
-      [
-        "--scores <file>",
-        'write the scores as JSON; "-" is stdout',
-        { ...writes, isOwn: isScores, needs: ["evaluate", "--evaluate"] },
-      ],
       ["--no-image", "do not read the photos: align by shape alone"],
       ...pictureFlags,
       ...optionFlags(bopOptions),

@@ -1,5 +1,5 @@
 /** Details of a single case, for people. */
-import type { LayoutErrors, Stretch } from "../generated/types.js";
+import type { Stretch } from "../generated/types.js";
 import type { Alignment, DepthCalibration, Evaluation, Metrics, PaperAlignment, PoseErrors } from "../index.js";
 import { unitText } from "../input/depth-kinds.js";
 import type { InputInfo } from "../types/results.js";
@@ -138,7 +138,7 @@ export function withMeans(entry: Entry): Entry {
 
 /** Details of an evaluated case. */
 export function evaluationDetails(name: string, entry: Entry, style: Style): string[] {
-  const { metrics, errors, layout, diagnostics, ...input } = entry as unknown as Evaluation;
+  const { metrics, errors, diagnostics, ...input } = entry as unknown as Evaluation;
   const { scaleRatio, initialScale, collapsed } = diagnostics;
   const lengths = new Lengths(isMetric(entry));
   const ratio = `${fixed(scaleRatio, 4)} of the initial ${significant(initialScale, 6)}`;
@@ -147,7 +147,6 @@ export function evaluationDetails(name: string, entry: Entry, style: Style): str
     ...pairs([["scale ratio", `${ratio}${collapsed ? ", collapsed" : ""}`], ...depthRows(input)]),
     ...metricsSection(metrics, lengths, style),
     ...errorsSection(errors, lengths, style),
-    ...layoutSection(layout, lengths, style),
     ...warningSection(warningsOf(entry), style),
   ];
 }
@@ -178,18 +177,6 @@ function errorsSection(errors: PoseErrors | null | undefined, lengths: Lengths, 
     ["ADD-S", lengths.small(addSM, 2)],
   ];
   return section("Errors (compared with gt.json)", rows, style);
-}
-
-function layoutSection(layout: LayoutErrors | null, { isMetric }: Lengths, style: Style): string[] {
-  if (layout === null) return [];
-  const { boxIou, icpRotationDeg, addSRelative, isFound, isCadAligned } = layout;
-  const rows: Pair[] = [
-    ["3D IoU", fixed(boxIou, 4)],
-    ["ICP-Rot", `${fixed(icpRotationDeg, 2)}°`],
-    ["ADD-S", `${percent(addSRelative, 2)} of the diameter${isFound ? "" : ", not found"}`],
-    ...(isMetric ? [["20 cm, 20°, 20 %", isCadAligned ? "aligned" : "not aligned"] as const] : []),
-  ];
-  return section("Layout", rows, style);
 }
 
 /** The lengths of a mesh in the proportions that were found. */

@@ -47,7 +47,7 @@ export type FlagList = readonly (Flag | string)[];
 export const withoutTitles = (list: FlagList): Flag[] => list.filter((row) => typeof row !== "string");
 
 type Texts =
-  | ("list" | "json" | "jsonl" | "csv" | "report" | "overlay" | "glb" | "sceneGlb" | "mjcf" | "urdf" | "usd" | "scores")
+  | ("list" | "json" | "jsonl" | "csv" | "report" | "overlay" | "glb" | "sceneGlb" | "mjcf" | "urdf" | "usd")
   | ("imageId" | "depth" | "mask" | "mesh" | "transform" | "support" | "models")
   | ("split" | "masks" | "targets" | "method" | "suffix");
 
@@ -68,7 +68,6 @@ export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Parti
   readonly density?: number;
   readonly parts?: number;
   readonly rest?: boolean;
-  readonly evaluate?: string | true;
 }
 
 /** The record of a batch, and the number of workers. */

@@ -83,7 +83,7 @@ Examples
   sim3align scene scenes/desk --scene-glb desk.glb     align all objects of a scene; write it as one file
   sim3align track videos/mug                     track an object through the frames of a video
   sim3align evaluate cases/mug --transform results.json
-  sim3align bop bop/lmo --split test --evaluate    align the targets of a BOP dataset, and score them
+  sim3align bop bop/lmo --split test               align the targets of a BOP dataset
 
 See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
 ${status}`;
@@ -204,7 +204,7 @@ ${status}`;
 
 export const bopHelp = `
 A dataset is a folder as BOP publishes it
-  models/obj_000001.ply, …       the models, in millimetres; for --evaluate also models_info.json, in models_eval or models
+  models/obj_000001.ply, …       the models, in millimetres, with models_info.json
   SPLIT/SCENE/                   depth/, rgb/ (optional), scene_camera.json and, where they are public, scene_gt.json,
                                  scene_gt_info.json and mask_visib/
   test_targets_bop19.json        what is to be found in a test split; elsewhere, all objects that are a tenth visible
@@ -220,12 +220,10 @@ Output
   im_id, obj_id, score, R, t in millimetres, and the time, which is the sum over the objects of the image. The score is the
   confidence, multiplied by that of the detection. --jsonl, --resume, --json, --workers, --report, --overlay and --glb work
   as those of "align": cases are called SCENE/IMAGE/OBJECT-INSTANCE.
-  --evaluate compares the results, or those of a file, with the true poses: average recalls of VSD, MSSD and MSPD, their mean,
-  and recall of ADD and ADD-S below a tenth of the diameter. --scores writes them as JSON, with the errors of each pose.
+  bop_toolkit, the official one, scores the file.
 
 Examples
   sim3align bop bop/ycbv --split test --jsonl ycbv.jsonl --resume
-  sim3align bop bop/lmo --split test --masks cnos_lmo-test.json --suffix cnos --evaluate
+  sim3align bop bop/lmo --split test --masks cnos_lmo-test.json --suffix cnos
   sim3align bop bop/tless --split test_primesense --models bop/tless/models_cad
-  sim3align bop bop/lmo --split test --evaluate other_lmo-test.csv --scores scores.json
 ${status}`;

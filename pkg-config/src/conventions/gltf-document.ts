@@ -9,20 +9,17 @@ type Json = Record<string, unknown>;
 
 /**
  * The lists of a document, and the properties that have indices of their items: in glTF 2.0, in the extensions of Khronos
- * (KHR) and in those of several vendors (EXT). Paths are without the positions in lists and without `extensions`; `*` is a
+ * (KHR) and in some of several vendors (EXT). Paths are without the positions in lists and without `extensions`; `*` is a
  * name, `**` any number of names. An extension's list at the root has the name of the extension before its own.
  */
 const references: Readonly<Record<string, readonly string[]>> = {
   accessors: [
     ...["meshes/primitives/indices", "meshes/primitives/attributes/*", "meshes/primitives/targets/*"],
-    ...["meshes/primitives/CESIUM_primitive_outline/indices", "nodes/EXT_mesh_gpu_instancing/attributes/*"],
-    ...["skins/inverseBindMatrices", "animations/samplers/input", "animations/samplers/output"],
+    ...["nodes/EXT_mesh_gpu_instancing/attributes/*", "skins/inverseBindMatrices"],
+    ...["animations/samplers/input", "animations/samplers/output"],
   ],
   // Accessors, sparse ones as well, images, and compressed primitives.
-  bufferViews: [
-    "**/bufferView",
-    "EXT_structural_metadata/propertyTables/properties/*/(values|arrayOffsets|stringOffsets)",
-  ],
+  bufferViews: ["**/bufferView"],
   cameras: ["nodes/camera"],
   images: ["textures/**source", "EXT_lights_image_based/lights/specularImages"],
   materials: ["meshes/primitives/**material", "materials/MSFT_lod/ids"],
@@ -30,15 +27,14 @@ const references: Readonly<Record<string, readonly string[]>> = {
   nodes: ["nodes/children", "nodes/MSFT_lod/ids", "skins/joints", "skins/skeleton", "animations/channels/target/node"],
   samplers: ["textures/sampler"],
   skins: ["nodes/skin"],
-  // Those of materials, and of features and metadata of meshes.
-  textures: ["**[tT]exture/index", "EXT_structural_metadata/propertyTextures/properties/*/index"],
+  textures: ["**[tT]exture/index"],
   "KHR_lights_punctual/lights": ["nodes/KHR_lights_punctual/light"],
   "KHR_materials_variants/variants": ["meshes/primitives/KHR_materials_variants/mappings/variants"],
   "KHR_xmp_json_ld/packets": ["**/KHR_xmp_json_ld/packet"],
-  "EXT_structural_metadata/propertyTables": ["**/featureIds/propertyTable"],
-  "EXT_structural_metadata/propertyTextures": ["meshes/primitives/EXT_structural_metadata/propertyTextures"],
-  "EXT_structural_metadata/propertyAttributes": ["meshes/primitives/EXT_structural_metadata/propertyAttributes"],
 };
+/** The extensions whose references, if they have any, are among these. */
+const movable =
+  /^(KHR_.*|EXT_(lights_image_based|materials_.*|mesh_gpu_instancing|meshopt_compression|texture_.*)|MSFT_(lod|texture_dds))$/;
 
 const patterns = Object.entries(references).map(([list, paths]) => {
   const any = paths.map((path) => path.replace(/\*+/g, (stars) => (stars === "*" ? "[^/]+" : ".*")));
@@ -67,11 +63,13 @@ export class GltfDocument {
     });
     const { asset, scene, scenes, buffers: _, extensionsUsed, extensionsRequired, extensions, extras, ...lists } = json;
     const parts = Object.entries(lists);
+    const starts = new Map(Array.from(this.#content, ([path, list]) => [path, arrayOf(list).length]));
+    if (starts.size > 0) checkMovable(extensions);
     for (const [extension, content] of Object.entries(isRecord(extensions) ? extensions : {})) {
       for (const [name, part] of Object.entries(isRecord(content) ? content : {}))
         parts.push([`${extension}/${name}`, part]);
     }
-    const move = mover(new Map(Array.from(this.#content, ([path, list]) => [path, arrayOf(list).length])), buffers);
+    const move = mover(starts, buffers);
     const nodes = move(shownNodes(json), "nodes/children") as number[];
     for (const [path, part] of parts.map(([path, part]) => [path, move(part, path)] as const)) {
       this.#content.set(path, joined(this.#content.get(path), part));
@@ -140,6 +138,15 @@ export class GltfDocument {
   }
 }
 
+/** @throws if these extensions may have references that would then point to other items */
+function checkMovable(extensions: unknown): void {
+  const other = Object.keys(isRecord(extensions) ? extensions : {}).find((name) => !movable.test(name));
+  if (other === undefined) return;
+  const remedy = `Remove ${other} from the file, or export its object alone.`;
+  const expected = "extensions of Khronos, or others whose references are moved to the places of a joint file";
+  throw failure("UNSUPPORTED_FORMAT", "glb", `the extension ${other}`, expected, remedy);
+}
+
 /** Moves the indices in a part of a file: to those of its lists, and of its buffers, in the document. */
 function mover(starts: ReadonlyMap<string, number>, buffers: readonly { index: number; start: number }[]) {
   const start = (list: string) => starts.get(list) ?? 0;
@@ -155,6 +162,7 @@ function mover(starts: ReadonlyMap<string, number>, buffers: readonly { index: n
     }
     if (Array.isArray(value)) return value.map((item) => move(item, path));
     if (!isRecord(value)) return value;
+    if (starts.size > 0) checkMovable(value.extensions);
     const inner = (name: string) => (name === "extensions" ? path : `${path}/${name}`);
     // Extras are the application's, and may contain anything.
     const entries = Object.entries(value).map(([name, part]) => [

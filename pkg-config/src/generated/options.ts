@@ -107,7 +107,6 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignScene" | "alignV
   evaluate: [
     { name: "truth", kind: "transform", isNullable: true, default: null, summary: "The known transform, camera from mesh, that `errors` compares with" },
     { ...symmetry, summary: "The object's symmetry: the rotation error is the smallest over it" },
-    { name: "layout", kind: "boolean", isNullable: false, default: true, summary: "Whether to compute `layout` if `truth` is given" },
     seed,
     { ...maxObservedPoints, summary: "Upper bound on the depth readings used" },
     { ...surfaceSamples, summary: "Number of points sampled on the mesh surface" },

@@ -211,11 +211,6 @@ export interface EvaluateOptions extends Pick<AlignOptions, "seed">, Pick<PaperO
    * once for all calls with the mesh. Default `"auto"`.
    */
   symmetry?: SymmetryOption | undefined;
-  /**
-   * Whether to compute `layout` if `truth` is given. Calls that leave it out are several times faster. Default
-   * `true`.
-   */
-  layout?: boolean | undefined;
   /** Number of points sampled on the mesh surface. Takes a whole number from 100 to 1000000. Default `10000`. */
   surfaceSamples?: number | undefined;
   /**
@@ -392,51 +387,6 @@ export type PoseErrors = {
   /**
    * ADD-S, metres: mean distance of surface points under the true pose to the surface under the estimated pose
    * (Hinterstoisser et al. 2012, §4.2, with the exact surface instead of its points).
-   */
-  addSM: number;
-};
-
-/** Errors of layout of an estimate relative to the true pose, up to the symmetry of the object as the pose errors. */
-export type LayoutErrors = {
-  /**
-   * 3D IoU: volume of the intersection over volume of the union of the mesh's bounding box under both transforms, 0
-   * to 1, higher is better. The boxes are in the axes of the mesh, and the volumes are exact.
-   */
-  boxIou: number;
-  /**
-   * ICP-Rot (SAM 3D Objects 2025), degrees, 0 to 180: the rotation that ICP (Besl and McKay 1992, rigid,
-   * point-to-point) needs to bring the surface under the estimated pose onto that under the true one. Half turns of
-   * shapes that look alike afterwards do not count, whether they are declared as symmetries or not.
-   */
-  icpRotationDeg: number;
-  /**
-   * ADD-S in both directions, relative to the diameter (SAM 3D Objects 2025): the mean of both mean distances from
-   * the surface under one pose to that under the other, divided by the largest distance between two points of the
-   * true object.
-   */
-  addSRelative: number;
-  /** Whether `addSRelative` is below 0.1; ADD-S@0.1 is the share of such objects. */
-  isFound: boolean;
-  /**
-   * Whether a CAD model counts as aligned (Scan2CAD, Avetisyan et al. 2019): translation within 20 cm, rotation
-   * within 20°, scale within 20 %.
-   */
-  isCadAligned: boolean;
-};
-
-/** Errors of an estimated pose relative to a true one. */
-export type BopErrors = {
-  /** Visible Surface Discrepancy, 0 to 1, for each misalignment tolerance: .05, .1 … .5 of the diameter. */
-  vsd: [number, number, number, number, number, number, number, number, number, number];
-  /** Maximum Symmetry-Aware Surface Distance, metres. */
-  mssdM: number;
-  /** Maximum Symmetry-Aware Projection Distance, pixels; `null` if a vertex is not in front of the camera. */
-  mspdPx: number | null;
-  /** ADD: mean distance between the same vertices under both poses, metres. */
-  addM: number;
-  /**
-   * ADD-S, also called ADI: mean distance from the vertices under the true pose to the nearest vertices under the
-   * estimated pose, metres.
    */
   addSM: number;
 };
@@ -801,8 +751,6 @@ export type Evaluation = {
   metrics: Metrics;
   /** The errors against the truth; `null` where no truth was given. */
   errors: PoseErrors | null;
-  /** The errors of layout against the truth; `null` where no truth was given, or `layout` is false. */
-  layout: LayoutErrors | null;
   /** Conditions that the caller should know about; the result stands. */
   warnings: Array<Warning>;
   /** How the scale compares with the initial one. */

@@ -2,7 +2,6 @@
 import type { Pinhole } from "../camera/pinhole.js";
 import type {
   Alignment,
-  BopErrors,
   Contact,
   CorrectedFrame,
   DepthCalibration,
@@ -119,10 +118,9 @@ export interface Webp {
   decodeWebp(bytes: Uint8Array, asStored: boolean): PixelArray<Uint8Array> & { exif?: Uint8Array };
 }
 
-/** The module with `register`, `estimateSim3`, the preset `paper` and errors of BOP. */
+/** The module with `register`, `estimateSim3` and the preset `paper`. */
 export interface Registrar {
   alignPaper(input: CoreInput, options: object, onProgress: CoreListener | undefined): PaperAlignment;
-  bopErrors(input: object, estimates: readonly object[], truths: readonly object[]): BopErrors[];
   beginRegister(source: Cloud, target: Cloud, options: object): Task<Registration>;
   beginEstimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Task<Registration>;
 }

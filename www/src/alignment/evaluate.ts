@@ -48,7 +48,7 @@ function observe(whole: Scene, object: ObjectModel): () => void {
 
 async function evaluate(whole: Scene, object: ObjectModel, signal: AbortSignal): Promise<void> {
   const { truth } = object;
-  const compared = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry, layout: false };
+  const compared = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
   try {
     const { transform } = object.pose.peek();
     const { metrics, errors } = await (await aligner()).evaluate(inputOf(whole, object), transform, compared);

@@ -1,4 +1,4 @@
-//! Several images of one object on a table: cameras around it, and videos.
+//! Videos of one object on a table.
 
 use super::images::{OBJECT_STREAM, SCENE_STREAM, SIZE, image, object};
 use crate::case::{Case, CaseFrame, CaseObject};
@@ -13,16 +13,12 @@ use crate::world::{Placed, World, unit};
 
 /// Distance of the wall: too far for a reading.
 const WALL_M: f64 = 50.0;
-/// Fewest visible pixels of the object in a view and in the first frame of a video, and the smallest visible fraction.
-const VIEW_PX: usize = 1500;
+/// Fewest visible pixels of the object in the first frame.
 const VIDEO_PX: usize = 2500;
-const MIN_VISIBLE: f64 = 0.6;
-/// Errors of noisy camera poses: degrees and metres.
-const NOISE: [f64; 2] = [0.5, 0.003];
 
 named! {
     /// Kinds of video.
-    pub enum Motion: "motion" {
+    pub enum Motion {
         /// A camera in a hand, which moves to and fro.
         HandHeld = "hand-held",
         /// An object on a turntable.
@@ -32,8 +28,9 @@ named! {
         /// Hand-held, with the object leaving the image and coming back.
         Leaving = "leaving",
         /// Hand-held and fast: frames in which most of the depth is missing.
-        Blur = "motion blur",
-        Dropped = "dropped frames",
+        Blur = "blur",
+        /// Hand-held, with some frames left out.
+        Dropped = "dropped-frames",
     }
 }
 
@@ -48,7 +45,7 @@ struct Stage {
 
 impl Stage {
     fn draw(tier: Tier, class: &'static Class, random: &mut Random) -> Result<Self> {
-        let placed = Placed::put_down(Object::draw(Pool::Desk, random)?, tier, random)?;
+        let placed = Placed::put_down(Object::draw(Pool::All, random)?, tier, random)?;
         let [width, height] = SIZE.map(|side| side as f64);
         let focal = between(random, 0.8, 1.1) * width;
         let camera = Pinhole::new(focal, focal, 0.5 * width - 0.5, 0.5 * height - 0.5)?;
@@ -104,68 +101,8 @@ impl Stage {
 
     fn case(&self, name: String, object: CaseObject, frames: Vec<CaseFrame>) -> Case {
         let tier = self.conditions.tier.as_str().to_owned();
-        Case {
-            name: format!("{name}-{}", object.name),
-            tier,
-            tags: Vec::new(),
-            objects: vec![object],
-            frames,
-            plane: None,
-        }
+        Case { name: format!("{name}-{}", object.name), tier, tags: Vec::new(), objects: vec![object], frames }
     }
-}
-
-/// Two to eight cameras around an object. A third of the cases has noisy camera poses, and a sixth (of those with three
-/// views and more) one wrong view.
-pub fn views(index: usize, seed: u64) -> Result<Option<Case>> {
-    let stage = Stage::draw(Tier::of(index), &SPARSE_SENSOR, &mut Random::new(seed, OBJECT_STREAM))?;
-    let random = &mut Random::new(seed, SCENE_STREAM);
-    let count = 2 + random.below(7);
-    // Between neighbouring cameras.
-    let baseline = between(random, 5.0, 180.0);
-    let is_noisy = index % 3 == 1;
-    let wrong = (index % 6 == 5 && count > 2).then(|| random.below(count));
-    let (first, turn) = (between(random, 0.0, 360.0), sign(random));
-    let mut renderings = Vec::new();
-    for k in 0..count {
-        let heading = first + turn * baseline * k as f64 + between(random, -2.0, 2.0);
-        let angles = [heading, between(random, 15.0, 55.0), between(random, -8.0, 8.0)];
-        let distance = stage.distance * between(random, 0.85, 1.2);
-        let mut off = || between(random, -0.3, 0.3) * stage.diagonal();
-        let past = DVec3::new(off(), off(), off());
-        let seen = stage.see(&stage.look(angles, distance, past)?);
-        if seen.0.visible_px() < VIEW_PX || 1.0 - seen.0.hidden < MIN_VISIBLE {
-            return Ok(None);
-        }
-        renderings.push(seen);
-    }
-    let kind = match (wrong, is_noisy) {
-        (Some(_), _) => "wrong view",
-        (None, true) => "noisy cameras",
-        (None, false) => "exact cameras",
-    };
-    let (object, world_from_mesh) = stage.object(&renderings[0].0, kind.into(), seed)?;
-    let mut frames = Vec::new();
-    for (k, seen) in renderings.iter().enumerate() {
-        let mut frame = stage.frame(format!("frame_{k:02}"), seen, &world_from_mesh, mixed([seed, k as u64]))?;
-        frame.is_wrong = wrong == Some(k);
-        // A camera that was moved after its pose was measured.
-        let error = if frame.is_wrong { [between(random, 25.0, 90.0), 0.5 * stage.distance] } else { NOISE };
-        if is_noisy || frame.is_wrong {
-            frame.world_from_camera = frame.world_from_camera.map(|pose| jittered(&pose, error, random));
-        }
-        frames.push(frame);
-    }
-    let tier = stage.conditions.tier.as_str();
-    Ok(Some(stage.case(format!("{index:04}-{tier}-{count}x{baseline:.0}"), object, frames)))
-}
-
-/// A rigid transform with normally distributed errors: degrees and metres.
-fn jittered(pose: &Similarity, [degrees, metres]: [f64; 2], random: &mut Random) -> Similarity {
-    let mut vector = || Vector3::new(normal(random), normal(random), normal(random));
-    let turn = UnitQuaternion::from_scaled_axis(vector() * (degrees.to_radians() / 3f64.sqrt()));
-    let shift = vector() * (metres / 3f64.sqrt());
-    Similarity { rotation: turn.to_rotation_matrix() * pose.rotation, translation: pose.translation + shift, ..*pose }
 }
 
 /// A smooth path from −1 to 1: a sum of three waves, each a frequency and a phase.
@@ -183,7 +120,7 @@ impl Path {
 
 /// A video at 30 frames a second. Kinds of motion take turns, and after each turn the tiers; the mesh of hard ones has other
 /// proportions than the object.
-pub fn video(index: usize, seed: u64, frames: usize) -> Result<Option<Case>> {
+pub fn draw(index: usize, seed: u64, frames: usize) -> Result<Option<Case>> {
     let motion = Motion::ALL[index % Motion::ALL.len()];
     let tier = Tier::of(index / Motion::ALL.len());
     let class = if tier == Tier::Hard { &WARPED_IN_VIDEO } else { &SPARSE_SENSOR };

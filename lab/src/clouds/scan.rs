@@ -1,4 +1,4 @@
-//! Scans of a place: a depth camera that is moved a little, and a spinning lidar.
+//! Scans of a room by a depth camera that is moved a little.
 
 use crate::prelude::*;
 use sim3align_geometry::voxel_grid::voxel_downsample;
@@ -7,9 +7,6 @@ use sim3align_geometry::voxel_grid::voxel_downsample;
 pub(super) const SENSOR_STREAM: u64 = 0x7365_6e73;
 
 /// World from a sensor (x right, y down, z forward) at `eye` that looks to `yaw` (to the left of +x) and `pitch`, radians.
-///
-/// # Errors
-/// Only in case of a bug in the generator.
 pub fn looking(eye: DVec3, yaw: f64, pitch: f64) -> Result<Similarity> {
     let turn = DQuat::from_rotation_z(yaw) * DQuat::from_rotation_y(-pitch);
     let [x, y, z] = [-DVec3::Y, -DVec3::Z, DVec3::X].map(|axis| turn * axis);
@@ -24,16 +21,13 @@ const FOV_Y_DEG: f64 = 45.0;
 const RANGE_M: [f64; 2] = [0.4, 4.0];
 /// Share of the depth by which neighbouring readings may differ on a surface.
 const JUMP: f32 = 0.06;
-/// Distance of the points of a fragment.
+/// Distance of the points of a scan.
 const SPACING_M: f32 = 0.02;
-/// The yaw of each frame of a fragment, relative to the first.
+/// The yaw of each frame, relative to the first.
 const ASIDE: [f64; 7] = [0.0, -0.45, -0.22, 0.22, 0.45, -0.1, 0.1];
 
 /// Frames of a depth camera, fused as by odometry that drifts a little: points in the frame of the first camera.
-///
-/// # Errors
-/// Only in case of a bug in the generator.
-pub fn fragment(place: &Mesh, eye: DVec3, yaw: f64, pitch: f64, seed: u64) -> Result<Vec<Vec3>> {
+pub fn scan(room: &Mesh, eye: DVec3, yaw: f64, pitch: f64, seed: u64) -> Result<Vec<Vec3>> {
     let random = &mut Random::new(seed, SENSOR_STREAM);
     let camera = Pinhole::from_vertical_fov(FOV_Y_DEG, WIDTH, HEIGHT)?;
     let first = looking(eye, yaw, pitch)?;
@@ -43,7 +37,7 @@ pub fn fragment(place: &Mesh, eye: DVec3, yaw: f64, pitch: f64, seed: u64) -> Re
         let size = if frame == 0 { 0.0 } else { 1.0 };
         let [x, y, z, tilt] = [0.1, 0.1, 0.04, 0.12].map(|sd| size * sd * normal(random));
         let pose = looking(eye + DVec3::new(x, y, z), yaw + aside, pitch + tilt)?;
-        rasteriser.render(place, &pose.inverse(), &camera, WIDTH, HEIGHT);
+        rasteriser.render(room, &pose.inverse(), &camera, WIDTH, HEIGHT);
         let drift = Similarity {
             translation: Vector3::from_fn(|_, _| 0.006 * normal(random)),
             rotation: Rotation3::new(Vector3::from_fn(|_, _| 0.004 * normal(random))),
@@ -77,46 +71,4 @@ fn readings(depth: &[f32], camera: &Pinhole, random: &mut Random) -> Vec<Vec3> {
         points.push(camera.back_project(u as f64, v as f64, z));
     }
     points
-}
-
-/// Beams and steps of a turn, elevations in degrees, range and noise of a lidar, and the share of readings that get lost.
-const BEAMS: usize = 64;
-const STEPS: usize = 1000;
-const ELEVATIONS_DEG: [f64; 2] = [2.0, -24.8];
-const LIDAR_RANGE_M: [f64; 2] = [2.5, 80.0];
-const NOISE_M: f64 = 0.02;
-const LOST: f64 = 0.06;
-/// Side of the four images that a turn is read from.
-const SIDE: usize = 1024;
-
-/// One turn of a lidar, as points in its frame (x forward, y left, z up), from four images of 90°.
-///
-/// # Errors
-/// Only in case of a bug in the generator.
-pub fn sweep(place: &Mesh, world_from_lidar: &Similarity, seed: u64) -> Result<Vec<Vec3>> {
-    let random = &mut Random::new(seed, SENSOR_STREAM);
-    let half = 0.5 * SIDE as f64;
-    let camera = Pinhole::new(half, half, half - 0.5, half - 0.5)?;
-    let mut rasteriser = Rasteriser::new();
-    let mut points = Vec::new();
-    for side in 0..4 {
-        let lidar_from_camera = looking(DVec3::ZERO, FRAC_PI_2 * f64::from(side), 0.0)?;
-        let camera_from_world = world_from_lidar.compose(&lidar_from_camera).inverse();
-        rasteriser.render(place, &camera_from_world, &camera, SIDE, SIDE);
-        for (step, beam) in (0..STEPS / 4).flat_map(|step| (0..BEAMS).map(move |beam| (step, beam))) {
-            // To the right of the middle of the image, and up.
-            let turn = FRAC_PI_2 * ((step as f64 + 0.5) / (STEPS / 4) as f64 - 0.5);
-            let share = beam as f64 / (BEAMS - 1) as f64;
-            let elevation = (ELEVATIONS_DEG[0] + share * (ELEVATIONS_DEG[1] - ELEVATIONS_DEG[0])).to_radians();
-            let ray = Vector3::new(libm::tan(turn), -libm::tan(elevation) / libm::cos(turn), 1.0);
-            let [u, v] = [0, 1].map(|k| (half - 0.5 + half * ray[k]).round() as usize);
-            let range = ray.norm() * f64::from(rasteriser.depth()[v.min(SIDE - 1) * SIDE + u.min(SIDE - 1)]);
-            let (noise, lost) = (normal(random), random.uniform());
-            if lost > LOST && (LIDAR_RANGE_M[0]..=LIDAR_RANGE_M[1]).contains(&range) {
-                let seen = ray.normalize() * (range + NOISE_M * noise);
-                points.push(vec3(&lidar_from_camera.apply(seen)));
-            }
-        }
-    }
-    Ok(points)
 }
