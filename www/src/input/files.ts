@@ -46,7 +46,6 @@ export function keyOf(path: string, imageId: string | null): string {
 export const fromFile = (file: File, path = file.webkitRelativePath || file.name): NamedFile => ({
   path,
   bytes: async () => new Uint8Array(await file.arrayBuffer()),
-  head: async (length) => new Uint8Array(await file.slice(0, length).arrayBuffer()),
   size: file.size,
 });
 

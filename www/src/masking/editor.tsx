@@ -4,7 +4,6 @@ import { percent } from "../ui/texts.js";
 import { Brush, firstBrush } from "./brush.js";
 import type { View } from "./grid.js";
 import { useMask } from "./mask.js";
-import type { PhotoModel } from "./photo-model.js";
 import { type Pixel, Stage } from "./stage.js";
 import type { Mark } from "./strokes.js";
 
@@ -17,15 +16,11 @@ interface EditorProps {
   before: Uint8Array | null;
   /** The marks of a mask that was made here. */
   marks: readonly Mark[];
-  /** The models of the host, if there is a photo for them. */
-  model: PhotoModel | undefined;
   onDone(mask: Uint8Array, marks: readonly Mark[]): Promise<void>;
-  /** Asks the model about the object at this place. */
-  onAsk(place: readonly [number, number]): Promise<void>;
   onCancel(): void;
 }
 
-export function MaskEditor({ name, view, colour, before, marks: first, model, ...on }: EditorProps) {
+export function MaskEditor({ name, view, colour, before, marks: first, ...on }: EditorProps) {
   const { width, height } = view;
   const dialog = useRef<HTMLDialogElement>(null);
   const [marks, setMarks] = useState(first);
@@ -43,8 +38,6 @@ export function MaskEditor({ name, view, colour, before, marks: first, model, ..
 
   const put = (mark: Mark) => setMarks((now) => [...now, mark]);
   const undo = () => setMarks((now) => now.slice(0, -1));
-  const added = marks.filter((mark) => mark.adds).at(-1);
-  const lastAdded = added?.points.at(-1);
 
   const attempt = async (work: () => Promise<void>) => {
     setWaiting(true);
@@ -87,18 +80,6 @@ export function MaskEditor({ name, view, colour, before, marks: first, model, ..
         <p class="quiet" role="status" id="mask-status" aria-busy={isBusy}>
           {failure || status}
         </p>
-        {model !== undefined && (
-          <button
-            type="button"
-            id="mask-ask"
-            disabled={isBusy || lastAdded === undefined}
-            onClick={() =>
-              lastAdded && attempt(() => on.onAsk([(lastAdded[0] + 0.5) / width, (lastAdded[1] + 0.5) / height]))
-            }
-          >
-            Use {model.title}
-          </button>
-        )}
         <button type="button" id="mask-cancel" onClick={on.onCancel}>
           Cancel
         </button>

@@ -5,8 +5,6 @@ import type { DepthKind } from "sim3align";
 export interface NamedFile {
   path: string;
   bytes(): Promise<Uint8Array>;
-  /** The first bytes, where they can be read alone. */
-  head?(length: number): Promise<Uint8Array>;
   /** In bytes, where it is known without reading them. */
   size?: number;
 }
