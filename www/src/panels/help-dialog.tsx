@@ -66,7 +66,7 @@ export function HelpDialog() {
       </p>
       <h3>Documentation</h3>
       <ul class="documents">
-        {[...DOCUMENTS, ["Accuracy, time and size by version", "record.html"] as const].map(([title, address]) => (
+        {DOCUMENTS.map(([title, address]) => (
           <li key={address}>
             <a href={address} target="_blank" rel="noreferrer">
               {title}
