@@ -1,7 +1,6 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
-import { doubtOfSize } from "sim3align/camera/pinhole";
-import { depthOfRays } from "sim3align/camera/ray-distance";
+import { depthOfRays, doubtOfSize } from "sim3align/camera/pinhole";
 import type { DepthImage, ReadDepthOptions } from "sim3align/formats";
 import type { ImageSize } from "sim3align/values/pixels";
 import { corrected, provisional } from "../state/calibration.js";
