@@ -34,21 +34,26 @@ export async function threeQuarterView(
   const mesh = await shot.render(new View(width, height, 1, 0, 0), turn.after(pose), camera);
   const data = new Uint8Array(3 * width * height).fill(UNSEEN);
   const drawn = shaded(mesh, view, camera).data;
-  for (let i = 0; i < mesh.length; i++) if (mesh[i]) data.set(drawn.subarray(4 * i, 4 * i + 3), 3 * i);
+  for (let i = 0; i < mesh.length; i++)
+    if (mesh[i]) for (let k = 0; k < 3; k++) data[3 * i + k] = drawn[4 * i + k] as number;
 
-  const nearest = Float32Array.from(mesh, (z) => z || Number.POSITIVE_INFINITY);
+  const nearest = mesh.map((z) => z || Number.POSITIVE_INFINITY);
   const { fx, fy, cx, cy } = view.camera(shot.camera);
   const measured = view.sampled(shot.depth, shot.width, shot.height);
+  // The columns of the rotation, and its translation.
+  const [m0 = 1, m1 = 0, m2 = 0, , m4 = 0, m5 = 1, m6 = 0, , m8 = 0, m9 = 0, m10 = 1, , m12 = 0, m13 = 0, m14 = 0] =
+    turn.after([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
   for (let i = 0; i < measured.length; i++) {
     const z = measured[i] as number;
     if (z === 0) continue;
-    const seen = [(((i % width) - cx) * z) / fx, ((Math.floor(i / width) - cy) * z) / fy, z] as const;
-    const [x, y, far] = turn.apply(seen);
-    const [u, v] = [Math.round((x * camera.fx) / far + camera.cx), Math.round((y * camera.fy) / far + camera.cy)];
+    const [x, y] = [(((i % width) - cx) * z) / fx, ((Math.floor(i / width) - cy) * z) / fy];
+    const far = m2 * x + m6 * y + m10 * z + m14;
+    const u = Math.round(((m0 * x + m4 * y + m8 * z + m12) * camera.fx) / far + camera.cx);
+    const v = Math.round(((m1 * x + m5 * y + m9 * z + m13) * camera.fy) / far + camera.cy);
     const at = v * width + u;
     if (far <= 0 || u < 0 || u >= width || v < 0 || v >= height || far >= (nearest[at] as number)) continue;
     nearest[at] = far;
-    data.set(colours.subarray(3 * i, 3 * i + 3), 3 * at);
+    for (let k = 0; k < 3; k++) data[3 * at + k] = colours[3 * i + k] as number;
   }
   return { data, width, height };
 }

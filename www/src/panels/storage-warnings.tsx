@@ -1,4 +1,4 @@
-/** What the browser does not keep, and scenes that other tabs keep: nothing is lost without a word. */
+/** Storage warnings: scenes that could not be stored, or are open in another tab. */
 import { saveProject } from "../export/export.js";
 import { page } from "../state/page.js";
 
@@ -9,7 +9,7 @@ const others = () => import("../session/others.js");
 /** Names that are listed before the rest is counted. */
 const MOST = 3;
 
-export function Kept() {
+export function StorageWarnings() {
   const [reason, foreign] = [notKept.value, othersScenes.value];
   const names = foreign.slice(0, MOST).map(({ name }) => name);
   const more = foreign.length - names.length;

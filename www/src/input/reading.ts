@@ -1,16 +1,15 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
 import type { DepthKind, MeshArrays, PixelArray } from "sim3align";
-import { type CameraFile, type MeshFromFile, readCamera, readPose } from "sim3align/formats";
+import { type MeshFromFile, readExif, readPose } from "sim3align/formats";
+import { type Camera, cameraOf } from "sim3align/input/camera";
 import type { ImageSize } from "sim3align/values/pixels";
-import type { CameraSource, Field, Inputs, NamedFile, TruthSource } from "../state/inputs.js";
+import type { CameraSource, Field, Inputs, NamedFile } from "../state/inputs.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
-import type { RawView } from "../state/raw-view.js";
-import type { Scene } from "../state/scene.js";
-import { visibleExtent } from "../state/visible-extent.js";
-import { cameraOf, knownCamera, type ReadCamera, readDepthMap, viewOf } from "./depth-view.js";
+import type { RawView, Scene } from "../state/scene.js";
+import { visibleExtent } from "../state/scene.js";
+import { type ReadCamera, readDepthMap, viewOf } from "./depth-view.js";
 import { baseName } from "./files.js";
-import { atSize, maskOf } from "./masks.js";
-import { meshOf } from "./meshes.js";
+import { atSize, maskOf, meshOf } from "./object-files.js";
 import { type Photo, readPhoto } from "./photo.js";
 import { errorOf, type Problem } from "./problems.js";
 
@@ -43,8 +42,6 @@ export interface Reading {
   cameraSource: string | null;
   /** Of the focal length, relative; 0 where it is known. */
   focalUncertainty: number;
-  /** The size of the image to which the camera file belongs, if it says so. */
-  cameraSize: ImageSize | null;
   /** The size of the image to which the camera belongs: that of the depth map or, without one, of the photo. */
   size: ImageSize | null;
   photo: Photo | null;
@@ -57,10 +54,7 @@ export interface Reading {
 }
 
 /** What a scene is made of. */
-export type SceneReading = Omit<
-  Reading,
-  "focalUncertainty" | "cameraSize" | "size" | "shown" | "problems" | "depthKind"
->;
+export type SceneReading = Omit<Reading, "focalUncertainty" | "size" | "shown" | "problems" | "depthKind">;
 
 /** How many of the parts of a scene are read. */
 export interface ReadingProgress {
@@ -95,11 +89,8 @@ export async function readInputs(
   const { depth: depthFile, camera: source, imageId } = inputs;
   // The camera file may state the unit of an integer depth map.
   const cameraFile = source?.kind === "file" ? source.file : null;
-  const cameraBytes = cameraFile && (await attempt("camera", cameraFile, () => cameraFile.bytes()));
-  const stated = cameraBytes && (await statedOf(cameraBytes, imageId));
-  const integerDepthScale = stated?.depthScale;
-  const depthScale = inputs.depthScale ?? undefined;
-  const scales = { depthScale, integerDepthScale };
+  const stated = await attempt("camera", cameraFile, () => cameraFrom(source, imageId));
+  const scales = { depthScale: inputs.depthScale ?? undefined, integerDepthScale: stated?.integerDepthScale };
   const read =
     depthFile === null
       ? null
@@ -132,7 +123,7 @@ export async function readInputs(
               ),
           mesh === null ? null : attempt("mesh", mesh.file, () => meshOf(mesh), i),
           truthOf(truth),
-          truthOf(initial === undefined ? null : { file: initial }),
+          truthOf(initial ?? null),
         ]);
         const { mesh: arrays = null, glb = null } = readMesh ?? {};
         return { mask: readMask, maskReading, mesh: arrays, glb, truth: readTruth, initial: first?.transform };
@@ -141,16 +132,13 @@ export async function readInputs(
   ]);
   const size: ImageSize | null = read ?? photo;
   const camera =
-    size === null
+    size === null || stated === null
       ? null
-      : await attempt("camera", cameraFile, async () =>
-          source === null
-            ? cameraOf(
-                { width: size.width, height: size.height, camera: read?.camera },
-                photo && photoFile && { ...photo, bytes: await photoFile.bytes() },
-              )
-            : intrinsicsOf(source, cameraBytes, size, imageId),
-        );
+      : await attempt("camera", cameraFile, async () => {
+          const exif = source === null && photoFile !== null ? await exifOf(photoFile) : undefined;
+          const hints = { inDepth: read?.camera, photo: exif && photo ? { exif, size: photo } : undefined };
+          return resolved(stated, size, hints, source);
+        });
   const view = read && viewOf(read, camera);
   return {
     ...{ photo, objects, problems, size, shown, warnings: camera?.warnings ?? [] },
@@ -161,7 +149,6 @@ export async function readInputs(
     camera: camera?.camera ?? null,
     cameraSource: camera?.source ?? null,
     focalUncertainty: camera?.focalUncertainty ?? 0,
-    cameraSize: sizeOf(stated),
   };
 }
 
@@ -186,59 +173,39 @@ export function sceneOf(inputs: Inputs, reading: SceneReading, isFrame = false):
   };
 }
 
-/** What a camera file says by itself. Errors are left to the reading of the intrinsics, which needs the image size. */
-async function statedOf(camera: Uint8Array, imageId: string | null): Promise<CameraFile | null> {
-  return readCamera(camera, imageId === null ? {} : { imageId }).catch(() => null);
-}
-
-/** The size of the image to which a camera file belongs, if it says so. */
-const sizeOf = (stated: CameraFile | null): ImageSize | null =>
-  stated?.width === undefined || stated.height === undefined ? null : { width: stated.width, height: stated.height };
-
 const isSameSize = (a: ImageSize, b: ImageSize | null) => a.width === b?.width && a.height === b.height;
 
-/** A vertical field of view that a pinhole camera can have, degrees. */
-const FOV_RANGE = [1, 170] as const;
-
-async function intrinsicsOf(
-  source: CameraSource,
-  bytes: Uint8Array | null,
-  { width, height }: ImageSize,
-  imageId: string | null,
-): Promise<ReadCamera> {
-  if (source.kind === "assumed") {
-    const { fovYDeg } = source;
-    if (!(fovYDeg >= FOV_RANGE[0] && fovYDeg <= FOV_RANGE[1])) {
-      throw new Error(`The vertical field of view must be between ${FOV_RANGE[0]}° and ${FOV_RANGE[1]}°.`);
-    }
-    const warning = `The camera is assumed (vertical field of view ${fovYDeg}°), so the size is approximate.`;
-    return { ...(await knownCamera({ fovYDeg }, { width, height })), warnings: [warning] };
+/** The camera of a source, whose intrinsics may depend on the size of the image. */
+async function cameraFrom(source: CameraSource | null, imageId: string | null): Promise<Camera> {
+  if (source === null) return cameraOf({});
+  if (source.kind === "file") {
+    return cameraOf({ cameraFile: await source.file.bytes(), ...(imageId !== null && { imageId }) });
   }
-  if (source.kind === "numbers") return { camera: entered(source), source: null, focalUncertainty: 0, warnings: [] };
-  if (bytes === null) throw new Error("The camera file could not be read.");
-  return knownCamera(bytes, imageId === null ? { width, height } : { width, height, imageId });
+  const { kind: _, ...camera } = source;
+  return cameraOf({ camera });
 }
 
-/** Intrinsics that were typed. */
-function entered({ fx, fy, cx, cy }: Extract<CameraSource, { kind: "numbers" }>): Scene["camera"] {
-  if (fx === null || fy === null || cx === null || cy === null) {
-    const missing = Object.entries({ fx, fy, cx, cy }).flatMap(([name, value]) => (value === null ? [name] : []));
-    throw new Error(`Enter ${missing.join(", ")}, or choose a camera file.`);
-  }
-  if (!(fx > 0 && fy > 0)) throw new Error("fx and fy must be greater than 0: focal lengths in pixels.");
-  return { fx, fy, cx, cy };
+const exifOf = async (photo: NamedFile) => readExif(await photo.bytes()).catch(() => undefined);
+
+function resolved(
+  camera: Camera,
+  { width, height }: ImageSize,
+  hints: Parameters<Camera["resolve"]>[2],
+  source: CameraSource | null,
+): ReadCamera {
+  const found = camera.resolve(width, height, hints);
+  if (found.camera === undefined) throw new Error("The image has no pixels.");
+  const warnings = found.warnings.map(({ message }) => message);
+  const assumed =
+    source?.kind === "assumed"
+      ? [`The camera is assumed (vertical field of view ${source.fovYDeg}°), so the size is approximate.`]
+      : [];
+  return {
+    ...{ camera: found.camera, source: found.source ?? null, warnings: [...assumed, ...warnings] },
+    focalUncertainty: found.focalDeviation ?? 0,
+  };
 }
 
 /** A pose in a file. It only serves for comparison, or as a candidate, so an unreadable file counts as a missing one. */
-async function truthOf(source: TruthSource | null): Promise<ObjectParts["truth"]> {
-  if (source === null) return null;
-  try {
-    const bytes = await source.file.bytes();
-    if (source.entry === undefined) return await readPose(bytes);
-    const { imageId, index } = source.entry;
-    const images = JSON.parse(new TextDecoder().decode(bytes)) as Record<string, object[]>;
-    return await readPose(images[imageId]?.[index] ?? {});
-  } catch {
-    return null;
-  }
-}
+const truthOf = async (file: NamedFile | null): Promise<ObjectParts["truth"]> =>
+  file && readPose(await file.bytes()).catch(() => null);

@@ -4,7 +4,7 @@ import { isOfKind, openListed, progressOf } from "../opening/open.js";
 import type { Listed } from "../state/opened.js";
 import { page } from "../state/page.js";
 import { Check } from "../ui/controls.js";
-import { percent } from "../ui/format.js";
+import { percent } from "../ui/texts.js";
 
 const { inputs, list } = page;
 
