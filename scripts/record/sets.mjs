@@ -26,7 +26,7 @@ const generated = (name, title, cases, set = name, rows = []) => ({
   args: (count) => ["bench", "--set", set, "--count", `${count}`, ...SEED, ...rows.flatMap((row) => ["--row", row])],
 });
 const models = ["affine", "disparity", "no-camera", "disparity-no-camera"].map((model) => `${model}: model=${model}`);
-const surplus = ["floaters", "plate", "fused-plate"].map((kind) => `${kind}: surplus=${kind}`);
+const surplus = ["floaters", "plate"].map((kind) => `${kind}: surplus=${kind}`);
 const views = ["known cameras: call=views views=4", "unknown cameras: call=views views=4 cameras=false"];
 
 /** @type {readonly RecordSet[]} */
