@@ -4,6 +4,8 @@
 //! Each part awaits a yield point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
 //! are bit-identical whether or not it yields.
 
+use core::ops::Range;
+
 use super::outcome::{Outcome, Setup, outcome, score};
 use super::warnings::{about_fit, about_mesh, about_search, retain_doubts};
 use crate::error::Result;
@@ -28,7 +30,7 @@ use crate::precise::verdict::conclusion::Verdict;
 use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
-use crate::scheduler::Scheduler;
+use crate::scheduler::{Boxed, Scheduler};
 
 /// The options, validated, and the settings that follow from them.
 pub struct Request {
@@ -159,12 +161,22 @@ impl<'a> Search<'a> {
 
         let mut previous: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            let mut rounds = self.search_rotations(previous.as_ref(), index, settings).await?;
+            if settings.is_long(1) && self.mesh.has_one_form(&settings.grids) {
+                self.scheduler.ask_for_help().await;
+            }
+            let mut rounds = self.start(previous.as_ref(), settings)?;
+            self.scheduler.yield_point().await;
+            self.run(&mut rounds, efforts::share(index, efforts.len())).await;
 
             let conclusion = conclusion::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
             let is_sure = matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.overall() >= SURE);
-            if is_last || (is_sure && !self.find_rivals(&mut rounds, index).await) {
+            let mut rivals = if is_sure && !is_last { start::rival_search(&rounds) } else { None };
+            if let Some(rivals) = &mut rivals {
+                self.run(rivals, efforts::share(index + 1, efforts.len() + 1)).await;
+            }
+            let has_rival = rivals.is_some_and(|rivals| start::take_rivals(&mut rounds, &rivals));
+            if is_last || (is_sure && !has_rival) {
                 let (solution, verdict) = conclusion?;
                 return Ok(SearchResult { rounds, solution, verdict });
             }
@@ -174,33 +186,15 @@ impl<'a> Search<'a> {
         Err(precise::no_candidate())
     }
 
-    /// Runs the search of the effort with this index to its end.
-    async fn search_rotations(
-        &mut self,
-        previous: Option<&Rounds>,
-        index: usize,
-        settings: &SearchSettings,
-    ) -> Result<Rounds> {
-        if settings.is_long(1) && self.mesh.has_one_form(&settings.grids) {
-            self.scheduler.ask_for_help().await;
-        }
-        let Request { options, efforts, .. } = self.request;
-        let mut rounds =
-            start::start_search(self.observation, self.mesh, previous, options, settings, &mut self.stages)?;
-        self.scheduler.yield_point().await;
-
-        let progress = efforts::share(index, efforts.len());
-        start::run_rounds(&mut rounds, progress, self.scheduler, &mut self.stages).await;
-        Ok(rounds)
+    /// The search with these settings, before its first round.
+    fn start(&mut self, previous: Option<&Rounds>, settings: &SearchSettings) -> Result<Rounds> {
+        let Self { observation, mesh, request, stages, .. } = self;
+        start::start_search(observation, mesh, previous, &request.options, settings, stages)
     }
 
-    /// Whether a search from other rotations finds rivals of the best pose, which then become candidates.
-    async fn find_rivals(&mut self, rounds: &mut Rounds, index: usize) -> bool {
-        let Some(mut rival_rounds) = start::rival_search(rounds) else { return false };
-
-        let progress = efforts::share(index + 1, self.request.efforts.len() + 1);
-        start::run_rounds(&mut rival_rounds, progress, self.scheduler, &mut self.stages).await;
-        start::take_rivals(rounds, &rival_rounds)
+    /// Runs a search to its end. `share` is the progress at its start and end.
+    fn run<'b>(&'b mut self, rounds: &'b mut Rounds, share: Range<f64>) -> Boxed<'b, ()> {
+        start::run_rounds(rounds, share, self.scheduler, &mut self.stages)
     }
 
     /// Searches from the candidates of an earlier search of the object, with the scene around it.
@@ -211,7 +205,7 @@ impl<'a> Search<'a> {
         let earlier = start.earlier;
         let mut rounds = self.restart(start, None)?;
         self.scheduler.yield_point().await;
-        start::run_rounds(&mut rounds, efforts::share(0, 1), self.scheduler, &mut self.stages).await;
+        self.run(&mut rounds, efforts::share(0, 1)).await;
 
         let mut result = SearchResult::new(rounds)?;
         if result.confidence() < earlier.confidence - MAX_CONFIDENCE_LOSS

@@ -59,18 +59,22 @@ struct Facts<'a> {
 /// Warnings about depth and mask.
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let facts = Facts::of(observation);
-    let messages = [
-        (WarningCode::DepthLooksLikeMillimetres, facts.about_millimetres()),
-        (WarningCode::SizeDoubtful, facts.about_size()),
-        (WarningCode::DepthLooksTooSmall, facts.about_small_depth()),
-        (WarningCode::DepthLooksInverted, facts.about_inverted_depth()),
-        (WarningCode::DepthLooksNormalised, facts.about_normalised_depth()),
-        (WarningCode::MaskLooksInverted, facts.about_inverted_mask()),
-        (WarningCode::MaskCoversImage, facts.about_whole_image()),
-        (WarningCode::MaskTouchesBorder, facts.about_border()),
-        (WarningCode::SparseDepth, facts.about_sparse_depth()),
-    ];
-    messages.into_iter().filter_map(|(code, message)| Some(Warning { code, message: message? })).collect()
+    let mut warnings = Vec::new();
+    add(&mut warnings, WarningCode::DepthLooksLikeMillimetres, facts.about_millimetres());
+    add(&mut warnings, WarningCode::SizeDoubtful, facts.about_size());
+    add(&mut warnings, WarningCode::DepthLooksTooSmall, facts.about_small_depth());
+    add(&mut warnings, WarningCode::DepthLooksInverted, facts.about_inverted_depth());
+    add(&mut warnings, WarningCode::DepthLooksNormalised, facts.about_normalised_depth());
+    add(&mut warnings, WarningCode::MaskLooksInverted, facts.about_inverted_mask());
+    add(&mut warnings, WarningCode::MaskCoversImage, facts.about_whole_image());
+    add(&mut warnings, WarningCode::MaskTouchesBorder, facts.about_border());
+    add(&mut warnings, WarningCode::SparseDepth, facts.about_sparse_depth());
+    warnings
+}
+
+#[inline(never)]
+fn add(warnings: &mut Vec<Warning>, code: WarningCode, message: Option<String>) {
+    warnings.extend(message.map(|message| Warning { code, message }));
 }
 
 impl<'a> Facts<'a> {

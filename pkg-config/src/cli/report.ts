@@ -90,7 +90,7 @@ function rowHtml(name: string, row: Row, hasPictures: boolean): string {
   const folder = `cases/${encodeURIComponent(fileName(name))}`;
   const images = pictureNames.map((picture) => {
     const text = `alt="${casePictures[picture]}" title="${casePictures[picture]}"`;
-    return hasPictures ? `<td><img src="${folder}/${picture}.png" ${text} width=140 height=105 loading=lazy>` : "<td>";
+    return hasPictures ? `<td><img src="${folder}/${picture}.png" ${text} width=160 height=120 loading=lazy>` : "<td>";
   });
   const messages = (error === undefined ? warnings : [error, ...warnings]).map(messageHtml);
   const cell = (column: ColumnName) => `<td data-key="${numberIn(row, column) ?? ""}">${cellOf(row, column)}`;

@@ -1,14 +1,24 @@
 /** Reads what a camera saw: the depth map or the point map, the photo and the camera. */
+
+import type { Pinhole } from "../camera/pinhole.js";
 import { depthOfRays } from "../camera/ray-distance.js";
 import type { CoreInput, CoreView } from "../modules/core-input.js";
 import type { FileReaders } from "../modules/readers.js";
-import type { DepthImage } from "../types/inputs.js";
+import type { DepthImage, DepthKind, ReadDepthOptions } from "../types/inputs.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { oneOf, withoutUndefined } from "../values/validation.js";
-import { cameraOf, type ResolvedCamera } from "./camera.js";
-import { checkSides, DEFAULT_SCALE, readDepth, readPointMap, type SizedArray, unknownUnit } from "./depth.js";
+import { type Camera, cameraOf, type ResolvedCamera } from "./camera.js";
+import {
+  checkSides,
+  DEFAULT_SCALE,
+  readDepth,
+  readPointMap,
+  type SizedArray,
+  type StatedSize,
+  unknownUnit,
+} from "./depth.js";
 import { depthKindNames, isAffineInvariant } from "./formats.js";
 import { type ReadPhoto, readPhoto, readPhotoExif } from "./photo.js";
 
@@ -38,68 +48,93 @@ export const viewProperties: readonly string[] = [
  */
 export async function readView(input: Record<string, unknown>, readers: FileReaders): Promise<Resolved<CoreView>> {
   checkSides("", input);
-  const { pointMap } = input;
-  return pointMap === undefined ? depthView(input, readers) : pointMapView(input, pointMap, readers);
-}
-
-async function depthView(input: Record<string, unknown>, readers: FileReaders): Promise<Resolved<CoreView>> {
-  const size = { width: input.width as number | undefined, height: input.height as number | undefined };
-  const depthScale = input.depthScale as number | undefined;
-  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKindNames, "INVALID_ARGUMENT");
   const camera = await cameraOf(input);
-  const { integerDepthScale } = camera;
-  const reading = { depthScale, integerDepthScale, depthKind };
-  const { data, unit, camera: inDepth, ...sides } = await readDepth(input.depth, size, reading, readers);
-  const isFile = data !== input.depth && !isRecord(input.depth);
-  const isFloat = isTypedArray(data, "Float32Array");
-  // Integers of an unknown unit are read as they are.
-  const isMetric = depthKind === "metric" || depthKind === "ray-distance";
-  const integerScale = isMetric ? integerDepthScale : 1;
-  const photo = await readPhoto(input.image, sides, readers);
-  const { image } = photo;
-  const exif = camera.isGiven ? undefined : await readPhotoExif(input.image, readers);
-  const hints = { inDepth, photo: exif && image && { exif, size: image } };
-  const resolved = camera.resolve(sides.width, sides.height, hints);
-  // The readers have already scaled the values of a file.
-  const scale = isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale));
-  const read =
-    depthKind === "ray-distance" && resolved.camera !== undefined
-      ? { depth: depthOfRays(data, sides.width as number, resolved.camera, scale ?? (isFloat ? 1 : DEFAULT_SCALE)) }
-      : { depth: data, depthScale: scale, depthKind: isMetric ? undefined : depthKind };
-  return viewOf(read, sides, photo, resolved, unit);
+  const measured = await readMeasured(input, camera.integerDepthScale, readers);
+  const photo = await readPhoto(input.image, measured, readers);
+  const { camera: pinhole, ...lens } = await resolveCamera(camera, measured, photo, input, readers);
+
+  const { width, height, unit } = measured;
+  const depth = measured.rays === undefined || pinhole === undefined ? measured.core : measured.rays(pinhole);
+  const view = { ...depth, width, height, image: photo.image, camera: pinhole, focalDeviation: lens.focalDeviation };
+  const { imageReading } = photo;
+  const notes = { warnings: lens.warnings, colors: [], depthUnit: unit };
+  return {
+    core: withoutUndefined(view) as CoreView,
+    notes: { ...notes, ...withoutUndefined({ cameraSource: lens.source, imageReading }) },
+  };
 }
 
-async function pointMapView(
+/** What was measured: a depth map or a point map. */
+interface Measured extends Omit<SizedArray<unknown>, "data"> {
+  core: { [K in "depth" | "depthScale" | "depthKind" | "pointMap"]?: CoreInput[K] | undefined };
+  unit: DepthImage["unit"];
+  /** The camera in the file of the depth; `"fitted"` for a point map, to which the core fits one. */
+  camera: Pinhole | "fitted" | undefined;
+  /** Converts distances along rays to depth. */
+  rays?: (camera: Pinhole) => Measured["core"];
+}
+
+async function readMeasured(
   input: Record<string, unknown>,
-  pointMap: unknown,
+  integerDepthScale: number | undefined,
   readers: FileReaders,
-): Promise<Resolved<CoreView>> {
+): Promise<Measured> {
+  const { pointMap, depth, width, height } = input;
+  const size = { width, height } as StatedSize;
+  if (pointMap === undefined) {
+    const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKindNames, "INVALID_ARGUMENT");
+    const depthScale = input.depthScale as number | undefined;
+    return depthView(depth, size, { depthScale, integerDepthScale, depthKind }, readers);
+  }
   const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
   if (other !== undefined) {
     const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
     throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
   }
   const kinds = depthKindNames.filter((kind) => !isAffineInvariant(kind) && kind !== "ray-distance");
-  const depthKind = oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT");
-  const { data, ...sides } = readPointMap(pointMap, input as { width?: number; height?: number });
-  const photo = await readPhoto(input.image, sides, readers);
-  const isMetric = depthKind === "metric";
-  const read = { pointMap: data, depthKind: isMetric ? undefined : depthKind };
-  const camera = await cameraOf(input);
-  // Intrinsics that were not given are fitted to the point map.
-  const resolved = camera.isGiven ? camera.resolve(sides.width, sides.height) : { camera: undefined, warnings: [] };
-  const unit = isMetric ? { metres: 1, source: "point map", isAssumed: false } : unknownUnit(depthKind);
-  return viewOf(read, sides, photo, resolved, unit);
+  return pointMapView(pointMap, size, oneOf("depthKind", input.depthKind ?? "metric", kinds, "INVALID_ARGUMENT"));
 }
 
-function viewOf(
-  depth: { [K in "depth" | "depthScale" | "depthKind" | "pointMap"]?: CoreInput[K] | undefined },
-  { width, height }: Omit<SizedArray<unknown>, "data">,
-  { image, imageReading }: ReadPhoto,
-  { camera, focalDeviation, source, warnings }: ResolvedCamera,
-  depthUnit: DepthImage["unit"],
-): Resolved<CoreView> {
-  const view = withoutUndefined({ ...depth, width, height, image, camera, focalDeviation });
-  const notes = { warnings, colors: [], depthUnit, ...withoutUndefined({ cameraSource: source, imageReading }) };
-  return { core: view as CoreView, notes };
+async function depthView(
+  depth: unknown,
+  size: StatedSize,
+  reading: ReadDepthOptions & { depthKind: DepthKind },
+  readers: FileReaders,
+): Promise<Measured> {
+  const { depthScale, integerDepthScale, depthKind } = reading;
+  const { data, ...read } = await readDepth(depth, size, reading, readers);
+  const isFile = data !== depth && !isRecord(depth);
+  const isFloat = isTypedArray(data, "Float32Array");
+  // Integers of an unknown unit are read as they are.
+  const isMetric = depthKind === "metric" || depthKind === "ray-distance";
+  const integerScale = isMetric ? integerDepthScale : 1;
+  // The readers have already scaled the values of a file.
+  const scale = isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale));
+  const measured = { camera: undefined, ...read };
+  const core = { depth: data, depthScale: scale, depthKind: isMetric ? undefined : depthKind };
+  if (depthKind !== "ray-distance") return { ...measured, core };
+  const metres = scale ?? (isFloat ? 1 : DEFAULT_SCALE);
+  const rays = (camera: Pinhole) => ({ depth: depthOfRays(data, read.width as number, camera, metres) });
+  return { ...measured, core, rays };
+}
+
+function pointMapView(pointMap: unknown, size: StatedSize, depthKind: DepthKind): Measured {
+  const { data, ...sides } = readPointMap(pointMap, size);
+  const isMetric = depthKind === "metric";
+  const unit = isMetric ? { metres: 1, source: "point map", isAssumed: false } : unknownUnit(depthKind);
+  return { ...sides, core: { pointMap: data, depthKind: isMetric ? undefined : depthKind }, unit, camera: "fitted" };
+}
+
+/** The camera of what was measured: the stated one, or that of the depth file, of the photo's EXIF data, or a guess. */
+async function resolveCamera(
+  camera: Camera,
+  { width, height, camera: inDepth }: Measured,
+  { image }: ReadPhoto,
+  input: Record<string, unknown>,
+  readers: FileReaders,
+): Promise<ResolvedCamera> {
+  if (camera.isGiven) return camera.resolve(width, height);
+  if (inDepth === "fitted") return { camera: undefined, warnings: [] };
+  const exif = await readPhotoExif(input.image, readers);
+  return camera.resolve(width, height, { inDepth, photo: exif && image && { exif, size: image } });
 }

@@ -3,10 +3,12 @@ import { ground, outlines, over, shaded, translucent } from "./layers.js";
 import { pngOf } from "./png.js";
 import type { Shot } from "./shot.js";
 import { threeQuarterView } from "./three-quarter-view.js";
-import { boxOf, View } from "./view.js";
+import { type Box, boxOf, unionOf, View } from "./view.js";
 
 /** Size of the pictures of a report, pixels. */
-const PICTURE = { width: 280, height: 210 };
+const PICTURE = { width: 240, height: 180 };
+/** Pixels per pixel of the depth map of the image in which the mesh is looked for. */
+const COARSE = 0.25;
 /** The surroundings that a picture shows, as a multiple of the object's box. */
 const MARGIN = 1.5;
 /** Longest side of an overlay of the whole image, pixels. */
@@ -24,8 +26,9 @@ export const casePictures = {
 /** Draws the pictures of a case. */
 export async function drawCase(shot: Shot, pose: Matrix): Promise<Record<keyof typeof casePictures, Uint8Array>> {
   const { width, height, mask } = shot;
-  const whole = await shot.render(View.whole(width, height, 1), pose);
-  const view = View.around(boxOf(mask, whole, width, height), PICTURE.width, PICTURE.height, MARGIN);
+  const whole = { left: 0, top: 0, width, height };
+  const shown = unionOf([boxOf(mask, width, height), await boxOfMesh(shot, pose)], whole);
+  const view = View.around(shown, PICTURE.width, PICTURE.height, MARGIN);
   const seen = ground(shot, view);
   const mesh = await shot.render(view, pose);
   const outlined = outlines(view.sampled(mask, width, height), mesh, view);
@@ -36,6 +39,17 @@ export async function drawCase(shot: Shot, pose: Matrix): Promise<Record<keyof t
     threeQuarterView(shot, view, pose, seen).then(pngOf),
   ]);
   return { photo, overlay, side };
+}
+
+/** The box of the drawn mesh, in pixels of the depth map, to a few pixels. */
+async function boxOfMesh(shot: Shot, pose: Matrix): Promise<Box | undefined> {
+  const view = View.whole(shot.width, shot.height, COARSE);
+  const box = boxOf(await shot.render(view, pose), view.width, view.height);
+  if (box === undefined) return undefined;
+  const [left, top, width, height] = [box.left, box.top, box.width, box.height].map((x) => x / COARSE) as [
+    ...[number, number, number, number],
+  ];
+  return { left, top, width, height };
 }
 
 /** The whole image with the mask's outline and the shaded mesh, as a PNG. */

@@ -11,26 +11,29 @@ export function ground(shot: Shot, view: View): Picture {
   return photo === undefined ? depthGround(shot, view) : photoGround(photo, columns, rows, view);
 }
 
-function photoGround(photo: Picture, columns: number, rows: number, view: View): Picture {
+function photoGround({ data: pixels, ...photo }: Picture, columns: number, rows: number, view: View): Picture {
   const { width, height } = view;
   const data = new Uint8Array(3 * width * height);
   const [scaleX, scaleY] = [photo.width / columns, photo.height / rows];
   // Pixels of the photo per pixel of the view: their mean.
   const count = Math.min(Math.max(1, Math.round(scaleX / view.zoom)), 8);
-  for (let y = 0; y < height; y++) {
-    for (let x = 0; x < width; x++) {
-      const sum = [0, 0, 0];
-      let seen = 0;
-      for (let k = 0; k < count * count; k++) {
-        const [dx, dy] = [((k % count) + 0.5) / count, (Math.floor(k / count) + 0.5) / count];
-        const u = Math.floor((view.left + (x + dx) / view.zoom) * scaleX);
-        const v = Math.floor((view.top + (y + dy) / view.zoom) * scaleY);
-        if (u < 0 || v < 0 || u >= photo.width || v >= photo.height) continue;
-        seen++;
-        for (let c = 0; c < 3; c++) sum[c] = (sum[c] as number) + (photo.data[3 * (v * photo.width + u) + c] as number);
-      }
-      data.set(seen === 0 ? depthColour(null) : sum.map((part) => Math.round(part / seen)), 3 * (y * width + x));
+  const nothing = depthColour(null);
+  for (let i = 0; i < width * height; i++) {
+    const [x, y] = [i % width, Math.floor(i / width)];
+    let [red, green, blue, seen] = [0, 0, 0, 0];
+    for (let k = 0; k < count * count; k++) {
+      const u = Math.floor((view.left + (x + ((k % count) + 0.5) / count) / view.zoom) * scaleX);
+      const v = Math.floor((view.top + (y + (Math.floor(k / count) + 0.5) / count) / view.zoom) * scaleY);
+      if (u < 0 || v < 0 || u >= photo.width || v >= photo.height) continue;
+      const at = 3 * (v * photo.width + u);
+      seen += 1;
+      red += pixels[at] as number;
+      green += pixels[at + 1] as number;
+      blue += pixels[at + 2] as number;
     }
+    data[3 * i] = seen === 0 ? nothing[0] : Math.round(red / seen);
+    data[3 * i + 1] = seen === 0 ? nothing[1] : Math.round(green / seen);
+    data[3 * i + 2] = seen === 0 ? nothing[2] : Math.round(blue / seen);
   }
   return { data, width, height };
 }
@@ -49,36 +52,39 @@ function depthGround(shot: Shot, view: View): Picture {
   return { data, width, height };
 }
 
-/** A layer: each pixel has a colour and an opacity of 0 to 255, or `null`. */
-function layer(view: View, colourOf: (i: number) => readonly [...Rgb, number] | null): Picture {
-  const { width, height } = view;
+/** Sets the colour and the opacity of a pixel of a layer. */
+function paint(layer: Uint8Array, i: number, [red, green, blue]: Rgb, opacity: number): void {
+  layer[4 * i] = red;
+  layer[4 * i + 1] = green;
+  layer[4 * i + 2] = blue;
+  layer[4 * i + 3] = opacity;
+}
+
+/** The outlines of the mask and of the mesh. */
+export function outlines(mask: Float32Array, mesh: Float32Array, { width, height }: View): Picture {
+  const thickness = Math.max(2, Math.round(width / 320));
+  const isMask = outlineOf({ data: mask, width, height }, thickness);
+  const isMesh = outlineOf({ data: mesh, width, height }, thickness);
   const data = new Uint8Array(4 * width * height);
   for (let i = 0; i < width * height; i++) {
-    const colour = colourOf(i);
-    if (colour !== null) data.set(colour, 4 * i);
+    if (isMesh(i)) paint(data, i, MESH, 255);
+    else if (isMask(i)) paint(data, i, MASK, 255);
   }
   return { data, width, height };
 }
 
-/** The outlines of the mask and of the mesh. */
-export function outlines(mask: Float32Array, mesh: Float32Array, view: View): Picture {
-  const { width, height } = view;
-  const thickness = Math.max(2, Math.round(width / 320));
-  const isMask = outlineOf({ data: mask, width, height }, thickness);
-  const isMesh = outlineOf({ data: mesh, width, height }, thickness);
-  return layer(view, (i) => (isMesh(i) ? [...MESH, 255] : isMask(i) ? [...MASK, 255] : null));
-}
-
 /** The mesh, shaded by the slope of its surface. */
-export function shaded(mesh: Float32Array, view: View, focal: { fx: number; fy: number }): Picture {
-  const { width, height } = view;
-  return layer(view, (i) => {
-    if (mesh[i] === 0) return null;
-    const light = lightAt({ data: mesh, width, height }, i, focal);
+export function shaded(mesh: Float32Array, { width, height }: View, focal: { fx: number; fy: number }): Picture {
+  const shape = { data: mesh, width, height };
+  const data = new Uint8Array(4 * width * height);
+  for (let i = 0; i < width * height; i++) {
+    if (mesh[i] === 0) continue;
+    const light = lightAt(shape, i, focal);
     // A few levels, of which small files are made.
     const tone = (part: number) => Math.min(255, 8 * Math.round(Math.min(255, part * light) / 8));
-    return [tone(MESH[0]), tone(MESH[1]), tone(MESH[2]), 235];
-  });
+    paint(data, i, [tone(MESH[0]), tone(MESH[1]), tone(MESH[2])], 235);
+  }
+  return { data, width, height };
 }
 
 /** A layer through which what is below stays visible. */

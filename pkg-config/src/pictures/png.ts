@@ -31,7 +31,7 @@ export async function pngOf({ data, width, height }: Picture): Promise<Uint8Arra
   header.writeUInt32BE(width, 0);
   header.writeUInt32BE(height, 4);
   header.set([8, channels === 4 ? 6 : 2], 8);
-  const pixels = await compressed(filtered(data, channels, width, height), { level: 7 });
+  const pixels = await compressed(filtered(data, channels, width, height), { level: 5 });
   const chunks = [chunk("IHDR", header), chunk("IDAT", pixels), chunk("IEND", Buffer.alloc(0))];
   return Buffer.concat([Buffer.from("\x89PNG\r\n\x1a\n", "latin1"), ...chunks]);
 }
@@ -44,31 +44,15 @@ function chunk(type: string, content: Uint8Array): Uint8Array {
   return Buffer.concat([length, typed, check]);
 }
 
-/** The rows, each after its filter: layers, which are mostly empty, as they are; photos as differences (Paeth). */
+/** The rows, each after its filter: the differences from the pixels to the left, of which smaller files are made. */
 function filtered(data: Uint8Array, channels: number, width: number, height: number): Uint8Array {
   const stride = channels * width;
-  const filter = channels === 4 ? 0 : 4;
   const rows = new Uint8Array(height * (1 + stride));
   for (let v = 0; v < height; v++) {
-    const to = v * (1 + stride);
-    rows[to] = filter;
-    const from = v * stride;
-    if (filter === 0) {
-      rows.set(data.subarray(from, from + stride), to + 1);
-      continue;
-    }
-    for (let x = 0; x < stride; x++) {
-      const left = x < channels ? 0 : (data[from + x - channels] as number);
-      const above = v === 0 ? 0 : (data[from + x - stride] as number);
-      const corner = v === 0 || x < channels ? 0 : (data[from + x - stride - channels] as number);
-      rows[to + 1 + x] = (data[from + x] as number) - predicted(left, above, corner);
-    }
+    const [from, to] = [v * stride, v * (1 + stride)];
+    rows[to] = 1;
+    for (let x = 0; x < stride; x++)
+      rows[to + 1 + x] = (data[from + x] as number) - (x < channels ? 0 : (data[from + x - channels] as number));
   }
   return rows;
-}
-
-/** Paeth's predictor: the neighbour that is nearest to left + above − corner. */
-function predicted(left: number, above: number, corner: number): number {
-  const [a, b, c] = [Math.abs(above - corner), Math.abs(left - corner), Math.abs(left + above - 2 * corner)];
-  return a <= b && a <= c ? left : b <= c ? above : corner;
 }

@@ -3,6 +3,7 @@
 import { toOrigin } from "../calls/origin.js";
 import type { Pinhole } from "../camera/pinhole.js";
 import { resizedMask } from "../conventions/resize.js";
+import { readPhoto } from "../input/photo.js";
 import { resolveInput } from "../input/resolve.js";
 import type { Photo } from "../modules/core-input.js";
 import { coreModule } from "../modules/modules.js";
@@ -32,13 +33,23 @@ export class Shot {
    * @throws {@link Sim3AlignError} as `align`
    */
   static async of(input: AlignInput): Promise<Shot> {
-    const { core } = await resolveInput(input, fileReaders, nextMeshId());
-    const { depth = new Float32Array(), mask, mesh, image } = core;
-    const [width, height] = [Number(core.width), Number(core.height)];
+    const { image: photo, ...plain } = input;
+    // Without a photo, whose data may state the focal length, the colours of the mesh are not read: no picture shows them.
+    const hasCamera = input.camera !== undefined || input.cameraFile !== undefined;
+    const { core } = await resolveInput(hasCamera ? plain : input, fileReaders, nextMeshId());
+    const { depth = new Float32Array(), mask, mesh } = core;
+    const size = { width: Number(core.width), height: Number(core.height) };
+    const { image } = await readPhoto(photo, size, fileReaders);
+    const { width, height } = size;
     const scale = Number(core.depthScale ?? (isTypedArray(depth, "Uint16Array") ? 0.001 : 1));
-    const metres = Float32Array.from(depth, (z) => (z > 0 && Number.isFinite(z) ? z * scale : 0));
+    const metres = new Float32Array(depth.length);
+    for (let i = 0; i < depth.length; i++) {
+      const z = depth[i] as number;
+      if (z > 0 && z < Number.POSITIVE_INFINITY) metres[i] = z * scale;
+    }
     const given = { data: mask, width: core.maskWidth ?? width, height: core.maskHeight ?? height };
-    const { data: inside } = resizedMask(given, { width, height });
+    const isSameSize = given.width === width && given.height === height;
+    const inside = isSameSize ? mask : resizedMask(given, { width, height }).data;
     return new Shot(metres, width, height, core.camera as Pinhole, inside, image, mesh);
   }
 

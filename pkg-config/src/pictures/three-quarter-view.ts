@@ -17,6 +17,9 @@ const SHARE = 0.55;
 
 type Point = readonly [x: number, y: number, z: number];
 
+const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] as const;
+type Matrix = { [K in keyof typeof IDENTITY]: number };
+
 /** Draws the posed mesh and the points of a view in the colours of its picture. */
 export async function threeQuarterView(
   shot: Shot,
@@ -34,21 +37,24 @@ export async function threeQuarterView(
   const mesh = await shot.render(new View(width, height, 1, 0, 0), turn.after(pose), camera);
   const data = new Uint8Array(3 * width * height).fill(UNSEEN);
   const drawn = shaded(mesh, view, camera).data;
-  for (let i = 0; i < mesh.length; i++) if (mesh[i]) data.set(drawn.subarray(4 * i, 4 * i + 3), 3 * i);
+  for (let i = 0; i < mesh.length; i++)
+    if (mesh[i]) for (let k = 0; k < 3; k++) data[3 * i + k] = drawn[4 * i + k] as number;
 
-  const nearest = Float32Array.from(mesh, (z) => z || Number.POSITIVE_INFINITY);
+  const nearest = mesh.map((z) => z || Number.POSITIVE_INFINITY);
   const { fx, fy, cx, cy } = view.camera(shot.camera);
   const measured = view.sampled(shot.depth, shot.width, shot.height);
+  const [m0, m1, m2, , m4, m5, m6, , m8, m9, m10, , m12, m13, m14] = turn.after(IDENTITY) as Matrix;
   for (let i = 0; i < measured.length; i++) {
     const z = measured[i] as number;
     if (z === 0) continue;
-    const seen = [(((i % width) - cx) * z) / fx, ((Math.floor(i / width) - cy) * z) / fy, z] as const;
-    const [x, y, far] = turn.apply(seen);
-    const [u, v] = [Math.round((x * camera.fx) / far + camera.cx), Math.round((y * camera.fy) / far + camera.cy)];
+    const [x, y] = [(((i % width) - cx) * z) / fx, ((Math.floor(i / width) - cy) * z) / fy];
+    const far = m2 * x + m6 * y + m10 * z + m14;
+    const u = Math.round(((m0 * x + m4 * y + m8 * z + m12) * camera.fx) / far + camera.cx);
+    const v = Math.round(((m1 * x + m5 * y + m9 * z + m13) * camera.fy) / far + camera.cy);
     const at = v * width + u;
     if (far <= 0 || u < 0 || u >= width || v < 0 || v >= height || far >= (nearest[at] as number)) continue;
     nearest[at] = far;
-    data.set(colours.subarray(3 * i, 3 * i + 3), 3 * at);
+    for (let k = 0; k < 3; k++) data[3 * at + k] = colours[3 * i + k] as number;
   }
   return { data, width, height };
 }

@@ -2,7 +2,7 @@
 import type { Pinhole } from "../camera/pinhole.js";
 
 /** A rectangle in pixels of the depth map: its corner at the edge of a pixel, and its size. */
-interface Box {
+export interface Box {
   left: number;
   top: number;
   width: number;
@@ -43,17 +43,13 @@ export class View {
     };
   }
 
-  /** The column and the row of the depth map at the centre of a pixel, with fractions. */
-  at(x: number, y: number): [u: number, v: number] {
-    return [this.left + (x + 0.5) / this.zoom - 0.5, this.top + (y + 0.5) / this.zoom - 0.5];
-  }
-
   /** Values of an image of the size of the depth map, each of the nearest pixel; 0 outside. */
   sampled(values: ArrayLike<number>, width: number, height: number): Float32Array {
     const result = new Float32Array(this.width * this.height);
     for (let y = 0; y < this.height; y++) {
       for (let x = 0; x < this.width; x++) {
-        const [u, v] = this.at(x, y).map(Math.round) as [number, number];
+        const u = Math.round(this.left + (x + 0.5) / this.zoom - 0.5);
+        const v = Math.round(this.top + (y + 0.5) / this.zoom - 0.5);
         if (u >= 0 && v >= 0 && u < width && v < height) result[y * this.width + x] = values[v * width + u] as number;
       }
     }
@@ -61,15 +57,27 @@ export class View {
   }
 }
 
-/** The box around the pixels of two shapes that are not 0; all of the image, if there are none. */
-export function boxOf(a: ArrayLike<number>, b: ArrayLike<number>, width: number, height: number): Box {
+/** The box around the pixels of an image that are not 0; `undefined` if there are none. */
+export function boxOf(values: ArrayLike<number>, width: number, height: number): Box | undefined {
   let [left, top, right, bottom] = [width, height, 0, 0];
   for (let v = 0; v < height; v++) {
     for (let u = 0; u < width; u++) {
-      if (!a[v * width + u] && !b[v * width + u]) continue;
-      [left, right] = [Math.min(left, u), Math.max(right, u + 1)];
-      [top, bottom] = [Math.min(top, v), Math.max(bottom, v + 1)];
+      if (!values[v * width + u]) continue;
+      if (u < left) left = u;
+      if (u >= right) right = u + 1;
+      if (v < top) top = v;
+      bottom = v + 1;
     }
   }
-  return right > left ? { left, top, width: right - left, height: bottom - top } : { left: 0, top: 0, width, height };
+  return right > left ? { left, top, width: right - left, height: bottom - top } : undefined;
+}
+
+/** The box around several boxes, of which one is known at least. */
+export function unionOf(boxes: readonly (Box | undefined)[], otherwise: Box): Box {
+  const known = boxes.filter((box) => box !== undefined);
+  if (known.length === 0) return otherwise;
+  const [left, top] = [Math.min(...known.map((box) => box.left)), Math.min(...known.map((box) => box.top))];
+  const right = Math.max(...known.map((box) => box.left + box.width));
+  const bottom = Math.max(...known.map((box) => box.top + box.height));
+  return { left, top, width: right - left, height: bottom - top };
 }

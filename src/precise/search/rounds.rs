@@ -275,10 +275,7 @@ impl Rounds {
             Task::Fit => self.end_ranking(round, results),
             // The last round of a search that is not ranked.
             _ if round.keep == 0 => self.end_ranking(round, results),
-            _ if round.apart > 0.0 => {
-                poses_of(&distinct_up_to(&self.search.equivalence, results, round.keep, round.apart))
-            }
-            _ => poses_of(&best_of(&results, round.keep)),
+            _ => poses_of(&self.kept(round, results)),
         };
 
         self.index += 1;
@@ -293,8 +290,10 @@ impl Rounds {
 
     /// The best pose of each rotation, best first.
     fn best_of_each_rotation(&self, results: &[Candidate]) -> Vec<Candidate> {
-        let best: Vec<Candidate> =
-            results.chunks(self.box_fits.len()).flat_map(|of_rotation| best_of(of_rotation, 1)).collect();
+        let mut best = Vec::new();
+        for of_rotation in results.chunks(self.box_fits.len()) {
+            best.extend(best_of(of_rotation, 1));
+        }
         best_of(&best, results.len())
     }
 
@@ -310,6 +309,15 @@ impl Rounds {
         }
     }
 
+    /// The best results of a round, of which none is close to a better one.
+    fn kept(&self, round: Round, results: Vec<Candidate>) -> Vec<Candidate> {
+        if round.apart > 0.0 {
+            distinct_up_to(&self.search.equivalence, results, round.keep, round.apart)
+        } else {
+            best_of(&results, round.keep)
+        }
+    }
+
     /// Ends a round of turns: those that are about as good as the best pose join the poses that were turned.
     fn end_turns(&mut self, round: Round, results: Vec<Candidate>, previous_best: &[Candidate]) -> Vec<CropPose> {
         // Of the same grid, so that their scores are comparable.
@@ -319,13 +327,13 @@ impl Rounds {
         let turns = results.into_iter().filter(|turn| turn.score.total > min_score).collect();
 
         let mut poses = core::mem::take(&mut self.unturned_poses);
-        poses.extend(poses_of(&distinct_up_to(&self.search.equivalence, turns, round.keep, round.apart)));
+        poses.extend(poses_of(&self.kept(round, turns)));
         poses
     }
 
     /// Ends the round that ranks the candidates; the best ones are polished next.
     fn end_ranking(&mut self, round: Round, results: Vec<Candidate>) -> Vec<CropPose> {
-        self.candidates = distinct_up_to(&self.search.equivalence, results, usize::MAX, round.apart);
+        self.candidates = self.kept(Round { keep: usize::MAX, ..round }, results);
         poses_of(&self.candidates[..round.keep.min(self.candidates.len())])
     }
 
@@ -352,6 +360,7 @@ impl Rounds {
     }
 }
 
+#[inline(never)]
 fn poses_of(candidates: &[Candidate]) -> Vec<CropPose> {
     candidates.iter().map(|candidate| candidate.pose).collect()
 }
