@@ -3,13 +3,12 @@
 //! the faults do to size and pose of the whole is taken out before the mesh gets a frame of its own.
 
 use crate::conditions::{Conditions, EXTRA_PART, MISSING_PART, MeshFault, PLAIN, Tier, WARPED};
-use crate::objects::mesh::{bounds, corners_of, face, joined, neighbors, normals, paths};
+use crate::objects::mesh::{bounds, clustered, corners_of, face, joined, neighbors, normals, paths};
 use crate::objects::solid::Solid;
 use crate::prelude::*;
 use crate::world::Placed;
 use crate::world::view::Rendering;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-use sim3align_geometry::decimate::decimate;
 
 /// Random streams of a mesh, and of the quality of the meshes of scenes.
 pub const MESH_STREAM: u64 = 3;
@@ -51,8 +50,8 @@ struct Strength {
     /// By what share of its own thickness the unseen part is too deep or too flat.
     depth: f64,
     smoothing_passes: usize,
-    /// The share of the triangles that is left.
-    decimated_to: f64,
+    /// Cells of the decimation, share of the box diagonal; 0 is none.
+    cell: f64,
 }
 
 impl Strength {
@@ -67,9 +66,9 @@ impl Strength {
         let bulge = guess * of(random) * tier.pick(0.004, 0.012, 0.022);
         let depth = guess * of(random) * sign(random) * tier.pick(0.06, 0.18, 0.32);
         let smoothing_passes = tier.pick(0, random.below(3), 1 + random.below(4));
-        let is_decimated = chance(random, tier.pick(0.0, 0.3, 0.5)) && !thin;
-        let decimated_to = if is_decimated { between(random, tier.pick(1.0, 0.1, 0.04), 0.2) } else { 1.0 };
-        Self { stretch, warp, bend, bulge, depth, smoothing_passes, decimated_to }
+        let decimated = chance(random, tier.pick(0.0, 0.3, 0.5)) && !thin;
+        let cell = between(random, 0.007, tier.pick(0.007, 0.009, 0.013)) * f64::from(u8::from(decimated));
+        Self { stretch, warp, bend, bulge, depth, smoothing_passes, cell }
     }
 }
 
@@ -114,8 +113,9 @@ pub fn generate(
         mesh = joined(&[&mesh, &lump])?;
         tags.push("extra-part");
     }
-    if strength.decimated_to < 1.0 {
-        mesh = decimate(&mesh, (strength.decimated_to * mesh.triangles().len() as f64) as usize);
+    if strength.cell > 0.0 {
+        let offset = DVec3::new(random.uniform(), random.uniform(), random.uniform()) * strength.cell * diagonal;
+        mesh = clustered(&mesh, strength.cell * diagonal, offset)?;
         tags.push("decimated");
     }
     Ok(Generated { mesh, tags })
