@@ -10,7 +10,7 @@ import { readResults } from "./bench/results.mjs";
 import { fixed, markdownTable, mean } from "./bench/table.mjs";
 import { runLab, threadArguments } from "./lib/lab.mjs";
 import { at } from "./lib/paths.mjs";
-import { reliability, summaries } from "./record/summary.mjs";
+import { reliability, reliabilityHeads } from "./record/summary.mjs";
 
 /** @typedef {import("./bench/results.mjs").ResultRow} ResultRow */
 /** @typedef {{ intercept: number, slopes: readonly number[] }} Line in the space of the features */
@@ -185,10 +185,10 @@ function losses(all, line) {
 /** Poses by the confidence of a line. @param {readonly Sample[]} all @param {Line} line */
 function reliabilityTable(all, line) {
   const results = all.map(({ result, features, isRight }) => ({
-    ...{ ...result, row: "all", strict: isRight },
+    ...{ ...result, strict: isRight },
     confidence: probability(features, line),
   }));
-  return markdownTable(["confidence", "poses", "right %"], reliability(summaries("", results)));
+  return markdownTable(reliabilityHeads, reliability(results));
 }
 
 /** @param {FitOptions} options */

@@ -7,7 +7,6 @@ import { nodeProgram, run } from "./lib/run.mjs";
 import { npmPackages, rustToolchain } from "./lib/setup.mjs";
 import { buildSite } from "./lib/site.mjs";
 import { script, step } from "./lib/step.mjs";
-import { writeTables } from "./lib/tables.mjs";
 import { buildWasm } from "./lib/wasm.mjs";
 import { writeFigures } from "./record/documents.mjs";
 
@@ -19,13 +18,12 @@ const makers = {
   "build:www": buildSite,
   /** The API reference, in target/docs. */
   docs: () => buildWasm().then(() => step("API reference", writeApiDocs)),
-  /** The committed files that follow from the sources: declarations of the options, tables, the API report, the notices. */
+  /** The committed files that follow from the sources: declarations of the options, figures of the record, the API report, the notices. */
   async update() {
     await rustToolchain();
     const declarations = ["test", "--quiet", "--workspace", "--test", "lab", "typescript"];
     await step("TypeScript declarations", () => run("cargo", declarations, { env: { UPDATE: "1" } }));
     await npmPackages();
-    await step("tables of formats", writeTables);
     await step("figures of the record", writeFigures);
     await buildPackage();
     await step("API report", writeApiReport);

@@ -3,7 +3,7 @@ import { existsSync, mkdirSync, rmSync } from "node:fs";
 import { basename, join } from "node:path";
 import { command } from "./bench/command.mjs";
 import { fixed, markdownTable, median } from "./bench/table.mjs";
-import { foldersOf } from "./lib/folders.mjs";
+import { foldersOf } from "./lib/cache.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { at, packageDir } from "./lib/paths.mjs";
 import { runPython } from "./lib/python.mjs";
@@ -41,9 +41,9 @@ async function measure(folders, { seconds, python }) {
   for (const [i, scene] of scenes.entries()) {
     exported.push(await exportScene(scene, join(root, `${String(i).padStart(3, "0")}-${basename(scene)}`)));
   }
+  const printed = (await runPython("simulators", [seconds, ...exported], python)).trimEnd();
   /** @type {Simulated[]} */
-  const results = [];
-  await runPython("simulators", [seconds, ...exported], python, (line) => results.push(JSON.parse(line)));
+  const results = printed.split("\n").map((line) => JSON.parse(line));
   const rows = /** @type {const} */ (["mujoco", "pybullet"]).map((simulator) => {
     const free = results.flatMap((result) => result[simulator].bodies.filter((body) => !body.fixed));
     const still = results.filter((result) => result[simulator].bodies.every(stays));

@@ -30,49 +30,26 @@ function openInBrowser(url) {
   child.unref();
 }
 
-/** How often the page is loaded anew for the times: their median. */
-const LOADS = 5;
-
-/**
- * Opens the page in a context of its own, so that nothing is cached, and waits for the result of its first sample.
- * @param {import("playwright-core").Browser} browser
- * @param {string} url
- * @returns {Promise<{ texts: string[], times: number[] }>} lines that the page says; milliseconds from the beginning of the
- * navigation to the first paint and to the result
- */
-async function load(browser, url) {
-  const page = await browser.newPage();
-  await page.goto(url);
-  const status = page.locator('#status:is([data-state="done"], [data-state="failed"]):not(.behind)');
-  await status.filter({ hasText: /Aligned|:/ }).waitFor({ timeout: LIMIT_MS });
-  await page.locator("#dimensions").waitFor({ timeout: LIMIT_MS });
-  const text = async (/** @type {string} */ selector) => (await page.textContent(selector))?.trim();
-  const texts = [
-    `${await text("#status")}`,
-    `Size: ${await text("#dimensions")}`,
-    `Confidence: ${await text("#confidence")}`,
-  ];
-  const times = await page.evaluate(() =>
-    ["first-contentful-paint", "aligned"].map((name) => performance.getEntriesByName(name)[0]?.startTime ?? Number.NaN),
-  );
-  await page.close();
-  return { texts, times };
-}
-
-/**
- * Prints what the page says of its first sample, and after which time.
- * @param {string} url
- */
+/** Opens the page, and prints what it says of its first sample, and after which time. @param {string} url */
 async function check(url) {
   const browser = await launchChromium();
   try {
-    /** @type {Awaited<ReturnType<typeof load>>[]} */
-    const loads = [];
-    for (let i = 0; i < LOADS; i++) loads.push(await load(browser, url));
-    const median = (/** @type {number} */ k) =>
-      Math.round(loads.map(({ times }) => times[k] ?? 0).sort((a, b) => a - b)[LOADS >> 1] ?? 0);
-    console.log(`\n${loads[0]?.texts.join("\n")}`);
-    console.log(`First paint after ${median(0)} ms, result after ${median(1)} ms (medians of ${LOADS} fresh loads)`);
+    const page = await browser.newPage();
+    await page.goto(url);
+    const status = page.locator('#status:is([data-state="done"], [data-state="failed"]):not(.behind)');
+    await status.filter({ hasText: /Aligned|:/ }).waitFor({ timeout: LIMIT_MS });
+    await page.locator("#dimensions").waitFor({ timeout: LIMIT_MS });
+    const text = async (/** @type {string} */ selector) => (await page.textContent(selector))?.trim();
+    const [paint, aligned] = await page.evaluate(() =>
+      ["first-contentful-paint", "aligned"].map(
+        (name) => performance.getEntriesByName(name)[0]?.startTime ?? Number.NaN,
+      ),
+    );
+    console.log(`
+${await text("#status")}
+Size: ${await text("#dimensions")}
+Confidence: ${await text("#confidence")}
+First paint after ${Math.round(paint ?? 0)} ms, result after ${Math.round(aligned ?? 0)} ms`);
   } finally {
     await browser.close();
   }

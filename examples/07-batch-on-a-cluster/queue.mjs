@@ -21,8 +21,11 @@ export function connect() {
 /** @param {Error & { code?: string }} error of the connection, which is made again, or of a lock that was lost with it */
 export const report = ({ code, message }) => console.error("warning:", message || code);
 
-/** The files that results depend on; others, such as gt.json, may change. */
-const isInput = /(^|\/)(depth\.(npy|png)|mask\.png|camera\.json|rgb\.(png|jpg)|mesh\.(glb|obj|ply))$/;
+/** Files on which results do not depend: true poses, results, and those of the system. */
+const isNoInput = /(^|\/)(\.[^/]*|gt\.json|results?\.[^/]*)$/i;
+
+/** Frames in the order of their numbers: frame_2 comes before frame_10. */
+const { compare } = new Intl.Collator("en", { numeric: true });
 
 /**
  * The input files of a folder, relative to it. In a cluster, the folder is on storage that all machines can read.
@@ -32,8 +35,8 @@ export async function inputsIn(folder) {
   const names = await readdir(folder, { recursive: true });
   return names
     .map((name) => name.replaceAll(sep, "/"))
-    .filter((name) => isInput.test(name))
-    .sort();
+    .filter((name) => /\.[^/]+$/.test(name) && !isNoInput.test(name))
+    .sort(compare);
 }
 
 /** What a folder is: by the folders in it, a scene, a video or a single case.

@@ -1,5 +1,6 @@
 // What a job does, by the kind of its folder. Files are passed as they are; the package decodes them in its workers.
 import { readFile } from "node:fs/promises";
+import { readCase, readScene } from "sim3align/formats";
 
 /**
  * @typedef {import("sim3align").Aligner} Aligner
@@ -7,6 +8,12 @@ import { readFile } from "node:fs/promises";
  * @property {string} path
  * @property {string[]} names its input files, relative to it
  */
+
+/**
+ * The files of a folder by name, each read when it is needed.
+ * @param {Folder} folder
+ */
+const filesOf = ({ path, names }) => Object.fromEntries(names.map((name) => [name, () => readFile(`${path}/${name}`)]));
 
 /**
  * Reads the file of a part, whatever its format, if there is one: "mask" is mask.png.
@@ -18,39 +25,8 @@ async function optional({ path, names }, part) {
   return name === undefined ? undefined : readFile(`${path}/${name}`);
 }
 
-/**
- * @param {Folder} folder
- * @param {string} part
- */
-async function required(folder, part) {
-  const bytes = await optional(folder, part);
-  if (bytes === undefined) throw new Error(`no ${part} in ${folder.path}`);
-  return bytes;
-}
-
-/**
- * Depth, camera and, if there is one, the photo.
- * @param {Folder} folder
- * @param {string} [prefix] "frame_00/" for those of a frame
- */
-async function viewOf(folder, prefix = "") {
-  const [depth, cameraFile, image] = await Promise.all([
-    required(folder, `${prefix}depth`),
-    required(folder, `${prefix}camera`),
-    optional(folder, `${prefix}rgb`),
-  ]);
-  return { depth, cameraFile, ...(image === undefined ? {} : { image }) };
-}
-
 /** @param {import("sim3align").Sim3 & { confidence: number }} pose */
 const poseOf = ({ matrix, scale, confidence }) => ({ matrix, scale, confidence });
-
-/**
- * The names of the folders at some depth below a folder.
- * @param {Folder} folder
- * @param {RegExp} pattern whose first group is the name
- */
-const foldersIn = ({ names }, pattern) => [...new Set(names.flatMap((name) => pattern.exec(name)?.[1] ?? []))];
 
 export const perform = {
   /**
@@ -60,8 +36,8 @@ export const perform = {
    * @param {object} options of `align`
    */
   async case(aligner, folder, options) {
-    const [view, mask, mesh] = await Promise.all([viewOf(folder), required(folder, "mask"), required(folder, "mesh")]);
-    const result = await aligner.align({ ...view, mask, mesh }, options);
+    const { input } = await readCase(filesOf(folder));
+    const result = await aligner.align(input, options);
     const { alternatives, metrics, warnings } = result;
     return { ...poseOf(result), alternatives: alternatives.length, metrics, warnings };
   },
@@ -73,15 +49,8 @@ export const perform = {
    * @param {object} options of `alignScene`
    */
   async scene(aligner, folder, options) {
-    const objects = await Promise.all(
-      foldersIn(folder, /^objects\/([^/]+)\//).map(async (name) => {
-        const [mask, mesh] = await Promise.all(
-          ["mask", "mesh"].map((part) => required(folder, `objects/${name}/${part}`)),
-        );
-        return { name, mask, mesh };
-      }),
-    );
-    const found = await aligner.alignScene({ ...(await viewOf(folder)), objects }, options);
+    const { input } = await readScene(filesOf(folder));
+    const found = await aligner.alignScene(input, options);
     return {
       support: found.support,
       objects: found.objects.map((object) => {
@@ -98,13 +67,18 @@ export const perform = {
    * @param {object} options of `track`
    */
   async video(aligner, folder, options) {
-    const tracker = await aligner.track(await required(folder, "mesh"), options);
+    const mesh = await optional(folder, "mesh");
+    if (mesh === undefined) throw new Error(`no mesh in ${folder.path}`);
+    const tracker = await aligner.track(mesh, options);
     try {
       const frames = [];
-      for (const name of foldersIn(folder, /^(frame_[^/]+)\//)) {
-        const mask = await optional(folder, `${name}/mask`);
-        const frame = { ...(await viewOf(folder, `${name}/`)), ...(mask === undefined ? {} : { mask }) };
-        const tracked = await tracker.next(frame);
+      const names = new Set(folder.names.flatMap((name) => /^(frame_[^/]+)\//.exec(name)?.[1] ?? []));
+      for (const name of names) {
+        const [depth, cameraFile, mask, image] = await Promise.all(
+          ["depth", "camera", "mask", "rgb"].map((part) => optional(folder, `${name}/${part}`)),
+        );
+        if (depth === undefined) throw new Error(`no depth in ${folder.path}/${name}`);
+        const tracked = await tracker.next({ depth, cameraFile, mask, image });
         frames.push({ name, state: tracked.state, ...poseOf(tracked) });
       }
       return { scale: frames.at(-1)?.scale, frames };

@@ -1,18 +1,6 @@
 //! Normal equations of a weighted least-squares step, mostly in up to seven parameters, such as (ω, τ, σ) of a similarity.
 //!
 //! The decomposition is that of the largest problem for all, so that it is compiled once.
-//!
-//! ```
-//! use sim3align_geometry::normal_equations::NormalEquations;
-//!
-//! // Two residuals in the first parameter: r₁ = x − 1, r₂ = x − 3, at x = 0.
-//! let mut equations = NormalEquations::new();
-//! let jacobian = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-//! equations.add(&jacobian, -1.0, 1.0);
-//! equations.add(&jacobian, -3.0, 1.0);
-//! let step = equations.solve(1e-9).unwrap();
-//! assert!((step[0] - 2.0).abs() < 1e-8 && step[1..] == [0.0; 6]);
-//! ```
 
 use nalgebra::{Cholesky, Const, SMatrix, SVector};
 use wide::f64x2;

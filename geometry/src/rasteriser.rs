@@ -35,17 +35,6 @@ const SUBPIXEL: i64 = 256;
 const MAX_COORDINATE: f64 = 1e60;
 
 /// A rasteriser with reusable buffers: only the first render of a size allocates.
-///
-/// ```
-/// # use sim3align_geometry::{mesh::Mesh, pinhole::Pinhole, rasteriser::Rasteriser, similarity::Similarity};
-/// # fn main() -> sim3align_runtime::error::Result<()> {
-/// let mesh = Mesh::from_flat(&[0.0, 0.0, 2.0, 3.0, 0.0, 2.0, 0.0, 3.0, 2.0], None)?;
-/// let mut rasteriser = Rasteriser::new();
-/// rasteriser.render(&mesh, &Similarity::identity(), &Pinhole::new(2.0, 2.0, 0.0, 0.0)?, 3, 2);
-/// assert_eq!(rasteriser.depth(), [2.0, 2.0, 2.0, 2.0, 2.0, 0.0]);
-/// # Ok(())
-/// # }
-/// ```
 #[derive(Debug, Clone, Default)]
 pub struct Rasteriser {
     window: Window,

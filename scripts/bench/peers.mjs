@@ -2,10 +2,11 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { basename, join, resolve } from "node:path";
+import { foldersOf } from "../lib/cache.mjs";
 import { buildPackage } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { runPython } from "../lib/python.mjs";
-import { caseFolders, readTypedCase } from "../speed/inputs.mjs";
+import { compiledModule } from "../speed/inputs.mjs";
 
 /**
  * @typedef {object} PeersRun
@@ -13,9 +14,6 @@ import { caseFolders, readTypedCase } from "../speed/inputs.mjs";
  * @property {string} [pairs] or a list of pairs of clouds, `[{ id, source, target, voxelSizeM }]`
  * @property {string} out answers go to `OUT/METHOD/NAME.json`; those that are there are kept
  * @property {readonly string[]} methods
- * @property {number} [jobs] processes; as many as there are cores by default
- * @property {number} [threads] of each process, 1 by default
- * @property {number} [seed]
  * @property {string} [python] the Python, 3.11 or 3.12, that makes the environment
  */
 
@@ -33,14 +31,14 @@ export const pairMethods = ["open3d-ransac", "open3d-fgr", "kiss-matcher"];
  * @param {PeersRun} options
  * @returns {Promise<string[]>} the methods with answers: without those whose library cannot be loaded
  */
-export async function runPeers({ cases, pairs, out, methods, python, ...more }) {
-  const { jobs = availableParallelism(), threads = 1, seed = 0 } = more;
-  const args = ["--out", resolve(out), "--jobs", `${jobs}`, "--threads", `${threads}`, "--seed", `${seed}`];
+export async function runPeers({ cases = [], pairs, out, methods, python }) {
+  const args = ["--out", resolve(out), "--jobs", `${availableParallelism()}`, "--threads", "1", "--seed", "0"];
   args.push("--methods", methods.join());
   if (pairs !== undefined) args.push("--pairs", resolve(pairs));
   const inputs = at("target", "bench", "inputs");
   if (pairs === undefined) {
-    await writeInputs(caseFolders(cases ?? []), inputs);
+    const isCase = (/** @type {string} */ folder) => existsSync(join(folder, "mask.png"));
+    await writeInputs(foldersOf(cases, isCase), inputs);
     args.push("--cases", inputs);
   }
   await runPython("peers", args, python);
@@ -56,9 +54,15 @@ export async function runPeers({ cases, pairs, out, methods, python, ...more }) 
 async function writeInputs(cases, folder) {
   await buildPackage();
   rmSync(folder, { recursive: true, force: true });
+  const [{ readCaseFolder }, { resolveInput }, { fileReaders }] = await Promise.all(
+    ["case-folder.js", "input/resolve.js", "modules/readers.js"].map(compiledModule),
+  );
   for (const path of cases) {
-    const { input } = await readTypedCase(path);
-    const { depth, mask, camera, width, height, mesh } = input;
+    const { core } = await resolveInput((await readCaseFolder(path)).input, fileReaders);
+    const { mask, camera, width, height } = core;
+    const depth = Float32Array.from(core.depth, (/** @type {number} */ z) => z * (core.depthScale ?? 1));
+    const { positions } = core.mesh;
+    const mesh = { positions, indices: Uint32Array.from(core.mesh.indices ?? Array(positions.length / 3).keys()) };
     const made = join(folder, basename(path));
     mkdirSync(made, { recursive: true });
     writeFileSync(join(made, "case.json"), JSON.stringify({ camera, width, height }));

@@ -33,14 +33,9 @@ import { attempt } from "../lib/run.mjs";
  * @returns {ResultRow[]}
  */
 export function readResults(file) {
-  return jsonLines(file).sort((a, b) => (a.name < b.name ? -1 : a.name > b.name ? 1 : 0));
-}
-
-/** The values of a file with one JSON value a line; none if there is no file. @param {string} file @returns {any[]} */
-export function jsonLines(file) {
-  if (!existsSync(file)) return [];
   const lines = readFileSync(file, "utf8").split("\n");
-  return lines.filter((line) => line !== "").map((line) => JSON.parse(line));
+  const results = lines.filter((line) => line !== "").map((line) => JSON.parse(line));
+  return results.sort((a, b) => (a.name < b.name ? -1 : a.name > b.name ? 1 : 0));
 }
 
 /**

@@ -1,7 +1,7 @@
 /** Work that is not repeated: within a process, and between runs while its inputs stay the same. */
 import { createHash } from "node:crypto";
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { dirname, join, relative } from "node:path";
+import { dirname, join, relative, resolve } from "node:path";
 import { repository } from "./paths.mjs";
 
 /**
@@ -32,6 +32,21 @@ export function filesBelow(paths) {
     return filesBelow(names.map((name) => join(path, name)));
   });
 }
+
+/**
+ * The folders of a kind among folders and their subfolders, in the order of their names.
+ * @param {readonly string[]} folders
+ * @param {(folder: string) => boolean} isOfKind
+ */
+export const foldersOf = (folders, isOfKind) =>
+  folders.flatMap((name) => {
+    const folder = resolve(name);
+    const inside = () =>
+      readdirSync(folder)
+        .sort()
+        .map((each) => join(folder, each));
+    return isOfKind(folder) ? [folder] : inside().filter(isOfKind);
+  });
 
 /**
  * A digest of files (names and contents) and of facts such as versions.

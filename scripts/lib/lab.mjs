@@ -24,7 +24,7 @@ export const buildLab = once(async () => {
  * @param {readonly string[]} [facts]
  */
 export function labCode(inputs = [], facts = []) {
-  const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock"];
+  const sources = ["src", "geometry", "runtime", "formats", "lab", "Cargo.toml", "Cargo.lock"];
   return digest([...sources.map((path) => at(path)), ...inputs], facts);
 }
 

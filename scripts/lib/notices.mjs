@@ -22,46 +22,12 @@ const allowed = ["MIT", "Apache-2.0", "Zlib", "BSD-3-Clause", "BSD-2-Clause", "I
  */
 
 /**
- * The licences that are taken of an expression: one of each alternative, all of those that hold together.
+ * The licences that are taken of an expression, one of each part that holds with the others; `undefined` for a part of which none is
+ * allowed. Cargo once wrote OR as a slash.
  * @param {string} expression
- * @returns {string[] | undefined} `undefined` if none of the alternatives is allowed
  */
-export function takenOf(expression) {
-  // Cargo once wrote OR as a slash.
-  const plain = expression.replaceAll("/", " OR ").trim();
-  const parts = topLevel(plain, " OR ");
-  if (parts.length > 1) {
-    const found = parts.flatMap((part) => [takenOf(part) ?? []]).filter((taken) => taken.length > 0);
-    const rank = (/** @type {string[]} */ taken) => Math.max(...taken.map((name) => allowed.indexOf(name)));
-    return found.sort((a, b) => rank(a) - rank(b))[0];
-  }
-  const all = topLevel(plain, " AND ");
-  if (all.length > 1) {
-    const taken = all.map(takenOf);
-    return taken.includes(undefined) ? undefined : taken.flatMap((names) => names ?? []);
-  }
-  if (/^\(.*\)$/.test(plain)) return takenOf(plain.slice(1, -1));
-  return allowed.includes(plain) ? [plain] : undefined;
-}
-
-/**
- * Parts of an expression between an operator, outside of parentheses.
- * @param {string} text
- * @param {string} operator
- */
-function topLevel(text, operator) {
-  /** @type {string[]} */
-  const parts = [];
-  let [depth, from] = [0, 0];
-  for (let i = 0; i < text.length; i++) {
-    if (text[i] === "(") depth += 1;
-    if (text[i] === ")") depth -= 1;
-    if (depth > 0 || !text.startsWith(operator, i)) continue;
-    parts.push(text.slice(from, i));
-    from = i + operator.length;
-  }
-  return [...parts, text.slice(from)];
-}
+const takenOf = (expression) =>
+  expression.split(" AND ").map((part) => allowed.find((name) => part.match(/[\w.-]+/g)?.includes(name)));
 
 /** The crates that the modules link, without those that only run while they are compiled. */
 async function crates() {
@@ -102,7 +68,7 @@ function holdOnly(metafile, expected) {
   const found = [...npmPackages(metafile)].sort();
   if (found.join() === expected.join()) return;
   throw new Error(
-    `A script of the package holds ${found.join(", ") || "no npm package"}, instead of ${expected.join(", ") || "none"}. Remedy: correct the list in scripts/lib/notices.mjs, and run \`npm run notices\`.`,
+    `A script of the package holds ${found.join(", ") || "no npm package"}, instead of ${expected.join(", ") || "none"}. Remedy: correct the list in scripts/lib/notices.mjs, and run \`npm run update\`.`,
   );
 }
 
@@ -154,8 +120,8 @@ async function notice() {
   const lines = [];
   for (const part of [...(await crates()), ...bundledParts()]) {
     const title = `${part.name} ${part.version}`;
-    const taken = takenOf(part.licence);
-    if (taken === undefined) {
+    const taken = takenOf(part.licence).filter((name) => name !== undefined);
+    if (taken.length < takenOf(part.licence).length) {
       throw new Error(`${title} has the licence ${part.licence || "unknown"}. Remedy: allow it, or do without it.`);
     }
     const texts = textsOf(part, taken);
@@ -173,7 +139,7 @@ async function notice() {
 
 The WebAssembly modules in wasm/ and inline/ hold code of the crates below, and of the standard library of Rust
 (MIT OR Apache-2.0; its text is LICENSE-APACHE). The scripts in element/ hold code of the npm packages ${bundled.join(", ")}. Where a crate can be had under several licences, that under which it is used
-is named. Written by "npm run notices".
+is named. Written by "npm run update".
 `;
   const texts = [...owners].map(([text, titles]) => `${RULE}\n${titles.join(", ")}\n${RULE}\n\n${text}\n`);
   return `${head}\n${lines.join("\n")}\n\n${texts.join("\n")}`;
@@ -187,5 +153,5 @@ export async function writeNotice() {
 /** Checks that the committed notice is that of what the modules link. */
 export async function checkNotice() {
   if (existsSync(at(NOTICE)) && readFileSync(at(NOTICE), "utf8") === (await notice())) return;
-  throw new Error(`${NOTICE} is not up to date. Remedy: \`npm run notices\`, and review what has changed.`);
+  throw new Error(`${NOTICE} is not up to date. Remedy: \`npm run update\`, and review what has changed.`);
 }

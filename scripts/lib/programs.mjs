@@ -1,41 +1,34 @@
 /** Programs of the system that tests need: Chromium, Firefox and Redis. */
 import { existsSync } from "node:fs";
-import { delimiter, join } from "node:path";
+import { delimiter, resolve } from "node:path";
 import { once } from "./cache.mjs";
 import { run } from "./run.mjs";
 import { step } from "./step.mjs";
 
 /**
  * By the environment variable that may name them: names on the path in order of preference, of which the first is Debian's
- * package, and files elsewhere.
+ * package, and paths elsewhere.
  */
 const programs = {
-  CHROMIUM_PATH: {
-    names: ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"],
-    elsewhere: [
-      "/Applications/Chromium.app/Contents/MacOS/Chromium",
-      "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
-      "C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe",
-    ],
-  },
-  FIREFOX_PATH: {
-    names: ["firefox-esr", "firefox"],
-    elsewhere: ["/Applications/Firefox.app/Contents/MacOS/firefox", "C:\\Program Files\\Mozilla Firefox\\firefox.exe"],
-  },
-  REDIS_SERVER_PATH: {
-    names: ["redis-server"],
-    elsewhere: ["/opt/homebrew/bin/redis-server", "/usr/local/bin/redis-server"],
-  },
+  CHROMIUM_PATH: [
+    ...["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"],
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe",
+  ],
+  FIREFOX_PATH: [
+    ...["firefox-esr", "firefox", "/Applications/Firefox.app/Contents/MacOS/firefox"],
+    "C:\\Program Files\\Mozilla Firefox\\firefox.exe",
+  ],
+  REDIS_SERVER_PATH: ["redis-server", "/opt/homebrew/bin/redis-server", "/usr/local/bin/redis-server"],
 };
 
 /** @param {keyof typeof programs} variable @returns {string | undefined} its path */
 function find(variable) {
   const named = process.env[variable];
   if (named && !existsSync(named)) throw new Error(`${variable} names ${named}, which does not exist.`);
-  const { names, elsewhere } = programs[variable];
   const folders = (process.env.PATH ?? "").split(delimiter);
-  const onPath = folders.flatMap((folder) => names.map((name) => join(folder, name)));
-  return named || [...onPath, ...elsewhere].find((path) => existsSync(path));
+  const paths = folders.flatMap((folder) => programs[variable].map((name) => resolve(folder, name)));
+  return named || paths.find((path) => existsSync(path));
 }
 
 /**
@@ -47,7 +40,7 @@ function find(variable) {
 async function locate(variable) {
   const found = find(variable);
   if (found || !process.env.CI || process.platform !== "linux" || process.getuid?.() !== 0) return found;
-  const [debianPackage = ""] = programs[variable].names;
+  const [debianPackage = ""] = programs[variable];
   await step(`apt-get install ${debianPackage}`, async () => {
     // Run level 1 keeps the package's services from being started.
     const env = { DEBIAN_FRONTEND: "noninteractive", RUNLEVEL: "1" };

@@ -31,15 +31,14 @@ export async function pythonWith(name, program = "python3") {
 }
 
 /**
- * Runs the Python package `scripts/bench/NAME` in its environment.
+ * Runs the Python package `scripts/bench/NAME` in its environment, and returns what it prints.
  * @param {string} name
  * @param {readonly string[]} args
  * @param {string | undefined} program the Python that makes the environment
- * @param {(line: string) => void} [onLine]
  */
-export async function runPython(name, args, program, onLine = () => {}) {
+export async function runPython(name, args, program) {
   const env = { PYTHONPATH: at("scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" };
-  await run(await pythonWith(name, program), ["-m", name, ...args], { env, onLine, echo: "errors" });
+  return run(await pythonWith(name, program), ["-m", name, ...args], { env, echo: "errors" });
 }
 
 /**

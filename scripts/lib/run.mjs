@@ -3,7 +3,6 @@ import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { delimiter, join } from "node:path";
-import { createInterface } from "node:readline";
 import { print } from "./output.mjs";
 import { at, repository } from "./paths.mjs";
 
@@ -41,10 +40,8 @@ function environment() {
  * @property {NodeJS.ProcessEnv} [env] added to the environment
  * @property {boolean | "errors"} [echo] print the output, or pass on standard error alone, as it comes, besides
  * returning it
- * @property {(line: string) => void} [onLine] gets every line of standard output as it comes
- * @property {boolean} [attach] let the command have the console, and return nothing
- * @property {boolean} [patient] wait for a command however long it prints nothing; others hang after
- * {@link SILENCE_MINUTES}, and are ended
+ * @property {boolean} [attach] let the command have the console, and return nothing; others, which print nothing for
+ * {@link SILENCE_MINUTES}, hang, and are ended
  */
 
 /** Far longer than a test, a compilation or a download takes between two lines, on a busy machine too. */
@@ -76,7 +73,7 @@ export function attempt(command, args, options = {}) {
       child.stderr?.destroy();
       child.unref();
     };
-    const watchdog = options.attach || options.patient ? undefined : setTimeout(watch, SILENCE_MINUTES * 60_000);
+    const watchdog = options.attach ? undefined : setTimeout(watch, SILENCE_MINUTES * 60_000);
     child.stdout?.setEncoding("utf8");
     child.stderr?.setEncoding("utf8");
     child.stdout?.on("data", (chunk) => {
@@ -85,8 +82,6 @@ export function attempt(command, args, options = {}) {
       stdout += chunk;
       if (options.echo === true) print(chunk);
     });
-    const { onLine } = options;
-    if (child.stdout && onLine) createInterface({ input: child.stdout }).on("line", onLine);
     child.stderr?.on("data", (chunk) => {
       watchdog?.refresh();
       output += chunk;

@@ -50,27 +50,18 @@ export function wasmBindgenVersion() {
 /** @param {string} name */
 const program = (name) => (process.platform === "win32" ? `${name}.exe` : name);
 
-/** @param {"wasm-bindgen" | "wasm-bindgen-test-runner"} name */
-export const wasmBindgenProgram = (name) => join(toolsDir, "bin", program(name));
+/** The program of scripts/bindgen. */
+export const bindgenProgram = join(toolsDir, "debug", program("sim3align-bindgen"));
 
-/** wasm-bindgen's programs. */
+/** Compiles wasm-bindgen. */
 export const wasmBindgen = once(async () => {
   await rustToolchain();
-  await step("wasm-bindgen", async (say) => {
-    const version = wasmBindgenVersion();
-    const programs = [wasmBindgenProgram("wasm-bindgen"), wasmBindgenProgram("wasm-bindgen-test-runner")];
-    const installed = await cached(join(toolsDir, "installed"), version, programs, async () => {
-      // Unoptimised: it compiles in a quarter of the time, and on modules of this size runs equally fast.
-      const args = ["--config", "profile.dev.opt-level=0", "--config", "profile.dev.debug=false"];
-      args.push("install", "wasm-bindgen-cli", "--version", version, "--debug", "--force", "--root", toolsDir);
-      await run("cargo", [...args, "--bin", "wasm-bindgen", "--bin", "wasm-bindgen-test-runner"], {
-        // Without a target folder of its own, cargo compiles in a temporary one and removes it.
-        env: { CARGO_TARGET_DIR: undefined },
-        remedy: "check that the Rust package registry can be reached",
-      });
-    });
-    say(installed ? `${version}, installed` : `${version}, up to date`);
-  });
+  const manifest = at("scripts", "bindgen", "Cargo.toml");
+  await step("wasm-bindgen", () =>
+    run("cargo", ["build", "--quiet", "--locked", "--manifest-path", manifest, "--target-dir", toolsDir], {
+      remedy: "check that the Rust package registry can be reached",
+    }),
+  );
 });
 
 /** Installs everything that a build needs. */

@@ -1,9 +1,7 @@
 /** The static site: `www/` with the built package and the samples. */
-import { cpSync, writeFileSync } from "node:fs";
+import { cpSync } from "node:fs";
 import { join } from "node:path";
 import { documents } from "../../www/documentation.mjs";
-import { history } from "../record/history.mjs";
-import { recordPage } from "../record/page.mjs";
 import { cached, digest, once } from "./cache.mjs";
 import { buildPackage } from "./package.mjs";
 import { at, compiledDir, repository, siteDir } from "./paths.mjs";
@@ -17,7 +15,6 @@ export const buildSite = once(async () => {
     const inputs = digest([
       at("www"),
       at("docs"),
-      at("scripts", "record"),
       ...documents(repository).all.map(({ path }) => path),
       at("package-lock.json"),
       compiledDir,
@@ -26,7 +23,6 @@ export const buildSite = once(async () => {
       const [node, vite] = nodeProgram("vite");
       await run(node, [vite, "build", "--config", at("www", "vite.config.mjs")]);
       cpSync(at("www", "samples"), join(siteDir, "samples"), { recursive: true });
-      writeFileSync(join(siteDir, "record.html"), recordPage(history()));
     });
     say(isNew ? "target/www" : "target/www, up to date");
   });

@@ -6,14 +6,7 @@ import { gzipSync } from "node:zlib";
 import { cached, digest, once } from "./cache.mjs";
 import { at, glueDir, repository } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
-import {
-  npmPackages,
-  rustToolchain,
-  wasmBindgen,
-  wasmBindgenProgram,
-  wasmBindgenVersion,
-  wasmTarget,
-} from "./setup.mjs";
+import { bindgenProgram, npmPackages, rustToolchain, wasmBindgen, wasmBindgenVersion, wasmTarget } from "./setup.mjs";
 import { step } from "./step.mjs";
 
 /**
@@ -83,16 +76,15 @@ export const buildWasm = once(async () => {
 async function writeModule(module, say) {
   const { name, crate } = module;
   const input = at("target", wasmTarget, "release", `${crate.replaceAll("-", "_")}.wasm`);
-  const inputs = digest([input], [wasmBindgenVersion(), binaryenVersion(), ...optimise]);
+  const inputs = digest(
+    [input, at("scripts", "bindgen", "src")],
+    [wasmBindgenVersion(), binaryenVersion(), ...optimise],
+  );
   const outputs = [".js", ".d.ts", "_bg.wasm", "_bg.wasm.d.ts"].map((ending) => join(glueDir, `${name}${ending}`));
   const isNew = await cached(at("target", "wasm", `${name}.stamp`), inputs, outputs, async () => {
     const folder = at("target", "wasm", name);
     rmSync(folder, { recursive: true, force: true });
-    await run(wasmBindgenProgram("wasm-bindgen"), [
-      ...[input, "--target", "web", "--out-name", name, "--out-dir", folder],
-      // The package makes a new instance after a trap.
-      "--experimental-reset-state-function",
-    ]);
+    await run(bindgenProgram, ["web", input, folder, name]);
     const [node, wasmOpt] = nodeProgram("binaryen", "wasm-opt");
     await run(node, [wasmOpt, wasmFile(module, folder), ...optimise, "-o", wasmFile(module, folder)]);
     cpSync(folder, glueDir, { recursive: true });

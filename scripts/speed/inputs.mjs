@@ -1,8 +1,6 @@
-/** Inputs of speed measurements as typed arrays: case folders, and a synthetic object of any size. */
-import { existsSync, readFileSync } from "node:fs";
+/** Inputs of speed measurements: modules of the package's sources, and synthetic objects of any size. */
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { foldersOf } from "../lib/folders.mjs";
 import { compiledDir } from "../lib/paths.mjs";
 
 /**
@@ -14,69 +12,9 @@ export const compiledModule = (file) => import(pathToFileURL(join(compiledDir, f
 /** @param {object} [options] */
 export const createAligner = async (options) => (await compiledModule("index.js")).createAligner(options);
 
-/** @param {string} folder */
-const isCase = (folder) => existsSync(join(folder, "camera.json")) && existsSync(join(folder, "mask.png"));
-
-/** The case folders among folders and their subfolders. @param {readonly string[]} folders */
-export const caseFolders = (folders) => foldersOf(folders, isCase);
-
-/**
- * @typedef {object} TypedCase
- * @property {Float32Array} depth metres
- * @property {number} width
- * @property {number} height
- * @property {Uint8Array} mask
- * @property {{ fx: number, fy: number, cx: number, cy: number }} camera
- * @property {{ positions: Float32Array, indices: Uint32Array }} mesh
- */
-
-/** @typedef {{ matrix: number[], symmetry: unknown }} Truth */
-
-/**
- * Reads a case folder.
- * @param {string} folder
- * @returns {Promise<{ name: string, input: TypedCase, truth: Truth | null }>}
- */
-export async function readTypedCase(folder) {
-  const [{ readCaseFolder }, { resolveInput }, { fileReaders }] = await Promise.all(
-    ["case-folder.js", "input/resolve.js", "modules/readers.js"].map(compiledModule),
-  );
-  const { name, input, truth } = await readCaseFolder(folder);
-  const { core } = await resolveInput(input, fileReaders);
-  const { depth, depthScale, width, height, mask, maskWidth, maskHeight, camera, mesh } = core;
-  if ((maskWidth ?? width) !== width || (maskHeight ?? height) !== height) {
-    throw new Error(`${folder}: the mask is not of the depth map's size. Remedy: resize it.`);
-  }
-  const metres = Float32Array.from(depth, (/** @type {number} */ z) => z * (depthScale ?? 1));
-  const indices = Uint32Array.from(mesh.indices ?? mesh.positions.subarray(0, mesh.positions.length / 3).keys());
-  return {
-    name,
-    input: { depth: metres, width, height, mask, camera, mesh: { positions: mesh.positions, indices } },
-    truth: truth && { matrix: truth.transform.matrix, symmetry: declaredSymmetry(folder) ?? truth.symmetry },
-  };
-}
-
-/**
- * The symmetry that a generated case declares, as an option of `evaluate`.
- * @param {string} folder
- */
-function declaredSymmetry(folder) {
-  const { symmetryAxes } = JSON.parse(readFileSync(join(folder, "gt.json"), "utf8"));
-  if (!Array.isArray(symmetryAxes)) return null;
-  return symmetryAxes.length === 0
-    ? "none"
-    : symmetryAxes.map(({ axis, fold }) => (Number.isInteger(fold) ? { axis, fold } : { axis }));
-}
-
-/** An aligner, and the memory of the core, in a new instance. */
-export async function freshCore() {
-  const aligner = await createAligner();
-  return { aligner, memory: await freshMemory("core") };
-}
-
 /**
  * The memory of a WebAssembly module of the package, in a new instance.
- * @param {"core" | "formats" | "joint" | "registration"} name
+ * @param {"core" | "joint" | "registration"} name
  * @returns {Promise<WebAssembly.Memory>}
  */
 export async function freshMemory(name) {
@@ -86,7 +24,7 @@ export async function freshMemory(name) {
   return (await glue.default()).memory;
 }
 
-/** @typedef {TypedCase["mesh"]} Mesh */
+/** @typedef {{ positions: Float32Array, indices: Uint32Array }} Mesh */
 
 /**
  * A bumpy ring of about so many triangles: no two views of it are alike.
@@ -118,7 +56,6 @@ export function bumpyRing(triangles) {
  * @param {number} width pixels
  * @param {number} height pixels
  * @param {number} [zoom] at 1 the object covers about half of the height
- * @returns {TypedCase}
  */
 export function pictureOf(mesh, width, height, zoom = 1) {
   const camera = { fx: zoom * height, fy: zoom * height, cx: (width - 1) / 2, cy: (height - 1) / 2 };

@@ -6,12 +6,14 @@ import { runChecks } from "../lib/step.mjs";
 /** The scripts, with the arguments that make them small. @type {readonly (readonly string[])[]} */
 const smallest = [
   ["record", "--quick", "--check"],
-  ["record", "--quick", "--doubts"],
+  ["start", "--check"],
+];
+/** Those that measure for long. @type {typeof smallest} */
+const measuring = [
   ["bench", "--smallest"],
   ["fit", "--cases", "36", "--test-cases", "12"],
   ["speed", "--quick"],
   ["physics"],
-  ["start", "--check"],
 ];
 
 /** The lab's program is that of the native tests. */
@@ -20,9 +22,10 @@ const env = { SIM3ALIGN_LAB_PROFILE: "dev" };
 /** @param {string} output */
 const lastLine = (output) => output.trimEnd().split("\n").at(-1)?.trim() ?? "";
 
-export const commands = () =>
+/** @param {boolean} isAll */
+export const commands = (isAll) =>
   runChecks(
-    smallest.map(([name = "", ...args]) => [
+    [...smallest, ...(isAll ? measuring : [])].map(([name = "", ...args]) => [
       `npm run ${name} -- ${args.join(" ")}`,
       async (say) => say(lastLine(await run(process.execPath, [at("scripts", `${name}.mjs`), ...args], { env }))),
     ]),

@@ -1,9 +1,10 @@
-/** References of the documents: links, commands, and the sections of the guide on errors. */
+/** References of the documents: links, commands, names and formats of files, sizes, and the sections of the guide on errors. */
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { anchorOf } from "../../www/documentation.mjs";
 import { filesBelow } from "../lib/cache.mjs";
 import { at, repository } from "../lib/paths.mjs";
+import { wasmModules } from "../lib/wasm.mjs";
 
 const rootDocuments = ["README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md"].map((name) => at(name));
 const isMade = (/** @type {string} */ path) => /node_modules|[\\/]dist[\\/]|examples[\\/]sample/.test(path);
@@ -37,6 +38,51 @@ export function checkDocuments() {
   if (faults.length > 0) throw new Error(`These lead nowhere:\n${faults.join("\n")}\nRemedy: correct or remove them.`);
 }
 
+/** @throws if documents or comments lack a name of a file or a kind of depth, or name other formats or sizes than there are */
+export async function checkNames() {
+  const { build } = await import("esbuild");
+  const tables = ["case-names", "input/formats", "input/depth-kinds"].map((name) => `export * from "./${name}.js";`);
+  const stdin = { contents: tables.join("\n"), resolveDir: at("pkg-config", "src") };
+  const { outputFiles } = await build({ stdin, bundle: true, write: false, format: "esm" });
+  const found = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0]?.text ?? "")}`);
+  const { caseNames, depthKinds, fileFormats, formatsText } = found;
+
+  const read = (/** @type {string} */ path) => readFileSync(path, "utf8");
+  const parts = Object.values(caseNames).flatMap(({ stems, extensions }) => [
+    ...[...stems, ...extensions.map((/** @type {string} */ ending) => `.${ending}`)],
+  ]);
+  const guides = documents()
+    .map(({ text }) => text)
+    .join("\n");
+  const faults = [...new Set([...parts, ...Object.keys(depthKinds)])]
+    .filter((name) => !new RegExp(`[\`"]${name}[\`"]`).test(guides))
+    .map((name) => `The guides have no ${name}`);
+
+  const commented = ["formats.ts", "types/inputs.ts"].map((name) => ({
+    path: name,
+    text: read(at("pkg-config", "src", name)),
+  }));
+  for (const { path, text } of [...documents(), ...commented]) {
+    // Such as "depth files (16-bit PNG, …)", which may go on in the next line.
+    for (const [, kind = "", list = ""] of text.matchAll(/\b(\w+) files? \((\w[^().;:]*)(?=[).;:])/gi)) {
+      const isList = kind.toLowerCase() in fileFormats && list.includes(",");
+      if (isList && list.replace(/\s+(\* )?/g, " ") !== formatsText(kind.toLowerCase()))
+        faults.push(`${path}: ${kind} files (${list})`);
+    }
+    // Such as "The splats module, at most 62 kB".
+    for (const [all, title = "", size] of text.matchAll(
+      /\bthe ([\w-]+)(?: readers| module)?(?:,| is) at most ([\d.]+) kB/gi,
+    )) {
+      const module = wasmModules.find(({ name }) => name === title.toLowerCase().replace("file", "formats"));
+      if (module !== undefined && Math.ceil(module.budget / 1000) !== Number(size)) faults.push(`${path}: ${all}`);
+    }
+  }
+  if (faults.length > 0)
+    throw new Error(
+      `${faults.join("\n")}\nRemedy: correct them; the tables are in pkg-config/src/{case-names,input/*}.ts and scripts/lib/wasm.mjs.`,
+    );
+}
+
 /** @throws if the guide on errors lacks a code of an error or a warning, or has one that does not exist */
 export function checkCodes() {
   const text = (/** @type {string} */ path) => readFileSync(at(...path.split("/")), "utf8");
@@ -45,7 +91,7 @@ export function checkCodes() {
     Array.from(source.matchAll(pattern), ([, code = ""]) => code);
   const [warnings = ""] = /export type WarningCode = .*/.exec(text("pkg-config/src/generated/types.ts")) ?? [];
   const errors = [
-    ...all(text("geometry/src/error.rs"), /=> "([A-Z_0-9]+)"/g),
+    ...all(text("runtime/src/error.rs"), /=> "([A-Z_0-9]+)"/g),
     ...all(text("pkg-config/src/values/error.ts"), /^ {2}\| "([A-Z_0-9]+)"/gm),
   ];
   for (const [level, codes] of /** @type {const} */ ([

@@ -61,35 +61,45 @@ export const install = once(async () => {
 });
 
 /**
+ * @typedef {object} TestOptions
+ * @property {NodeJS.ProcessEnv} [env]
+ * @property {number} [concurrency] files at a time
+ * @property {readonly string[]} [without] names of files that are left out
+ */
+
+/**
  * Runs one folder of tests with the installed package.
  * @param {string} folder
- * @param {NodeJS.ProcessEnv} [env]
+ * @param {TestOptions} [options]
  */
-async function nodeTest(folder, env = {}) {
+async function nodeTest(folder, { env = {}, concurrency = availableParallelism(), without = [] } = {}) {
   await install();
   // By default, Node leaves one core free, and waits for ever for a test that hangs. Its versions before 20.11 know no
   // other way.
   const [major = 0, minor = 0] = process.versions.node.split(".").map(Number);
-  const options = [`--test-concurrency=${availableParallelism()}`, `--test-timeout=${HANGING_MINUTES * 60_000}`];
-  const chosen = major > 20 || minor >= 11 ? options : [];
+  const all = [`--test-concurrency=${concurrency}`, `--test-timeout=${HANGING_MINUTES * 60_000}`];
+  const options = major > 20 || minor >= 11 ? all : [];
   const test = (/** @type {readonly string[]} */ files) =>
-    attempt(process.execPath, ["--enable-source-maps", "--test", "--test-reporter=spec", ...chosen, ...files], {
+    attempt(process.execPath, ["--enable-source-maps", "--test", "--test-reporter=spec", ...options, ...files], {
       cwd: installDir,
       echo: true,
       env: { ...testEnvironment, ...env },
     });
   const counted = (/** @type {Awaited<ReturnType<typeof test>>} */ { output, reason }) =>
     withStatus(nodeCounts(output), reason === "");
-  const all = await test(filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js")));
-  const hung = hungFiles(all.output);
-  if (hung.length === 0) return counted(all);
+  const names = readdirSync(join(installDir, "tests", folder)).filter((name) => name.endsWith(".test.js"));
+  const chosen = names.filter((name) => !without.includes(name.replace(".test.js", "")));
+  const outcome = await test(chosen.map((name) => join(installDir, "tests", folder, name)));
+  const hung = hungFiles(outcome.output);
+  if (hung.length === 0) return counted(outcome);
   // Once more, because Node itself may hang: its end can deadlock (nodejs/node#54918).
   print(`\nOnce more, because they hung: ${hung.join(", ")}\n`);
-  const counts = nodeCounts(all.output);
+  const counts = nodeCounts(outcome.output);
   return sum([{ ...counts, failed: counts.failed - hung.length }, counted(await test(hung))]);
 }
 
-export async function javaScript() {
+/** @param {boolean} isAll whether the tests that need packages of Python get them */
+export async function javaScript(isAll) {
   const pythons = {
     SIM3ALIGN_SIMULATORS: "simulators",
     SIM3ALIGN_NOTEBOOKS: "notebooks",
@@ -97,20 +107,21 @@ export async function javaScript() {
   };
   /** @type {NodeJS.ProcessEnv} */
   const env = {};
-  for (const [name, folder] of Object.entries(pythons)) {
+  for (const [name, folder] of isAll ? Object.entries(pythons) : []) {
     const python = await installedPython(folder);
     if (python !== undefined) env[name] = python;
   }
-  return nodeTest("js", env);
+  return nodeTest("js", { env });
 }
 
 /** Counts where a program is missing: skipped on a developer's machine, failed in continuous integration. */
 export const missing = () => ({ ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) });
 
-/** @param {string} folder of tests that show pages */
+/** Tests that show pages spend half of their time waiting for a browser. @param {string} folder */
 export async function inBrowser(folder) {
   const path = await chromium();
-  if (path) return nodeTest(folder, { CHROMIUM_PATH: path, FIREFOX_PATH: await firefox() });
+  const env = { CHROMIUM_PATH: path, FIREFOX_PATH: await firefox() };
+  if (path) return nodeTest(folder, { env, concurrency: 2 * availableParallelism() });
   print(`No Chromium. Remedy: ${chromiumRemedy}.\n`);
   return missing();
 }
@@ -122,7 +133,7 @@ export async function browser() {
 
 /** A copy of what the examples use: the unpacked tarball as pkg/, and the examples. */
 const copy = at("target", "examples");
-const examplesDir = join(copy, "examples");
+export const examplesDir = join(copy, "examples");
 
 /** Files that working in the examples' folder leaves there. */
 const made = new Set(["node_modules", "sample", "dist", "annotation", "annotations"]);
@@ -149,12 +160,15 @@ async function installExamples() {
   cpSync(sampleDir, join(examplesDir, "sample", "mug"), { recursive: true });
 }
 
-/** The examples, each as its user runs it. */
-export async function examples() {
+/** Tests that start servers, build an app twice, or compile it. */
+const heavyExamples = ["cluster", "react-server", "react-types"];
+
+/** The examples, each as its user runs it. @param {boolean} isAll */
+export async function examples(isAll) {
   await install();
   await buildSite();
   await step("install the examples", installExamples);
-  const [chromiumPath = "", redisPath = ""] = [await chromium(), await redisServer()];
+  const [chromiumPath = "", redisPath = ""] = [await chromium(), isAll ? await redisServer() : ""];
   const env = { SIM3ALIGN_EXAMPLES: examplesDir, CHROMIUM_PATH: chromiumPath, REDIS_SERVER_PATH: redisPath };
-  return nodeTest("examples", env);
+  return nodeTest("examples", { env, without: isAll ? [] : heavyExamples });
 }

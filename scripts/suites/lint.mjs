@@ -4,15 +4,14 @@ import { dirname, join } from "node:path";
 import { filesBelow } from "../lib/cache.mjs";
 import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
-import { setUp, wasmTarget } from "../lib/setup.mjs";
+import { setUp } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
-import { checkTables } from "../lib/tables.mjs";
 import { checkFigures } from "../record/documents.mjs";
-import { checkCodes, checkDocuments } from "./documents.mjs";
+import { checkCodes, checkDocuments, checkNames } from "./documents.mjs";
 
 /** Crates of the workspace besides the aligner. */
 const crates = [
-  ...["formats", "geometry", "lab", "physics"],
+  ...["formats", "geometry", "lab", "physics", "runtime"],
   ...["core", "depth-files", "formats", "joint", "physics", "registration", "splats", "webp"].map(
     (name) => `modules/${name}`,
   ),
@@ -20,22 +19,19 @@ const crates = [
 
 export async function lint() {
   await setUp();
-  const clippy = (/** @type {readonly string[]} */ args) => () =>
-    run("cargo", ["clippy", "--quiet", ...args, "--", "-D", "warnings"], { remedy: "correct what clippy names" });
-  const tested = ["sim3align", "sim3align-physics"].flatMap((name) => ["--package", name]);
+  const clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
   const [node, biome] = nodeProgram("@biomejs/biome", "biome");
   const [, tsc] = nodeProgram("typescript", "tsc");
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
-    ["clippy, native", clippy(["--workspace", "--all-targets"])],
-    ["clippy, tests in WebAssembly", clippy(["--test", "suite", "--target", wasmTarget, ...tested])],
+    ["clippy", () => run("cargo", clippy, { remedy: "correct what clippy names" })],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
     ...["pkg-config", "tests", "www", "scripts"].map(
       (folder) =>
         /** @type {const} */ ([`types of ${folder}/`, () => run(node, [tsc, "--noEmit", "--project", folder])]),
     ),
     ["links and commands of the documents", checkDocuments],
-    ["formats in documents and comments", checkTables],
+    ["names, formats and sizes in documents and comments", checkNames],
     ["figures of the record in documents", checkFigures],
     ["codes of the guide on errors", checkCodes],
     ["commands start before any package is installed", checkCommands],

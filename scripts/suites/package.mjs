@@ -1,5 +1,5 @@
 /** Checks of the package before it is used: its form, its declarations, its sizes. */
-import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { dirname, join, sep } from "node:path";
 import { writeApiDocs } from "../lib/api-docs.mjs";
@@ -52,7 +52,8 @@ function holdSize(what, bytes, limit, say) {
   say(`${kilobytes(bytes)} of ${kilobytes(limit)}`);
 }
 
-export async function checkPackage() {
+/** @param {boolean} isAll whether the API reference is written, which takes packages of its own */
+export async function checkPackage(isAll) {
   const [node, publint] = nodeProgram("publint");
   const [, attw] = nodeProgram("@arethetypeswrong/cli", "attw");
   const { file, size } = await packed();
@@ -61,11 +62,10 @@ export async function checkPackage() {
     ["types, in modules' resolution", () => run(node, [attw, file, "--profile", "esm-only", "--no-emoji"])],
     ["tsc --strict, resolution node16", () => compileStrictly("node16")],
     ["tsc --strict, resolution bundler", () => compileStrictly("bundler")],
-    ["package.json names files that exist", checkNamedFiles],
     ["npm publish --dry-run, without a correction", checkPublishing],
     ["the API report is up to date", checkApiReport],
     ["the notice names what the modules hold, under licences that are allowed", checkNotice],
-    ["the API reference, without a warning", writeApiDocs],
+    .../** @type {[string, () => unknown][]} */ (isAll ? [["the API reference, without a warning", writeApiDocs]] : []),
     ["size of the tarball", (say) => holdSize("The tarball", size, limits.tarball, say)],
     ...moduleChecks(),
     ["size of the page's script, gzipped, without the 3D library", checkPage],
@@ -85,16 +85,6 @@ async function checkPublishing() {
   }
 }
 
-function checkNamedFiles() {
-  const { bin, exports } = JSON.parse(readFileSync(join(packageDir, "package.json"), "utf8"));
-  /** @type {(entry: unknown) => string[]} */
-  const targets = (entry) =>
-    entry && typeof entry === "object" ? Object.values(entry).flatMap(targets) : [String(entry)];
-  const named = [...targets(bin), ...targets(exports)].filter((path) => !path.includes("*"));
-  const missing = named.filter((path) => !existsSync(join(packageDir, path)));
-  if (missing.length > 0) throw new Error(`pkg/ lacks ${missing.join(", ")}, which its package.json names.`);
-}
-
 /** @returns {[title: string, check: (say: (note: string) => void) => unknown][]} */
 function moduleChecks() {
   const modules = wasmModules.map((module) => ({ ...module, file: wasmFile(module, join(packageDir, "wasm")) }));
@@ -106,7 +96,6 @@ function moduleChecks() {
           (say) => holdSize(name, sizes(file).gzip, budget, say),
         ]),
     ),
-    ["the modules export different functions", () => checkSeparation(modules.map(({ file }) => file))],
     ["the modules hold no path of the machine that built them", () => checkPaths(modules.map(({ file }) => file))],
     [
       "the modules have no instruction that browsers lack, or whose result differs, and the core has SIMD",
@@ -144,27 +133,6 @@ function checkElement(say) {
   const bytes = [...found].reduce((total, file) => total + sizes(file).gzip, 0);
   if (found.size < 2) throw new Error(`${folder} is not as expected: its script imports nothing.`);
   holdSize("The element's script", bytes, limits.elementScript, say);
-}
-
-/** Exports that several modules have: each frees the meshes that it has cached. */
-const commonExports = ["dropMesh"];
-
-/** @param {readonly string[]} files */
-function checkSeparation(files) {
-  /** @type {Map<string, string>} */
-  const owners = new Map();
-  for (const file of files) {
-    const names = WebAssembly.Module.exports(new WebAssembly.Module(readFileSync(file)))
-      .map(({ name }) => name)
-      // Without what wasm-bindgen adds for itself.
-      .filter((name) => !name.startsWith("__") && name !== "memory" && !commonExports.includes(name));
-    if (names.length === 0) throw new Error(`${file} exports nothing.`);
-    for (const name of names) {
-      const other = owners.get(name);
-      if (other) throw new Error(`${file} and ${other} export ${name}. Remedy: export it from one.`);
-      owners.set(name, file);
-    }
-  }
 }
 
 /** @param {readonly string[]} files */

@@ -5,11 +5,12 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { zipSync } from "fflate";
 import type { Page } from "playwright-core";
+import { type AlignInput, createAligner } from "sim3align";
 import { browserFor, WEBGL } from "../support/browser.js";
 import { elementFolder, servedFolder } from "../support/element-host.js";
 import { installDir } from "../support/environment.js";
 import { type Files, files, inFolder, jsonFile, seen } from "../support/page-files.js";
-import { mesh, truth } from "../support/scene.js";
+import { mesh, pinhole, truth } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
 import { serve } from "../support/static-server.js";
 
@@ -158,6 +159,47 @@ test("pose and session are set and read, and survive a transfer as JSON", async 
   assert.equal(restored.session, session);
   const types = await page.evaluate(() => window.told.map(({ type }) => type));
   assert.ok(!types.includes("align"));
+  await page.close();
+});
+
+test("depth in integers is read as align() reads it, and what is set beside the next scene is for it", async () => {
+  const { page } = await host(`<sim3-align id="a"></sim3-align>`);
+  const { depth, mask, width, height } = seen;
+  const along = depth.map((z, i) => {
+    const [x, y] = [((i % width) - pinhole.cx) / pinhole.fx, (Math.floor(i / width) - pinhole.cy) / pinhole.fy];
+    return z * Math.hypot(x, y, 1);
+  });
+  const views = [
+    { depth: Uint16Array.from(along, (m) => Math.round(1000 * m)), depthKind: "ray-distance", camera: pinhole },
+    { depth: Uint16Array.from(depth, (z) => Math.round(5000 * z)), camera: { ...pinhole, depthScale: 0.0002 } },
+  ] as const;
+  using aligner = await createAligner({ workers: 0 });
+  for (const view of views) {
+    const sized = { ...view, width, height };
+    const expected = await aligner.align({ ...sized, mask, mesh } as AlignInput);
+    const found = await page.evaluate(
+      (scene) => {
+        const element = document.querySelector("#a") as Element;
+        const aligned = new Promise((resolve) => element.addEventListener("align", resolve, { once: true }));
+        Object.assign(element, { scene });
+        return aligned.then(() => element.pose);
+      },
+      { ...sized, objects: [{ mask, mesh }] },
+    );
+    assert.ok(Math.abs((found?.scale ?? 0) / expected.scale - 1) < 1e-4, `${found?.scale}, ${expected.scale}`);
+  }
+  // At once after the next scene, which takes time to read.
+  const state = await page.evaluate((pose) => {
+    const element = document.querySelector("#a") as Element;
+    Object.assign(element, { scene: window.arrays });
+    Object.assign(element, { pose });
+    return [element.pose, element.results.length];
+  }, truth);
+  assert.deepEqual(state, [null, 0]);
+  await page.waitForFunction(() => (document.querySelector("#a") as Element).pose !== null, null, PATIENCE);
+  assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).pose?.scale), truth.scale);
+  await page.evaluate(() => void Object.assign(document.querySelector("#a") as Element, { scene: null }));
+  assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).results.length), 0);
   await page.close();
 });
 

@@ -52,7 +52,7 @@ test("all controls are reachable by keyboard and show their focus", async ({ pag
     assert.notEqual(found.outline, "none", `${found.label} does not show its focus`);
     reached.add(found.label);
   }
-  for (const name of ["commands", "align", "hand-title", "JSON", "files", "wipe", "accept"]) {
+  for (const name of ["help", "align", "hand-title", "JSON", "files", "wipe", "accept"]) {
     assert.ok(reached.has(name), `${name} is not among ${[...reached].join(", ")}`);
   }
   const order = [...reached];

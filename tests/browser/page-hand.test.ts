@@ -1,6 +1,5 @@
 /** By hand: nudges, numbers, a known size, refine, undo and redo; measuring. */
 import assert from "node:assert/strict";
-import { WEBGL } from "../support/browser.js";
 import { PATIENCE, pageTests, type SitePage, until } from "../support/site.js";
 
 const test = pageTests();
@@ -69,18 +68,4 @@ test("the pose is entered in numbers, as steps that can be undone", async (opene
   await page.click("#undo");
   await opened.isNow("aligned");
   assert.equal(Number(await page.inputValue("#centre-x")), at);
-});
-
-pageTests(WEBGL)("two clicks measure a distance", async (opened, page) => {
-  await page.locator('.view-host[data-backend="webgl"] canvas').waitFor(PATIENCE);
-  await opened.press("Measure");
-  assert.match((await page.textContent("#measured")) ?? "", /Click a point/);
-  const canvas = page.locator(".image canvas");
-  const { width, height } = (await canvas.boundingBox()) ?? { width: 0, height: 0 };
-  await canvas.click({ position: { x: 0.5 * width, y: 0.45 * height } });
-  await canvas.click({ position: { x: 0.5 * width, y: 0.55 * height } });
-  const length = Number.parseFloat((await page.textContent("#measured")) ?? "");
-  assert.ok(length > 0.5 && length < 12, `${length} cm on a mug`);
-  await opened.press("Measure");
-  assert.equal(await page.locator("#measured").count(), 0);
 });

@@ -1,7 +1,7 @@
 /** The user's own files: one drop is one scene, and only becomes it when everything fits. */
 import assert from "node:assert/strict";
 import { otherPose } from "../support/case-folder.js";
-import { cocoRle, obj, png } from "../support/files.js";
+import { cocoRle, obj } from "../support/files.js";
 import { depthInUnits, farther } from "../support/page-cases.js";
 import {
   cameraFile,
@@ -43,61 +43,41 @@ test("masks and meshes are paired by name, in any order", async (opened) => {
   assert.deepEqual(await namesOf(opened), ["B", "mug_left"]);
 });
 
-test("two masks and one mesh are a question, which a click answers", async (opened, page) => {
+test("two masks and one mesh are a question, which a choice answers", async (opened, page) => {
   const { "mask.png": mask, ...rest } = files;
   await drop(opened, { ...rest, "mask-a.png": mask as Uint8Array, "mask-b.png": maskPng(other.mask) });
   const sheet = await opened.sheet();
-  assert.match((await sheet.textContent()) ?? "", /No mesh for b\./);
+  assert.match((await sheet.textContent()) ?? "", /No mesh for a\..*No mesh for b\./s);
   assert.ok(await page.isDisabled("#intake-open"));
   assert.equal(await page.getAttribute("main", "data-scene"), "Mug");
+  await page.getByLabel("Mesh of a", { exact: true }).selectOption({ label: "mesh.obj" });
+  await opened.sheet();
   await page.locator('[data-object="b"]').getByRole("button", { name: "Leave it out" }).click();
-  await sheet.getByRole("button", { name: "They do" }).click();
   await opened.shows("Own files");
   assert.equal(await page.locator(".objects").count(), 0);
 });
 
-test("a label map and COCO annotations hold several masks", async (opened, page) => {
-  const labels = seen.mask.map((inside, i) => (inside !== 0 ? 7 : other.mask[i] !== 0 ? 12 : 0));
-  const { "mask.png": _, "mesh.obj": mesh, ...rest } = files;
-  const meshes: Files = { "mesh-7.obj": mesh as Uint8Array, "obj_000012.obj": mesh as Uint8Array };
-  await drop(opened, { ...rest, ...meshes, "labels.png": png(labels, WIDTH, HEIGHT) });
-  await page.locator('main[data-scene="Own files"]').waitFor(PATIENCE);
-  assert.deepEqual(await namesOf(opened), ["Object 7", "Object 12"]);
-  const images = [{ id: 3, width: WIDTH, height: HEIGHT, file_name: "depth.jpg" }];
-  const [u, v] = [Math.round(pinhole.cx), Math.round(pinhole.cy)];
-  const square = [u - 12, v - 12, u + 12, v - 12, u + 12, v + 12, u - 12, v + 12];
-  const annotations = [
-    { image_id: 3, category_id: 1, segmentation: cocoRle(seen.mask, WIDTH, HEIGHT) },
-    { image_id: 3, category_id: 2, segmentation: [square] },
-    { image_id: 4, category_id: 2, segmentation: [square] },
-  ];
-  const categories = [
-    { id: 1, name: "cup" },
-    { id: 2, name: "blob" },
-  ];
-  const coco = jsonFile({ images, annotations, categories });
-  const named: Files = { "blob.obj": mesh as Uint8Array, "cup.obj": mesh as Uint8Array };
-  await dropFolder(opened, inFolder("coco", { ...rest, ...named, "instances.json": coco }));
-  await page.locator('main[data-scene="coco"]').waitFor(PATIENCE);
-  assert.deepEqual(await namesOf(opened), ["cup", "blob"]);
+test("a file whose name says nothing is asked about, and a second drop joins the first", async (opened, page) => {
+  const { "mask.png": mask, "camera.json": camera, ...rest } = files;
+  await drop(opened, { ...rest, "1.png": mask as Uint8Array });
+  await drop(opened, { "camera.json": camera as Uint8Array });
+  await page.locator('[data-field="camera"]', { hasText: "camera.json" }).waitFor(PATIENCE);
+  const sheet = await opened.sheet();
+  assert.match((await sheet.textContent()) ?? "", /1\.png: not used\. Choose below what each file is\./);
+  await page.getByLabel("Use of 1.png").selectOption("mask");
+  await opened.shows("Own files");
 });
 
-test("an image of a BOP data set is a scene of its own", async (opened, page) => {
-  const K = [pinhole.fx, 0, pinhole.cx, 0, pinhole.fy, pinhole.cy, 0, 0, 1];
-  const entry = { cam_K: K, depth_scale: 1 };
-  const pose = (obj_id: number) => ({ obj_id, cam_R_m2c: [1, 0, 0, 0, 1, 0, 0, 0, 1], cam_t_m2c: [0, 0, 500] });
-  const mask = maskPng(seen.mask);
+test("images of one folder, and case folders, are scenes of their own", async (opened, page) => {
   await dropFolder(opened, {
-    "000048/depth/000001.png": depthPng,
-    "000048/depth/000036.png": depthPng,
-    "000048/mask_visib/000001_000000.png": mask,
-    "000048/mask_visib/000036_000000.png": maskPng(other.mask),
-    "000048/mask_visib/000036_000001.png": mask,
-    "000048/mask/000036_000001.png": mask,
-    "000048/scene_camera.json": jsonFile({ 1: entry, 36: entry }),
-    "000048/scene_gt.json": jsonFile({ 1: [pose(5)], 36: [pose(2), pose(5)] }),
-    "models/obj_000002.obj": meshFile,
-    "models/obj_000005.obj": meshFile,
+    "48/depth/000001.png": depthPng,
+    "48/depth/000036.png": depthPng,
+    "48/masks/000001_cup.png": maskPng(seen.mask),
+    "48/masks/000036_cup.png": maskPng(other.mask),
+    "48/masks/000036_box.png": maskPng(seen.mask),
+    "48/camera.json": cameraFile,
+    "48/mesh/box.obj": meshFile,
+    "48/mesh/cup.obj": meshFile,
   });
   const sheet = await opened.sheet();
   // Nothing of the sample remains, and nothing of it is replaced yet.
@@ -108,27 +88,21 @@ test("an image of a BOP data set is a scene of its own", async (opened, page) =>
   const meshes = await page
     .locator(".pair select")
     .evaluateAll((all) => all.map((one) => (one as HTMLSelectElement).selectedOptions[0]?.textContent));
-  assert.deepEqual(meshes, ["models/obj_000002.obj", "models/obj_000005.obj"]);
-  await page.selectOption("#scene-choice", "0");
-  await opened.sheet();
-  await page.click("#intake-open");
-  await opened.shows("000048 000001");
-  await page.click("#next");
-  await opened.page.locator(".objects").waitFor(PATIENCE);
-  assert.equal((await namesOf(opened)).length, 2);
-});
-
-test("case folders of one image are one scene, those of others are others", async (opened, page) => {
+  assert.deepEqual(meshes, ["mesh/box.obj", "mesh/cup.obj"]);
+  // Another drop is beside them.
   await dropFolder(opened, { ...inFolder("a", files), ...inFolder("b", farther(0.01)) });
+  await page
+    .locator("#scene-choice option")
+    .nth(3)
+    .waitFor({ ...PATIENCE, state: "attached" });
   await opened.sheet();
-  assert.equal(await page.locator("#scene-choice option").count(), 2);
+  assert.deepEqual(
+    (await page.locator("#scene-choice option").allTextContents()).map((text) => text.replace(/^.*: | \(.*$/g, "")),
+    ["48 000001", "48 000036", "a", "b"],
+  );
   assert.equal(await page.locator(".pair").count(), 1);
   await page.click("#intake-cancel");
   assert.equal(await page.getAttribute("main", "data-scene"), "Mug");
-  const second = { ...files, "mask.png": maskPng(other.mask) };
-  await dropFolder(opened, { ...inFolder("set/a", files), ...inFolder("set/b", second) });
-  await opened.page.locator(".objects").waitFor(PATIENCE);
-  assert.deepEqual(await namesOf(opened), ["a", "b"]);
 });
 
 test("mask and mesh dropped on an own scene replace what they name, if that is wanted", async (opened, page) => {

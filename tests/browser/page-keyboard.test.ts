@@ -15,14 +15,9 @@ test(
     const press = async (...keys: string[]) => {
       for (const key of keys) await page.keyboard.press(key);
     };
-    const run = async (command: string) => {
-      await press("Control+k");
-      await page.locator(".palette[open]").waitFor(PATIENCE);
-      await page.keyboard.type(command);
-      await press("Enter");
-    };
+    const button = (name: string) => page.getByRole("button", { name, exact: true });
     const saved = async (format: string) => {
-      const [download] = await Promise.all([page.waitForEvent("download"), run(`export: ${format}`)]);
+      const [download] = await Promise.all([page.waitForEvent("download"), button(format).press("Enter")]);
       return download.suggestedFilename();
     };
     const width = async () => Math.max(...(await opened.dimensions()));
@@ -34,7 +29,8 @@ test(
     for (const name of ["hammer", "table"])
       await cp(join(repository, "www", "samples", name), join(folder, name), { recursive: true });
     const chooser = page.waitForEvent("filechooser");
-    await run("open a folder");
+    await button("Samples and folders").press("Enter");
+    await page.locator("#folder").press("Space");
     await (await chooser).setFiles(folder);
     // The sheet offers what comes next.
     await page.locator("#intake-open:focus").waitFor(PATIENCE);
@@ -89,7 +85,7 @@ test(
     }
     assert.deepEqual(names, ["box", "mug", "teapot"]);
     // The focus goes on with the object that was renamed, and shows.
-    await run("rename");
+    await page.locator('.objects .select[aria-pressed="true"]').press("F2");
     await page.keyboard.type("Pot");
     await press("Enter");
     await page.locator(".objects .select:focus-visible", { hasText: "Pot" }).waitFor(PATIENCE);
@@ -101,7 +97,9 @@ test(
       await press("Control+Enter");
     }
     await opened.says(/All objects are accepted/);
-    assert.deepEqual([await saved("JSON"), await saved("GLB")], ["table.json", "mug-placed.glb"]);
+    assert.equal(await saved("JSON"), "table.json");
+    await button("More formats").press("Enter");
+    assert.equal(await saved("GLB"), "mug-placed.glb");
     // Nothing below the window, to which the arrows could scroll.
     assert.equal(await page.evaluate(() => document.documentElement.scrollHeight - innerHeight), 0);
   },

@@ -23,8 +23,8 @@ test("after the first visit, the page and all samples work without a connection"
   await isStored();
   await opened.choose("#sample", "desk");
   await opened.shows("Desk");
-  await page.keyboard.press("Control+k");
-  await page.getByRole("combobox", { name: "Find a command" }).waitFor(PATIENCE);
+  await page.keyboard.press("?");
+  await page.locator("dialog.help").waitFor(PATIENCE);
   await page.keyboard.press("Escape");
   await drop(opened, files);
   await page.locator(".start[data-own=true]").waitFor(PATIENCE);

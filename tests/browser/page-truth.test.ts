@@ -1,6 +1,6 @@
 /** Statements of the page: sizes along an object's own sides, and causes of differences between mask and mesh. */
 import assert from "node:assert/strict";
-import { depthInUnits, halfCamera, nearIsDark, SIDES_M, swappedMasks, tiltedBox } from "../support/page-cases.js";
+import { depthInUnits, halfCamera, nearIsDark, SIDES_M, tiltedBox } from "../support/page-cases.js";
 import { drop, type Files, files, maskPng, seen } from "../support/page-files.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
@@ -50,11 +50,10 @@ test("only what stands in front of an object explains a low overlap", "#sample=o
   await opened.isNow("aligned");
 });
 
-/** The inputs with a mistake, the question of the sheet that is passed over, the cause that is named, and the button that helps. */
+/** The inputs with a mistake, whether the sheet asks about them, the cause that is named, and the button that helps. */
 const mistakes: readonly [mistake: string, dropped: Files, asks: boolean, cause: string, helps: string][] = [
-  ["the camera of a smaller image", { ...files, "camera.json": halfCamera }, true, "camera", "Scale them by 2"],
+  ["the camera of a smaller image", { ...files, "camera.json": halfCamera }, false, "camera", "Scale them by 2"],
   ["a picture of the depth, near is dark", nearIsDark, true, "depth", "Near is dark"],
-  ["two masks that are swapped", swappedMasks(), false, "swap", "Exchange the masks"],
 ];
 test("a mask of the background is inverted in the sheet", async (opened, page) => {
   await drop(opened, { ...files, "mask.png": maskPng(seen.mask.map((inside) => 1 - inside)) });

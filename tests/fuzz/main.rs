@@ -1,8 +1,8 @@
 //! Structural fuzzing: inputs that are valid by type and hostile by content. No call panics, every error is typed, and every
 //! result is finite.
 //!
-//! proptest draws and shrinks the bytes from which an [`Entropy`] makes an input; a seed gives the same inputs everywhere.
-//! `SIM3ALIGN_FUZZ_SEED` chooses another one, as `npm run fuzz` does.
+//! An [`Entropy`] makes an input from random bytes; a seed gives the same inputs everywhere. `SIM3ALIGN_FUZZ_SEED` chooses another
+//! one, as `npm run fuzz` does.
 
 #![cfg(not(target_family = "wasm"))]
 #![allow(clippy::unwrap_used, clippy::panic)]
@@ -15,10 +15,10 @@ mod meshes;
 mod options;
 
 use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use entropy::Entropy;
-use proptest::prelude::*;
-use proptest::test_runner::{Config, RngSeed, TestRunner};
+use sim3align::geometry::random::Random;
 
 /// Bytes of an input: large meshes and images are drawn from seeds, so that a few hundred suffice.
 const BYTES: usize = 400;
@@ -28,14 +28,28 @@ thread_local! {
     static RESULTS: Cell<u32> = const { Cell::new(0) };
 }
 
-fn fuzz(cases: u32, least_results: u32, call: fn(&mut Entropy<'_>) -> Result<(), String>) {
+type Call = fn(&mut Entropy<'_>) -> Result<(), String>;
+
+/// What is wrong with a call on the input of these bytes.
+fn fault(call: Call, bytes: &[u8]) -> Option<String> {
+    let outcome = catch_unwind(AssertUnwindSafe(|| call(&mut Entropy::new(bytes))));
+    outcome.unwrap_or_else(|_| Err("it panics".into())).err()
+}
+
+fn fuzz(cases: u32, least_results: u32, call: Call) {
     let seed = std::env::var("SIM3ALIGN_FUZZ_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0);
-    let config = Config { cases, rng_seed: RngSeed::Fixed(seed), failure_persistence: None, ..Config::default() };
-    let bytes = prop::collection::vec(any::<u8>(), 0..BYTES);
-    let outcome =
-        TestRunner::new(config).run(&bytes, |bytes| call(&mut Entropy::new(&bytes)).map_err(TestCaseError::fail));
-    if let Err(failure) = outcome {
-        panic!("seed {seed}: {failure}");
+    let mut random = Random::new(seed, 1);
+    for _ in 0..cases {
+        let length = random.below(BYTES);
+        let bytes: Vec<u8> = (0..length).map(|_| random.below(256) as u8).collect();
+        if fault(call, &bytes).is_none() {
+            continue;
+        }
+
+        // Choices are made from the last bytes on; those without bytes are the plainest.
+        let shortest = (0..=length).rev().map(|start| &bytes[start..]).find(|few| fault(call, few).is_some());
+        let few = shortest.unwrap_or(&bytes);
+        panic!("seed {seed}, bytes {few:?}: {}", fault(call, few).unwrap_or_default());
     }
     let results = RESULTS.get();
     assert!(results >= least_results, "seed {seed}: {results} results of {cases} calls");

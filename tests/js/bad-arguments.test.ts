@@ -188,37 +188,27 @@ test("no input at all", async () => {
   }
 });
 
-test("memory that is detached, getters that throw, and what cannot be sent, with and without workers", async () => {
+test("memory that is detached, functions, and proxies, with and without workers", async () => {
   const detached = structuredClone(depth);
   structuredClone(detached, { transfer: [detached.buffer] });
-  const throwing = Object.defineProperty({ ...input }, "mask", {
-    enumerable: true,
-    get: () => assert.fail("not loaded yet"),
-  });
   using pool = await createAligner({ workers: 1 });
   for (const one of [aligner, pool]) {
     await rejectsWith(() => one.align({ ...input, depth: detached }), "INVALID_ARGUMENT depth", /detached.*transfer/);
-    await rejectsWith(() => one.align(throwing), "INVALID_ARGUMENT mask", /throws .*not loaded yet/);
     await rejectsWith(() => one.align({ ...input, mesh: (() => mesh) as never }), "INVALID_ARGUMENT mesh");
-    await rejectsWith(() => one.align(input, { seed: Symbol("s") as never }), "INVALID_OPTION options.seed");
     const reactive = new Proxy(input, { get: (target, name) => Reflect.get(target, name) });
     assert.deepEqual(withoutTimes(await one.align(reactive, quick)), expected, "a forwarding proxy is its target");
   }
 });
 
-/** What no function takes in place of an object or a list, and mostly not in place of anything else. */
+/** What a program may pass by mistake. */
 const junk: readonly (() => unknown)[] = [
-  ...[null, 5, Number.NaN, "junk", Symbol("junk"), true, 10n].map((value) => () => value),
-  ...[() => ({}), () => [], () => new Map(), () => () => 1, () => [[], null], () => ({ length: 2 ** 40 })],
-  () => new Uint8Array(3),
+  ...[undefined, null, 5, Number.NaN, "junk", true].map((value) => () => value),
+  ...[() => ({}), () => [], () => [[], null], () => new Uint8Array(3)],
   () => {
     const detached = new Float32Array(3);
     structuredClone(detached, { transfer: [detached.buffer] });
     return detached;
   },
-  () => Object.defineProperty({}, "scale", { enumerable: true, get: () => assert.fail("a getter") }),
-  () => new Proxy({}, { get: () => assert.fail("a trap"), ownKeys: () => assert.fail("a trap") }),
-  () => new Proxy(new Float32Array(3), {}),
 ];
 
 /** A value with one of its parts, or the whole, replaced; the paths of parts up to some levels. */
@@ -226,13 +216,9 @@ function* damaged(value: unknown, levels: number): Generator<[where: string, mak
   for (const [i, make] of junk.entries()) yield [` as junk ${i}`, make];
   if (levels === 0 || typeof value !== "object" || value === null || ArrayBuffer.isView(value)) return;
   for (const [name, part] of Object.entries(value)) {
-    const withPart = (other: object) =>
-      Array.isArray(value)
-        ? value.map((item, i) => (`${i}` === name && "value" in other ? other.value : item))
-        : Object.defineProperty({ ...value }, name, { enumerable: true, ...other });
-    for (const [where, make] of damaged(part, levels - 1))
-      yield [`.${name}${where}`, () => withPart({ value: make() })];
-    if (!Array.isArray(value)) yield [`.${name} throws`, () => withPart({ get: () => assert.fail("a getter") })];
+    const withPart = (other: unknown) =>
+      Array.isArray(value) ? value.map((item, i) => (`${i}` === name ? other : item)) : { ...value, [name]: other };
+    for (const [where, make] of damaged(part, levels - 1)) yield [`.${name}${where}`, () => withPart(make())];
     if (Number(name) >= 3) return;
   }
 }

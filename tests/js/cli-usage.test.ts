@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { existsSync, mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { files, folder, read, refusesUsage, writeCase } from "../support/command-line.js";
+import { files, folder, read, refusesUsage, runAlone, writeCase } from "../support/command-line.js";
 import { frameAt, frameFiles } from "../support/rig.js";
 import { tableFiles } from "../support/table.js";
 
@@ -66,6 +66,12 @@ const usage: Record<string, Record<string, RegExp>> = {
 
 for (const [what, messages] of Object.entries(usage))
   test(`wrong usage ${what} is refused`, () => refusesUsage(messages));
+
+test("the exit status is that of the process", () => {
+  writeCase("broken", { ...files, "mesh.glb": "glTF" });
+  const status = (...args: string[]) => runAlone(...args).status;
+  assert.deepEqual([status("--version"), status("align", "broken"), status("aling")], [0, 1, 2]);
+});
 
 test("what is refused has written nothing, and leaves no lock", () => {
   assert.equal(read(join("other", "index.html")), "mine");

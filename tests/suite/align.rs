@@ -12,7 +12,7 @@ use sim3align::align::{align, align_paper, align_task};
 use sim3align::geometry::image::bounds_of;
 use sim3align::helpers::{Helpers, Link, READY};
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::search::start::prepare;
+use sim3align::precise::search::start::prepare_mesh;
 use sim3align::report::PaperAlignment;
 use sim3align::scheduler::Scheduler;
 
@@ -116,7 +116,7 @@ fn an_occluder_hides_and_does_not_shrink() {
 fn pauses_and_a_prepared_mesh_change_nothing() {
     let mesh = body();
     let prepared = PreparedMesh::new(mesh.clone());
-    prepare(&prepared).unwrap();
+    prepare_mesh(&prepared).unwrap();
     for quality in [Quality::Fast, Quality::Balanced] {
         let options = AlignOptions { quality, ..AlignOptions::default() };
         let whole = align(&observe(&mesh, &truth()), &mesh, &options, &mut Silent).unwrap();

@@ -1,5 +1,4 @@
-//! The Rust tests, as WebAssembly in Node. `tests/native` has those that run natively.
-#![cfg(target_arch = "wasm32")]
+//! The Rust tests, as WebAssembly in Node. Natively, only those that are marked `unsupported = test` run: they compare bits.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod align;

@@ -3,7 +3,7 @@
 use sim3align::align::align;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
 use sim3align::precise::drawing::ground_plate::without_plate;
-use sim3align::precise::drawing::surplus::Trimmed;
+use sim3align::precise::drawing::removed_parts::Trimmed;
 use sim3align::precise::options::Proportions as Freedom;
 use sim3align::precise::search::proportions::Proportions;
 use sim3align::report::Stretch;

@@ -74,7 +74,7 @@ impl Scene {
 
     fn equations(&self, scoring: Scoring, score: &Score, lock_scale: bool) -> NormalEquations {
         let (model, grid, equivalence) = (&self.model, &self.grid, &Equivalence::default());
-        let objective = Objective { model, grid, scoring, prior: Prior::default(), equivalence, surroundings: None };
+        let objective = Objective { model, grid, scoring, prior: Prior::default(), equivalence, scene: None };
         Refiner { objective, lock_scale }.equations(&self.canvas, score, &self.pose)
     }
 

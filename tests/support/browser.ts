@@ -54,7 +54,7 @@ export class PageTest {
       ...more.filter((flag) => !flag.startsWith("!")),
     ];
     // The browser first, because it may fail to launch, and a running server would keep the process alive.
-    const browser = await chromium.launch({ executablePath, headless: true, args });
+    const browser = await chromium.launch({ executablePath, headless: !process.env.SIM3ALIGN_WINDOW, args });
     return { browser, server: await serve(folder) };
   }
 

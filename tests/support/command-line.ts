@@ -5,19 +5,56 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
-import { commandLine } from "./environment.js";
+import { pathToFileURL } from "node:url";
+import { MessageChannel, receiveMessageOnPort, SHARE_ENV, Worker } from "node:worker_threads";
+import { commandLine, installDir } from "./environment.js";
 import { type Files, glb, viewFiles, writeFiles } from "./files.js";
 import { mesh, view } from "./scene.js";
 
-/** The folder of the cases, removed after the tests of a file. */
+/** The folder of the cases, removed after the tests of a file. It is the working directory, for threads share it. */
 export const folder = mkdtempSync(join(tmpdir(), "sim3align-cli-"));
-after(() => rmSync(folder, { recursive: true, force: true }));
+process.chdir(folder);
+after(() => {
+  process.chdir(installDir);
+  rmSync(folder, { recursive: true, force: true });
+});
 
-/** Runs the command line in the folder of the cases. The first argument may be several words. */
-export function run(...args: string[]): { status: number | null; stdout: string; stderr: string } {
+interface Run {
+  status: number | null;
+  stdout: string;
+  stderr: string;
+}
+
+const { NODE_OPTIONS } = process.env;
+const done = new Int32Array(new SharedArrayBuffer(4));
+const { port1: port, port2 } = new MessageChannel();
+let host: Worker | undefined;
+
+/**
+ * Runs the command line in the folder of the cases. The first argument may be several words. All runs of a file of tests are in
+ * one thread, but for those whose file system has faults: starting Node would take most of their time.
+ */
+export function run(...args: string[]): Run {
   const [words = "", ...more] = args;
-  const all = [commandLine, ...words.split(" ").filter(Boolean), ...more];
-  const { status, stdout, stderr } = spawnSync(process.execPath, all, { cwd: folder, encoding: "utf8" });
+  const all = [...words.split(" ").filter(Boolean), ...more];
+  if (process.env.NODE_OPTIONS !== NODE_OPTIONS) return runAlone(...all);
+
+  const workerData = { commandLine: pathToFileURL(commandLine).href, done, port: port2 };
+  host ??= new Worker(new URL("command-host.js", import.meta.url), {
+    env: SHARE_ENV,
+    workerData,
+    transferList: [port2],
+  });
+  host.unref();
+  Atomics.store(done, 0, 0);
+  port.postMessage(all);
+  Atomics.wait(done, 0, 0);
+  return receiveMessageOnPort(port)?.message;
+}
+
+/** Runs the command line in a process of its own. */
+export function runAlone(...args: string[]): Run {
+  const { status, stdout, stderr } = spawnSync(process.execPath, [commandLine, ...args], { encoding: "utf8" });
   return { status, stdout, stderr };
 }
 

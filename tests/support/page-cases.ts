@@ -1,7 +1,4 @@
 /** Scenes that the tests of the page drop on it: several ones, a video, and inputs of which one is wrong or odd. */
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
-import { repository } from "./environment.js";
 import { obj, png } from "./files.js";
 import {
   cameraFile,
@@ -72,21 +69,6 @@ export const nearIsDark: Files = (() => {
   const grey = Uint8Array.from(seen.depth, (z) => (z > 0 ? Math.round(1 + (254 * (z - near)) / (far - near)) : 0));
   return { ...rest, "depth.png": png(grey, WIDTH, HEIGHT) };
 })();
-
-/** The sample of a table, with the masks of mug and box in each other's place. */
-export function swappedMasks(): Files {
-  const folder = join(repository, "www", "samples", "table");
-  const read = (path: string) => readFileSync(join(folder, path));
-  const dropped: Files = Object.fromEntries(["depth.png", "camera.json", "rgb.png"].map((name) => [name, read(name)]));
-  for (const [mesh, mask] of [
-    ["mug", "box"],
-    ["box", "mug"],
-  ] as const) {
-    dropped[`objects/${mesh}/mesh.glb`] = read(`objects/${mesh}/mesh.glb`);
-    dropped[`objects/${mesh}/mask.png`] = read(`objects/${mask}/mask.png`);
-  }
-  return dropped;
-}
 
 /** The number of frames of the video. */
 export const COUNT = 5;

@@ -1,17 +1,15 @@
 /** The page. */
 import { useEffect } from "preact/hooks";
-import { pageCommands } from "./commands/page-commands.js";
 import { listenToKeys } from "./commands/shortcuts.js";
 import { draft } from "./input/draft.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
-import { Header } from "./panels/header.js";
+import { Header, isHelpOpen, pageCommands } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
-import { HandPanel, OptionsPanel } from "./panels/later.js";
+import { HandPanel, OptionsPanel } from "./panels/lazy-panels.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { StartPanel } from "./panels/start-panel.js";
-import { isHelpOpen, isPaletteOpen } from "./state/help.js";
 import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
 import { WorkspaceProvider } from "./ui/workspace.js";
@@ -22,7 +20,7 @@ const { gizmo, isSettled, largeView, list, notKept, othersScenes, scene, space, 
 
 const Intake = lazy(
   () => draft.value !== null,
-  () => import("./intake/index.js").then(({ Sheet }) => Sheet),
+  () => import("./intake/sheet.js").then(({ Sheet }) => Sheet),
 );
 const TimePanel = lazy(
   () => video.value !== null,
@@ -35,17 +33,12 @@ const ExportPanel = lazy(
 );
 const ScenesPanel = lazy(
   () => list.value.length > 0,
-  () => import("./panels/scenes.js").then(({ ScenesPanel }) => ScenesPanel),
+  () => import("./panels/scene-list.js").then(({ ScenesPanel }) => ScenesPanel),
 );
 
-const Kept = lazy(
+const StorageWarnings = lazy(
   () => notKept.value !== null || othersScenes.value.length > 0,
-  () => import("./panels/kept.js").then(({ Kept }) => Kept),
-);
-
-const Palette = lazy(
-  () => isPaletteOpen.value,
-  () => import("./panels/palette.js").then(({ Palette }) => Palette),
+  () => import("./panels/storage-warnings.js").then(({ StorageWarnings }) => StorageWarnings),
 );
 
 const HelpDialog = lazy(
@@ -64,7 +57,7 @@ export function App() {
         <main class="page" data-large={large} data-scene={scene.value?.name ?? ""} data-fixing={gizmo.value !== null}>
           {/* First, so that the Tab key reaches it first. */}
           <aside class="side" aria-label="Scene">
-            <Kept />
+            <StorageWarnings />
             <RunBar />
             <ScenesPanel />
             <StartPanel />
@@ -79,7 +72,6 @@ export function App() {
           <TimePanel />
           <HandPanel />
         </main>
-        <Palette />
         <HelpDialog />
         <Intake />
         <DropOverlay />

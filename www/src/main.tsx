@@ -8,14 +8,13 @@ import { App } from "./app.js";
 import { storePage } from "./offline/offline.js";
 import { openFiles, openSample } from "./opening/open.js";
 import { sampleOf, samples } from "./opening/samples.js";
-import { page } from "./state/page.js";
+import { hasSession, page } from "./state/page.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
-import { hasSession } from "./state/session-flag.js";
 import "../style/theme.css";
-import "../style/layout.css";
 import "../style/controls.css";
 import "../style/views.css";
 import "../style/panels.css";
+import "../style/layout.css";
 import "../style/page.css";
 import "../style/intake.css";
 
@@ -73,7 +72,7 @@ async function start(): Promise<void> {
   keepSession();
   (await import("./intake/queue.js")).runAhead();
   // From here on, files can be dropped without a connection. Without one now, the first drop tries again.
-  import("./intake/index.js").catch(() => {});
+  import("./intake/sheet.js").catch(() => {});
   storePage();
 }
 start().catch((error) => {

@@ -18,10 +18,10 @@ use sim3align::report::{Preset, Sim3};
 use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
 use sim3align::scheduler::{Scheduler, finished};
-use sim3align::track::options::TrackOptions;
+use sim3align::track::TrackOptions;
 use sim3align::track::tracker::Tracker;
+use sim3align::views::ViewsOptions;
 use sim3align::views::align_views;
-use sim3align::views::options::ViewsOptions;
 
 /// Fraction of the object that a frame of a video must show for it to count.
 const SHOWN: f64 = 0.4;

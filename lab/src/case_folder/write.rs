@@ -1,10 +1,7 @@
 //! Writes cases as folders, and encodes images, clouds and meshes.
 
-use std::io;
-
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
-use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
+use jpeg_encoder::{Encoder, SamplingFactor};
+use png::{BitDepth, ColorType, Filter};
 use serde::Serialize;
 
 use super::files::{
@@ -101,29 +98,31 @@ fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 
 /// A depth map as 16-bit grey PNG, rounded to `depth_scale` metres per unit.
 fn depth_png(depth: &DepthMap, depth_scale: f64) -> Result<Vec<u8>> {
-    // The encoder takes 16-bit samples in native byte order.
     let units = depth.data().iter().map(|&z| (f64::from(z) / depth_scale).round() as u16);
-    let bytes: Vec<u8> = units.flat_map(u16::to_ne_bytes).collect();
-    png(&bytes, [depth.width(), depth.height()], ExtendedColorType::L16)
+    let bytes: Vec<u8> = units.flat_map(u16::to_be_bytes).collect();
+    png(&bytes, [depth.width(), depth.height()], ColorType::Grayscale, BitDepth::Sixteen)
 }
 
 /// A mask as 8-bit grey PNG: 255 is the object.
 fn mask_png(mask: &Mask) -> Result<Vec<u8>> {
     let bytes: Vec<u8> = mask.data().iter().map(|&m| if m == 0 { 0 } else { 255 }).collect();
-    png(&bytes, [mask.width(), mask.height()], ExtendedColorType::L8)
+    png(&bytes, [mask.width(), mask.height()], ColorType::Grayscale, BitDepth::Eight)
 }
 
 fn rgb_png(photo: &Photo) -> Result<Vec<u8>> {
-    png(photo.data().as_flattened(), [photo.width(), photo.height()], ExtendedColorType::Rgb8)
+    png(photo.data().as_flattened(), [photo.width(), photo.height()], ColorType::Rgb, BitDepth::Eight)
 }
 
-fn png(bytes: &[u8], [width, height]: [usize; 2], color: ExtendedColorType) -> Result<Vec<u8>> {
-    let mut file = io::Cursor::new(Vec::new());
-    // The filter halves the size of 16-bit depth relative to the default.
-    let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Default, FilterType::Sub);
-    let written = encoder.write_image(bytes, width as u32, height as u32, color);
+fn png(bytes: &[u8], [width, height]: [usize; 2], color: ColorType, depth: BitDepth) -> Result<Vec<u8>> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width as u32, height as u32);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    // It halves the size of 16-bit depth relative to the default.
+    encoder.set_filter(Filter::Sub);
+    let written = encoder.write_header().and_then(|mut writer| writer.write_image_data(bytes));
     written.map_err(|error| not_encoded("a PNG", &error))?;
-    Ok(file.into_inner())
+    Ok(file)
 }
 
 /// An image as JPEG of a quality from 1 to 100; `is_halved` for chroma of half the resolution.
@@ -137,7 +136,7 @@ pub(crate) fn rgb_jpeg(
     let mut file = Vec::new();
     let mut encoder = Encoder::new(&mut file, quality);
     encoder.set_sampling_factor(if is_halved { SamplingFactor::F_2_2 } else { SamplingFactor::F_1_1 });
-    let written = encoder.encode(pixels.as_flattened(), width as u16, height as u16, ColorType::Rgb);
+    let written = encoder.encode(pixels.as_flattened(), width as u16, height as u16, jpeg_encoder::ColorType::Rgb);
     written.map_err(|error| not_encoded("a JPEG", &error))?;
     Ok(file)
 }

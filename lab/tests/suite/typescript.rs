@@ -23,9 +23,9 @@ use sim3align::report::{
     PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Stretch, Uncertainty, Warning, WarningCode,
 };
 use sim3align::scene::contact::Contact;
-use sim3align::track::options::TrackOptions;
+use sim3align::track::TrackOptions;
 use sim3align::track::report::{CorrectedFrame, TrackState, TrackedFrame};
-use sim3align::views::options::ViewsOptions;
+use sim3align::views::ViewsOptions;
 use sim3align::views::report::{
     CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty,
 };

@@ -4,7 +4,7 @@ import { existsSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { casePictures } from "../pictures/case-pictures.js";
 import { type Entry, isFailure, rowOf } from "./entry.js";
-import { namesIn, UsageError } from "./files.js";
+import { bytesOf, namesIn, UsageError } from "./files.js";
 import { OutputFile } from "./output-file.js";
 import { type Column, type ColumnName, cellOf, columns, type Message, numberIn, type Row } from "./row.js";
 import type { RunFiles } from "./run-files.js";
@@ -18,6 +18,7 @@ const numbers = [
   ...(["scaleError", "rotationErrorDeg", "translationErrorRelative", "timeMs"] as const),
 ];
 
+const PAGE = "index.html";
 /** By this, a page is known to be a report. */
 const MARKER = '<meta name="generator" content="sim3align report">';
 
@@ -29,9 +30,8 @@ export class ReportFolder {
     private readonly folder: string,
     private readonly files: RunFiles,
   ) {
-    const path = join(folder, "index.html");
-    const output = { flag: "--report", path, isOwn: (beginning: string) => beginning.includes(MARKER) };
-    files.write(output, pageHead(basename(resolve(folder))));
+    const path = join(folder, PAGE);
+    files.write({ flag: "--report", path }, pageHead(basename(resolve(folder))));
     // Browsers close the table by themselves: the page has the rows so far.
     this.#page = new OutputFile(path, true);
   }
@@ -42,7 +42,8 @@ export class ReportFolder {
    */
   static open(folder: string, files: RunFiles): ReportFolder {
     const names = namesIn(folder);
-    if (names.length > 0 && !names.includes("index.html"))
+    const isReport = names.includes(PAGE) && bytesOf(join(folder, PAGE), 0, 4096).toString().includes(MARKER);
+    if (names.length > 0 && !isReport)
       throw new UsageError(`--report ${folder}: the folder has other content. Pass a new folder.`);
     return new ReportFolder(folder, files);
   }

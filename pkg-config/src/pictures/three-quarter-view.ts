@@ -17,9 +17,6 @@ const SHARE = 0.55;
 
 type Point = readonly [x: number, y: number, z: number];
 
-const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] as const;
-type Matrix = { [K in keyof typeof IDENTITY]: number };
-
 /** Draws the posed mesh and the points of a view in the colours of its picture. */
 export async function threeQuarterView(
   shot: Shot,
@@ -43,7 +40,9 @@ export async function threeQuarterView(
   const nearest = mesh.map((z) => z || Number.POSITIVE_INFINITY);
   const { fx, fy, cx, cy } = view.camera(shot.camera);
   const measured = view.sampled(shot.depth, shot.width, shot.height);
-  const [m0, m1, m2, , m4, m5, m6, , m8, m9, m10, , m12, m13, m14] = turn.after(IDENTITY) as Matrix;
+  // The columns of the rotation, and its translation.
+  const [m0 = 1, m1 = 0, m2 = 0, , m4 = 0, m5 = 1, m6 = 0, , m8 = 0, m9 = 0, m10 = 1, , m12 = 0, m13 = 0, m14 = 0] =
+    turn.after([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
   for (let i = 0; i < measured.length; i++) {
     const z = measured[i] as number;
     if (z === 0) continue;

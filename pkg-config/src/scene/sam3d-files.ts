@@ -19,6 +19,9 @@ const pointMaps = ["pointmap", "point_map", "moge", "points"].flatMap((name) => 
 /** Names of files with the depth of an image: depth itself, which is metric, comes first. */
 const viewNames: readonly string[] = [...namesOf("depth"), ...pointMaps];
 
+/** Whether a path is that of a point map. */
+export const isPointMap = (path: string): boolean => pointMaps.includes(baseName(path).toLowerCase());
+
 /** Whether a name is that of a file with the depth of an image. */
 export const isView = (name: string): boolean => viewNames.includes(name.toLowerCase());
 
@@ -110,9 +113,9 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
   const view = nearest("view", (name) => name === named[0]);
   const image = nearest("photo", (name) => partOf(name) === "image" || /^input\.(png|jpg)$/.test(name));
   if (view === undefined) throw missing("sam3d", `no point map in ${place}`, "pointmap.npy, or depth.*");
-  const isPointMap = pointMaps.includes(baseName(view).toLowerCase());
+  const isPoints = isPointMap(view);
   const cameraFile = nearest("camera", (name) => partOf(name) === "camera");
-  if (isPointMap && extension(view) === "npy") {
+  if (isPoints && extension(view) === "npy") {
     const { depth, camera } = viewOfPointMap(view, await bytesOf(view));
     take("depth.npy", view, depth);
     if (cameraFile === undefined) take("camera.json", view, camera);
@@ -153,7 +156,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
     const initial = pose === undefined ? null : placement(pose, await bytesOf(pose), isZUp);
     if (initial !== null) take(`${owner}/initial.json`, pose, initial);
   }
-  return { files: made, depthKind: isPointMap ? "scale-invariant" : "metric", sources };
+  return { files: made, depthKind: isPoints ? "scale-invariant" : "metric", sources };
 }
 
 function missing(argument: string, found: string, expected: string): Sim3AlignError {

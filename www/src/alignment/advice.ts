@@ -1,25 +1,22 @@
 /** The cause of a result that is not right, and what helps: what the package warns of, and what the page measures. An unknown cause is not guessed. */
 import type { DepthKind, Metrics, WarningCode } from "sim3align";
 import { unitText } from "sim3align/input/depth-kinds";
-import { otherSize, scaled } from "../input/camera-size.js";
+import { otherSize, scaled } from "../input/depth-view.js";
 import { type Evidence, evidenceOf } from "../pictures/evidence.js";
 import { type Inputs, withInverted } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
 import { SURE } from "../state/progress.js";
-import { isMetric } from "../state/raw-view.js";
 import type { Scene } from "../state/scene.js";
+import { isMetric } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
-import { centimetres, depth, percent, significant } from "../ui/format.js";
-import { alignSelected } from "./align.js";
-import { applyAlternative } from "./alternatives.js";
-import { exchanged, type Swap } from "./swap.js";
+import { centimetres, depth, percent, significant } from "../ui/texts.js";
+import { alignSelected, applyAlternative } from "./align.js";
 
 export type Cause =
   | "moved"
   | "mask"
   | "camera"
-  | "swap"
   | "size"
   | "mirrored"
   | "depth"
@@ -63,7 +60,6 @@ interface Findings extends Evidence {
   camera: Scene["camera"];
   /** By how much the image to which the intrinsics seem to belong is smaller; null if they seem to be those of this one. */
   cameraFactor: number | null;
-  swap: Swap | null;
 }
 
 interface Row {
@@ -173,14 +169,6 @@ const rows: readonly Row[] = [
     ],
   },
   {
-    cause: "swap",
-    codes: ["MESH_DOUBTFUL"],
-    test: ({ swap }) => swap !== null,
-    text: ({ swap }) =>
-      `The masks of ${swap?.names.join(" and ")} seem to be swapped: each mesh fits the other mask better (${swap?.confidences.map(percent).join(" and ")}).`,
-    remedies: ({ swap }) => (swap === null ? [] : [changed("Exchange the masks", exchanged(swap))]),
-  },
-  {
     cause: "size",
     codes: ["MESH_DOUBTFUL", "SCALE_CLAMPED"],
     test: ({ isSizeKnown, isByHand, confidence }) => isSizeKnown && !isByHand && confidence < DOUBT,
@@ -265,26 +253,26 @@ function has(...codes: readonly WarningCode[]) {
 }
 
 /** Each pose has metrics of its own. */
-const found = new WeakMap<Metrics, { swap: Swap | null; advice: Advice | null }>();
+const adviceByMetrics = new WeakMap<Metrics, Advice | null>();
 
 /** The advice on the present pose of an object, once its metrics are known. */
-export function adviceFor(scene: Scene, object: ObjectModel, swap: Swap | null): Advice | null {
+export function adviceFor(scene: Scene, object: ObjectModel): Advice | null {
   const metrics = object.metrics.value;
   if (metrics === null) return null;
-  const known = found.get(metrics);
-  if (known !== undefined && known.swap === swap) return known.advice;
-  const findings = findingsOf(scene, object, metrics, swap);
+  const known = adviceByMetrics.get(metrics);
+  if (known !== undefined) return known;
+  const findings = findingsOf(scene, object, metrics);
   const row = rows.find(({ test }) => test(findings));
   const { cause, codes = [], remedies = () => [] } = row ?? {};
   const advice =
     row === undefined || cause === undefined
       ? null
       : { cause, codes, text: row.text(findings), remedies: remedies(findings) };
-  found.set(metrics, { swap, advice });
+  adviceByMetrics.set(metrics, advice);
   return advice;
 }
 
-function findingsOf(scene: Scene, object: ObjectModel, metrics: Metrics, swap: Swap | null): Findings {
+function findingsOf(scene: Scene, object: ObjectModel, metrics: Metrics): Findings {
   const { alignment, confidence, knownScale, pose } = object;
   const { camera, cameraSource, depthUnit, objects, raw } = scene;
   const index = objects.indexOf(object);
@@ -298,6 +286,5 @@ function findingsOf(scene: Scene, object: ObjectModel, metrics: Metrics, swap: S
     confidence: confidence ?? 1,
     warnings: alignment.value?.warnings.map(({ code }) => code) ?? [],
     cameraFactor: cameraSource === null ? otherSize(camera, scene) : null,
-    swap: swap?.indices.includes(index) ? swap : null,
   };
 }

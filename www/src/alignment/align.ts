@@ -1,12 +1,12 @@
-/** Aligns objects and reports their progress. */
+/** Aligns objects, reports their progress, and shows the alternatives of a result. */
 import type { Progress, SceneObjectInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import type { AnyAlignment } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
-import type { ObjectModel } from "../state/object-model.js";
+import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
 import type { Pose, PoseSource } from "../state/pose.js";
+import { isResult } from "../state/pose.js";
+import type { Status } from "../state/running.js";
 import type { Scene } from "../state/scene.js";
-import type { Status } from "../state/status.js";
 import type { Workspace } from "../state/workspace.js";
 import { aligner, givenViewOf, inputOf, viewOf } from "./aligner.js";
 
@@ -213,4 +213,26 @@ function summary(objects: readonly ObjectModel[], isAborted: boolean, ms: number
   if (failed.length > 0) return { text: failed.join(" "), kind: "failed" };
   const what = objects.length > 1 ? `${objects.length} objects ` : "";
   return { text: `Aligned ${what}in ${(ms / 1000).toFixed(2)} s.`, kind: "done" };
+}
+
+/** Sets the pose to an alternative, or with −1 to the result. */
+export function applyAlternative({ place }: Workspace, object: ObjectModel, index: number): void {
+  const alignment = object.alignment.peek();
+  if (alignment === null) return;
+  const chosen = index < 0 ? alignment : object.precise?.alternatives[index];
+  if (chosen === undefined) return;
+  const transform = toSim3(chosen);
+  place(
+    object,
+    index < 0
+      ? { transform, source: "aligned", alignment }
+      : { transform, source: "alternative", alternative: index, alignment },
+  );
+}
+
+/** The index of the alternative that is shown: −1 is the result, null is another pose. */
+export function shownAlternative(object: ObjectModel): number | null {
+  const { source, alternative } = object.pose.value;
+  if (source === "alternative") return alternative ?? null;
+  return isResult(source) ? -1 : null;
 }

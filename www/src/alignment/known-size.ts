@@ -1,11 +1,10 @@
 /** Makes a length of an object known. */
 import { compose, toSim3 } from "sim3align/conventions";
 import type { Vector3 } from "sim3align/values/validation";
-import type { AnyAlignment, PreciseAlignment } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
-import type { ObjectModel } from "../state/object-model.js";
+import type { AnyAlignment, ObjectModel, PreciseAlignment } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
-import { isMetric } from "../state/raw-view.js";
+import { isMetric } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import { poseOf, progressOf, run } from "./align.js";
 import { aligner, inputOf } from "./aligner.js";

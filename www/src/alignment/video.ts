@@ -2,7 +2,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import type { Tracker, ViewInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import { videoOf } from "../input/video-frames.js";
 import { inCalibration } from "../state/calibration.js";
 import type { Inputs } from "../state/inputs.js";

@@ -1,4 +1,4 @@
-/** Small changes of a pose, as buttons, as keys and as commands. */
+/** Small changes of a pose, as buttons and as keys. */
 import type { Vector3 } from "sim3align/values/validation";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
@@ -67,19 +67,8 @@ export const nudgeGroups: readonly NudgeGroup[] = [
   },
 ];
 
-/** By the position of a nudge in its group: its key, while the handles of the group are shown, and how the palette shows it. */
-const stepKeys = [
-  ["ArrowLeft", "←"],
-  ["ArrowRight", "→"],
-  ["ArrowUp", "↑"],
-  ["ArrowDown", "↓"],
-  ["PageDown", "PgDn"],
-  ["PageUp", "PgUp"],
-] as const;
-
-/** The key of a group's handles, and that of a nudge. */
-export const keysOf = ({ mode }: NudgeGroup, at: number) =>
-  `${{ translate: "G", rotate: "R", scale: "S" }[mode]} ${stepKeys[at]?.[1]}`;
+/** The key of each nudge of a group, while the handles of the group are shown. */
+const stepKeys = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "PageDown", "PageUp"];
 
 /** Whether the pose of an object can be changed in this way now. */
 export const canNudge = ({ isRunning }: Workspace, object: ObjectModel, { mode }: NudgeGroup): boolean =>
@@ -89,7 +78,7 @@ export const canNudge = ({ isRunning }: Workspace, object: ObjectModel, { mode }
 export function nudgeByKey(workspace: Workspace, { key, repeat }: KeyboardEvent): void {
   const object = workspace.selected.peek();
   const group = nudgeGroups.find(({ mode }) => mode === workspace.gizmo.peek());
-  const change = group?.nudges[stepKeys.findIndex(([own]) => own === key)]?.[2];
+  const change = group?.nudges[stepKeys.indexOf(key)]?.[2];
   if (object === null || group === undefined || change === undefined || !canNudge(workspace, object, group)) return;
   workspace.nudge(object, change(object), repeat);
 }

@@ -1,28 +1,20 @@
-/** The commands with keys, of the page and of an embedded element. The palette and the help list them. */
+/** The commands with keys, of the page and of an embedded element. The help lists them. */
 
-import { alignAll, alignSelected, refine } from "../alignment/align.js";
-import { applyAlternative } from "../alignment/alternatives.js";
+import { alignAll, alignSelected, applyAlternative, refine } from "../alignment/align.js";
 import type { Workspace } from "../state/workspace.js";
 import { accept, decideOn, next } from "./decisions.js";
 import { nudgeByKey } from "./nudges.js";
 
 export interface Command {
   /** `KeyboardEvent.key`, after "Mod+" if it is pressed with Control or Command. */
-  key?: string;
+  key: string;
   /** The key as the help shows it. */
-  title?: string;
+  title: string;
   about: string;
   /** Whether it changes a pose or a decision, which a read-only element does not. */
   changes?: true;
-  /** Whether the key works in text fields, too. */
-  isGlobal?: boolean;
-  /** Whether the palette lists the command, because it can do something now; always, if it does not say. */
-  isOffered?(): boolean;
   act(workspace: Workspace): unknown;
 }
-
-/** For the palette itself, a second key of a command, and keys of what is listed by name. */
-export const isNever = () => false;
 
 const toggleHandles =
   (mode: "translate" | "rotate" | "scale") =>
@@ -71,12 +63,11 @@ export const commands: readonly Command[] = [
     title: "← → ↑ ↓ PgUp PgDn",
     about: "Move, rotate or scale in steps, with handles shown",
     act: () => {},
-    isOffered: isNever,
   },
   { key: "l", changes: true, title: "L", about: "Lock the scale", act: toggleScaleLock },
   { key: "Mod+z", changes: true, title: "Ctrl Z", about: "Undo", act: ({ undo }) => undo() },
   { key: "Mod+Z", changes: true, title: "Ctrl Shift Z", about: "Redo", act: ({ redo }) => redo() },
-  { key: "Mod+y", changes: true, title: "Ctrl Y", about: "Redo", act: ({ redo }) => redo(), isOffered: isNever },
+  { key: "Mod+y", changes: true, title: "Ctrl Y", about: "Redo", act: ({ redo }) => redo() },
   { key: "Enter", changes: true, title: "Enter", about: "Accept the pose", act: accept },
   {
     key: "Mod+Enter",
@@ -84,7 +75,6 @@ export const commands: readonly Command[] = [
     title: "Ctrl Enter",
     about: "Accept the pose, with the focus on any button",
     act: accept,
-    isOffered: isNever,
   },
   { key: "x", changes: true, title: "X", about: "Skip the object", act: decideOn("skipped") },
   { key: "i", changes: true, title: "I", about: "Mark the object as impossible", act: decideOn("impossible") },
@@ -114,7 +104,6 @@ export const commands: readonly Command[] = [
     title: "0 to 9",
     about: "The result (0) and its alternatives",
     act: () => {},
-    isOffered: isNever,
   },
 ];
 
@@ -148,7 +137,7 @@ function onKey(workspace: Workspace, known: readonly Command[], event: KeyboardE
   const listed = /^\d$/.test(key) ? "0" : /^(Arrow|Page)/.test(key) ? "ArrowLeft" : key;
   const command = known.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${listed}`);
   if (command?.changes && workspace.isReadonly.peek()) return;
-  if (isTyping(target) && command?.isGlobal !== true) return;
+  if (isTyping(target)) return;
   // Enter presses the button that has the focus; the 3D view has no use for it.
   const isOfPage = target === document.body || target instanceof HTMLCanvasElement;
   if (key === "Enter" && !isMod && !isOfPage) return;

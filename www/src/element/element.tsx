@@ -106,8 +106,12 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
   }
 
   set scene(given: GivenInput | null) {
+    // What was set for a scene that never came is not for this one.
+    if (this.#given !== null) [this.#pendingPose, this.#pendingSession] = [null, null];
     this.#given = given;
     const call = ++this.#lastCall;
+    // What is set from now on is for this scene, which takes time to read.
+    this.#workspace.scene.value = null;
     if (given !== null) this.#open(given, () => call === this.#lastCall);
   }
 
@@ -233,3 +237,7 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
     this.#theme.value = isDark ? "dark" : "light";
   }
 }
+
+// On servers, where a page is rendered, there are no elements.
+const elements = globalThis.customElements as CustomElementRegistry | undefined;
+if (elements?.get("sim3-align") === undefined) elements?.define("sim3-align", Sim3AlignElement);

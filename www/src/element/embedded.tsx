@@ -1,5 +1,5 @@
 /** The content of an element: the views and panels of the page, without those for files. */
-import { HandPanel, OptionsPanel } from "../panels/later.js";
+import { HandPanel, OptionsPanel } from "../panels/lazy-panels.js";
 import { ObjectsPanel } from "../panels/objects-panel.js";
 import { ResultPanel } from "../panels/result-panel.js";
 import { RunBar } from "../panels/run-bar.js";

@@ -50,9 +50,9 @@ for (const type of events) {
   element.addEventListener(type, (event) => send(type, { detail: (event as CustomEvent).detail }));
 }
 
-/** Sets what the request contains. The scene is last: it takes what was set before. */
+/** Sets what the request contains. What follows the scene is for it. */
 function load(request: Request): void {
-  for (const name of ["readonly", "options", "session", "pose", "scene"] as const) {
+  for (const name of ["readonly", "options", "scene", "session", "pose"] as const) {
     if (name in request) Object.assign(element, { [name]: request[name] });
   }
 }

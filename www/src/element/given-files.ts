@@ -2,9 +2,9 @@
 
 import { extractArchives } from "../input/archives.js";
 import { fromFile } from "../input/files.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
-import { rolesOf } from "../intake/roles.js";
-import { scenesOfTyped } from "../intake/scenes.js";
+import { readInputs, sceneOf } from "../input/reading.js";
+import { rolesOf } from "../intake/file-roles.js";
+import { scenesOf } from "../intake/grouping.js";
 import { filesAt } from "../opening/case-url.js";
 import { isSession, type Packed, sessionParts, unpacked } from "../session/pack.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
@@ -31,10 +31,7 @@ async function fromFiles(files: readonly NamedFile[]): Promise<Opened> {
   const extracted = await extractArchives(files);
   const session = extracted.find(isSession);
   const parts = session === undefined ? null : await sessionParts(extracted, session);
-  const inputs =
-    parts === null
-      ? (await scenesOfTyped(await rolesOf(extracted)))[0]
-      : (unpacked(parts.session, parts.files) ?? undefined);
+  const inputs = parts === null ? scenesOf(rolesOf(extracted))[0] : (unpacked(parts.session, parts.files) ?? undefined);
   if (inputs === undefined) throw new Error("The files contain no scene that this version can open.");
   const reading = await readInputs(inputs);
   const [problem] = reading.problems;

@@ -1,96 +1,71 @@
-/** Scenes that a host gives to the element: as arrays or encoded files in memory, as files, or by an address. */
-import type { EncodedBytes, PixelArray } from "sim3align";
+/** Scenes that a host sets on the element: as arrays or encoded files in memory, as files, or by an address. */
+import type { EncodedBytes } from "sim3align";
 import type { MeshFromFile } from "sim3align/formats";
-import { cameraOf, knownCamera, type ReadDepthMap, viewOf } from "../input/depth-view.js";
-import { atSize } from "../input/masks.js";
+import { DEFAULT_SCALE } from "sim3align/input/depth";
+import type { CoreView } from "sim3align/modules/core-input";
+import { fileReaders } from "sim3align/modules/readers";
+import { readScene } from "sim3align/scene/read-scene";
+import { viewOf } from "../input/depth-view.js";
 import { photoFrom } from "../input/photo.js";
-import { type ReadObject, sceneOf } from "../input/read-scene.js";
-import { readDepth, readMask, readMesh } from "../input/reader.js";
-
+import { readMesh } from "../input/reader.js";
+import { type ReadObject, sceneOf } from "../input/reading.js";
 import { type Inputs, noInputs } from "../state/inputs.js";
 import type { Opened } from "./given-files.js";
-import type { GivenInput, GivenObject, GivenScene } from "./sim3-align.js";
+import type { GivenInput, GivenScene } from "./sim3-align.js";
 
-/** Reads what a host gives. What files and addresses need is loaded with the first of them. */
+/** Reads a scene. What files and addresses need is loaded with the first of them. */
 export async function readGiven(given: GivenInput): Promise<Opened> {
   const isFiles = typeof given === "string" || given instanceof Blob || Array.isArray(given);
   return isFiles ? (await import("./given-files.js")).readFiles(given) : fromMemory(given as GivenScene);
 }
 
-/** A scene in memory, read as files are. */
-async function fromMemory(given: GivenScene): Promise<Opened> {
-  const read = await depthOf(given);
-  const { width, height, unit: depthUnit } = read;
-  const { camera: stated, image } = given;
+/** A scene in memory, read as `alignScene` reads it. */
+async function fromMemory({ name = "Scene", image, ...given }: GivenScene): Promise<Opened> {
+  // Pixels state no focal length, and a photo is shown at the size of the depth map.
+  const hint = image instanceof Blob && given.camera === undefined ? { image } : {};
+  const read = await readScene({ ...given, ...hint } as Parameters<typeof readScene>[0], fileReaders);
+  const { view, notes } = read;
+  const [width, height] = read.size;
+  const { camera, focalDeviation = 0, depthKind = "metric" } = view;
+  const data = depthValues(view);
+  if (camera === undefined || width * height !== data.length) {
+    throw new Error(`depth has ${data.length} values; expected width × height, ${width} × ${height}.`);
+  }
   const [photo, objects] = await Promise.all([
     image === undefined ? null : photoFrom(image, { width, height }),
-    Promise.all(given.objects.map((object) => objectOf(object, read))),
+    Promise.all(read.objects.map(async ({ mask, mesh }) => ({ mask, ...(await meshOf(mesh)), truth: null }))),
   ]);
-  const bytes = image instanceof Blob ? await bytesOf(image) : null;
-  const found =
-    stated === undefined
-      ? await cameraOf(read, photo && bytes && { ...photo, bytes })
-      : await knownCamera(stated as object as Readonly<Record<string, unknown>>, { width, height });
-  const { depthM, raw } = viewOf(read, found);
-  const names = given.objects.map(({ name }, i) => name ?? (objects.length === 1 ? "Object" : `Object ${i + 1}`));
+  const names = read.objects.map(({ name }, i) => name ?? (objects.length === 1 ? "Object" : `Object ${i + 1}`));
   const inputs: Inputs = {
     ...noInputs,
-    name: given.name ?? "Scene",
-    objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null, isSure: true })),
+    name,
+    objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null })),
   };
+  const cameraSource = notes.cameraSource ?? null;
+  const warnings = notes.warnings.map(({ message }) => message);
+  const calibrated = { camera, source: cameraSource, focalUncertainty: focalDeviation, warnings };
+  const { depthM, raw } = viewOf({ data, width, height, depthKind }, calibrated);
   const scene = sceneOf(inputs, {
-    ...{ depth: { data: depthM, width, height }, raw, depthUnit, photo, objects },
-    ...{ camera: found.camera, cameraSource: found.source, warnings: found.warnings },
+    ...{ depth: { data: depthM, width, height }, raw, depthUnit: notes.depthUnit ?? null, photo, objects },
+    ...{ camera, cameraSource, warnings },
   });
   if (scene === null) throw new Error("A scene has at least one object.");
   return { scene, inputs, session: null };
 }
 
-async function depthOf({
-  depth,
-  width = 0,
-  height = 0,
-  depthScale,
-  depthKind = "metric",
-}: GivenScene): Promise<ReadDepthMap> {
-  if (!(depth instanceof Float32Array || depth instanceof Uint16Array)) {
-    return { ...(await readDepth(depth, { depthScale, depthKind })), depthKind };
-  }
-  if (width * height !== depth.length) {
-    throw new Error(`depth has ${depth.length} values; expected width × height, ${width} × ${height}.`);
-  }
-  const isMetric = depthKind === "metric";
-  const isInteger = depth instanceof Uint16Array;
-  const scale = depthScale ?? (isMetric && isInteger ? 0.001 : 1);
-  const data = Float32Array.from(depth, (z) => z * scale);
-  const assumed = isInteger ? "16-bit integers" : "float values";
-  const unit = isMetric
-    ? { metres: scale, source: depthScale === undefined ? assumed : "depthScale", isAssumed: depthScale === undefined }
-    : { metres: null, source: depthKind, isAssumed: false };
-  return { data, width, height, depthKind, unit };
+/** The values of a depth map: metres, or the values themselves where they have no unit. */
+function depthValues({ depth = new Float32Array(), depthScale }: CoreView): Float32Array {
+  const scale = Number(depthScale) || (depth instanceof Float32Array ? 1 : DEFAULT_SCALE);
+  return Float32Array.from(depth, (value) => value * scale);
 }
 
-async function objectOf(
-  { mask, mesh }: GivenObject,
-  { width, height }: Omit<PixelArray<unknown>, "data">,
-): Promise<ReadObject> {
-  const isPlain = ArrayBuffer.isView(mask) && mask.length === width * height;
-  const own = isPlain
-    ? { data: Uint8Array.from(mask), width, height }
-    : isPixels(mask)
-      ? mask
-      : await readMask(mask as EncodedBytes);
+async function meshOf(mesh: unknown): Promise<Pick<ReadObject, "mesh" | "glb">> {
   const isEncoded = mesh instanceof Uint8Array || mesh instanceof ArrayBuffer || mesh instanceof Blob;
-  const bytes = isEncoded ? await bytesOf(mesh) : null;
-  return {
-    mask: atSize(own, width, height, false),
-    mesh: bytes === null ? (mesh as MeshFromFile) : await readMesh(bytes),
-    glb: bytes !== null && new TextDecoder().decode(bytes.subarray(0, 4)) === "glTF" ? bytes : null,
-    truth: null,
-  };
+  if (!isEncoded) return { mesh: mesh as MeshFromFile, glb: null };
+  const bytes = await bytesOf(mesh);
+  const isGlb = new TextDecoder().decode(bytes.subarray(0, 4)) === "glTF";
+  return { mesh: await readMesh(bytes), glb: isGlb ? bytes : null };
 }
-
-const isPixels = (mask: object): mask is PixelArray<Uint8Array> => "data" in mask && "width" in mask;
 
 const bytesOf = async (source: EncodedBytes): Promise<Uint8Array> =>
   source instanceof Uint8Array ? source : new Uint8Array("arrayBuffer" in source ? await source.arrayBuffer() : source);

@@ -2,7 +2,7 @@
 import type { Sim3 } from "sim3align";
 import type { ObjectModel } from "../state/object-model.js";
 import { type ObjectWork, stateOf } from "../state/object-work.js";
-import { isMetric } from "../state/raw-view.js";
+import { isMetric } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import type { ElementSession as HostSession, ObjectResult } from "./sim3-align.js";
 

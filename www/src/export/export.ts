@@ -3,8 +3,8 @@ import { extension } from "../input/files.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { permalink } from "../state/permalink.js";
-import { isMetric } from "../state/raw-view.js";
 import type { Scene } from "../state/scene.js";
+import { isMetric } from "../state/scene.js";
 import { imageSnapshot } from "../views/image-view.js";
 
 const { announce, list, scene, space } = page;

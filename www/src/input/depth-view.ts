@@ -1,13 +1,11 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
-import { depthOfRays } from "sim3align/camera/ray-distance";
-import { type DepthImage, type ReadDepthOptions, readCamera, readExif } from "sim3align/formats";
-import { foundCamera } from "sim3align/input/lens";
+import { depthOfRays, doubtOfSize } from "sim3align/camera/pinhole";
+import type { DepthImage, ReadDepthOptions } from "sim3align/formats";
 import type { ImageSize } from "sim3align/values/pixels";
 import { corrected, provisional } from "../state/calibration.js";
-import type { NamedFile } from "../state/inputs.js";
-import type { RawView } from "../state/raw-view.js";
-import type { Scene } from "../state/scene.js";
+import type { CameraSource, NamedFile } from "../state/inputs.js";
+import type { RawView, Scene } from "../state/scene.js";
 import { readDepth } from "./reader.js";
 
 /** A depth map that has been read. */
@@ -40,24 +38,6 @@ export interface ReadCamera {
   warnings: readonly string[];
 }
 
-/** The camera of a depth map for which none was given. */
-export async function cameraOf(
-  { width, height, camera }: ImageSize & { camera?: DepthImage["camera"] | undefined },
-  photo: { bytes: Uint8Array; width: number; height: number } | null,
-): Promise<ReadCamera> {
-  const exif = photo === null ? undefined : await readExif(photo.bytes).catch(() => undefined);
-  const hints = { inDepth: camera, photo: exif && photo ? { exif, size: photo } : undefined };
-  const found = foundCamera({ width, height }, hints);
-  const warnings = found.warnings.map(({ message }) => message);
-  return { camera: found.camera, source: found.source, focalUncertainty: found.focalDeviation ?? 0, warnings };
-}
-
-/** Intrinsics of a file, an entry of a dataset or a field of view, which are known. */
-export async function knownCamera(...given: Parameters<typeof readCamera>): Promise<ReadCamera> {
-  const { fx, fy, cx, cy, warnings } = await readCamera(...given);
-  return { camera: { fx, fy, cx, cy }, source: null, focalUncertainty: 0, warnings };
-}
-
 /** The depth map as it is shown until it is calibrated, and what there is to calibrate. */
 export function viewOf(
   { data, width, height, depthKind: kind }: Pick<ReadDepthMap, "data" | "width" | "height" | "depthKind">,
@@ -71,3 +51,22 @@ export function viewOf(
   const { camera, focalUncertainty, warnings } = read;
   return { depthM, raw: { depth, width, height, depthKind, camera, focalUncertainty, warnings } };
 }
+
+/** How much larger one image of a camera usually is than another one. */
+const usual = [1 / 4, 1 / 3, 3 / 8, 1 / 2, 2 / 3, 3 / 4, 4 / 3, 3 / 2, 2, 8 / 3, 3, 4];
+/** How far principal points are from the middle, relative. */
+const TOLERANCE = 0.08;
+
+/** The factor that brings the principal point to the middle, if intrinsics seem to be those of an image of another size. */
+export function otherSize(camera: Scene["camera"], size: ImageSize): number | null {
+  if (doubtOfSize(camera, size) === undefined) return null;
+  const factors = [size.width / (2 * camera.cx + 1), size.height / (2 * camera.cy + 1)];
+  const isNear = (factor: number) => factors.every((one) => Math.abs(one / factor - 1) < TOLERANCE);
+  return usual.find(isNear) ?? null;
+}
+
+/** Intrinsics scaled by a factor. Pixel centres are at integers. */
+export const scaled = ({ fx, fy, cx, cy }: Scene["camera"], factor: number): CameraSource => ({
+  ...{ kind: "numbers", fx: factor * fx, fy: factor * fy },
+  ...{ cx: factor * (cx + 0.5) - 0.5, cy: factor * (cy + 0.5) - 0.5 },
+});

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import type { Inputs, Typed } from "../state/inputs.js";
 import type { Problem } from "./problems.js";
-import type { Reading, ReadingProgress } from "./read-scene.js";
+import type { Reading, ReadingProgress } from "./reading.js";
 
 export interface Draft {
   /** The scenes of the drop, of which one is looked at. */

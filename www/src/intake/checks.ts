@@ -1,26 +1,15 @@
-/** What is missing, contradictory or implausible in the inputs of a scene. */
-import type { PixelArray } from "sim3align";
-import { doubtOfSize } from "sim3align/camera/pinhole";
-import { otherSize, scaled } from "../input/camera-size.js";
+/** What is missing or contradictory in the inputs of a scene. What is only implausible, the alignment warns of. */
+
+import type { ImageSize } from "sim3align/values/pixels";
 import { baseName, folderOf } from "../input/files.js";
 import { doubt, error, type Problem, type Remedy, withoutObject } from "../input/problems.js";
-import type { Reading, ReadObject } from "../input/read-scene.js";
-import { depthRange } from "../pictures/colours.js";
+import type { Reading, ReadObject } from "../input/reading.js";
 import { type Inputs, withInverted } from "../state/inputs.js";
-import { visibleExtent } from "../state/visible-extent.js";
-import { isForeign, isNamedPhoto } from "./roles.js";
+import { isNamedPhoto, isUnassigned } from "./file-roles.js";
 
 /** A typical vertical field of view of phones and laptops. */
 export const ASSUMED_FOV_DEG = 50;
 
-/** Median depths of scenes, metres. */
-const PLAUSIBLE_DEPTH_M = [0.02, 80] as const;
-/** Sizes of objects, metres. */
-const PLAUSIBLE_SIZE_M = [0.002, 100] as const;
-/** Vertical fields of view of cameras, degrees. */
-const PLAUSIBLE_FOV_DEG = [4, 140] as const;
-/** A mask with a larger share of the image shows no single object. */
-const MOST_OF_IMAGE = 0.97;
 /** A mask with a larger share of the image's border is mostly that of the background. */
 const MOST_OF_BORDER = 0.8;
 /** Ratios of width and height that differ more show different fields of view. */
@@ -28,19 +17,16 @@ const ASPECT_TOLERANCE = 0.02;
 
 /** All problems: those of the readers, and those that only the whole shows. */
 export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
-  const depth = ofDepth(inputs, reading);
+  const depth = ofDepth(reading);
   // What a wrong depth map does to the objects is not their fault.
   const seen = depth.length === 0 ? reading : { ...reading, depth: null };
   return [
-    ...reading.problems.map((one) =>
-      one.field === "camera" && one.code === "SIZE_MISMATCH" ? stretched(one, reading) : one,
-    ),
-    ...notUsed(inputs),
+    ...reading.problems,
+    ...unassigned(inputs),
     ...several(inputs),
     ...missing(inputs),
     ...guessed(inputs, reading),
     ...depth,
-    ...ofCamera(reading),
     ...ofPhoto(reading),
     ...reading.objects.flatMap((object, i) => ofObject(inputs, seen, object, i)),
   ];
@@ -60,17 +46,17 @@ function missing({ depth, objects }: Inputs): Problem[] {
   ];
 }
 
-/** Files that were meant as an input, but cannot be one. */
-function notUsed({ files }: Inputs): Problem[] {
-  const foreign = files.filter(isForeign);
-  if (foreign.length === 0) return [];
-  const names = foreign.slice(0, 3).map(({ file }) => baseName(file.path));
-  const more = foreign.length > names.length ? `, and ${foreign.length - names.length} more` : "";
+/** Files of which nothing says what they are. */
+function unassigned({ files }: Inputs): Problem[] {
+  const unknown = files.filter(isUnassigned);
+  if (unknown.length === 0) return [];
+  const names = unknown.slice(0, 3).map(({ file }) => baseName(file.path));
+  const more = unknown.length > names.length ? `, and ${unknown.length - names.length} more` : "";
   const leaveOut: Remedy = {
     title: "Leave out",
-    apply: (inputs) => ({ ...inputs, files: inputs.files.filter((one) => !isForeign(one)) }),
+    apply: (inputs) => ({ ...inputs, files: inputs.files.filter((one) => !isUnassigned(one)) }),
   };
-  const what = `${names.join(", ")}${more}: not used. Save photos as JPEG or PNG, masks as PNG, and meshes as GLB, OBJ, PLY or STL.`;
+  const what = `${names.join(", ")}${more}: not used. Choose below what each file is.`;
   return [doubt("files", what, [leaveOut])];
 }
 
@@ -88,14 +74,6 @@ function several({ files, camera, photo }: Inputs): Problem[] {
     const names = own === null ? [] : files.filter(isRival).map(({ file }) => baseName(file.path));
     return names.length === 0 ? [] : [doubt(role, `${baseName(own?.path ?? "")} is used, ${names.join(", ")} not.`)];
   });
-}
-
-/** The camera of an image of another shape, whose intrinsics cannot be scaled. */
-function stretched(problem: Problem, { cameraSize: from, size: to }: Reading): Problem {
-  if (from === null || to === null) return problem;
-  const factors = [to.width / from.width, to.height / from.height].map((factor) => Number(factor.toPrecision(3)));
-  const message = `The camera is that of an image of ${from.width} × ${from.height}, and this one is ${to.width} × ${to.height}: cropped or stretched (${factors[0]} in x, ${factors[1]} in y), so its intrinsics cannot be scaled. Choose the camera of this image.`;
-  return { ...problem, message };
 }
 
 /** What was taken for granted, and decides about the sizes. */
@@ -118,66 +96,19 @@ function guessed({ depthKind: chosen }: Inputs, { cameraSource, depth, depthKind
   ];
 }
 
-const useScale = (title: string, depthScale: number): Remedy => ({
-  title,
-  apply: (inputs) => ({ ...inputs, depthScale }),
-});
-
-function ofDepth({ depthScale }: Inputs, { depth, raw }: Reading): Problem[] {
+function ofDepth({ depth, raw }: Reading): Problem[] {
   if (depth === null) return [];
-  const range = depthRange(depth.data);
   if (raw !== null && raw.depthKind !== "metric") {
-    const isFlat = range === null || raw.depth.every((d) => d === raw.depth[0] || !Number.isFinite(d));
+    const isFlat = raw.depth.every((d) => d === raw.depth[0] || !Number.isFinite(d));
     return isFlat ? [error("depth", "The depth map has no relief: all of its values are equal.")] : [];
   }
-  if (range === null) return [error("depth", "The depth map has no reading: every pixel is 0 or no number.")];
-  const { medianM } = range;
-  const [nearest, farthest] = PLAUSIBLE_DEPTH_M;
-  // A unit that was chosen is believed.
-  if (depthScale !== null || (medianM >= nearest && medianM <= farthest)) return [];
-  const shown = Number(medianM.toPrecision(3));
-  const keep = useScale("Keep metres", 1);
-  return medianM > farthest
-    ? [
-        error("depth", `Half of the scene is beyond ${shown} m: the unit is probably millimetres.`, [
-          useScale("Use millimetres", 0.001),
-          keep,
-        ]),
-      ]
-    : [
-        error("depth", `Half of the scene is nearer than ${shown} m: the unit is probably wrong.`, [
-          useScale("Use metres", 1),
-        ]),
-      ];
+  const hasReading = depth.data.some((z) => z > 0 && Number.isFinite(z));
+  return hasReading ? [] : [error("depth", "The depth map has no reading: every pixel is 0 or no number.")];
 }
 
 /** The vertical field of view, degrees. */
 export const fovYDegOf = ({ fy }: { fy: number }, { height }: { height: number }): number =>
   (360 / Math.PI) * Math.atan(height / (2 * fy));
-
-function ofCamera({ camera, cameraSize, depth }: Reading): Problem[] {
-  if (camera === null || depth === null) return [];
-  const fovDeg = fovYDegOf(camera, depth);
-  const [narrow, wide] = PLAUSIBLE_FOV_DEG;
-  const ofOtherSize = cameraSize === null ? doubtOfSize(camera, depth) : undefined;
-  const factor = otherSize(camera, depth);
-  const scale = (by: number): Remedy => ({
-    title: `Scale by ${Number(by.toFixed(2))}`,
-    apply: (inputs) => ({ ...inputs, camera: scaled(camera, by) }),
-  });
-  const rescaled = factor === null ? [] : [scale(factor)];
-  return [
-    ...(fovDeg < narrow || fovDeg > wide
-      ? [
-          doubt(
-            "camera",
-            `The vertical field of view is ${fovDeg.toFixed(1)}°. Are fx and fy in pixels of the depth map?`,
-          ),
-        ]
-      : []),
-    ...(ofOtherSize === undefined ? [] : [doubt("camera", ofOtherSize, rescaled)]),
-  ];
-}
 
 function ofPhoto({ photo, depth }: Reading): Problem[] {
   if (photo === null || depth === null) return [];
@@ -188,62 +119,35 @@ function ofPhoto({ photo, depth }: Reading): Problem[] {
   return [error("photo", `The photo is ${sizes}: they do not show the same view.`, [leaveOut])];
 }
 
-function ofObject(
-  inputs: Inputs,
-  { depth, camera, depthKind }: Reading,
-  { mask, mesh }: ReadObject,
-  i: number,
-): Problem[] {
+function ofObject(inputs: Inputs, { depth }: Reading, { mask }: ReadObject, i: number): Problem[] {
   const files = inputs.objects[i];
   if (files === undefined) return [];
   const leaveOut: Remedy = { title: "Leave it out", apply: withoutObject(i) };
   const several = inputs.objects.length > 1;
+  const remedies = several ? [leaveOut] : [];
   const problems: Problem[] = [];
-  if (files.mask === null && several) problems.push(error("mask", `No mask for ${files.name}.`, [leaveOut], i));
-  if (files.mesh === null && several) problems.push(error("mesh", `No mesh for ${files.name}.`, [leaveOut], i));
-  if (files.mesh !== null && files.mask !== null && !files.isSure) {
-    const names = `${baseName(files.mask.file.path)} and ${baseName(files.mesh.file.path)}`;
-    const right: Remedy = {
-      title: "They do",
-      apply: (now) => ({ ...now, objects: now.objects.map((one, k) => (k === i ? { ...one, isSure: true } : one)) }),
-    };
-    problems.push(doubt("mesh", `Do ${names} belong together? Their names do not say so.`, [right], i));
-  }
+  if (files.mask === null && several) problems.push(error("mask", `No mask for ${files.name}.`, remedies, i));
+  if (files.mesh === null && several) problems.push(error("mesh", `No mesh for ${files.name}.`, remedies, i));
   if (mask === null || depth === null) return problems;
-  const { count, readings, border } = counted(mask, depth);
-  const invert: Remedy = { title: "Invert it", apply: withInverted(i) };
-  if (count === 0)
-    return [...problems, error("mask", "The mask is empty: no pixel is marked.", several ? [leaveOut] : [], i)];
-  if (count > MOST_OF_IMAGE * mask.length) {
-    const all = "The mask covers the whole image. It should mark the object only.";
-    return [...problems, error("mask", all, [invert], i)];
-  }
-  if (border > MOST_OF_BORDER) {
+  if (!mask.some((inside) => inside !== 0)) {
+    problems.push(error("mask", "The mask is empty: no pixel is marked.", remedies, i));
+  } else if (borderShare(mask, depth) > MOST_OF_BORDER) {
     const around = "The mask covers the border of the image: it seems to mark the background instead of the object.";
-    problems.push(doubt("mask", around, [invert], i));
-  }
-  if (readings === 0) {
-    return [...problems, error("mask", "No pixel of the mask has a depth reading.", several ? [leaveOut] : [], i)];
-  }
-  if (camera === null || mesh === null || depthKind !== "metric") return problems;
-  const { sizeM } = visibleExtent(depth, mask, camera);
-  const [smallest, largest] = PLAUSIBLE_SIZE_M;
-  if (sizeM < smallest || sizeM > largest) {
-    const size = sizeM < 1 ? `${Number((1000 * sizeM).toPrecision(2))} mm` : `${Number(sizeM.toPrecision(2))} m`;
-    problems.push(doubt("depth", `${files.name} would be ${size} in size. Is the unit of the depth map right?`, [], i));
+    problems.push(doubt("mask", around, [{ title: "Invert it", apply: withInverted(i) }], i));
+  } else if (!mask.some((inside, pixel) => inside !== 0 && (depth.data[pixel] as number) > 0)) {
+    problems.push(error("mask", "No pixel of the mask has a depth reading.", remedies, i));
   }
   return problems;
 }
 
-/** The pixels of a mask, those with a depth reading, and the share of the image's border that they cover. */
-function counted(mask: Uint8Array, { data, width, height }: PixelArray<Float32Array>) {
-  let [count, readings, atBorder] = [0, 0, 0];
-  for (let pixel = 0; pixel < mask.length; pixel++) {
-    if (mask[pixel] === 0) continue;
-    const [x, y] = [pixel % width, Math.floor(pixel / width)];
-    count++;
-    if ((data[pixel] as number) > 0) readings++;
-    if (x === 0 || y === 0 || x === width - 1 || y === height - 1) atBorder++;
+/** The share of the image's border that a mask covers. */
+function borderShare(mask: Uint8Array, { width, height }: ImageSize): number {
+  let count = 0;
+  for (let x = 0; x < width; x++) {
+    for (const y of [0, height - 1]) if (mask[y * width + x] !== 0) count++;
   }
-  return { count, readings, border: atBorder / (2 * (width + height) - 4) };
+  for (let y = 1; y < height - 1; y++) {
+    for (const x of [0, width - 1]) if (mask[y * width + x] !== 0) count++;
+  }
+  return count / (2 * (width + height) - 4);
 }

@@ -2,80 +2,34 @@
 
 import { alignAll } from "../alignment/align.js";
 import { openVideo, trackAll } from "../alignment/video.js";
-import { extractArchives } from "../input/archives.js";
 import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../input/draft.js";
-import { error, errorOf, type Problem } from "../input/problems.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import type { Problem } from "../input/problems.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import { asListed, isVideo } from "../input/video-frames.js";
-import { isSession } from "../session/pack.js";
-import { openProject } from "../session/project.js";
 import { type Inputs, type NamedFile, noInputs, type Role, type Typed, withId } from "../state/inputs.js";
 import { page } from "../state/page.js";
+import { filesOf, ownName, rebuilt, replaced } from "./changed-files.js";
 import { problemsOf } from "./checks.js";
-import { canReplace, replaced } from "./replace.js";
-import { rolesOf } from "./roles.js";
-import { fromSam3d } from "./sam3d.js";
-import { scenesOfTyped } from "./scenes.js";
+import { rolesOf } from "./file-roles.js";
 
 const { announce, enlist, inputs, scene, show, video } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
 
-/** Whether a draft waits for its depth map. */
-const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
-
-/** Proposes files as one or several scenes. A draft that is open takes files without a depth map, and the one that it lacks. */
-export async function propose(files: readonly NamedFile[]): Promise<void> {
-  const change = ++lastChange;
-  let typed: Typed[];
-  let made: Awaited<ReturnType<typeof fromSam3d>> = null;
-  try {
-    const extracted = await extractArchives(files);
-    if (change !== lastChange) return;
-    if (extracted.some(isSession)) {
-      if (!(await openProject(extracted))) {
-        return refuse(error("files", "The project was saved by another version of this page."));
-      }
-      draft.value = null;
-      return;
-    }
-    made = await fromSam3d(extracted);
-    const left = made?.left.map((file): Typed => ({ file, role: "unused" })) ?? [];
-    typed = [...(await rolesOf(made?.files ?? extracted)), ...left];
-  } catch (cause) {
-    if (change === lastChange) refuse(errorOf("files", cause));
-    return;
-  }
-  if (change !== lastChange) return;
-  if (typed.every(({ role }) => role === "unused" || role === "resource")) {
-    const names = typed.slice(0, 3).map(({ file }) => file.path);
-    return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
-  }
-  const open = draft.peek();
-  const depths = typed.filter(({ role }) => role === "depth").length;
-  if (open !== null && (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open))))) return add(open, typed);
-  const scenes = await scenesOfTyped(typed);
-  const shown = inputs.peek();
-  if (shown.sample === null && shown.depth !== null && canReplace(typed)) {
-    return set({ scenes, index: 0, isVideo: false, isEdit: false, forShown: typed });
-  }
-  // Point maps of large images are smaller than the images.
-  const more = made === null ? {} : { depthKind: made.depthKind, resizeMasks: true };
-  await proposeScenes(scenes.map((one) => ({ ...one, ...more })));
-}
-
-/** Proposes scenes, the first of which is looked at. */
-export function proposeScenes(scenes: readonly Inputs[]): Promise<void> {
-  return set({ scenes, index: 0, isVideo: isVideo(scenes), isEdit: false });
+/** Proposes scenes, one of which is looked at. */
+export function proposeScenes(scenes: readonly Inputs[], index = 0): Promise<void> {
+  return set({ scenes, index, isVideo: isVideo(scenes), isEdit: false });
 }
 
 /** Puts the files of the draft into the scene that is shown, in place of those that they name. */
 export async function putIntoShown(): Promise<void> {
   const typed = draft.peek()?.forShown;
+  if (typed === undefined) return;
   // A frame of a video with other files is a scene of its own.
   const shown = { ...inputs.peek(), ...(video.peek() !== null && { id: "" }) };
-  if (typed !== undefined) await edit(await replaced({ ...shown, files: filesOf(shown) }, typed));
+  const before = { ...shown, files: filesOf(shown) };
+  await edit(rebuilt(before, replaced(before.files, typed)));
 }
 
 /** Takes the scenes as the frames of one video, or as scenes of their own. */
@@ -138,16 +92,9 @@ export async function choose(role: Exclude<Role, "unused">, files: readonly Name
     const own = role === "depth" ? { ...named, depthKind: null } : named;
     return change(() => ({ ...own, [role]: role === "camera" ? camera : file }), true);
   }
-  const known = await rolesOf(files);
-  const typed = known.map((one) => ({ file: one.file, role: fits(one.role, role) ? one.role : role }));
-  const replaced: readonly Role[] =
-    role === "mask" ? ["mask", "labels", "annotations", "truth"] : ["mesh", "resource", "truth"];
-  await rebuild([...inputs.files.filter((one) => !replaced.includes(one.role)), ...typed]);
-}
-
-/** Whether the role that a name suggests is one that the field takes. */
-function fits(role: Role, field: Role): boolean {
-  return role === field || (field === "mask" ? role === "labels" || role === "annotations" : role === "resource");
+  const typed = rolesOf(files).map((one) => (one.role === "resource" ? one : { file: one.file, role }));
+  const others: readonly Role[] = role === "mask" ? ["mask", "truth"] : ["mesh", "resource", "truth"];
+  await rebuild([...inputs.files.filter((one) => !others.includes(one.role)), ...typed]);
 }
 
 /** Gives a file another role. */
@@ -170,7 +117,10 @@ export async function accept(): Promise<void> {
   if (open.isVideo) {
     const listed = asListed(open.scenes);
     // Tracking starts with the first frame, whichever is looked at.
-    if (!(await openVideo(listed))) return announce("The first frame could not be read.", "failed");
+    if (!(await openVideo(listed))) {
+      draft.value = draft.peek() ?? open;
+      return announce("The first frame could not be read.", "failed");
+    }
     enlist([listed]);
     await trackAll();
     return;
@@ -188,28 +138,13 @@ export function dismiss(): void {
   announce("Nothing was changed.");
 }
 
-async function add(open: Draft, typed: readonly Typed[]): Promise<void> {
-  const single: readonly Role[] = ["photo", "camera"];
-  const isReplaced = (one: Typed) => single.includes(one.role) && typed.some(({ role }) => role === one.role);
-  await rebuild([...draftInputs(open).files.filter((one) => !isReplaced(one)), ...typed]);
-}
-
-/** Makes the scene anew from its files. What was entered stays. */
-async function rebuild(files: readonly Typed[]): Promise<void> {
+/** Makes the scene of the draft anew from its files. */
+export async function rebuild(files: readonly Typed[]): Promise<void> {
   const open = draft.peek();
-  if (open === null) return;
-  const before = draftInputs(open);
-  const [after] = await scenesOfTyped(files);
-  if (after === undefined) return;
-  const { depthScale, depthKind, resizeMasks } = before;
-  const camera = before.camera?.kind === "file" ? after.camera : (after.camera ?? before.camera);
-  await change(() => ({ ...after, depthScale, depthKind, resizeMasks, camera, ...ownName(before) }), true);
+  if (open !== null) await change(() => rebuilt(draftInputs(open), files), true);
 }
 
-/** A sample with other files is no sample. */
-const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : "Own files" });
-
-async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens = true): Promise<void> {
+export async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens = true): Promise<void> {
   const change = ++lastChange;
   let progress = { done: 0, total: 0 };
   draft.value = { ...next, reading: null, problems: [], progress };
@@ -231,7 +166,7 @@ const hasWork = () =>
   scene.peek()?.sample !== null && scene.peek()?.objects.some(({ pose }) => pose.peek().source === "hand") === true;
 
 /** Shows what is wrong with the files as a whole. */
-function refuse(problem: Problem): void {
+export function refuse(problem: Problem): void {
   const open = draft.peek();
   const empty = {
     scenes: [{ ...noInputs, name: "New scene" }],
@@ -243,20 +178,4 @@ function refuse(problem: Problem): void {
   };
   draft.value = { ...(open ?? empty), problems: [problem] };
   announce(problem.message, "failed");
-}
-
-/** The files of inputs with their roles, also of a sample. */
-function filesOf(inputs: Inputs): Typed[] {
-  if (inputs.files.length > 0) return [...inputs.files];
-  const typed: (Typed | null)[] = [
-    inputs.depth && { file: inputs.depth, role: "depth" },
-    inputs.photo && { file: inputs.photo, role: "photo" },
-    inputs.camera?.kind === "file" ? { file: inputs.camera.file, role: "camera" } : null,
-    ...inputs.objects.flatMap(({ mask, mesh, truth }): (Typed | null)[] => [
-      mask && { file: mask.file, role: "mask" },
-      mesh && { file: mesh.file, role: "mesh" },
-      truth && { file: truth.file, role: "truth" },
-    ]),
-  ];
-  return typed.filter((one) => one !== null);
 }

@@ -1,9 +1,8 @@
 /** Masks that are marked on the photo of a draft. */
 import { useMemo } from "preact/hooks";
 import { type Draft, draftInputs, marked } from "../input/draft.js";
-import { colourOf } from "../input/read-scene.js";
-import { depthFile, maskFile } from "../masking/mask-file.js";
-import { seenBy } from "../masking/photo-model.js";
+import { colourOf } from "../input/reading.js";
+import { maskFile } from "../masking/mask-file.js";
 import type { Mark } from "../masking/strokes.js";
 import type { Inputs, NamedFile, ObjectFiles } from "../state/inputs.js";
 import { lazy } from "../ui/lazy.js";
@@ -41,7 +40,6 @@ export function Marking({ open, ground }: { open: Draft; ground: Uint8ClampedArr
   if (i === null || view === null || shown === null || size === null) return null;
   const inputs = draftInputs(open);
   const { name, mask } = inputs.objects[i] ?? { name: "Object", mask: null };
-  const { photo } = inputs;
   const close = () => {
     marked.value = null;
   };
@@ -51,7 +49,6 @@ export function Marking({ open, ground }: { open: Draft; ground: Uint8ClampedArr
       colour={colourOf(i)}
       before={reading?.objects[i]?.mask ?? null}
       marks={(mask && marksOf.get(mask.file)) ?? []}
-      model={photo === null ? undefined : globalThis.sim3alignPhotoModel}
       onCancel={() => {
         close();
         if (open.isCorrection) dismiss();
@@ -63,24 +60,6 @@ export function Marking({ open, ground }: { open: Draft; ground: Uint8ClampedArr
         await change(withMask(i, file), true);
         if (open.isCorrection) await acceptIfClear();
       }}
-      onAsk={async (place) => {
-        const model = globalThis.sim3alignPhotoModel;
-        if (model === undefined || photo === null) return;
-        const found = await seenBy(model, await photo.bytes(), place);
-        const file = found.mask && (await maskFile(found.mask.data, found.mask, size, name));
-        const depth = found.depth && depthFile(found.depth.data, found.depth, name);
-        close();
-        await change((now) => {
-          const masked = file === null ? now : withMask(i, file)(now);
-          if (depth === null) return masked;
-          const files = [
-            ...masked.files.filter(({ role }) => role !== "depth"),
-            { file: depth, role: "depth" as const },
-          ];
-          // The mask is of the photo's size, which the depth need not have.
-          return { ...masked, depth, depthKind: found.depthKind, resizeMasks: true, files };
-        }, true);
-      }}
     />
   );
 }
@@ -90,9 +69,9 @@ const withMask =
   (i: number, file: NamedFile) =>
   (inputs: Inputs): Inputs => {
     const before = inputs.objects[i];
-    const object: ObjectFiles = before ?? { name: "Object", mask: null, mesh: null, truth: null, isSure: true };
+    const object: ObjectFiles = before ?? { name: "Object", mask: null, mesh: null, truth: null };
     const objects = [...inputs.objects];
-    objects[i] = { ...object, mask: { file, isDrawn: true }, isSure: true };
+    objects[i] = { ...object, mask: { file, isDrawn: true } };
     const files = inputs.files.filter((one) => one.file !== before?.mask?.file);
     return { ...inputs, objects, files: [...files, { file, role: "mask" }] };
   };

@@ -5,11 +5,10 @@ import { type Draft, draftInputs } from "../input/draft.js";
 import { baseName } from "../input/files.js";
 import { photoExtensions } from "../input/photo.js";
 import { withoutObject } from "../input/problems.js";
-import { colourOf, type ReadObject } from "../input/read-scene.js";
+import { colourOf, type ReadObject } from "../input/reading.js";
 import { maskThumbnail, meshThumbnail } from "../pictures/thumbnails.js";
 import type { Inputs, MeshSource, ObjectFiles } from "../state/inputs.js";
-import { Check, Choices } from "../ui/controls.js";
-import { Picture } from "../ui/picture.js";
+import { Check, Choices, Picture } from "../ui/controls.js";
 import { acceptOf, FieldFiles } from "./cards.js";
 import { change } from "./draft.js";
 import { MarkButton } from "./marking.js";
@@ -56,14 +55,14 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
       <ul>
         {inputs.objects.map((object, i) => (
           <Row
-            key={`${i} ${object.mask?.file.path} ${object.mask?.label}`}
+            key={`${i} ${object.mask?.file.path}`}
             {...{ inputs, object, i, ground }}
             read={open.reading?.objects[i] ?? emptyObject}
             width={open.reading?.shown?.width ?? 1}
           />
         ))}
       </ul>
-      {inputs.depth !== null && ground !== null && !inputs.objects.some(({ mask }) => mask !== null) && (
+      {ground !== null && !inputs.objects.some(({ mask }) => mask !== null) && (
         <MarkButton i={0} id="mark-mask" title={`Mark it on the ${open.reading?.photo ? "photo" : "depth map"}`} />
       )}
     </section>
@@ -166,9 +165,7 @@ const DRAGGED = "application/x-sim3align-mesh";
 
 function maskTitle({ mask }: ObjectFiles): string {
   if (mask === null) return "no mask";
-  const name = `${baseName(mask.file.path)}${mask.isInverted === true ? ", inverted" : ""}`;
-  if (mask.label !== undefined) return `${name}, value ${mask.label}`;
-  return mask.annotation === undefined ? name : `${name}, annotation ${mask.annotation + 1}`;
+  return `${baseName(mask.file.path)}${mask.isInverted === true ? ", inverted" : ""}`;
 }
 
 function MeshSelect({ inputs: { meshes }, object, i }: { inputs: Inputs; object: ObjectFiles; i: number }) {
@@ -193,7 +190,7 @@ const withMesh =
     const before = inputs.objects[index]?.mesh ?? null;
     const other = mesh === null ? -1 : inputs.objects.findIndex((one, i) => i !== index && one.mesh === mesh);
     const objects = inputs.objects.map((one, i) =>
-      i === index ? { ...one, mesh, isSure: true } : i === other ? { ...one, mesh: before, isSure: true } : one,
+      i === index ? { ...one, mesh } : i === other ? { ...one, mesh: before } : one,
     );
     return { ...inputs, objects: objects.filter(({ mask, mesh }) => mask !== null || mesh !== null) };
   };

@@ -4,7 +4,7 @@ import { alignAll } from "../alignment/align.js";
 import { observePoses } from "../alignment/evaluate.js";
 import { isTracking } from "../alignment/video.js";
 import { draft, seenDoubts } from "../input/draft.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import { keep, setProgress } from "../session/index.js";
 import type { Inputs } from "../state/inputs.js";
 import { page } from "../state/page.js";

@@ -8,8 +8,9 @@ import type { Inputs, Role } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { Check, Choices, FileButton } from "../ui/controls.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
-import { accept, assign, asVideo, change, dismiss, look, propose, putIntoShown } from "./draft.js";
-import { FromPhoto } from "./from-photo.js";
+import { accept, assign, asVideo, change, dismiss, look, putIntoShown } from "./draft.js";
+import { propose } from "./drop.js";
+import { isUnassigned } from "./file-roles.js";
 import { Marking } from "./marking.js";
 import { ObjectRows } from "./object-rows.js";
 import { Problems } from "./problem-list.js";
@@ -59,7 +60,7 @@ export function Sheet() {
       <div class="intake-body">
         <Problems field="files" />
         <ForShown open={open} />
-        {inputs.depth === null && <FromPhoto inputs={inputs} canMark={shown !== null} />}
+        {inputs.depth === null && inputs.photo !== null && <FromPhoto />}
         <section aria-label="View" class="cards">
           <DepthCard open={open} ground={ground} />
           <PhotoCard open={open} />
@@ -83,6 +84,17 @@ export function Sheet() {
     </dialog>
   );
 }
+
+/** Where depth map, mask and mesh of a photo come from. */
+const FromPhoto = () => (
+  <p class="from-photo">
+    Drop the depth map, the mask and the mesh of this photo when you have them. The guide{" "}
+    <a href="docs/from-a-photo.html" target="_blank" rel="noreferrer">
+      From one photo
+    </a>{" "}
+    names models that make them, and says what to expect.
+  </p>
+);
 
 /** Files that may belong to the scene that is shown. */
 function ForShown({ open: { forShown } }: { open: Draft }) {
@@ -137,8 +149,6 @@ const roles: readonly (readonly [Role, string])[] = [
   ["photo", "Photo"],
   ["camera", "Camera"],
   ["mask", "Mask"],
-  ["labels", "Label map"],
-  ["annotations", "COCO annotations"],
   ["mesh", "Mesh"],
   ["truth", "True pose"],
   ["initial", "First pose"],
@@ -147,17 +157,19 @@ const roles: readonly (readonly [Role, string])[] = [
   ["unused", "Not used"],
 ];
 
+/** The form that says which file is what. It is open where only a person can tell. */
 function FileRoles({ inputs: { files } }: { inputs: Inputs }) {
   if (files.length === 0) return null;
   const unused = files.filter(({ role }) => role === "unused").length;
+  const asked = files.filter(isUnassigned);
   return (
-    <details class="file-roles">
+    <details class="file-roles" open={asked.length > 0}>
       <summary>
         {files.length} {files.length === 1 ? "file" : "files"}
         {unused > 0 && `, ${unused} not used`}
       </summary>
       <ul>
-        {files.slice(0, 200).map(({ file, role }) => (
+        {[...new Set([...asked, ...files])].slice(0, 200).map(({ file, role }) => (
           <li key={file.path}>
             <span class="path" title={file.path}>
               {file.path}

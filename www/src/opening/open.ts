@@ -1,7 +1,7 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
 import { alignAll } from "../alignment/align.js";
 import { draft } from "../input/draft.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { Listed, NextKind } from "../state/opened.js";
 import { page } from "../state/page.js";
@@ -44,7 +44,7 @@ const intake = () => import("../intake/draft.js");
 export async function openFiles(files: readonly NamedFile[]): Promise<void> {
   if (files.length === 0) return;
   announce("Reading files …", "working");
-  await attempt(async () => (await intake()).propose(files));
+  await attempt(async () => (await import("../intake/drop.js")).propose(files));
 }
 
 /** Parts of the page that were not needed before cannot be loaded without a connection. */
@@ -83,7 +83,10 @@ export async function openListed({ id }: Inputs): Promise<void> {
   announce(`Reading ${listed.name} …`, "working");
   await attempt(async () => {
     const { reopen } = await import("../session/index.js");
-    if (!(await reopen(listed))) await (await intake()).proposeScenes([listed]);
+    if (await reopen(listed)) return;
+    const { acceptIfClear, proposeScenes } = await intake();
+    await proposeScenes([listed]);
+    await acceptIfClear();
   });
 }
 

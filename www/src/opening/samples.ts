@@ -42,8 +42,7 @@ export function sampleInputs({ id, title, depth, camera, photo, objects }: Sampl
     name: title,
     mask: { file: fetched(mask) },
     mesh: { file: fetched(mesh), siblings: [] },
-    truth: { file: fetched(truth) },
-    isSure: true,
+    truth: fetched(truth),
   }));
   return {
     ...noInputs,

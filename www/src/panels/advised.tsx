@@ -1,28 +1,22 @@
 /** What is said of a result: the cause of what is wrong first, with what helps; warnings and contact among the rest. */
-import { useEffect } from "preact/hooks";
 import { type Advice, adviceFor } from "../alignment/advice.js";
-import { searchSwap, swapIn } from "../alignment/swap.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { warningsOf } from "./sureness.js";
 
 interface OfObject {
   object: ObjectModel | null;
 }
 
 const adviceIn = (scene: Scene | null, object: ObjectModel | null): Advice | null =>
-  scene === null || object === null ? null : adviceFor(scene, object, swapIn(scene).value);
+  scene === null || object === null ? null : adviceFor(scene, object);
 
 export function Advised({ object }: OfObject) {
   const workspace = useWorkspace();
   const { fileActions, isReadonly, isRunning } = workspace;
-  const [scene, isBusy] = [workspace.scene.value, isRunning.value];
-  useEffect(() => {
-    if (scene !== null && object !== null && !isBusy) searchSwap(scene).catch(console.error);
-  }, [scene, object, isBusy]);
-  const advice = adviceIn(scene, object);
+  const isBusy = isRunning.value;
+  const advice = adviceIn(workspace.scene.value, object);
   if (advice === null || object === null) return null;
   const { cause, text, remedies } = advice;
   const hasFiles = fileActions.value !== null;
@@ -76,3 +70,15 @@ function contactText(whole: Scene | null, object: ObjectModel): string | null {
   if (restsOn === "level") return "Stands on a level above the ground.";
   return `Stands on ${whole?.objects[restsOn]?.name ?? "another object"}.`;
 }
+
+/** A refinement that could go on concerns nobody whose result is sure. */
+const isQuiet = (code: string, object: ObjectModel) =>
+  code === "NOT_CONVERGED" && (object.precise?.confidence ?? 0) >= SURE;
+
+const all = ({ alignment }: ObjectModel) => alignment.value?.warnings ?? [];
+
+/** The warnings beside the result. */
+export const warningsOf = (object: ObjectModel) => all(object).filter(({ code }) => !isQuiet(code, object));
+
+/** The warnings among the details. */
+export const quietWarningsOf = (object: ObjectModel) => all(object).filter(({ code }) => isQuiet(code, object));

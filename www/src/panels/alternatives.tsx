@@ -1,9 +1,9 @@
 /** The result and its alternatives, as pictures. */
 import { useMemo } from "preact/hooks";
-import { applyAlternative, shownAlternative } from "../alignment/alternatives.js";
+import { applyAlternative, shownAlternative } from "../alignment/align.js";
 import { poseThumbnail } from "../pictures/pose-thumbnail.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { Picture } from "../ui/picture.js";
+import { Picture } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "../views/image.js";
 

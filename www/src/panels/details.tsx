@@ -1,14 +1,12 @@
-/** Details of the result: all metrics, the pose and the times of the stages. */
-import type { Stage } from "sim3align";
+/** Details of the result: all metrics, the pose, and what the numbers mean. */
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
-import { orDash, significant, small } from "../ui/format.js";
 import { metricTexts } from "../ui/metric-texts.js";
-import { overlapText, stageTitles } from "../ui/texts.js";
+import { orDash, overlapText, significant, small } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
+import { quietWarningsOf } from "./advised.js";
 import { inputRows } from "./input-rows.js";
-import { MetricTable } from "./metrics.js";
-import { quietWarningsOf } from "./sureness.js";
+import { MetricTable } from "./result-panel.js";
 
 export function Details({ object }: { object: ObjectModel | null }) {
   return (
@@ -22,7 +20,6 @@ export function Details({ object }: { object: ObjectModel | null }) {
             {message}
           </p>
         ))}
-      {object !== null && <StageTimes object={object} />}
       <Meanings />
     </details>
   );
@@ -76,6 +73,7 @@ function Pose({ object }: { object: ObjectModel | null }) {
     ["Centre", `${centre}${unit === null ? " m" : ""}${within(uncertainty && small(uncertainty.distanceM, unit))}`],
     ["Rotation", `${list(transform?.rotation)}${within(uncertainty && `${significant(uncertainty.rotationDeg, 2)}°`)}`],
     ...(scene.value === null ? [] : inputRows(scene.value)),
+    ["Time", orDash(object?.alignment.value?.diagnostics.timingsMs.total, (ms) => `${Math.round(ms)} ms`)],
   ];
   return (
     <dl class="facts">
@@ -86,30 +84,5 @@ function Pose({ object }: { object: ObjectModel | null }) {
         </div>
       ))}
     </dl>
-  );
-}
-
-function StageTimes({ object }: { object: ObjectModel }) {
-  const times = object.alignment.value?.diagnostics.timingsMs;
-  if (times === undefined) return null;
-  const stages = (Object.entries(times) as [Stage | "total", number][]).filter(
-    (entry): entry is [Stage, number] => entry[0] !== "total" && entry[1] > 0,
-  );
-  const sum = stages.reduce((total, [, ms]) => total + ms, 0) || 1;
-  return (
-    <details class="stage-times">
-      <summary>Took {Math.round(times.total)} ms</summary>
-      <dl>
-        {stages.map(([stage, ms]) => (
-          <div key={stage}>
-            <dt>{stageTitles[stage]}</dt>
-            <dd>
-              <span class="bar" style={{ inlineSize: `${(100 * ms) / sum}%` }} />
-              <span class="ms">{ms < 10 ? ms.toFixed(1) : Math.round(ms)} ms</span>
-            </dd>
-          </div>
-        ))}
-      </dl>
-    </details>
   );
 }

@@ -1,11 +1,14 @@
 /** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
 import { formatsText } from "sim3align/input/formats";
-import { pageCommands } from "../commands/page-commands.js";
-import { isHelpOpen } from "../state/help.js";
-import { type Theme, theme } from "../state/theme.js";
+import { type Theme, theme } from "../state/page.js";
 import { Choices } from "../ui/controls.js";
-import { Keys } from "./keys.js";
+import { isHelpOpen, pageCommands } from "./header.js";
+
+/** A key of a command, such as "Ctrl Shift Z" or "0 to 9". */
+const Keys = ({ title }: { title: string }) => (
+  <span class="key">{title.split(" ").map((part) => (part === "to" ? " to " : <kbd key={part}>{part}</kbd>))}</span>
+);
 
 /** Titles and addresses, inserted by the build. */
 declare const DOCUMENTS: readonly (readonly [title: string, address: string])[];
@@ -63,7 +66,7 @@ export function HelpDialog() {
       </p>
       <h3>Documentation</h3>
       <ul class="documents">
-        {[...DOCUMENTS, ["Accuracy, time and size by version", "record.html"] as const].map(([title, address]) => (
+        {DOCUMENTS.map(([title, address]) => (
           <li key={address}>
             <a href={address} target="_blank" rel="noreferrer">
               {title}

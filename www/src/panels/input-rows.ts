@@ -1,7 +1,7 @@
 /** What the depth map and the camera of a scene were taken to be, in plain words. */
 import { depthKinds, unitText } from "sim3align/input/depth-kinds";
 import type { Scene } from "../state/scene.js";
-import { percent, significant } from "../ui/format.js";
+import { percent, significant } from "../ui/texts.js";
 
 /** Where a camera comes from that was not given. */
 export const cameraTitle = (source: string): string =>

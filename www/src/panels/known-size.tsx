@@ -4,7 +4,7 @@ import { canTry, setKnownSize, type Trial, takeTrial, trySize } from "../alignme
 import type { ObjectModel } from "../state/object-model.js";
 import { inOrder, sidesOf } from "../state/sides.js";
 import { Choices } from "../ui/controls.js";
-import { centimetres, orDash, percent } from "../ui/format.js";
+import { centimetres, orDash, percent } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
 const edges = ["Longest edge", "Middle edge", "Shortest edge"] as const;

@@ -1,14 +1,12 @@
 /** The outliner: the objects of the scene. The selected one has a menu, by which it is shown, locked, renamed and removed. */
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Support } from "sim3align";
 import { alignSelected } from "../alignment/align.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
 import { inOrder, sidesOf } from "../state/sides.js";
-import { Check, Menu } from "../ui/controls.js";
-import { percent, type Unit } from "../ui/format.js";
-import { Icon } from "../ui/icons.js";
+import { Check, Icon, Menu } from "../ui/controls.js";
+import { percent, type Unit } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { NameField } from "./object-name.js";
 
 function stateOf(run: Run, object: ObjectModel, unit: Unit, ground: Support | null): string {
   if (run.state === "waiting") return "waiting";
@@ -141,5 +139,36 @@ function ObjectButton({ object }: { object: ObjectModel }) {
         {verdict.value !== null ? marks[verdict.value] : confidence === null ? "" : percent(confidence)}
       </span>
     </button>
+  );
+}
+
+export function NameField({ object }: { object: ObjectModel }) {
+  const { renamed } = useWorkspace();
+  const { name } = object;
+  const field = useRef<HTMLInputElement>(null);
+  // At once: the next key belongs to the name.
+  useLayoutEffect(() => {
+    field.current?.focus();
+    field.current?.select();
+  }, []);
+  return (
+    <input
+      class="rename"
+      aria-label={`New name of ${name}`}
+      value={name}
+      ref={field}
+      onKeyDown={({ key, currentTarget }) => {
+        if (key === "Escape") currentTarget.value = name;
+        if (key !== "Enter" && key !== "Escape") return;
+        const row = currentTarget.parentElement;
+        currentTarget.blur();
+        // The focus would be lost with the field.
+        requestAnimationFrame(() => row?.querySelector("button")?.focus());
+      }}
+      onBlur={({ currentTarget }) => {
+        object.title.value = currentTarget.value.trim() || name;
+        renamed.value = null;
+      }}
+    />
   );
 }

@@ -1,8 +1,77 @@
 /** Options of the alignment: prior knowledge about the object, and the seed. */
-import { defaultOptions, MAX_SEED } from "../state/options.js";
-import { type Choice, effort, symmetry, up } from "../ui/choices.js";
+import { defaultOptions, MAX_SEED, type Options, choices as values } from "../state/options.js";
+import type { Workspace } from "../state/workspace.js";
 import { Choices, Tip } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
+
+const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
+  auto: "Automatic",
+  fast: "Fast",
+  balanced: "Balanced",
+  best: "Best",
+};
+
+/** An option that is chosen from a list. */
+interface Choice {
+  /** Of the list. */
+  id: string;
+  title: string;
+  about: string;
+  titles: readonly (readonly [value: string, title: string])[];
+  chosen(options: Options): string;
+  choose(workspace: Workspace, value: string): void;
+}
+
+/** Presets and qualities as one list. */
+const effort: Choice = {
+  id: "effort",
+  title: "Quality",
+  about: "How much is searched. “Automatic” searches longer where the case is hard.",
+  titles: [
+    ...values.quality.map((quality) => [quality, qualityTitles[quality]] as const),
+    ["paper", "Paper (baseline)"],
+  ],
+  chosen: ({ preset, quality }) => (preset === "paper" ? "paper" : quality),
+  choose({ setOption }, value) {
+    const quality = values.quality.find((quality) => quality === value);
+    setOption("preset", quality === undefined ? "paper" : "precise");
+    setOption("quality", quality ?? defaultOptions.quality);
+  },
+};
+
+/** The choice of one option. */
+const choiceOf = <K extends "up" | "symmetry">(
+  name: K,
+  texts: Pick<Choice, "title" | "about">,
+  titles: { readonly [V in Options[K]]: string },
+): Choice => ({
+  id: `option-${name}`,
+  ...texts,
+  titles: (values[name] as readonly Options[K][]).map((value) => [value, titles[value]] as const),
+  chosen: (options) => options[name],
+  choose({ setOption }, value) {
+    setOption(name, value as Options[K]);
+  },
+});
+
+const up = choiceOf(
+  "up",
+  {
+    title: "Stands upright",
+    about:
+      "Prefers upright poses. Use it if the camera was level and the object stands upright. The mesh's up axis is y in glTF, and z in many other files.",
+  },
+  { unknown: "unknown", y: "mesh y is up", z: "mesh z is up" },
+);
+
+const symmetry = choiceOf(
+  "symmetry",
+  {
+    title: "Symmetry",
+    about: "Poses that differ only by a symmetry of the object are not listed as alternatives.",
+  },
+  { auto: "Find on the mesh", none: "None" },
+);
 
 function Select({ id, title, about, titles, chosen, choose }: Choice) {
   const workspace = useWorkspace();

@@ -7,13 +7,12 @@ import { fieldOf } from "../input/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import { inOrder, sidesOf } from "../state/sides.js";
-import { orDash, percent, significant, size } from "../ui/format.js";
-import { overlapText } from "../ui/texts.js";
+import type { MetricText } from "../ui/texts.js";
+import { orDash, overlapText, percent, significant, size } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { Decision } from "./decision.js";
-import { Advised, Alternatives, Details, Remedies, Warnings } from "./later.js";
-import { MetricTable } from "./metrics.js";
-import { NameField } from "./object-name.js";
+import { Advised, Alternatives, Details, Remedies, Warnings } from "./lazy-panels.js";
+import { NameField } from "./objects-panel.js";
 
 export function ResultPanel() {
   const { isReadonly, objects, renamed, selected } = useWorkspace();
@@ -155,3 +154,26 @@ const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErro
     `${significant(rotationErrorDeg, 2)}°`,
     `${significant(1000 * translationErrorM, 2)} mm`,
   ].join(", ");
+
+interface MetricTableProps {
+  object: ObjectModel | null;
+  metrics: readonly MetricText[];
+  id: string;
+}
+
+export function MetricTable({ object, metrics: texts, id }: MetricTableProps) {
+  const metrics = object?.metrics.value ?? null;
+  const unit = useWorkspace().unit.value;
+  return (
+    <dl class="metrics" id={id}>
+      {texts.map(({ name, title, show }) => (
+        <div key={name}>
+          <dt>{title}</dt>
+          <dd data-metric={name} data-value={metrics?.[name] ?? ""}>
+            {metrics === null ? (object === null ? "–" : "…") : orDash(metrics[name], (value) => show(value, unit))}
+          </dd>
+        </div>
+      ))}
+    </dl>
+  );
+}

@@ -4,7 +4,7 @@ import { useEffect } from "preact/hooks";
 import { alignFrames, correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../alignment/video.js";
 import { page } from "../state/page.js";
 import type { FramePose } from "../state/video.js";
-import { percent } from "../ui/format.js";
+import { percent } from "../ui/texts.js";
 
 const { frameIndex, framePoses, selected, video } = page;
 

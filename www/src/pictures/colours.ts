@@ -1,6 +1,6 @@
 /** Colour maps of depths and differences. */
 import { depthColour, depthStops, type Rgb } from "sim3align/pictures/colours";
-import { once } from "../state/once.js";
+import { once } from "../state/inputs.js";
 
 /** The colours of depths as a gradient of CSS, from near to far. */
 export const depthGradient = `linear-gradient(to right, ${depthStops.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;

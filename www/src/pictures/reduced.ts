@@ -1,7 +1,7 @@
 /** Scenes for drawing: those with more pixels than screens show are reduced, so that no frame has to wait for them. */
 
+import { once } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { once } from "../state/once.js";
 import type { Scene } from "../state/scene.js";
 import { type Box, boxOf } from "./box.js";
 

@@ -6,14 +6,13 @@
 import { batch, effect, untracked } from "@preact/signals";
 import { alignAll } from "../alignment/align.js";
 import { openVideo, videoWork } from "../alignment/video.js";
-import { readInputs, sceneOf } from "../input/read-scene.js";
+import { readInputs, sceneOf } from "../input/reading.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { stateOf } from "../state/object-work.js";
-import { page } from "../state/page.js";
+import { hasSession, page } from "../state/page.js";
 import type { Progress } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
-import { hasSession } from "../state/session-flag.js";
 import type { VideoWork } from "../state/video.js";
 import { disown, onTakenOver, own } from "./owner.js";
 import { applyState, type Packed, packed, progressOfPacked, type Settings, unpacked, videoWorkOf } from "./pack.js";

@@ -2,9 +2,9 @@
 import type { DepthCalibration, DepthKind, Support } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import { baseName } from "../input/files.js";
-import { doubtOf } from "../state/alignment.js";
 import { inCalibration } from "../state/calibration.js";
-import type { CameraSource, Inputs, MaskSource, MeshSource, NamedFile, Role, TruthSource } from "../state/inputs.js";
+import type { CameraSource, Inputs, MaskSource, MeshSource, NamedFile, Role } from "../state/inputs.js";
+import { doubtOf } from "../state/object-model.js";
 import { applyToObject, type ObjectWork, stateOf, verdictOf } from "../state/object-work.js";
 import type { Options } from "../state/options.js";
 import { isResult } from "../state/pose.js";
@@ -26,7 +26,7 @@ interface PackedObject {
   name: string;
   mask: (Omit<MaskSource, "file"> & { file: Ref }) | null;
   mesh: Ref | null;
-  truth: (Omit<TruthSource, "file"> & { file: Ref }) | null;
+  truth: { file: Ref } | null;
   initial?: Ref;
   /** Null if the scene was not opened yet. */
   state: ObjectWork | null;
@@ -108,7 +108,7 @@ function packedInputs(inputs: Inputs, scene: Scene | null, files: Map<NamedFile,
       name: object?.name ?? name,
       mask: mask && { ...mask, file: ref(mask.file) },
       mesh: mesh && ref(mesh.file),
-      truth: truth && { ...truth, file: ref(truth.file) },
+      truth: truth && { file: ref(truth) },
       ...(initial && { initial: ref(initial) }),
       state: object === undefined ? null : stateOf(object),
     };
@@ -156,9 +156,12 @@ export const videoWorkOf = ({ frames = [], frameIndex = 0 }: Packed): VideoWork 
   ...{ frameIndex, framePoses: frames.map(framePose), frameWorks: frames.map(({ work }) => work) },
 });
 
+/** Whether a mask is one value of a label map, or one annotation of a COCO file, as version 1.0.0 could read them. */
+const isPartOfFile = ({ mask }: PackedObject) => mask !== null && ("label" in mask || "annotation" in mask);
+
 /** The inputs of a session; null for one of another version. */
 export function unpacked(session: Packed, files: readonly NamedFile[], id = ""): Inputs | null {
-  if (session.version !== VERSION) return null;
+  if (session.version !== VERSION || session.objects.some(isPartOfFile)) return null;
   const meshes = new Map<Ref, MeshSource>();
   const inputs = unpackedInputs(session, files, id, meshes);
   return session.frames === undefined
@@ -185,9 +188,8 @@ function unpackedInputs(
     name,
     mask: mask && { ...mask, file: at(mask.file) },
     mesh: mesh === null ? null : meshOf(mesh),
-    truth: truth && { ...truth, file: at(truth.file) },
+    truth: truth && at(truth.file),
     ...(initial !== undefined && { initial: at(initial) }),
-    isSure: true,
   }));
   return {
     ...{ id, name, sample: null, depthScale, depthKind, imageId, resizeMasks, objects },

@@ -2,12 +2,11 @@
 
 import type { Metrics, Sim3 } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import type { Inputs, MaskSource } from "../state/inputs.js";
+import type { Inputs } from "../state/inputs.js";
 import type { ObjectModel, Verdict } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import type { PoseSource } from "../state/pose.js";
-import { isMetric } from "../state/raw-view.js";
-import { type Scene, unitOf } from "../state/scene.js";
+import { isMetric, type Scene, unitOf } from "../state/scene.js";
 import type { VideoWork } from "../state/video.js";
 
 const { options } = page;
@@ -27,15 +26,9 @@ export function keyOf(scene: Scene, object: ObjectModel): string {
 export const decisionOf = (verdict: Verdict | null, source: PoseSource): Verdict | "corrected" | null =>
   verdict === "accepted" && source !== "aligned" && source !== "tracked" ? "corrected" : verdict;
 
-const nameOf = ({ file, label, annotation }: MaskSource) => ({
-  ...{ mask: file.path },
-  ...(label !== undefined && { label }),
-  ...(annotation !== undefined && { annotation }),
-});
-
 /** The names of an object's files as given. */
 const filesOf = (given: Inputs["objects"][number] | undefined) => ({
-  ...(given?.mask && nameOf(given.mask)),
+  ...(given?.mask && { mask: given.mask.file.path }),
   ...(given?.mesh && { mesh: given.mesh.file.path }),
 });
 

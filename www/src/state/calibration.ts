@@ -1,8 +1,7 @@
 /** Views whose depth or focal length are not fully known: what they are taken to be, before and after an alignment. */
 import type { DepthCalibration, DepthKind } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
-import type { RawView } from "./raw-view.js";
-import type { Scene } from "./scene.js";
+import type { RawView, Scene } from "./scene.js";
 
 type Numbers = Pick<DepthCalibration, "depthKind" | "scale" | "shift">;
 

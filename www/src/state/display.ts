@@ -49,17 +49,6 @@ export function displayState() {
   /** How the handles move: along the axes of the mesh, and in steps. */
   const gizmoSettings = signal({ isLocal: false, snaps: false });
 
-  /** The points that are being measured, OpenCV camera frame, metres; null while nothing is measured. */
-  const measured = signal<readonly (readonly [number, number, number])[] | null>(null);
-
-  /** Adds a point to what is measured. A third one begins anew. Returns whether anything is measured. */
-  function measure(point: readonly [number, number, number]): boolean {
-    const points = measured.peek();
-    if (points === null) return false;
-    measured.value = points.length >= 2 ? [point] : [...points, point];
-    return true;
-  }
-
   /** Whether the 3D view shows the poses before any alignment. */
   const showsBefore = signal(false);
 
@@ -70,7 +59,7 @@ export function displayState() {
   const hoveredPixel = signal<{ x: number; y: number } | null>(null);
 
   return {
-    ...{ layers, setLayer, display3d, gizmo, gizmoSettings, measured, measure },
+    ...{ layers, setLayer, display3d, gizmo, gizmoSettings },
     ...{ showsBefore, largeView, hoveredPixel },
   };
 }

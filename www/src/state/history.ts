@@ -6,8 +6,8 @@ import { batch, computed, type Signal, signal } from "@preact/signals";
 import type { Support } from "sim3align";
 import type { Decision, ObjectModel, Verdict } from "./object-model.js";
 import { type Nudge, nudged, type Pose } from "./pose.js";
+import type { StatusState } from "./running.js";
 import type { Scene, SceneState } from "./scene.js";
-import type { StatusState } from "./status.js";
 
 /** What steps restore. */
 interface Snapshot {

@@ -5,8 +5,6 @@ import type { DepthKind } from "sim3align";
 export interface NamedFile {
   path: string;
   bytes(): Promise<Uint8Array>;
-  /** The first bytes, where they can be read alone. */
-  head?(length: number): Promise<Uint8Array>;
   /** In bytes, where it is known without reading them. */
   size?: number;
 }
@@ -17,8 +15,6 @@ export type Role =
   | "photo"
   | "camera"
   | "mask"
-  | "labels"
-  | "annotations"
   | "mesh"
   | "truth"
   | "initial"
@@ -47,23 +43,13 @@ export interface MeshSource {
   siblings: readonly NamedFile[];
 }
 
-/** A mask: a file, one value of a label map, or one annotation of a COCO file; or what one of these leaves out. */
+/** A mask: what a file marks, or what it leaves out. */
 export interface MaskSource {
   file: NamedFile;
-  /** The value in a label map. */
-  label?: number;
-  /** The index of the annotation in a COCO file. */
-  annotation?: number;
   /** Whether a person has drawn it here: no other file has it. */
   isDrawn?: boolean;
   /** Whether the file marks the background. */
   isInverted?: boolean;
-}
-
-/** A true pose: a file, or an entry of BOP's `scene_gt.json`. */
-export interface TruthSource {
-  file: NamedFile;
-  entry?: { imageId: string; index: number };
 }
 
 /** An object: its mask and its mesh, of which one may still be missing. */
@@ -71,11 +57,10 @@ export interface ObjectFiles {
   name: string;
   mask: MaskSource | null;
   mesh: MeshSource | null;
-  truth: TruthSource | null;
+  /** The true pose. */
+  truth: NamedFile | null;
   /** A pose that is a candidate of its search. */
   initial?: NamedFile | undefined;
-  /** Whether mask and mesh certainly belong together. */
-  isSure: boolean;
 }
 
 /** The inputs. */
@@ -144,3 +129,13 @@ export const withInverted = (index: number) =>
 
 /** The input fields. */
 export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";
+
+/** Makes the value of a key at its first use, and keeps it for as long as the key exists. */
+export function once<K extends object, V>(make: (key: K) => V): (key: K) => V {
+  const made = new WeakMap<K, V>();
+  return (key) => {
+    const value = made.get(key) ?? make(key);
+    made.set(key, value);
+    return value;
+  };
+}

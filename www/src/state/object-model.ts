@@ -1,8 +1,17 @@
 /** An object of a scene: its mask, its mesh, and the state of its alignment. */
 import { computed, type ReadonlySignal, type Signal, signal } from "@preact/signals";
-import type { MeshArrays, Metrics, PoseErrors, Sim3AlignError, Sim3Like, Stage } from "sim3align";
+import type {
+  Alignment,
+  MeshArrays,
+  Metrics,
+  PaperAlignment,
+  PoseErrors,
+  SceneAlignment,
+  Sim3AlignError,
+  Sim3Like,
+  Stage,
+} from "sim3align";
 import type { Vector3 } from "sim3align/values/validation";
-import { type AnyAlignment, type Doubt, doubtOf, type PreciseAlignment } from "./alignment.js";
 import { boundsOf, isResult, type PlacedBox, type Pose, placed, startPose, tightBoundsOf } from "./pose.js";
 
 /** The state of an alignment. */
@@ -144,3 +153,27 @@ export class ObjectModel implements Readonly<ObjectParts> {
     return alignment !== null && "confidence" in alignment ? alignment : null;
   }
 }
+
+/** What a person must check, however sure the search is: see {@link doubtOf}. */
+export type Doubt = "size" | "turn";
+
+/** Below this confidence in the choice among turns of equal shape, the turn needs a second look. */
+const SURE_OF_TURN = 0.7;
+
+/**
+ * The size, if the unit of the depth map was assumed and gives the object an unusual one; the turn, if neither shape nor
+ * colours decide it.
+ */
+export function doubtOf(alignment: AnyAlignment | null): Doubt | null {
+  if (alignment?.warnings.some(({ code }) => code === "SIZE_DOUBTFUL") === true) return "size";
+  const turn = alignment !== null && "turnConfidence" in alignment ? alignment.turnConfidence : null;
+  return turn !== null && turn < SURE_OF_TURN ? "turn" : null;
+}
+
+/** The result of an alignment, with any preset. The result of a scene also says what the object rests on. */
+export type AnyAlignment = (PreciseAlignment | Omit<PaperAlignment, "input">) & {
+  readonly contact?: SceneAlignment["contact"];
+};
+
+/** The result with the preset `precise`. */
+export type PreciseAlignment = Omit<Alignment, "input">;

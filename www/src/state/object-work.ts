@@ -1,7 +1,6 @@
 /** What was done with objects, as plain data. */
 import { toSim3 } from "sim3align/conventions";
-import type { AnyAlignment } from "./alignment.js";
-import type { ObjectModel, Verdict } from "./object-model.js";
+import type { AnyAlignment, ObjectModel, Verdict } from "./object-model.js";
 import type { PoseSource } from "./pose.js";
 
 /** What was done with an object. */

@@ -4,8 +4,8 @@ import type { DisplayState } from "./display.js";
 import { type Inputs, noInputs, withId } from "./inputs.js";
 import type { ObjectModel } from "./object-model.js";
 import type { Progress } from "./progress.js";
+import type { StatusState } from "./running.js";
 import type { Scene, SceneState } from "./scene.js";
-import type { StatusState } from "./status.js";
 
 /** What is looked for: what needs a person, what is not decided on, or anything. */
 export type NextKind = "doubtful" | "open" | "any";

@@ -2,8 +2,8 @@
 import type { MeshArrays, Sim3 } from "sim3align";
 import { applyToPoints, compose, orientedBoundingBox, toSim3 } from "sim3align/conventions";
 import type { Vector3 } from "sim3align/values/validation";
-import type { AnyAlignment } from "./alignment.js";
-import { once } from "./once.js";
+import { once } from "./inputs.js";
+import type { AnyAlignment } from "./object-model.js";
 
 /** The origin of a pose. */
 export type PoseSource = "start" | "aligned" | "alternative" | "refined" | "hand" | "tracked";

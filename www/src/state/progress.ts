@@ -1,7 +1,6 @@
 /** How far the work on a scene is. */
 
-import type { Doubt } from "./alignment.js";
-import type { ObjectModel, Verdict } from "./object-model.js";
+import type { Doubt, ObjectModel, Verdict } from "./object-model.js";
 import type { FramePose } from "./video.js";
 
 /** From this confidence on, a result needs no remedy, and a pose no second look. */

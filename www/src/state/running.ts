@@ -1,4 +1,4 @@
-/** Whether objects are being aligned, and how far. */
+/** Whether objects are being aligned, how far, and the status line. */
 import { computed, signal } from "@preact/signals";
 import type { SceneState } from "./scene.js";
 
@@ -28,3 +28,21 @@ export function runningState({ objects }: SceneState) {
 
   return { controller, isRunning, fraction, cancel };
 }
+
+export interface Status {
+  text: string;
+  kind: "working" | "done" | "failed";
+}
+
+/** The state of the status line. */
+export function statusState() {
+  const status = signal<Status>({ text: "Loading …", kind: "working" });
+
+  const announce = (text: string, kind: Status["kind"] = "done"): void => {
+    status.value = { text, kind };
+  };
+
+  return { status, announce };
+}
+
+export type StatusState = ReturnType<typeof statusState>;

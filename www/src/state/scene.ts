@@ -1,10 +1,8 @@
 /** The scene: a depth map with its camera, an optional photo, and the objects in it. */
 import { batch, computed, signal } from "@preact/signals";
-import type { DepthCalibration, Support } from "sim3align";
+import type { DepthCalibration, DepthKind, PinholeCamera, Support } from "sim3align";
 import type { DepthImage } from "sim3align/formats";
-import type { ObjectModel } from "./object-model.js";
-import { type Intrinsics, isMetric, type RawView } from "./raw-view.js";
-import { visibleExtent } from "./visible-extent.js";
+import type { ObjectModel, VisibleExtent } from "./object-model.js";
 
 export interface Scene {
   readonly name: string;
@@ -86,3 +84,69 @@ export function sceneState() {
 }
 
 export type SceneState = ReturnType<typeof sceneState>;
+
+/** The intrinsics of a camera. */
+export type Intrinsics = Pick<PinholeCamera, "fx" | "fy" | "cx" | "cy">;
+
+/** What is given of a view whose depth or focal length are not fully known. */
+export interface RawView {
+  /** The values of the depth map. */
+  readonly depth: Float32Array;
+  readonly width: number;
+  readonly height: number;
+  readonly depthKind: DepthKind;
+  readonly camera: Intrinsics;
+  /** Relative standard deviation of the focal length; 0 if it is known. */
+  readonly focalUncertainty: number;
+  /** Warnings of the file readers. */
+  readonly warnings: readonly string[];
+}
+
+/** What says whether depth has a unit. */
+interface Depth {
+  readonly raw: RawView | null;
+  readonly calibration: DepthCalibration | null;
+}
+
+/** Whether lengths of a scene are metres. */
+export const isMetric = ({ raw, calibration }: Depth): boolean =>
+  calibration?.isMetric ?? (raw === null || raw.depthKind === "metric");
+
+/** Upper bound on the readings that are used. */
+const MAX_READINGS = 4000;
+/** Of larger images, only every third pixel or fewer is looked at. */
+const MOST_PIXELS = 2_100_000;
+
+/** The centre of the readings in a mask and the diagonal of their bounding box without outliers; metres. */
+export function visibleExtent(
+  { data, width }: Pick<DepthImage, "data" | "width">,
+  mask: Uint8Array,
+  { fx, fy, cx, cy }: Intrinsics,
+): VisibleExtent {
+  const isReading = (pixel: number) => mask[pixel] !== 0 && (data[pixel] as number) > 0;
+  // An odd step looks at all columns.
+  const step = 2 * Math.floor(mask.length / MOST_PIXELS) + 1;
+  let count = 0;
+  for (let pixel = 0; pixel < mask.length; pixel += step) if (isReading(pixel)) count++;
+  const stride = Math.max(1, Math.ceil(count / MAX_READINGS));
+  const [xs, ys, zs]: [number[], number[], number[]] = [[], [], []];
+  let i = 0;
+  for (let pixel = 0; pixel < mask.length; pixel += step) {
+    if (!isReading(pixel) || i++ % stride !== 0) continue;
+    const z = data[pixel] ?? 0;
+    xs.push((((pixel % width) - cx) * z) / fx);
+    ys.push(((Math.floor(pixel / width) - cy) * z) / fy);
+    zs.push(z);
+  }
+  if (zs.length === 0) return { centreM: [0, 0, 1], sizeM: 0.1 };
+  const ranges = [xs, ys, zs].map((values) => {
+    const sorted = values.sort((a, b) => a - b);
+    // Masks often contain a few background readings, which would stretch the box.
+    const quantile = (share: number) => sorted[Math.round(share * (sorted.length - 1))] ?? 0;
+    return { low: quantile(0.02), high: quantile(0.98) };
+  });
+  return {
+    centreM: ranges.map(({ low, high }) => (low + high) / 2) as [number, number, number],
+    sizeM: Math.hypot(...ranges.map(({ low, high }) => high - low)) || 0.1,
+  };
+}

@@ -5,9 +5,8 @@ import { displayState } from "./display.js";
 import { historyState } from "./history.js";
 import { openedState } from "./opened.js";
 import { optionsState } from "./options.js";
-import { runningState } from "./running.js";
+import { runningState, statusState } from "./running.js";
 import { sceneState } from "./scene.js";
-import { statusState } from "./status.js";
 import { videoState } from "./video.js";
 
 /** The state of the 3D view. */
@@ -22,10 +21,6 @@ export type Workspace = ReturnType<typeof createWorkspace>;
 
 export function createWorkspace({ theme }: Surroundings) {
   const [scene, display, status] = [sceneState(), displayState(), statusState()];
-  // What was measured in a scene is not of another one, nor of its next scale.
-  scene.scene.subscribe(() => {
-    if (display.measured.peek() !== null) display.measured.value = [];
-  });
   return {
     ...scene,
     ...display,

@@ -1,6 +1,6 @@
 /** Controls that several panels use. */
 import type { ComponentChildren } from "preact";
-import { useId, useRef } from "preact/hooks";
+import { useEffect, useId, useRef } from "preact/hooks";
 import { filesOf } from "../input/files.js";
 import type { NamedFile } from "../state/inputs.js";
 
@@ -138,3 +138,45 @@ export const Tip = ({ label, children }: { label: string; children: ComponentChi
 
 /** A button that opens further controls. */
 export const Menu = (menu: Omit<PopoverProps, "look">) => <Popover look="menu" {...menu} />;
+
+const pictograms = {
+  hidden: {
+    title: "hidden",
+    path: "M1 8s2.5-4.5 7-4.5S15 8 15 8s-2.5 4.5-7 4.5S1 8 1 8zM2.5 13.5l11-11",
+  },
+  locked: { title: "locked", path: "M3.5 7.5h9v6h-9zM5.5 7.5V5a2.5 2.5 0 0 1 5 0v2.5" },
+} as const;
+
+export function Icon({ name }: { name: keyof typeof pictograms }) {
+  const { path, title } = pictograms[name];
+  return (
+    <svg class="icon" viewBox="0 0 16 16" width="16" height="16" role="img" aria-label={title}>
+      <path d={path} fill="none" stroke="currentColor" stroke-width="1.4" stroke-linejoin="round" />
+    </svg>
+  );
+}
+
+interface PictureProps {
+  /** Null draws nothing. */
+  image: ImageData | null;
+  /** Empty where a text beside the picture says it all. */
+  label: string;
+  class?: string;
+}
+
+const HIDDEN = { "aria-hidden": true } as const;
+
+export function Picture({ image, label, class: className = "thumb" }: PictureProps) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    if (canvas.current === null || image === null) return;
+    canvas.current.width = image.width;
+    canvas.current.height = image.height;
+    canvas.current.getContext("2d")?.putImageData(image, 0, 0);
+  }, [image]);
+  return image === null ? (
+    <span class={className} />
+  ) : (
+    <canvas ref={canvas} class={className} {...(label === "" ? HIDDEN : { role: "img", "aria-label": label })} />
+  );
+}

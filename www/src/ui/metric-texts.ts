@@ -1,6 +1,7 @@
 /** Titles and explanations of the metrics among the details. */
-import { percent, significant, small, type Unit } from "./format.js";
+
 import type { MetricText } from "./texts.js";
+import { percent, significant, small, type Unit } from "./texts.js";
 
 const length = (value: number, unit: Unit) => small(value, unit, 3);
 

@@ -1,7 +1,7 @@
 /** The point cloud: all points of a depth map in one draw call, as squares of an adjustable size. */
 import type { Node, PerspectiveCamera } from "three/webgpu";
+import { release } from "./parts.js";
 import { type Points, pointsOf, type Rgb, tonesOf } from "./points.js";
-import { release } from "./release.js";
 import {
   attribute,
   BufferAttribute,

@@ -1,6 +1,6 @@
 /** Pictures that face the viewer, in one size at every distance and visible through meshes: labels of lengths, and a mark. */
 import type { PerspectiveCamera } from "three/webgpu";
-import { depth, size, type Unit } from "../ui/format.js";
+import { depth, size, type Unit } from "../ui/texts.js";
 import { CanvasTexture, Sprite, SpriteMaterial, Vector3 } from "./three.js";
 
 function spriteOf(canvas: HTMLCanvasElement, renderOrder: number): Sprite {

@@ -1,8 +1,8 @@
-/** Lines with their lengths: the sides of a bounding box, or the distance of two points. */
+/** Lines with their lengths: the sides of a bounding box. */
 import type { ColorRepresentation, Sprite, Vector3 } from "three/webgpu";
 import { labelOf, lengthText } from "./label.js";
 import { geometryOf, linesOf } from "./lines.js";
-import { release } from "./release.js";
+import { release } from "./parts.js";
 import { Group } from "./three.js";
 
 /** A line, and where its length is written; OpenCV camera frame, metres. */

@@ -2,22 +2,17 @@
 
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
-import { cropOf } from "./crop.js";
-import { description } from "./description.js";
 import { Gizmo } from "./gizmo.js";
-import { whileHidden } from "./hidden.js";
 import { markOf } from "./label.js";
-import { type Measure, Measures } from "./measures.js";
 import { Model } from "./model.js";
+import { release, whileHidden } from "./parts.js";
 import { pick } from "./picker.js";
 import { PlaneViews, SHARE } from "./plane-views.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
-import { release } from "./release.js";
 import { Sizes } from "./sizes.js";
 import { Stage } from "./stage.js";
-import { Surroundings } from "./surroundings.js";
-import { colours } from "./theme.js";
+import { colours, Surroundings } from "./surroundings.js";
 import { Group, HemisphereLight, Sphere, Vector3 } from "./three.js";
 import type {
   Animation,
@@ -31,7 +26,7 @@ import type {
   SceneInput,
   ViewEvents,
 } from "./types.js";
-import { Viewpoint } from "./viewpoint.js";
+import { cropOf, description, Viewpoint } from "./viewpoint.js";
 
 /** Screens resolve no more points, and software renderers draw no more in acceptable time. */
 const maxPoints = { hardware: 400_000, software: 80_000 };
@@ -43,8 +38,6 @@ export class SceneView {
   private readonly viewpoint: Viewpoint;
   private readonly gizmo: Gizmo;
   private readonly mark = markOf();
-  private readonly ruler = new Measures(0xffd23f, 4);
-  private measured: readonly Measure[] = [];
   private plane: PlaneInput | null = null;
   private gizmoSettings: GizmoSettings = { isLocal: false, snaps: false };
   private readonly animations = new Animations();
@@ -87,7 +80,7 @@ export class SceneView {
       onPose: (model, phase) => this.moved(model, phase),
     });
     this.root.rotation.x = Math.PI;
-    this.root.add(this.mark, this.ruler.object);
+    this.root.add(this.mark);
     stage.scene.add(this.root, camera, new HemisphereLight(0xffffff, 0x8d8a86, 1.5));
     this.pointer = this.listen();
     stage.run(camera, {
@@ -95,7 +88,7 @@ export class SceneView {
       onFrame: (_, height) => {
         const isMoving = this.animations.step();
         const isDamping = controls.update();
-        this.sizes.spread(camera, stage.canvas.clientHeight, this.ruler.labels);
+        this.sizes.spread(camera, stage.canvas.clientHeight);
         this.planes?.draw(JSON.stringify([this.display, this.selected, this.plane, this.objects.length]));
         this.cloud?.prepare(camera, height);
         return isMoving || isDamping;
@@ -126,7 +119,6 @@ export class SceneView {
       onClick: (place) => {
         if (this.gizmo.isBusy) return;
         const hit = picked(place);
-        if (hit && this.events.onPick?.(hit.point)) return;
         const { pixel } = hit ?? {};
         const index = pixel ? pixel.y * (this.scene?.width ?? 0) + pixel.x : -1;
         const id = hit?.id ?? this.objects.find(({ mask }) => mask[index])?.id ?? null;
@@ -240,13 +232,6 @@ export class SceneView {
     this.update();
   }
 
-  /** Shows the distance of two points (OpenCV camera frame, metres); fewer points hide it. */
-  measure(points: readonly (readonly [number, number, number])[]): void {
-    const [from, to] = points.map((point) => new Vector3(...point));
-    this.measured = from && to ? [{ from, to, label: from.clone().lerp(to, 0.5) }] : [];
-    this.update();
-  }
-
   setDisplay(display: Display): void {
     const isOther = display.theme !== this.display.theme;
     this.display = { ...display };
@@ -345,10 +330,10 @@ export class SceneView {
 
   /** Runs while points and meshes alone are visible. */
   private undecorated(draw: () => void): void {
-    const { cloud, gizmo, mark, ruler, sizes } = this;
+    const { cloud, gizmo, mark, sizes } = this;
     this.surroundings.show(false, false);
     if (cloud) cloud.object.visible = this.display.cloud;
-    whileHidden([gizmo.object, mark, ruler.object, ...sizes.objects, ...(cloud ? [cloud.veil] : [])], draw);
+    whileHidden([gizmo.object, mark, ...sizes.objects, ...(cloud ? [cloud.veil] : [])], draw);
     this.update();
   }
 
@@ -357,7 +342,6 @@ export class SceneView {
     // Labels would cover the handles.
     const isShown = dimensions === true && this.gizmoMode === null;
     this.sizes.update(this.models, this.selected, unit, (id) => isShown && !this.animations.isRunning(id));
-    this.ruler.show(this.measured, unit);
   }
 
   /** A description for screen readers. */
@@ -385,7 +369,6 @@ export class SceneView {
     this.animations.stopAll();
     this.pointer.dispose();
     this.gizmo.dispose();
-    this.ruler.dispose();
     this.sizes.dispose();
     this.viewpoint.dispose();
     for (const model of this.models.values()) model.dispose();

@@ -1,5 +1,5 @@
 /** The dimension lines of all objects. */
-import type { Group, PerspectiveCamera, Sprite } from "three/webgpu";
+import type { Group, PerspectiveCamera } from "three/webgpu";
 import { spreadLabels } from "./label.js";
 import { type Measure, Measures } from "./measures.js";
 import type { Model } from "./model.js";
@@ -44,10 +44,14 @@ export class Sizes {
     return [...this.measures.values()].map(({ object }) => object);
   }
 
-  /** Keeps the labels apart from one another and from others, as seen from the camera in a view of this height in CSS pixels. */
-  spread(camera: PerspectiveCamera, viewPx: number, others: readonly Sprite[]): void {
-    const own = [...this.measures.values()].filter(({ object }) => object.visible).flatMap(({ labels }) => labels);
-    spreadLabels([...others, ...own], camera, viewPx);
+  /** Keeps the labels apart from one another, as seen from the camera in a view of this height in CSS pixels. */
+  spread(camera: PerspectiveCamera, viewPx: number): void {
+    const shown = [...this.measures.values()].filter(({ object }) => object.visible);
+    spreadLabels(
+      shown.flatMap(({ labels }) => labels),
+      camera,
+      viewPx,
+    );
   }
 
   dispose(): void {

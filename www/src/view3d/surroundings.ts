@@ -1,9 +1,18 @@
 /** What is around the objects: the image in the view from the depth camera, and lines for the cameras and the ground. */
-import type { Color, Group } from "three/webgpu";
-import { groundOf } from "./ground.js";
-import { floorOf, frustumOf, type Lines } from "./lines.js";
+import type { BufferGeometry, Group } from "three/webgpu";
+import { floorOf, frustumOf, geometryOf, imageCorners, type Lines } from "./lines.js";
+import { release } from "./parts.js";
 import type { Extent } from "./points.js";
-import { release } from "./release.js";
+import {
+  BufferAttribute,
+  Color,
+  DataTexture,
+  DoubleSide,
+  LinearFilter,
+  Mesh,
+  MeshBasicMaterial,
+  SRGBColorSpace,
+} from "./three.js";
 import type { Matrix, PlaneInput, SceneInput } from "./types.js";
 
 export class Surroundings {
@@ -64,4 +73,53 @@ export class Surroundings {
   dispose(): void {
     for (const part of [this.floor, this.image, this.frustum, ...this.others]) release(part);
   }
+}
+
+/** A rectangle that covers exactly the image of the depth camera. */
+export function groundOf(
+  scene: SceneInput,
+  image: Uint8ClampedArray,
+  depthM: number,
+): Mesh<BufferGeometry, MeshBasicMaterial> {
+  const map = new DataTexture(Uint8Array.from(image), scene.width, scene.height);
+  map.colorSpace = SRGBColorSpace;
+  map.minFilter = LinearFilter;
+  map.magFilter = LinearFilter;
+  map.needsUpdate = true;
+  const geometry = geometryOf(imageCorners(scene, depthM).flat());
+  geometry.setAttribute("uv", new BufferAttribute(Float32Array.of(0, 0, 1, 0, 1, 1, 0, 1), 2));
+  geometry.setIndex([0, 1, 2, 0, 2, 3]);
+  const hidden = { depthTest: false, depthWrite: false };
+  const ground = new Mesh(geometry, new MeshBasicMaterial({ map, side: DoubleSide, toneMapped: false, ...hidden }));
+  // Before everything else.
+  ground.renderOrder = -1;
+  ground.frustumCulled = false;
+  ground.visible = false;
+  return ground;
+}
+
+interface Theme {
+  background: string;
+  frustum: string;
+  /** Colours of the points of a scene without a photo. */
+  near: string;
+  far: string;
+}
+
+const themes: Record<"light" | "dark", Theme> = {
+  light: { background: "#eef1f5", frustum: "#7a8699", near: "#c9bfae", far: "#51698c" },
+  dark: { background: "#14181f", frustum: "#67748a", near: "#d8cdba", far: "#35496b" },
+};
+
+/** The colours of a theme. The background is that of the host, if it is opaque. */
+export function colours(theme: "light" | "dark", host: HTMLElement) {
+  const { background, frustum, near, far } = themes[theme];
+  const hostColour = getComputedStyle(host).backgroundColor;
+  const isOpaque = /^rgb\(/.test(hostColour);
+  return {
+    background: new Color(isOpaque ? hostColour : background),
+    frustum: new Color(frustum),
+    near: new Color(near),
+    far: new Color(far),
+  };
 }

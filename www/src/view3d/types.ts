@@ -82,8 +82,6 @@ export interface ViewEvents {
   onPose(id: string, pose: Float64Array, phase: "drag" | "end"): void;
   /** A mesh or the points of a mask were clicked; `null` for neither. */
   onSelect(id: string | null): void;
-  /** A point of a mesh or of the scene was clicked. Returns whether the click meant only that. */
-  onPick?(point: [number, number, number]): boolean;
   /** The pixel of the depth map under the pointer. */
   onHover?(pixel: { x: number; y: number } | null): void;
 }

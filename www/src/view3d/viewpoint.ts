@@ -1,8 +1,9 @@
 /** The viewpoint: exactly the depth camera, or an orbit around a target. */
-
 import { applyPinhole } from "sim3align/three";
+import { boxOf } from "../pictures/box.js";
+import type { Model } from "./model.js";
 import { DirectionalLight, OrbitControls, PerspectiveCamera, Quaternion, Spherical, Vector3 } from "./three.js";
-import type { Look, SceneInput } from "./types.js";
+import type { Look, ObjectInput, SceneInput } from "./types.js";
 
 /** Viewpoints as angles from the depth camera in degrees: to the right, and up. */
 const directions: Record<Exclude<Look, "camera">, [number, number]> = { orbit: [28, 16], top: [0, 80], side: [82, 8] };
@@ -268,4 +269,46 @@ export class Viewpoint {
   dispose(): void {
     this.controls.dispose();
   }
+}
+
+const lookNames: Record<Look, string> = {
+  camera: "the depth camera",
+  orbit: "three quarters",
+  top: "above",
+  side: "the side",
+};
+
+/**
+ * What the view shows.
+ *
+ * @param points the number of points of the scene
+ * @param placed the names of the meshes that have a pose
+ */
+export function description(from: Look, points: number, placed: readonly string[]): string {
+  const meshes = placed.length === 0 ? "no mesh placed yet" : `placed meshes: ${placed.join(", ")}`;
+  return `3D view from ${lookNames[from]}: ${points.toLocaleString("en-GB")} points of the scene, ${meshes}`;
+}
+
+/** The smallest rectangle that shows all masks and all meshes; `null` if there are none. */
+export function cropOf(
+  { width, camera }: SceneInput,
+  objects: readonly ObjectInput[],
+  models: ReadonlyMap<string, Model>,
+): Rect | null {
+  const rect = { left: Number.POSITIVE_INFINITY, top: Number.POSITIVE_INFINITY, right: -1, bottom: -1 };
+  const add = (u: number, v: number) => {
+    [rect.left, rect.right] = [Math.min(rect.left, u), Math.max(rect.right, u)];
+    [rect.top, rect.bottom] = [Math.min(rect.top, v), Math.max(rect.bottom, v)];
+  };
+  for (const { id, mask } of objects) {
+    const box = boxOf(mask, width);
+    if (box !== null) {
+      add(box.left, box.top);
+      add(box.right - 1, box.bottom - 1);
+    }
+    for (const { x, y, z } of models.get(id)?.corners() ?? []) {
+      if (z > 0) add((camera.fx * x) / z + camera.cx, (camera.fy * y) / z + camera.cy);
+    }
+  }
+  return rect.right < 0 ? null : rect;
 }

@@ -11,7 +11,7 @@ const CLICK_PX = 4;
 
 /** The handlers of a workspace. */
 export function pointerOf(workspace: Workspace) {
-  const { hoveredPixel, measure, objectAt, scene, select, space } = workspace;
+  const { hoveredPixel, objectAt, scene, select, space } = workspace;
   const { ownZoom, zoom } = imageOf(workspace);
 
   /** Where a drag began; whether the pointer has moved since. */
@@ -51,7 +51,6 @@ export function pointerOf(workspace: Workspace) {
     const [pixel, state] = [pixelOf(scene.peek(), event), space.peek()];
     if (pixel === null || hasDragged) return;
     const point = pointAt(scene.peek(), pixel);
-    if (point !== null && measure(point)) return;
     select(objectAt(pixel.x, pixel.y)?.id ?? null);
     if (state.kind === "ready" && point !== null) state.view.focus(point);
   }

@@ -5,7 +5,7 @@ import { differenceLimit } from "sim3align/pictures/colours";
 import { depthGradient } from "../pictures/colours.js";
 import type { Workspace } from "../state/workspace.js";
 import { Check, Menu } from "../ui/controls.js";
-import { depth, small } from "../ui/format.js";
+import { depth, small } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 import { pointerOf } from "./image-pointer.js";

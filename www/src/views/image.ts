@@ -4,8 +4,8 @@ import { depthImage, depthRange } from "../pictures/colours.js";
 import { compose, type DrawnObject, drawObject } from "../pictures/composition.js";
 import { drawnScene } from "../pictures/reduced.js";
 import { wholeImage, type Zoom, zoomToObjects } from "../pictures/zoom.js";
+import { once } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { once } from "../state/once.js";
 import type { Workspace } from "../state/workspace.js";
 
 /** The image of a workspace. */

@@ -2,9 +2,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { samples, sampleUrl } from "../opening/samples.js";
 import type { Display3d } from "../state/display.js";
-import { Check, Menu } from "../ui/controls.js";
-import { size, type Unit } from "../ui/format.js";
-import { Picture } from "../ui/picture.js";
+import { Check, Menu, Picture } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 
@@ -25,7 +23,7 @@ const viewpoints = [
 
 export function SpaceView() {
   const workspace = useWorkspace();
-  const { display3d, isSettled, measured, showsBefore, space, unit } = workspace;
+  const { display3d, isSettled, showsBefore, space } = workspace;
   const set = (change: Partial<Display3d>) => {
     display3d.value = { ...display3d.peek(), ...change };
   };
@@ -88,7 +86,7 @@ export function SpaceView() {
             </label>
           </fieldset>
           <fieldset disabled={state.kind !== "ready"}>
-            <legend>Compare and measure</legend>
+            <legend>Compare</legend>
             <button
               type="button"
               aria-pressed={showsBefore.value}
@@ -97,16 +95,6 @@ export function SpaceView() {
               }}
             >
               Before
-            </button>
-            <button
-              type="button"
-              id="measure"
-              aria-pressed={measured.value !== null}
-              onClick={() => {
-                measured.value = measured.peek() === null ? [] : null;
-              }}
-            >
-              Measure
             </button>
           </fieldset>
         </Menu>
@@ -118,22 +106,9 @@ export function SpaceView() {
             {state.reason} All results are shown in the image view.
           </p>
         )}
-        {measured.value !== null && (
-          <output id="measured" class="over">
-            {measuredText(measured.value, unit.value)}
-          </output>
-        )}
       </div>
     </section>
   );
-}
-
-/** The distance of the measured points, or what to do. */
-function measuredText(points: readonly (readonly [number, number, number])[], unit: Unit): string {
-  const [from, to] = points;
-  if (from === undefined) return "Click a point in either view.";
-  if (to === undefined) return "Click a second point.";
-  return size(Math.hypot(...from.map((x, k) => x - (to[k] ?? 0))), unit);
 }
 
 /** The address of the photo of the sample that the page opens first. */

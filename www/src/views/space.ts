@@ -15,7 +15,7 @@ const ANIMATION_MS = 900;
 
 /** Creates the 3D view and subscribes it to the state, until the signal aborts. */
 export async function mountSpace(workspace: Workspace, host: HTMLElement, signal: AbortSignal): Promise<void> {
-  const { hoveredPixel, measure, place, scene, select, space } = workspace;
+  const { hoveredPixel, place, scene, select, space } = workspace;
   /** The object that is being dragged, with its pose before. */
   let dragged: { object: ObjectModel; from: Pose } | undefined;
   try {
@@ -36,7 +36,6 @@ export async function mountSpace(workspace: Workspace, host: HTMLElement, signal
           } else object.pose.value = pose;
         },
         onSelect: select,
-        onPick: measure,
         onHover: (pixel) => {
           hoveredPixel.value = pixel;
         },
@@ -87,8 +86,7 @@ const sceneInput = ({ layers }: Workspace, { depthM, width, height, camera, rgba
 });
 
 function subscribe(workspace: Workspace, view: SceneView, isDragging: () => boolean): () => void {
-  const { display3d, frameIndex, gizmo, gizmoSettings, measured, scene, selected, support, theme, unit, video } =
-    workspace;
+  const { display3d, frameIndex, gizmo, gizmoSettings, scene, selected, support, theme, unit, video } = workspace;
   const stops: (() => void)[] = [];
   const follow = (apply: () => void) => stops.push(effect(apply));
   let stopPoses: (() => void)[] = [];
@@ -122,7 +120,6 @@ function subscribe(workspace: Workspace, view: SceneView, isDragging: () => bool
   follow(() => view.select(selected.value?.id ?? null));
   follow(() => view.setGizmo(gizmo.value, gizmoSettings.value));
   follow(() => view.setGround(support.value));
-  follow(() => view.measure(measured.value ?? []));
   return () => {
     isStopped = true;
     for (const stop of [...stops, ...stopPoses]) stop();

@@ -1,7 +1,0 @@
-/** The panels of `later.tsx`, as one script. */
-export { Advised, Warnings } from "./advised.js";
-export { Alternatives } from "./alternatives.js";
-export { Details } from "./details.js";
-export { HandPanel } from "./hand-panel.js";
-export { OptionsPanel } from "./options-panel.js";
-export { Remedies } from "./remedies.js";
