@@ -28,7 +28,7 @@ const sets = {
   colors: { cases: [168, 12] },
   surplus: {
     ...{ cases: [48, 4], of: "general" },
-    more: rows({ floaters: "surplus=floaters", plate: "surplus=plate", "fused-plate": "surplus=fused-plate" }),
+    more: rows({ floaters: "surplus=floaters", plate: "surplus=plate" }),
   },
   models: {
     ...{ cases: [48, 3], of: "general" },

@@ -1,10 +1,10 @@
 //! Stanford PLY, ASCII and binary of both byte orders.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::cursor::Cursor;
-use crate::guard::{MAX_VERTICES, corrupt, too_large};
+use crate::guard::corrupt;
 use crate::mesh_builder::MeshBuilder;
 use crate::ply_header::{Element, Encoding, Header, Scalar};
 use crate::text::{number, quoted};
@@ -41,32 +41,6 @@ pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
         }
     }
     Ok(builder.finish()?.colored(Ok(Vec::new())))
-}
-
-/// Reads only the element `vertex`: the points of a cloud without faces.
-///
-/// # Errors
-/// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`].
-pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
-    let (header, body) = Header::read(bytes)?;
-    let mut body = Body::new("cloud", header.encoding, body);
-    let mut points = Vec::new();
-    for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
-        body.check_count(element)?;
-        if element.name != b"vertex" {
-            read_records(element, &mut body, |_, _| Ok(()))?;
-            continue;
-        }
-        if element.count > MAX_VERTICES {
-            return Err(too_large("cloud", format!("{} points", element.count), format!("at most {MAX_VERTICES}")));
-        }
-        read_vertices(element, &mut body, |point, _| {
-            points.push(point.as_vec3());
-            Ok(())
-        })?;
-        return Ok(points);
-    }
-    Err(corrupt("cloud", "no vertices", "the element vertex"))
 }
 
 fn read_vertices(

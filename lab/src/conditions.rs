@@ -51,8 +51,6 @@ pub enum Framing {
     BorderCut,
     /// A part: something in front hides the rest.
     Occluded,
-    /// Two parts: a bar in front divides it.
-    Split,
 }
 
 named! {
@@ -85,14 +83,10 @@ pub enum DepthFault {
     None,
     /// Many readings are missing here and there.
     Sparse,
-    /// A band beside the object, which the camera sees and a projector far from it does not.
-    WideShadow,
     /// No readings on dark, reflective and grazing parts of the object.
     Holes,
     /// The same holes, which the mask does not contain either.
     HolesOfMask,
-    /// In half of the cases, one of two parts has no reading.
-    LostPart,
     /// Steps of millimetres that grow with the square of the depth, as disparities in steps give it.
     Quantised,
 }
@@ -134,24 +128,17 @@ pub struct Class {
     pub is_grey: bool,
 }
 
+const STEREO: DepthSource = DepthSource::ActiveStereo;
+const LIGHT: DepthSource = DepthSource::StructuredLight;
+const TIME: DepthSource = DepthSource::TimeOfFlight;
+const PREDICTED: DepthSource = DepthSource::Predicted;
+
 /// Two thirds of the maps are those of depth models.
 const ANY_SOURCE: &[DepthSource] = &[
-    DepthSource::Predicted,
-    DepthSource::Predicted,
-    DepthSource::Predicted,
-    DepthSource::Predicted,
-    DepthSource::ActiveStereo,
-    DepthSource::Predicted,
-    DepthSource::Predicted,
-    DepthSource::StructuredLight,
-    DepthSource::Predicted,
-    DepthSource::Predicted,
-    DepthSource::ActiveStereo,
-    DepthSource::TimeOfFlight,
+    PREDICTED, PREDICTED, STEREO, PREDICTED, PREDICTED, LIGHT, PREDICTED, PREDICTED, STEREO, PREDICTED, PREDICTED, TIME,
 ];
 /// Half of the sensors are stereo cameras.
-const SENSOR: &[DepthSource] =
-    &[DepthSource::ActiveStereo, DepthSource::StructuredLight, DepthSource::ActiveStereo, DepthSource::TimeOfFlight];
+const SENSOR: &[DepthSource] = &[STEREO, LIGHT, STEREO, TIME];
 
 /// The typical case.
 pub const PLAIN: Class = Class {
@@ -220,15 +207,13 @@ pub const GENERAL: [&[Class]; 3] = [
 ];
 /// Effects of depth sensors and of the sources of masks, of every tier.
 pub const SENSORS: &[Class] = &[
-    faulty("wide-shadow", DepthFault::WideShadow),
     faulty("holes", DepthFault::Holes),
     faulty("mask-of-readings", DepthFault::HolesOfMask),
-    Class { framing: Framing::Split, ..faulty("split-mask", DepthFault::LostPart) },
     faulty("quantised", DepthFault::Quantised),
-    sensor("active-stereo", &[DepthSource::ActiveStereo]),
-    sensor("structured-light", &[DepthSource::StructuredLight]),
-    sensor("time-of-flight", &[DepthSource::TimeOfFlight]),
-    sensor("predicted-depth", &[DepthSource::Predicted]),
+    sensor("active-stereo", &[STEREO]),
+    sensor("structured-light", &[LIGHT]),
+    sensor("time-of-flight", &[TIME]),
+    sensor("predicted-depth", &[PREDICTED]),
     Class { name: "network-mask", mask: Some(MaskSource::Network), ..PLAIN },
     Class { name: "annotated-mask", mask: Some(MaskSource::Annotator), ..PLAIN },
 ];
@@ -236,8 +221,6 @@ pub const SENSORS: &[Class] = &[
 pub const COLORS: &[Class] = &[
     PRINTED,
     Class { name: "printed-shape", print: Some(PrintKind::Label), ..PLAIN },
-    Class { name: "two-tone", print: Some(PrintKind::TwoTone), ..PRINTED },
-    PRINTED,
     Class { name: "one-color", print: Some(PrintKind::Uniform), needs_color: false, ..PRINTED },
     Class { name: "grey-photo", is_grey: true, ..PRINTED },
     PRINTED,

@@ -6,7 +6,6 @@ pub mod case;
 pub mod case_folder;
 pub mod clouds;
 mod conditions;
-pub mod cost;
 mod effects;
 mod files;
 mod names;

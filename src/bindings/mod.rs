@@ -2,7 +2,6 @@
 //! `wasm_bindgen`.
 
 pub mod answer;
-pub mod error;
 pub mod helpers;
 pub mod host;
 pub mod input;

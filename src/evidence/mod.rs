@@ -10,7 +10,6 @@ pub mod frame;
 pub mod normals;
 pub mod observation;
 pub mod photo;
-pub mod sample;
 
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
@@ -18,9 +17,9 @@ use crate::geometry::curve::along_curve;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::sample_surface;
+use clouds::Sampling;
 use normals::{Estimation, Orientation};
 use observation::Observation;
-use sample::Sampling;
 
 /// Neighbours for the normal estimation of observed points.
 pub const NORMAL_NEIGHBORS: usize = 30;

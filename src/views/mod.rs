@@ -5,7 +5,6 @@ pub mod by_color;
 pub mod common_size;
 mod in_world;
 pub mod joint;
-pub mod options;
 pub mod predicted_mask;
 pub mod report;
 mod request;
@@ -23,11 +22,32 @@ use crate::align::helper::Helper;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::geometry::similarity::Similarity;
+use crate::options::Options;
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
+use crate::precise::options::{Proportions, search_options};
 use crate::progress::Host;
 use crate::scheduler::{Scheduler, Task, finished};
-use options::ViewsOptions;
 use report::ViewsAlignment;
+
+search_options! {
+    /// Options of `alignViews`. All have defaults.
+    pub struct ViewsOptions {
+        /// Whether to fit the proportions of the mesh to all views together, as in `align`. Only with given camera poses.
+        proportions: Proportions = Proportions::Keep, Choice;
+        /// Whether to compute the `metrics` of each view. Without them the call takes less time.
+        metrics: bool = true, Flag;
+        /// Upper bound on the depth readings of each view that are used for metrics.
+        max_observed_points: u32 = 20_000, Count(32..=1_000_000);
+        /// Number of points sampled on the mesh surface for metrics.
+        surface_samples: u32 = 10_000, Count(100..=1_000_000);
+    }
+    check check_combination;
+    fn of_one_view;
+}
+
+fn check_combination(options: &ViewsOptions) -> Result<()> {
+    options.of_one_view().check_combination()
+}
 use request::Request;
 use world_pose::PlacedCamera;
 

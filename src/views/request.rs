@@ -1,7 +1,7 @@
 //! An alignment with several views, as it runs.
 
+use super::ViewsOptions;
 use super::in_world::in_world;
-use super::options::ViewsOptions;
 use super::report::ViewsAlignment;
 use super::searched_view::SearchedView;
 use super::summary::Summary;

@@ -1,11 +1,11 @@
 //! The result of an alignment of several views, before its metrics.
 
-use super::options::ViewsOptions;
+use super::ViewsOptions;
 use super::report::{CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty};
 use crate::align::warnings;
 use crate::error::{Error, Result};
+use crate::evidence::clouds::Sampling;
 use crate::evidence::observation::Observation;
-use crate::evidence::sample::Sampling;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::{self, Metrics};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;

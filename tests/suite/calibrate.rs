@@ -9,7 +9,7 @@ use sim3align::error::Result;
 use sim3align::evidence::frame::Frame;
 use sim3align::geometry::depth_kind::DepthKind;
 use sim3align::scheduler::{Scheduler, finished};
-use sim3align::track::options::TrackOptions;
+use sim3align::track::TrackOptions;
 use sim3align::track::tracker::Tracker;
 use sim3align::views::align_views;
 

@@ -2,8 +2,8 @@
 
 use sim3align::evidence::frame::Frame;
 use sim3align::scheduler::{Scheduler, Task};
+use sim3align::track::TrackOptions;
 use sim3align::track::history::{History, MOST};
-use sim3align::track::options::TrackOptions;
 use sim3align::track::report::{TrackState, TrackedFrame};
 use sim3align::track::tracker::Tracker;
 use sim3align::views::world_pose::WorldPose;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use sim3align::views::options::ViewsOptions;
+use sim3align::views::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment, WorldFrame};
 use sim3align::views::{View, align_views};
 

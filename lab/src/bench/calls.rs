@@ -1,29 +1,27 @@
 //! The calls of the benchmark, and the errors of their poses.
 
 use super::imported::imported;
-use super::result::{ResultRow, by_name, codes, described, three};
+use super::result::{Meter, ResultRow, by_name, codes, described, three};
 use super::row::{Call, Row};
 use super::variants::varied;
 use crate::case::{Case, CaseFrame, CaseObject};
 use crate::clouds::Pair;
-use crate::cost::Meter;
 use crate::effects::monocular::DepthModel;
 use crate::prelude::*;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
 use sim3align::align::search::Request;
 use sim3align::align::{align_paper, align_prepared};
 use sim3align::calibrate::{Calibrated, Object, calibrate};
-use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::pose_error::pose_errors;
 use sim3align::register::register;
 use sim3align::report::{Preset, Sim3};
 use sim3align::scene::plane::SupportChoice;
 use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
 use sim3align::scheduler::{Scheduler, finished};
-use sim3align::track::options::TrackOptions;
+use sim3align::track::TrackOptions;
 use sim3align::track::tracker::Tracker;
+use sim3align::views::ViewsOptions;
 use sim3align::views::align_views;
-use sim3align::views::options::ViewsOptions;
 
 /// Fraction of the object that a frame of a video must show for it to count.
 const SHOWN: f64 = 0.4;
@@ -76,98 +74,84 @@ fn options_of(case: &Case, k: usize, row: &Row) -> AlignOptions {
 /// One object alone.
 fn alone(case: &Case, k: usize, row: &Row) -> Result<ResultRow> {
     let (frame, object, result) = (&case.frames[0], &case.objects[k], blank(case, 0, k));
-    if let Some(model) = row.model {
-        return Ok(modelled(case, k, row, model).unwrap_or_else(|error| result.with_error(&error)));
-    }
-    let observation = frame.observation(k, row.color)?;
+    let meter = Meter::start();
+    let observation = match row.model {
+        None => frame.observation(k, row.color)?,
+        Some(model) => calibrated(case, k, row, model)?,
+    };
     let evaluated = |pose: &Similarity| evaluate(&observation, &object.mesh, pose, &EvaluateOptions::default()).ok();
-    let truth = frame.truths[k].as_ref().and_then(evaluated);
-    let result = ResultRow { truth_metrics: truth.map(|found| by_name(&found.metrics)), ..result };
-    if let Some(folder) = &row.import {
-        let (pose, seconds) = imported(&result.name, folder);
-        let result = ResultRow { ms: seconds.map(|seconds| 1000.0 * seconds), ..result };
-        return Ok(match pose {
-            Ok(pose) => {
+    let outcome = match (&row.import, row.preset) {
+        (Some(folder), _) => {
+            let (pose, seconds) = imported(&result.name, folder);
+            let result = ResultRow { ms: seconds.map(|seconds| 1000.0 * seconds), ..result };
+            pose.map_err(|error| ResultRow { error: Some(error), ..result.clone() }).map(|pose| {
                 let found = evaluated(&pose);
                 let metrics = found.as_ref().map(|found| by_name(&found.metrics));
                 let collapsed = found.is_some_and(|found| found.diagnostics.collapsed);
-                judged(ResultRow { metrics, collapsed, ..result }, object, frame, k, &pose)
-            }
-            Err(error) => ResultRow { error: Some(error), ..result },
-        });
-    }
-    let meter = Meter::start();
-    let outcome = match row.preset {
-        Preset::Precise => {
-            let request = Request::new(options_of(case, k, row))?;
-            align_prepared(&observation, &object.prepared(row.color), request, &mut Silent)
-                .map(|found| (result.clone().with_alignment(&found), found.camera_from_mesh))
+                (ResultRow { metrics, collapsed, ..result }, pose)
+            })
         }
-        Preset::Paper => {
-            let mesh = object.surplus.as_ref().unwrap_or(&object.mesh);
-            align_paper(&observation, mesh, &row.paper, &mut Silent)
-                .map(|found| (result.clone().with_paper_alignment(&found), found.camera_from_mesh))
+        (None, preset) => {
+            let found = match preset {
+                Preset::Precise => {
+                    let request = Request::new(options_of(case, k, row))?;
+                    align_prepared(&observation, &object.prepared(row.color), request, &mut Silent)
+                        .map(|found| (result.clone().with_alignment(&found), found.camera_from_mesh))
+                }
+                Preset::Paper => {
+                    let mesh = object.surplus.as_ref().unwrap_or(&object.mesh);
+                    align_paper(&observation, mesh, &row.paper, &mut Silent)
+                        .map(|found| (result.clone().with_paper_alignment(&found), found.camera_from_mesh))
+                }
+            };
+            let (ms, work) = meter.cost();
+            let pose = found.and_then(|(result, pose)| Ok((ResultRow { ms, work, ..result }, similarity(&pose)?)));
+            pose.map_err(|error| ResultRow { ms, work, ..result }.with_error(&error))
         }
     };
-    let (ms, work) = meter.cost();
-    Ok(match outcome {
-        Ok((result, pose)) => judged(ResultRow { ms, work, ..result }, object, frame, k, &similarity(&pose)?),
-        Err(error) => ResultRow { ms, work, ..result }.with_error(&error),
-    })
+    // The metrics of the true pose are those of depth in its unit.
+    let truth = frame.truths[k].as_ref().filter(|_| row.model.is_none()).and_then(evaluated);
+    let truth_metrics = truth.map(|found| by_name(&found.metrics));
+    let result = match outcome {
+        Ok((result, pose)) if row.model.is_some() => {
+            let pose = as_seen(&pose, &observation.camera(), case, k);
+            judged(result, object, frame, k, &pose)
+        }
+        Ok((result, pose)) => judged(result, object, frame, k, &pose),
+        Err(failed) => failed,
+    };
+    Ok(ResultRow { truth_metrics, ..result })
 }
 
-/// An object in depth as a depth model gives it, calibrated first.
-fn modelled(case: &Case, k: usize, row: &Row, model: DepthModel) -> Result<ResultRow> {
-    let (frame, object, result) = (&case.frames[0], &case.objects[k], blank(case, 0, k));
-    let masks: Vec<&Mask> = frame.masks.iter().flatten().collect();
-    let depth = frame.exact.as_ref().unwrap_or(&frame.depth);
-    let view = model.predict(&case.name, depth, &masks, frame.camera)?;
-    let (mesh, options) = (object.prepared(row.color), options_of(case, k, row));
+/// An object in depth as a depth model gives it, calibrated.
+fn calibrated(case: &Case, k: usize, row: &Row, model: DepthModel) -> Result<Observation> {
+    let frame = &case.frames[0];
     let mask = frame.observation(k, false)?.mask().clone();
-    let called = Object { mask: &mask, others: frame.others(k), mesh: &mesh, options: &options };
-    let meter = Meter::start();
+    let view = model.predict(&case.name, frame.exact.as_ref().unwrap_or(&frame.depth), &mask, frame.camera)?;
+    let (mesh, options) = (case.objects[k].prepared(row.color), options_of(case, k, row));
+    let object = Object { mask: &mask, others: frame.others(k), mesh: &mesh, options: &options };
     let Calibrated { depth, calibration, .. } =
-        finished(calibrate(&view, &[called], &mut Silent, &Scheduler::unbounded()))?;
-    let mut observation =
-        Observation::new(depth, mask, calibration.camera)?.with_relief_deviation(calibration.uncertainty.relief());
-    if let Some(photo) = frame.photo.as_ref().filter(|_| row.color) {
-        observation = observation.with_photo(photo.clone())?;
+        finished(calibrate(&view, &[object], &mut Silent, &Scheduler::unbounded()))?;
+    let observation = Observation::new(depth, mask, calibration.camera)?;
+    let observation = observation.with_relief_deviation(calibration.uncertainty.relief());
+    match frame.photo.as_ref().filter(|_| row.color) {
+        Some(photo) => observation.with_photo(photo.clone()),
+        None => Ok(observation),
     }
-    let alignment = align_prepared(&observation, &mesh, Request::new(options.clone())?, &mut Silent)?;
-    let (ms, work) = meter.cost();
-    let result = ResultRow { ms, work, ..result };
-    let pose = similarity(&alignment.camera_from_mesh)?;
-    let result = result.with_alignment(&alignment);
-    let Some(truth) = &frame.truths[k] else { return Ok(result) };
-    let errors = apparent_errors(object, (truth, &frame.camera), (&pose, &calibration.camera))?;
-    Ok(result.with_errors(Some(errors)))
 }
 
-/// Errors of what shows in the image, whatever the unit: of the apparent size (focal length · scale / distance), of the
-/// rotation, and of the place relative to the apparent diameter.
-fn apparent_errors(
-    object: &CaseObject,
-    (truth, true_camera): (&Similarity, &Pinhole),
-    (found, camera): (&Similarity, &Pinhole),
-) -> Result<[f64; 3]> {
-    let mesh = &object.mesh;
-    // Among the equivalent true poses, that with the nearest rotation.
-    let relative = UnitQuaternion::from_rotation_matrix(&(truth.rotation.inverse() * found.rotation));
-    let rotation = object.symmetry.group(mesh)?.nearest(&relative);
-    let center = Vector3::from(SurfaceMoments::of(mesh).centroid.to_array());
-    let turned =
-        Similarity { scale: 1.0, rotation: rotation.to_rotation_matrix(), translation: center - rotation * center };
-    let truth = truth.compose(&turned);
-    let center = Bounds::of(mesh.positions()).map_or_else(Vector3::zeros, |b| vector3(b.center()));
-    let seen = |pose: &Similarity, camera: &Pinhole| {
-        let p = pose.apply(center);
-        let pixel = DVec2::new(camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
-        // Of both axes, as pixels may not be square.
-        (pixel, (camera.fx * camera.fy).sqrt() * pose.scale / p.z)
-    };
-    let ((pixel, size), (true_pixel, true_size)) = (seen(found, camera), seen(&truth, true_camera));
-    let moved = pixel.distance(true_pixel) / (true_size * mesh.diagonal());
-    Ok([(size / true_size - 1.0).abs(), truth.rotation_angle_to(found).to_degrees(), moved])
+/// The pose that looks the same through the true camera, at the true distance: the unit and the focal length of depth of a
+/// depth model may be unknown, what shows in the image is not.
+fn as_seen(pose: &Similarity, camera: &Pinhole, case: &Case, k: usize) -> Similarity {
+    let (frame, mesh) = (&case.frames[0], &case.objects[k].mesh);
+    let center = Bounds::of(mesh.positions()).map_or_else(Vector3::zeros, |bounds| vector3(bounds.center()));
+    let (Some(truth), found) = (&frame.truths[k], pose.apply(center)) else { return *pose };
+    let distance = truth.apply(center).z;
+    let [u, v] = camera.project(vec3(&found));
+    let focal = |camera: &Pinhole| (camera.fx * camera.fy).sqrt();
+    let scale = pose.scale * focal(camera) / focal(&frame.camera) * distance / found.z;
+    let place = vector3(frame.camera.back_project(u, v, distance));
+    Similarity { scale, translation: place - pose.rotation * center * scale, ..*pose }
 }
 
 /// All objects of an image together.

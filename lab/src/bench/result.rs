@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use cpu_time::ThreadTime;
 use serde::{Deserialize, Serialize};
 
 use crate::prelude::*;
-use sim3align::counts::Counts;
+use sim3align::counts::{self, Counts};
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::report::{Alignment, Diagnostics, PaperAlignment, Warning};
@@ -146,4 +147,20 @@ pub fn by_name(metrics: &Metrics) -> MetricsByName {
 pub fn codes(warnings: &[Warning]) -> Vec<String> {
     let code = |warning: &Warning| serde_json::to_value(warning.code).ok()?.as_str().map(str::to_owned);
     warnings.iter().filter_map(code).collect()
+}
+
+/// Measures the cost of a call: the CPU time of its thread, which on a busy machine is much less than the elapsed time, and
+/// counts of its work, which are the same on every machine.
+pub struct Meter(ThreadTime, Counts);
+
+impl Meter {
+    /// A meter at zero.
+    pub fn start() -> Self {
+        Self(ThreadTime::now(), counts::so_far())
+    }
+
+    /// CPU time since the start, milliseconds, and the counts of the work.
+    pub fn cost(&self) -> (Option<f64>, Option<Counts>) {
+        (Some(1000.0 * self.0.elapsed().as_secs_f64()), Some(counts::so_far().since(&self.1)))
+    }
 }

@@ -25,7 +25,7 @@ named! {
 
 /// A row of the benchmark: a call and its options. Its text takes the JavaScript names of options, and the names in
 /// backquotes below.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Row {
     /// Its name in tables.
     pub name: String,
@@ -75,21 +75,11 @@ impl Row {
         let (name, text) = text.split_once(':').ok_or_else(|| format!("row {text:?} has no colon after its name"))?;
         let mut row = Self {
             name: name.trim().into(),
-            call: Call::default(),
-            preset: Preset::default(),
-            precise: AlignOptions::default(),
-            paper: PaperOptions::default(),
             register: RegisterOptions { scale: ScaleOption::Fixed(1.0), ..RegisterOptions::default() },
-            import: None,
             color: true,
             cameras: true,
-            views: None,
-            masks: None,
-            initial: false,
-            model: None,
-            surplus: None,
-            misfit: false,
             text: text.trim().into(),
+            ..Self::default()
         };
         for assignment in text.split_whitespace() {
             let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;

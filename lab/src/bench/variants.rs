@@ -23,10 +23,8 @@ named! {
     pub enum Surplus {
         /// Two to four blobs beside the object.
         Floaters = "floaters",
-        /// A plate below it, a part of its own.
+        /// A plate below it.
         Plate = "plate",
-        /// A plate below it that hangs together with it.
-        FusedPlate = "fused-plate",
     }
 }
 
@@ -80,15 +78,7 @@ impl Surplus {
         // The object is sunk in by a third of the plate.
         let at = DVec3::new(center.x, center.y, low.z - thickness / 6.0);
         solid.at(DAffine3::from_translation(at)).cuboid(half.extend(0.5 * thickness), 0.3 * thickness);
-        let joined = joined(&[mesh, &solid.finish()?.0])?;
-        if self == Self::Plate {
-            return Ok(joined);
-        }
-        // A sliver between the lowest vertex and the plate.
-        let height = |i: &u32| mesh.positions()[*i as usize].z;
-        let lowest = (0..mesh.positions().len() as u32).min_by(|a, b| height(a).total_cmp(&height(b))).unwrap_or(0);
-        let [a, b, _] = joined.triangles()[mesh.triangles().len()];
-        Mesh::new(joined.positions().to_vec(), [joined.triangles(), &[[lowest, a, b]]].concat())
+        joined(&[mesh, &solid.finish()?.0])
     }
 }
 

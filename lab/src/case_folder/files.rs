@@ -34,8 +34,11 @@ pub struct PoseFile {
     /// 16 numbers, column by column.
     #[serde(skip_serializing_if = "Option::is_none")]
     matrix: Option<[f64; 16]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     scale: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     rotation: Option<RotationFile>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     translation: Option<[f64; 3]>,
 }
 
@@ -94,14 +97,8 @@ pub fn parsed<T: DeserializeOwned>(argument: &str, bytes: &[u8]) -> Result<T> {
 }
 
 impl From<&Similarity> for PoseFile {
-    fn from(Similarity { scale, rotation, translation }: &Similarity) -> Self {
-        let row = |i: usize| [rotation[(i, 0)], rotation[(i, 1)], rotation[(i, 2)]];
-        Self {
-            matrix: None,
-            scale: Some(*scale),
-            rotation: Some(RotationFile::Rows([row(0), row(1), row(2)])),
-            translation: Some((*translation).into()),
-        }
+    fn from(pose: &Similarity) -> Self {
+        Self { matrix: Some(pose.to_column_major()), ..Self::default() }
     }
 }
 

@@ -2,7 +2,6 @@
 
 use crate::objects::solid::Solid;
 use crate::prelude::*;
-use crate::world::things::block;
 
 /// Random stream of what stands in a room.
 const ROOM_STREAM: u64 = 0x726f_6f6d;
@@ -48,7 +47,7 @@ impl Room {
                 table(&mut solid, spot, random);
             } else {
                 let (half_width, height) = (between(random, 0.06, 0.2), between(random, 0.1, 0.4));
-                block(&mut solid, spot, 0.0, half_width, height, random);
+                solid.block(spot, 0.0, half_width, height, random);
             }
         }
         Ok(Self { mesh: solid.finish()?.0, half })
@@ -71,6 +70,6 @@ fn table(solid: &mut Solid, spot: DVec3, random: &mut Random) {
     for _ in 0..2 + random.below(4) {
         let place = DVec3::new(between(random, -0.4, 0.4) * size.x, between(random, -0.35, 0.35) * size.y, size.z);
         let (half_width, height) = (between(random, 0.03, 0.09), between(random, 0.05, 0.2));
-        block(solid, frame.transform_point3(place), 0.0, half_width, height, random);
+        solid.block(frame.transform_point3(place), 0.0, half_width, height, random);
     }
 }

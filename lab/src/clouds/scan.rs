@@ -23,27 +23,23 @@ const RANGE_M: [f64; 2] = [0.4, 4.0];
 const JUMP: f32 = 0.06;
 /// Distance of the points of a scan.
 const SPACING_M: f32 = 0.02;
-/// The yaw of each frame, relative to the first.
-const ASIDE: [f64; 7] = [0.0, -0.45, -0.22, 0.22, 0.45, -0.1, 0.1];
-
-/// Frames of a depth camera, fused as by odometry that drifts a little: points in the frame of the first camera.
+/// What a depth camera at `eye` sees that pans over the room: points in the frame of its middle image.
 pub fn scan(room: &Mesh, eye: DVec3, yaw: f64, pitch: f64, seed: u64) -> Result<Vec<Vec3>> {
     let random = &mut Random::new(seed, SENSOR_STREAM);
     let camera = Pinhole::from_vertical_fov(FOV_Y_DEG, WIDTH, HEIGHT)?;
-    let first = looking(eye, yaw, pitch)?;
+    let middle = looking(eye, yaw, pitch)?;
     let mut rasteriser = Rasteriser::new();
     let mut points = Vec::new();
-    for (frame, aside) in ASIDE.into_iter().enumerate() {
-        let size = if frame == 0 { 0.0 } else { 1.0 };
-        let [x, y, z, tilt] = [0.1, 0.1, 0.04, 0.12].map(|sd| size * sd * normal(random));
-        let pose = looking(eye + DVec3::new(x, y, z), yaw + aside, pitch + tilt)?;
+    for aside in [-0.45, 0.0, 0.45] {
+        let pose = looking(eye, yaw + aside, pitch)?;
         rasteriser.render(room, &pose.inverse(), &camera, WIDTH, HEIGHT);
+        // Fused as by odometry that drifts a little.
         let drift = Similarity {
             translation: Vector3::from_fn(|_, _| 0.006 * normal(random)),
             rotation: Rotation3::new(Vector3::from_fn(|_, _| 0.004 * normal(random))),
             scale: 1.0,
         };
-        let believed = first.inverse().compose(&pose).compose(&drift);
+        let believed = middle.inverse().compose(&pose).compose(&drift);
         let seen = readings(rasteriser.depth(), &camera, random);
         points.extend(seen.into_iter().map(|p| vec3(&believed.apply(vector3(p)))));
     }

@@ -8,18 +8,12 @@ use crate::objects::mesh::face;
 use crate::prelude::*;
 use crate::world::Placed;
 use crate::world::view::Rendering;
-use sim3align_geometry::components::{Component, components};
 use sim3align_geometry::order::{median, quantile};
 
 /// Farthest reading of a sensor, metres.
 pub const FARTHEST_M: f64 = 12.0;
-/// Ratio of a wide shadow's distance between camera and projector to the usual one.
-const WIDE: f64 = 4.0;
 /// Largest step of quantised depth at the object, as a share of its diagonal.
 const LARGEST_STEP: f64 = 0.06;
-/// Minimum share of the visible pixels that counts as a part, and minimum share of the two largest parts together.
-const LEAST_PART: f64 = 0.12;
-const LEAST_BOTH: f64 = 0.97;
 
 /// A depth map with simulated errors.
 #[derive(Debug)]
@@ -46,9 +40,7 @@ pub fn read(
     let Conditions { tier, class } = conditions;
     let view = &rendering.view;
     let source = class.depth[random.below(class.depth.len())];
-    let is_wide = class.depth_fault == DepthFault::WideShadow;
-    let source = if is_wide { DepthSource::StructuredLight } else { source };
-    let mut depth = edges(source, rendering, tier, if is_wide { WIDE } else { 1.0 }, random);
+    let mut depth = edges(source, rendering, tier, random);
     let (drifts, bias) = if source == DepthSource::Predicted {
         let drifts = warp(&mut depth, rendering, things, diagonal, tier, random);
         (drifts, libm::exp(between(random, libm::log(0.8), libm::log(1.25))))
@@ -88,16 +80,6 @@ impl Readings {
                     mask.data_mut().iter_mut().zip(depth).filter(|(_, z)| **z == 0.0).for_each(|(m, _)| *m = 0);
                 }
             }
-            DepthFault::LostPart => {
-                let set: Vec<bool> = mask.data().iter().map(|m| *m != 0).collect();
-                let lost = usize::from(chance(random, 0.7));
-                if chance(random, 0.5)
-                    && let Some(part) = parts(&set, rendering.view.width).get(lost)
-                {
-                    part.pixels().for_each(|i| depth[i] = 0.0);
-                    self.tags.push("part-without-depth");
-                }
-            }
             DepthFault::Quantised => {
                 let Some(distance) = median(rendering.object_depth.iter().copied().filter(|z| *z > 0.0)) else {
                     return;
@@ -110,7 +92,7 @@ impl Readings {
                     *z = (k / (k / f64::from(*z)).round().max(1.0)) as f32;
                 }
             }
-            DepthFault::None | DepthFault::Sparse | DepthFault::WideShadow => {}
+            DepthFault::None | DepthFault::Sparse => {}
         }
     }
 }
@@ -257,19 +239,4 @@ fn highest(pixels: &[usize], score: impl Fn(usize) -> f64, share: f64) -> Vec<us
     let scores: Vec<f32> = (0..pixels.len()).map(|k| score(k) as f32).collect();
     let least = quantile(scores.iter().copied(), 1.0 - share).unwrap_or(f32::INFINITY);
     pixels.iter().zip(scores).filter(|(_, score)| *score > least).map(|(&i, _)| i).collect()
-}
-
-/// The parts of a region, the largest first.
-fn parts(region: &[bool], width: usize) -> Vec<Component> {
-    let mut parts = components(region, width, region.len() / width);
-    parts.sort_by_key(|part| core::cmp::Reverse(part.count()));
-    parts
-}
-
-/// Whether a region consists of two large parts, apart from a few pixels.
-pub fn in_two(region: &[bool], width: usize) -> bool {
-    let parts = parts(region, width);
-    let total = parts.iter().map(|part| part.count()).sum::<usize>() as f64;
-    let [first, second] = [0, 1].map(|k| parts.get(k).map_or(0.0, |part| part.count() as f64));
-    second >= LEAST_PART * total && first + second >= LEAST_BOTH * total
 }

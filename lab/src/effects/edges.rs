@@ -76,9 +76,8 @@ const PREDICTED: EdgeErrors = EdgeErrors {
     ..TIME_OF_FLIGHT
 };
 
-/// The scene's depth, metres, with the edges of a source but without noise; 0 for no reading. `wide` multiplies the
-/// distance between camera and projector.
-pub fn edges(source: DepthSource, rendering: &Rendering, tier: Tier, wide: f64, random: &mut Random) -> Vec<f32> {
+/// The scene's depth, metres, with the edges of a source but without noise; 0 for no reading.
+pub fn edges(source: DepthSource, rendering: &Rendering, tier: Tier, random: &mut Random) -> Vec<f32> {
     let width = rendering.view.width;
     let resolution = rendering.view.resolution();
     let errors = match source {
@@ -124,8 +123,7 @@ pub fn edges(source: DepthSource, rendering: &Rendering, tier: Tier, wide: f64, 
     let (base, share) = errors.shadow;
     if base > 0.0 {
         let dark = |i: usize| 0.5 * (filling.at(i) + 1.0) < 0.2 + 0.8 * share;
-        let widest = WIDEST * resolution * wide;
-        cast_shadow(rendering, [base * wide * resolution, widest], side, &mut depth, &dark);
+        cast_shadow(rendering, [base * resolution, WIDEST * resolution], side, &mut depth, &dark);
     }
     let shift = crate::world::unit(TAU * random.uniform()) * of_tier(errors.shift);
     shifted(&depth, width, shift.to_array())

@@ -3,7 +3,7 @@
 //! the faults do to size and pose of the whole is taken out before the mesh gets a frame of its own.
 
 use crate::conditions::{Conditions, EXTRA_PART, MISSING_PART, MeshFault, PLAIN, Tier, WARPED};
-use crate::objects::mesh::{bounds, clustered, compact, corners_of, face, joined, neighbors, normals, paths};
+use crate::objects::mesh::{bounds, clustered, corners_of, face, joined, neighbors, normals, paths};
 use crate::objects::solid::Solid;
 use crate::prelude::*;
 use crate::world::Placed;
@@ -107,7 +107,7 @@ pub fn generate(
         tags.push("lost-piece");
     }
     let positions: Vec<Vec3> = positions.iter().map(|p| p.as_vec3()).collect();
-    let mut mesh = compact(&positions, &triangles)?;
+    let mut mesh = Mesh::new(positions.clone(), original.triangles().to_vec())?.of_triangles(&triangles);
     if class.mesh_fault == MeshFault::ExtraPart || (!is_symmetric && chance(random, tier.pick(0.0, 0.0, 0.1))) {
         let (lump, _) = blob(&positions, diagonal, random).finish()?;
         mesh = joined(&[&mesh, &lump])?;

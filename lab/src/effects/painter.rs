@@ -79,9 +79,7 @@ pub fn paint(
     random: &mut Random,
 ) -> Result<SurfaceColors> {
     let Conditions { tier, class } = conditions;
-    // An object of one colour gets no print on its back.
-    let kinds = [PrintKind::Label, PrintKind::TwoTone];
-    let kind = if class.print == Some(PrintKind::Uniform) { PrintKind::Uniform } else { kinds[random.below(2)] };
+    let kind = class.print.unwrap_or(PrintKind::Label);
     let other = Print::draw(&placed.mesh, &[], kind, random);
     let diagonal = world_from_mesh.scale * mesh.diagonal();
     let mut painter = Painter {

@@ -146,22 +146,6 @@ pub fn paths(mesh: &Mesh, neighbors: &[Vec<u32>], seen: &[bool]) -> Vec<f64> {
     paths
 }
 
-/// The mesh of these triangles, without unused vertices.
-pub fn compact(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Mesh> {
-    let mut new = vec![u32::MAX; positions.len()];
-    let mut kept = Vec::new();
-    let mut index = |i: u32| {
-        let slot = &mut new[i as usize];
-        if *slot == u32::MAX {
-            *slot = kept.len() as u32;
-            kept.push(positions[i as usize]);
-        }
-        *slot
-    };
-    let triangles = triangles.iter().map(|t| t.map(&mut index)).collect();
-    Mesh::new(kept, triangles)
-}
-
 /// Careless decimation: one vertex, the mean, per occupied cell of edge `cell`; `offset` shifts the grid. Triangles that
 /// fall together disappear. The mesh as it is where nothing would be left.
 pub fn clustered(mesh: &Mesh, cell: f64, offset: DVec3) -> Result<Mesh> {

@@ -14,8 +14,6 @@ const SIDES: usize = 6;
 pub enum PrintKind {
     /// Patches of colour on every side, as on packages.
     Label,
-    /// Two colours, divided by a plane.
-    TwoTone,
     Uniform,
 }
 
@@ -30,14 +28,8 @@ pub struct Print {
     /// Whether the label goes round the third axis.
     is_round: bool,
     base: DVec3,
-    pattern: Pattern,
-}
-
-#[derive(Debug, Clone)]
-enum Pattern {
-    Sides(Vec<Vec<Patch>>),
-    Plane(DVec3, f64, DVec3),
-    None,
+    /// Patches of each side; those of later ones are on top.
+    sides: Vec<Vec<Patch>>,
 }
 
 /// A rectangle or an ellipse on a side; all sides are -1 to 1 wide and high.
@@ -79,44 +71,29 @@ impl Print {
         let (low, high) = bounds(mesh.positions().iter().map(|p| axes * p.as_dvec3()));
         let half = (0.5 * (high - low)).max(DVec3::splat(1e-9));
         let base = color(random);
-        let pattern = match kind {
-            PrintKind::Label => {
-                let sides = if is_round { 1 } else { SIDES };
-                let patches = |random: &mut Random| {
-                    let least = if is_round { 4 } else { usize::from(chance(random, 0.85)) };
-                    let count = if least == 0 { 0 } else { least + random.below(6) };
-                    (0..count).map(|_| Patch::draw(random, is_round, base)).collect()
-                };
-                Pattern::Sides((0..sides).map(|_| patches(random)).collect())
-            }
-            PrintKind::TwoTone => {
-                let across = DVec3::new(normal(random), normal(random), normal(random)).normalize_or(DVec3::X);
-                Pattern::Plane(across, between(random, -0.25, 0.25), contrasting(random, base))
-            }
-            PrintKind::Uniform => Pattern::None,
+        let count = if kind == PrintKind::Uniform {
+            0
+        } else if is_round {
+            1
+        } else {
+            SIDES
         };
-        Self { axes, center: 0.5 * (low + high), half, is_round, base, pattern }
+        let patches = |_| {
+            let least = if is_round { 4 } else { usize::from(chance(random, 0.85)) };
+            let count = if least == 0 { 0 } else { least + random.below(6) };
+            (0..count).map(|_| Patch::draw(random, is_round, base)).collect()
+        };
+        let sides = (0..count).map(patches).collect();
+        Self { axes, center: 0.5 * (low + high), half, is_round, base, sides }
     }
 
     /// The albedo at a point with this outward normal.
     pub fn at(&self, point: DVec3, normal: DVec3) -> DVec3 {
         let p = (self.axes * point - self.center) / self.half;
-        match &self.pattern {
-            Pattern::Sides(sides) => {
-                let (side, at) = self.side(p, self.axes * normal);
-                let patch =
-                    sides.get(side).and_then(|s| s.iter().rev().find(|patch| patch.contains(at, self.is_round)));
-                patch.map_or(self.base, |patch| patch.color)
-            }
-            Pattern::Plane(across, offset, color) => {
-                if across.dot(p) > *offset {
-                    *color
-                } else {
-                    self.base
-                }
-            }
-            Pattern::None => self.base,
-        }
+        let (side, at) = self.side(p, self.axes * normal);
+        let patch =
+            self.sides.get(side).and_then(|side| side.iter().rev().find(|patch| patch.contains(at, self.is_round)));
+        patch.map_or(self.base, |patch| patch.color)
     }
 
     fn side(&self, p: DVec3, normal: DVec3) -> (usize, [f64; 2]) {

@@ -129,6 +129,24 @@ impl Solid {
         self.outward(start);
     }
 
+    /// A random cylinder, box or ellipsoid of this half width and height, which stands on `spot`, tilted by `lean` radians.
+    pub fn block(&mut self, spot: DVec3, lean: f64, half_width: f64, height: f64, random: &mut Random) {
+        let heading = DAffine3::from_rotation_z(TAU * random.uniform());
+        let frame = DAffine3::from_translation(spot) * heading * DAffine3::from_rotation_x(lean);
+        let middle = frame * DAffine3::from_translation(DVec3::Z * 0.5 * height);
+        match random.below(3) {
+            0 => self.at(frame).cylinder([half_width, half_width * between(random, 0.6, 1.0)], height),
+            1 => {
+                let half = DVec3::new(half_width, half_width * between(random, 0.4, 1.0), 0.5 * height);
+                self.at(middle).cuboid(half, 0.05 * half_width);
+            }
+            _ => {
+                let radii = DVec3::new(half_width, half_width * between(random, 0.7, 1.0), 0.5 * height);
+                self.at(middle).ellipsoid(radii);
+            }
+        }
+    }
+
     /// Joins rings of equally many points to each other, and the outermost to a point each.
     fn skin(&mut self, rings: &[Vec<DVec3>], ends: [DVec3; 2]) {
         let Some(n) = rings.first().map(|ring| ring.len() as u32) else { return };

@@ -3,13 +3,13 @@
 use super::images::{OBJECT_STREAM, SCENE_STREAM, image, object};
 use crate::case::Case;
 use crate::conditions::{Conditions, DepthFault, Framing, Tier};
-use crate::effects::depth::{FARTHEST_M, in_two};
+use crate::effects::depth::FARTHEST_M;
 use crate::effects::generator::{MESH_STREAM, generate};
 use crate::objects::solid::Solid;
 use crate::objects::{Object, Pool};
 use crate::prelude::*;
 use crate::world::view::{Rendering, View, count, shown};
-use crate::world::{Placed, World, things, unit};
+use crate::world::{Placed, World, unit};
 
 /// Minimum number of pixels of a mask, and of those with a reading.
 pub const MIN_MASK_PX: usize = 350;
@@ -66,10 +66,9 @@ fn shows_enough(rendering: &Rendering, placed: &Placed, Conditions { tier, class
     let shows_class = match class.framing {
         Framing::Occluded => rendering.hidden >= tier.pick(0.0, 0.05, 0.08),
         Framing::BorderCut => (0.04..=0.25).contains(&rendering.cut),
-        Framing::Split => rendering.cut < 1e-9 && in_two(&rendering.visible, rendering.view.width),
         Framing::Free | Framing::Tiny => rendering.cut < 1e-9,
     };
-    let least = tier.pick(if class.framing == Framing::Split { 0.8 } else { 0.95 }, 0.75, 0.55);
+    let least = tier.pick(0.95, 0.75, 0.55);
     // An image without the part that determines the orientation is no case to count on, though one that occurs.
     let shows_key = tier == Tier::Hard && class.depth_fault != DepthFault::HolesOfMask || rendering.shows_key(placed);
     shows_class
@@ -121,7 +120,7 @@ fn staged(placed: Placed, conditions: Conditions, random: &mut Random) -> Result
         let size = diagonal * between(random, 0.12, 0.4);
         let angle = front + sign(random) * between(random, 75.0, 180.0).to_radians();
         let spot = unit(angle) * (world.reach + 1.5 * size + diagonal * between(random, 0.0, 0.6));
-        things::block(&mut solid, spot.extend(0.0), 0.0, size, diagonal * between(random, 0.2, 0.9), random);
+        solid.block(spot.extend(0.0), 0.0, size, diagonal * between(random, 0.2, 0.9), random);
     }
     let solid = occluded(solid, &view, &world.objects[0].mesh, (conditions, span), random)?;
     if !solid.is_empty() {
@@ -141,7 +140,6 @@ fn occluded(
     let wanted = match (tier, class.framing) {
         (Tier::Medium, Framing::Occluded) => [0.06, 0.22],
         (Tier::Hard, Framing::Occluded) => [0.1, 0.4],
-        (_, Framing::Split) => [0.0, 1.0],
         (Tier::Medium, _) if chance(random, 0.15) => [0.0, 0.1],
         (Tier::Hard, _) if chance(random, 0.25) => [0.0, 0.15],
         _ => return Ok(solid),
@@ -150,19 +148,17 @@ fn occluded(
     let pixels: Vec<usize> = (0..object.len()).filter(|&i| object[i] > 0.0).collect();
     for _ in 0..OCCLUDERS {
         let mut candidate = solid.clone();
-        if class.framing == Framing::Split {
-            things::bar(&object, view, random, &mut candidate);
-        } else if let Some(&pixel) = pixels.get(random.below(pixels.len().max(1))) {
+        if let Some(&pixel) = pixels.get(random.below(pixels.len().max(1))) {
             let z = object[pixel] * between(random, 0.6, 0.88) as f32;
             let spot = view.world_point(&view.camera_from_world.inverse(), pixel, z);
             let size = between(random, 0.06, 0.24) * span * f64::from(z) / view.camera.fx;
             if chance(random, 0.6) && spot.z > 0.3 * size {
                 let height = spot.z + between(random, 0.0, 1.0) * size;
-                things::block(&mut candidate, spot.with_z(0.0), 0.0, size, height, random);
+                candidate.block(spot.with_z(0.0), 0.0, size, height, random);
             } else {
                 // A hand, a branch, the arm of a robot.
                 let (lean, length) = (between(random, 0.2, 1.5), size * between(random, 2.0, 6.0));
-                things::block(&mut candidate, spot, lean, size, length, random);
+                candidate.block(spot, lean, size, length, random);
             }
         }
         if candidate.is_empty() {
@@ -171,8 +167,7 @@ fn occluded(
         let visible = shown(&object, &view.depth_of(&candidate.clone().finish()?.0));
         let left = visible.iter().filter(|visible| **visible).count();
         let hidden = 1.0 - left as f64 / pixels.len().max(1) as f64;
-        let is_divided = class.framing != Framing::Split || in_two(&visible, view.width);
-        if (wanted[0]..=wanted[1]).contains(&hidden) && is_divided {
+        if (wanted[0]..=wanted[1]).contains(&hidden) {
             return Ok(candidate);
         }
     }

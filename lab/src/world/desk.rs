@@ -1,6 +1,6 @@
 //! Objects that stand on a desk, close to each other, among clutter.
 
-use super::{Placed, World, center_of, things, unit};
+use super::{Placed, World, center_of, unit};
 use crate::conditions::Tier;
 use crate::objects::mesh::shifted;
 use crate::objects::solid::Solid;
@@ -83,7 +83,7 @@ impl World {
         for _ in 0..1 + random.below(5) {
             let mut solid = Solid::default();
             let (half, height) = (between(random, 0.03, 0.12), between(random, 0.03, 0.25));
-            things::block(&mut solid, DVec3::ZERO, 0.0, half, height, random);
+            solid.block(DVec3::ZERO, 0.0, half, height, random);
             let mesh = solid.finish()?.0;
             let place = floor.take(&mesh, middle, unit(TAU * random.uniform()), between(random, 0.006, 0.06));
             others.push(shifted(&mesh, place)?);

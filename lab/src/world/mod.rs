@@ -1,7 +1,6 @@
 //! Scenes: objects and what stands around them, and cameras that see them.
 
 mod desk;
-pub mod things;
 pub mod view;
 
 use std::sync::Arc;

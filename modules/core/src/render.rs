@@ -1,7 +1,7 @@
 //! Depth images of posed meshes, for pictures of results.
 
 use js_sys::Float32Array;
-use sim3align::bindings::error::to_js;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::object::{get, size};
 use sim3align::bindings::{input, mesh, transform};
 use sim3align::geometry::image::check_size;

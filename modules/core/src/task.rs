@@ -8,7 +8,7 @@ use sim3align::align::align_task;
 use sim3align::align::helper::Helper;
 use sim3align::align::search::Request;
 use sim3align::bindings::answer::step_answer;
-use sim3align::bindings::error::to_js;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::helpers::{JsHelpers, scheduler, step};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::{input, mesh, options};

@@ -8,7 +8,7 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
-use sim3align::bindings::error::to_js;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
@@ -20,7 +20,7 @@ use sim3align::geometry::image::{Image, Mask};
 use sim3align::precise::drawing::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::AlignOptions;
 use sim3align::scheduler::{Scheduler, Task};
-use sim3align::views::options::ViewsOptions;
+use sim3align::views::ViewsOptions;
 
 use super::views::world_from_camera;
 

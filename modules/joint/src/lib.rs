@@ -3,7 +3,15 @@
 
 pub mod calibrate;
 pub mod helper;
-pub mod mesh;
 pub mod scene;
 pub mod track;
 pub mod views;
+
+use sim3align::bindings::mesh::drop_kept;
+use wasm_bindgen::prelude::*;
+
+/// Removes the mesh with this id from the cache, if present: this module fills it when it first reads a mesh.
+#[wasm_bindgen(js_name = dropMesh, skip_typescript)]
+pub fn drop_mesh(id: u32) {
+    drop_kept(id);
+}

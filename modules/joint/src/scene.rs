@@ -12,7 +12,7 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
-use sim3align::bindings::error::to_js;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::helpers::{JsHelpers, scheduler};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, required_number, to_numbers, to_u8s, wrong_type};

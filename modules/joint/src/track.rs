@@ -8,7 +8,7 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::answer;
-use sim3align::bindings::error::to_js;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::wrong_type;
 use sim3align::bindings::transform::similarity;

@@ -7,7 +7,7 @@ use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use sim3align::bindings::answer::step_answer;
-use sim3align::bindings::error::to_js;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::helpers::{JsHelpers, scheduler};
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, wrong_type};

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 use js_sys::{Array, Float64Array, Object as JsObject, Reflect, Uint32Array};
-use sim3align::bindings::error::to_js;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::object::{get, required_number, to_f32s, to_u32s, wrong_type};
 use sim3align::bindings::transform;
 use sim3align::error::Result;

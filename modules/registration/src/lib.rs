@@ -5,8 +5,8 @@ use core::cell::RefCell;
 
 use js_sys::Function;
 use sim3align::align;
+use sim3align::bindings::answer::to_js;
 use sim3align::bindings::answer::{answer, step_answer};
-use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::{input, mesh, object, options};
 use sim3align::register;

@@ -128,3 +128,20 @@ function sinCos(angle: number): [sin: number, cos: number] {
   const cos = whole + (1 - whole - half + z * z * at(cosPolynomial));
   return quarters === 0 ? [sin, cos] : [cos, -sin];
 }
+
+/**
+ * The depth z along the optical axis, of distances d from the camera's centre as ray tracers and LiDAR write them:
+ * z = d / √(1 + x² + y²), x = (u − cx)/fx, y = (v − cy)/fy.
+ * @param distances row-major, times `scale` metres
+ */
+export function depthOfRays(
+  distances: ArrayLike<number>,
+  width: number,
+  { fx, fy, cx, cy }: Pinhole,
+  scale = 1,
+): Float32Array {
+  return Float32Array.from(distances, (distance, i) => {
+    const [x, y] = [((i % width) - cx) / fx, (Math.floor(i / width) - cy) / fy];
+    return (distance * scale) / Math.sqrt(1 + x * x + y * y);
+  });
+}

@@ -1,6 +1,5 @@
 /** Depth in metres from the values of depth models. */
-import { pinholeOf } from "../camera/pinhole.js";
-import { depthOfRays } from "../camera/ray-distance.js";
+import { depthOfRays, pinholeOf } from "../camera/pinhole.js";
 import { depthKindNames } from "../input/formats.js";
 import type { CameraInput, DepthKind } from "../types/inputs.js";
 import { type PixelArray, pixelsOf } from "../values/pixels.js";

@@ -1,4 +1,4 @@
-// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.
+// Generated from the Rust declarations by lab/tests/suite/typescript.rs; not to be edited.
 
 import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from "../types/argument-types.js";
 

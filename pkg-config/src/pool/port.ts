@@ -2,7 +2,7 @@
 
 import type { CreateWorker, NodeWorkerLike, WebWorkerLike, WorkerLike } from "../types/platform.js";
 import { failure, messageOf } from "../values/error.js";
-import { startedFromAnywhere } from "./cross-origin.js";
+import { oncePerKey } from "../values/validation.js";
 import type { ToWorker } from "./messages.js";
 
 /** The pool's end of the connection to a worker. */
@@ -104,3 +104,19 @@ function fromScript(script: string): CreateWorker {
 
 /** Imports a Node module. The name is in a variable, so that browser bundlers do not resolve it. */
 const nodeModule = (name: string) => import(/* webpackIgnore: true */ /* @vite-ignore */ name);
+
+/** For workers whose script is on another origin, such as that of a CDN: the address of a script that imports the one at an address: the browser would keep another one for each worker. */
+const importing = oncePerKey((address: string) =>
+  URL.createObjectURL(new Blob([`import ${JSON.stringify(address)};`], { type: "text/javascript" })),
+);
+
+/**
+ * Starts a worker. Browsers start workers from their own origin only, but these may import from elsewhere.
+ * @param start starts it directly
+ * @param script the address of its script
+ */
+export function startedFromAnywhere(start: () => Worker, script: () => URL): Worker {
+  const { href, origin, protocol } = script();
+  if (!protocol.startsWith("http") || origin === globalThis.location?.origin) return start();
+  return new Worker(importing(href), { type: "module" });
+}

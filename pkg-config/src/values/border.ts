@@ -3,9 +3,8 @@
  * and typed arrays that have their memory.
  */
 
-import { isBranded } from "./brand.js";
 import { describe, failure, invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
-import { isAttached, isBuffer, isKind, isRecord, proxiedKind } from "./kinds.js";
+import { isAttached, isBranded, isBuffer, isKind, isRecord, proxiedKind } from "./kinds.js";
 
 /** No argument has more levels: a camera file of several images has five. Deeper objects are left out. */
 const MAX_LEVELS = 8;

@@ -1,7 +1,6 @@
 /** The error type of the package, and conversions to it. */
 import type { ErrorCode as CoreErrorCode } from "../generated/types.js";
-import { brand } from "./brand.js";
-import { proxiedKind, typedArrayKind } from "./kinds.js";
+import { brand, proxiedKind, typedArrayKind } from "./kinds.js";
 
 /**
  * Stable error code; does not change between releases. The troubleshooting guide describes the cause of each code, with

@@ -1,8 +1,7 @@
 /** Meshes that are read, validated and decimated once for many calls. */
 import type { ColorSamples } from "../wasm/formats.js";
-import { brand } from "./brand.js";
 import { failure } from "./error.js";
-import { isRecord } from "./kinds.js";
+import { brand, isRecord } from "./kinds.js";
 import { copied } from "./transfer.js";
 
 /** A mesh for the core. */

@@ -9,7 +9,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::random::mixed;
 use crate::geometry::rotations::super_fibonacci;
 use crate::precise::observation::grid::CropGrid;
-use crate::precise::observation::resolution::{GRIDS, SIEVE};
+use crate::precise::observation::{GRIDS, SIEVE};
 
 /// Images from around the mesh, their width in cells, and the distance of their camera in diagonals.
 const VIEWS: usize = 16;

@@ -17,7 +17,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::fibonacci_sphere;
 use crate::geometry::surface::SurfaceMoments;
 use crate::metrics::symmetry::Symmetry;
-use crate::precise::observation::resolution::{FINE, FINEST, GRIDS, Grid};
+use crate::precise::observation::{FINE, FINEST, GRIDS, Grid};
 
 /// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
 const DIRECTIONS: usize = 128;

@@ -12,7 +12,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::check_shape;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::metrics::symmetry::{Symmetry, SymmetryGroup};
-use crate::precise::observation::resolution::{FINE, GRIDS, Grid};
+use crate::precise::observation::{FINE, GRIDS, Grid};
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
 /// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part

@@ -9,5 +9,31 @@ pub mod clean;
 pub mod grid;
 pub mod mask_boundary;
 pub mod ramp;
-pub mod resolution;
 pub mod thinning;
+
+/// Grids of the search, coarse to fine.
+pub const GRIDS: usize = 5;
+/// The grid on which every rotation is rendered.
+pub const SIEVE: usize = 0;
+/// The grid on which promising poses, and the neighbourhood of a given pose, are rendered.
+pub const COARSE: usize = 1;
+/// The grid of the first refinements.
+pub const MIDDLE: usize = 2;
+/// The grid of the final ranking.
+pub const FINE: usize = 3;
+/// The grid of the final refinement.
+pub const FINEST: usize = 4;
+
+/// The resolution of a grid and of the mesh rendered on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Approximate number of cells of the mask, at most its number of pixels.
+    pub cells: usize,
+    /// Number of triangles of the decimated mesh.
+    pub triangles: usize,
+    /// Depth error that halves the credit of a cell, relative to the observed diagonal.
+    pub depth_error: f64,
+    /// Factor of the weight of the outline, which is not informative on cells as wide as the errors of the rotation
+    /// grid.
+    pub outline: f32,
+}

@@ -3,7 +3,7 @@
 use super::cascade::Stage;
 use crate::precise::drawing::turns::TURNS;
 use crate::precise::observation::clean::CleanObservation;
-pub use crate::precise::observation::resolution::{COARSE, FINE, FINEST, GRIDS, Grid, MIDDLE, SIEVE};
+pub use crate::precise::observation::{COARSE, FINE, FINEST, GRIDS, Grid, MIDDLE, SIEVE};
 use crate::precise::scoring::score::{Scoring, Weights};
 use crate::report::Effort;
 

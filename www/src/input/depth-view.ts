@@ -1,6 +1,6 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
-import { depthOfRays } from "sim3align/camera/ray-distance";
+import { depthOfRays } from "sim3align/camera/pinhole";
 import type { DepthImage, ReadDepthOptions } from "sim3align/formats";
 import { corrected, provisional } from "../state/calibration.js";
 import type { NamedFile } from "../state/inputs.js";

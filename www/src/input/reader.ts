@@ -1,7 +1,7 @@
 /** The readers of files. Small files are read at once; large ones in a worker, so that no frame has to wait for them. */
 import { Sim3AlignError } from "sim3align";
 import * as formats from "sim3align/formats";
-import { startedFromAnywhere } from "sim3align/pool/cross-origin";
+import { startedFromAnywhere } from "sim3align/pool/port";
 import type { ReaderAnswer, ReaderCall, Readers } from "./reader-worker.js";
 
 /** A mask, 1 is the object, at its own size. */
