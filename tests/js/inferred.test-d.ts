@@ -19,18 +19,8 @@ export const aligned = async (aligner: Aligner, input: AlignInput) => {
   const result = await aligner.align(input);
   const { diagnostics, alternatives, uncertainty, proportions, depthCalibration } = result;
   const { counts, timingsMs, terms, color } = diagnostics;
-  return {
-    result,
-    diagnostics,
-    alternatives,
-    uncertainty,
-    proportions,
-    depthCalibration,
-    counts,
-    timingsMs,
-    terms,
-    color,
-  };
+  const parts = { alternatives, uncertainty, proportions, depthCalibration };
+  return { result, diagnostics, ...parts, counts, timingsMs, terms, color };
 };
 export const paper = async (aligner: Aligner, input: AlignInput) => {
   const { diagnostics } = await aligner.align(input, { preset: "paper" });
@@ -38,13 +28,8 @@ export const paper = async (aligner: Aligner, input: AlignInput) => {
 };
 export const scene = async (aligner: Aligner, input: SceneInput) => {
   const { objects, support, metrics } = await aligner.alignScene(input);
-  return {
-    objects,
-    support,
-    metrics,
-    contacts: objects.map((object) => object.error ?? object.contact),
-    given: input.support,
-  };
+  const contacts = objects.map((object) => object.error ?? object.contact);
+  return { objects, support, metrics, contacts, given: input.support };
 };
 export const views = async (aligner: Aligner, input: ViewsInput) => {
   const { views, world, uncertainty, diagnostics } = await aligner.alignViews(input);
@@ -63,15 +48,7 @@ export const registered = async (aligner: Aligner) => {
 export const converted = (transform: Awaited<ReturnType<typeof aligned>>["result"]) => {
   const box = orientedBoundingBox(mesh, transform);
   const { entry } = toBop(transform);
-  const { sam3d } = generatorFrames;
-  return {
-    sam3d,
-    layout: toSam3d(transform),
-    box,
-    cuboid: toCuboid(box),
-    entry,
-    back: fromBop(entry),
-    straight: uprightMesh(mesh, transform),
-  };
+  const [layout, straight] = [toSam3d(transform), uprightMesh(mesh, transform)];
+  return { sam3d: generatorFrames.sam3d, layout, box, cuboid: toCuboid(box), entry, back: fromBop(entry), straight };
 };
 export const images = { rle: fromRle({} as never), cropped: cropInput, corrected: correctDepth };

@@ -1,7 +1,7 @@
 /** Depth as models guess it, and cameras that nobody wrote down: what is unknown is estimated with the pose. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type AlignInput, createAligner, type DepthKind, type FrameInput, type Sim3, type ViewInput } from "sim3align";
+import { type AlignInput, createAligner, type DepthKind, type FrameInput, type ViewInput } from "sim3align";
 import { correctDepth } from "sim3align/conventions";
 import { codesOf, rejectsWith } from "../support/errors.js";
 import { frameAt, turnBetween } from "../support/rig.js";
@@ -47,28 +47,6 @@ const disparity = relative("affine-invariant-disparity");
 const disparityMap = { data: disparity.depth as Float32Array, width, height };
 const found = await here.align(disparity, quick);
 const calibration = found.depthCalibration as NonNullable<typeof found.depthCalibration>;
-
-/** Whether a pose looks as the true one: its direction, its apparent size, its rotation. */
-function assertLooksRight(pose: Sim3, [percent, degrees] = [4, 5]): void {
-  const [x, y, z] = pose.translation;
-  const [a, b, c] = truth.translation;
-  assert.ok(Math.hypot(x / z - a / c, y / z - b / c) < percent / 100, `direction ${pose.translation}`);
-  assert.ok(Math.abs(pose.scale / z / (truth.scale / c) - 1) < percent / 100, `apparent size ${pose.scale / z}`);
-  assert.ok(turnBetween(pose.rotation, truth.rotation) < degrees, `rotation ${pose.rotation}`);
-}
-
-test("relative depth: the pose, and the shift that makes the depth map true to scale", () => {
-  assertLooksRight(found);
-  const { depthKind, isMetric, isFocalEstimated, uncertainty } = calibration;
-  assert.deepEqual([depthKind, isMetric, isFocalEstimated], ["affine-invariant-disparity", false, false]);
-  assert.ok(uncertainty.focal === 0 && uncertainty.shift > 0 && uncertainty.shift < 0.2, `${uncertainty.shift}`);
-  const { data: corrected } = correctDepth(disparityMap, calibration);
-  // The object and the wall behind it: their ratio is that of the true depths.
-  const at = (i: number) => (corrected[i] ?? 0) / (view.depth[i] ?? 0);
-  const ratio = at(0) / at(mask.indexOf(1));
-  assert.ok(Math.abs(Math.log(ratio)) < 3 * uncertainty.shift + 0.05, `${ratio}`);
-  assert.deepEqual(found.depthUnit, { metres: null, source: "affine-invariant-disparity", isAssumed: false });
-});
 
 test("the pose and the metrics are those in the corrected map", async () => {
   const depth = correctDepth(disparityMap, calibration);

@@ -12,6 +12,7 @@ import {
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
+import { frameAt } from "../support/rig.js";
 import { input, mesh, truth } from "../support/scene.js";
 import { Workers } from "../support/workers.js";
 
@@ -99,6 +100,21 @@ test("a worker that takes the place of a lost one gets the mesh again; scenes an
   using tracker = await pool.track(prepared);
   assert.equal((await tracker.next({ ...view, mask })).state, "tracking");
   assert.deepEqual(await align(), expected);
+});
+
+test("views take prepared meshes and moved arrays, without a change of bits", async () => {
+  const views = [0, 120, 240]
+    .map((angle) => frameAt(angle))
+    .map(({ frame, cameraToWorld }) => ({ ...frame, cameraToWorld }));
+  const alone = withoutTimes(await here.alignViews({ mesh, views }, quick));
+  using prepared = await pool.prepareMesh(mesh);
+  assert.deepEqual(withoutTimes(await pool.alignViews({ mesh: prepared, views }, quick)), alone);
+  const moving = structuredClone({ mesh, views });
+  const { input: back, ...moved } = await pool.alignViews(moving, { ...quick, transfer: true });
+  assert.deepEqual(withoutTimes(moved), alone);
+  assert.equal((back?.views[2]?.depth as Float32Array | undefined)?.length, 160 * 120);
+  const signal = AbortSignal.abort(new Error("enough"));
+  await assert.rejects(() => pool.alignViews({ mesh, views }, { signal }), /enough/);
 });
 
 test("a prepared mesh of one aligner serves another, also after the first is gone", async () => {

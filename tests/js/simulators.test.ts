@@ -44,22 +44,6 @@ const over = (x: number, y: number, z: number, tiltDeg = 0) => {
 };
 const tower = box(0.1, 0.1, 0.2);
 
-test("a box has the mass, the centre and the inertia of a box, in its frame", async () => {
-  const boxes: SimulatorObject[] = [
-    { name: "a box", mesh: box(0.1, 0.2, 0.3), transform: over(0, 0, 0) },
-    // The scale of the transform makes metres of units.
-    { mesh: box(1, 2, 3), transform: { ...over(1, 1, 0), matrix: undefined, scale: 0.1 } as never },
-  ];
-  const { bodies, hasGround } = await simulatorScene(boxes, { ...hulls, density: 500 });
-  const moment = (a: number, b: number) => (3 * (a * a + b * b)) / 12;
-  for (const { mass, centerOfMass, principalMoments, parts, isFixed, movedM, turnedDeg } of bodies) {
-    assertNear([mass, ...centerOfMass], [3, 0.05, 0.1, 0.15], "mass and centre", 1e-6);
-    assertNear(principalMoments, [moment(0.1, 0.2), moment(0.1, 0.3), moment(0.2, 0.3)], "moments", 1e-6);
-    assert.deepEqual([parts.length, isFixed, movedM < 1e-6, turnedDeg < 1e-3], [1, false, true, true]);
-  }
-  assert.deepEqual([hasGround, bodies[0]?.name], [true, "a_box"]);
-});
-
 test("a body that leans is put at rest, with its pose before in every file; one that falls or hangs stays, fixed", async () => {
   const objects: SimulatorObject[] = [
     { name: "leans", mesh: tower, transform: over(-0.5, 0, 0.001, 0.5) },

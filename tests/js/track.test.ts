@@ -1,10 +1,9 @@
-/** Trackers: with and without workers, in order, corrected, lost, with photos, and disposed. */
+/** Trackers: with and without workers, in order, corrected, lost, and disposed. */
 import assert from "node:assert/strict";
 import { getEventListeners } from "node:events";
 import { after, test } from "node:test";
 import { type Aligner, createAligner, type FrameInput } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
-import { printedBox } from "../support/printed-box.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { mesh, truth } from "../support/scene.js";
 import { Workers } from "../support/workers.js";
@@ -57,18 +56,6 @@ test("a correction is carried on, and a loss is reported", async () => {
   assert.equal((await tracker.next(frames[2])).state, "tracking");
   await rejectsWith(() => tracker.correct(first, 77), "INVALID_ARGUMENT frame", /77/);
   await rejectsWith(() => tracker.correct({ ...truth, scale: 0 }), "INVALID_TRANSFORM pose");
-});
-
-test("a video with photos is found the right way round, and stays so", async () => {
-  const box = printedBox();
-  const printed = [0, 4, 8].map((degrees) => box.frameAt(degrees));
-  using tracker = await pool.track(box.mesh);
-  for (const { frame, image, pose } of printed) {
-    const { rotation } = await tracker.next({ ...frame, image });
-    assert.ok(turnBetween(rotation, pose.rotation) < 3, `${rotation}`);
-  }
-  const image = { data: new Uint8Array(3 * 30 * 90), width: 30, height: 90 };
-  await rejectsWith(() => tracker.next({ ...frames[0], image }), "SIZE_MISMATCH image", /field of view/);
 });
 
 for (const [i, aligner] of aligners.entries()) {
