@@ -6,13 +6,11 @@ import { test } from "node:test";
 import { zipSync } from "fflate";
 import type { Page } from "playwright-core";
 import { type AlignInput, createAligner } from "sim3align";
-import { browserFor, WEBGL } from "../support/browser.js";
-import { elementFolder, servedFolder } from "../support/element-host.js";
-import { installDir } from "../support/environment.js";
+import { browserFor, serve, WEBGL } from "../support/browser.js";
+import { elementFolder, installDir, servedFolder } from "../support/environment.js";
 import { type Files, files, inFolder, jsonFile, seen } from "../support/page-files.js";
 import { mesh, pinhole, truth } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
-import { serve } from "../support/static-server.js";
 
 /** The element as a host's script sees it. */
 interface Element extends HTMLElement {

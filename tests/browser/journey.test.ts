@@ -1,15 +1,17 @@
 /** The same journey in every browser: the package's bits, the element from another origin, the page with own files. */
 import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, describe, test } from "node:test";
 import type { Browser } from "puppeteer-core";
 import { createAligner } from "sim3align";
 import { work } from "../bundlers/work.js";
+import { type Server, serve } from "../support/browser.js";
 import { browserNames, launch, skipped, Tab } from "../support/driver.js";
-import { crossOriginHost, elementFolder, servedFolder } from "../support/element-host.js";
+import { elementFolder, installDir, servedFolder } from "../support/environment.js";
 import { files } from "../support/page-files.js";
 import { input } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
-import { type Server, serve } from "../support/static-server.js";
 
 /** In Node. */
 const expected = await work(createAligner);
@@ -46,9 +48,15 @@ for (const name of browserNames) {
     });
 
     test("one script tag loads the element from another origin; it aligns arrays to the bits of Node", async (t) => {
-      const host = await crossOriginHost();
-      t.after(host.close);
-      const { page, errors } = await open(host.path);
+      const { url, close } = await serve(servedFolder);
+      t.after(close);
+      const script = `<script type="module" src="${url}${elementFolder}/sim3-align.js"></script>`;
+      const path = `host-${new URL(url).port}.html`;
+      writeFileSync(
+        join(installDir, path),
+        `<!doctype html><link rel="icon" href="data:,">${script}<sim3-align id="a"></sim3-align>`,
+      );
+      const { page, errors } = await open(`install-test/${path}`);
       const found = await page.evaluate(`(async () => {
         const { mask, mesh, ...view } = (await import("/install-test/tests/support/scene.js")).input;
         const element = document.querySelector("sim3-align");

@@ -87,11 +87,3 @@ test("all targets are large enough on a phone", { address: "", ...phone }, async
     await page.keyboard.press("Escape");
   }
 });
-
-test("keys open the help, which lists them, and Escape closes it", async ({ page }) => {
-  await page.keyboard.press("?");
-  await page.locator("dialog.help").waitFor(PATIENCE);
-  assert.ok((await page.locator("dialog.help kbd").count()) > 15);
-  await page.keyboard.press("Escape");
-  await page.locator("dialog.help").waitFor({ state: "hidden", ...PATIENCE });
-});

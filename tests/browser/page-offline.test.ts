@@ -4,9 +4,9 @@ import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:f
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
+import { serve } from "../support/browser.js";
 import { drop, files } from "../support/page-files.js";
 import { PATIENCE, pageTests, siteDir } from "../support/site.js";
-import { serve } from "../support/static-server.js";
 
 const test = pageTests();
 const visit = { serviceWorkers: "allow" } as const;

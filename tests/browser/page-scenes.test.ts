@@ -1,8 +1,7 @@
 /** Several scenes: in one list, in several tabs, and one after the other while alignments run. */
 import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
-import { four } from "../support/page-cases.js";
-import { drop, dropFolder, files } from "../support/page-files.js";
+import { drop, dropFolder, files, four } from "../support/page-files.js";
 import { PATIENCE, pageTests, SitePage } from "../support/site.js";
 
 const test = pageTests();

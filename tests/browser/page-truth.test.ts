@@ -1,7 +1,17 @@
 /** Statements of the page: sizes along an object's own sides, and causes of differences between mask and mesh. */
 import assert from "node:assert/strict";
-import { depthInUnits, halfCamera, nearIsDark, SIDES_M, tiltedBox } from "../support/page-cases.js";
-import { drop, type Files, files, maskPng, seen } from "../support/page-files.js";
+import {
+  depthInUnits,
+  drop,
+  type Files,
+  files,
+  halfCamera,
+  maskPng,
+  nearIsDark,
+  SIDES_M,
+  seen,
+  tiltedBox,
+} from "../support/page-files.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests();

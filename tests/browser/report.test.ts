@@ -4,8 +4,7 @@ import { join } from "node:path";
 import { before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import type { Page } from "playwright-core";
-import { violations } from "../support/axe.js";
-import { browserFor } from "../support/browser.js";
+import { browserFor, violations } from "../support/browser.js";
 import { files, folder, run, writeCase } from "../support/command-line.js";
 
 const address = pathToFileURL(join(folder, "report", "index.html")).href;

@@ -7,8 +7,8 @@ import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, test } from "node:test";
 import { createAligner } from "sim3align";
-import { otherPose, writeCase } from "../support/case-folder.js";
-import { examplesDir, filesOf, newFolder, printedBy, program } from "../support/examples.js";
+import { examplesDir, filesOf, newFolder, printedBy, program, writeCase } from "../support/examples.js";
+import { otherPose } from "../support/scene.js";
 
 const name = "07-batch-on-a-cluster";
 const CASES = 12;

@@ -7,11 +7,11 @@ import { test } from "node:test";
 import { type Alignment, createAligner, type Sim3, type Sim3Like } from "sim3align";
 import { compose, fromBop, fromFrame, invert, toSim3 } from "sim3align/conventions";
 import { readMesh } from "sim3align/formats";
-import { otherPose, writeCase } from "../support/case-folder.js";
 import { repository, sampleDir } from "../support/environment.js";
-import { examplesDir, filesOf, newFolder, printedBy, runExample } from "../support/examples.js";
+import { examplesDir, filesOf, newFolder, printedBy, runExample, writeCase } from "../support/examples.js";
 import { greyJpeg, tiff } from "../support/exif.js";
 import { turnBetween } from "../support/rig.js";
+import { otherPose } from "../support/scene.js";
 
 const aligner = await createAligner();
 

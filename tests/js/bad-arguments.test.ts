@@ -43,7 +43,6 @@ refusesInputs([
   [{ mask: { [Symbol.toStringTag]: "ImageData" } }, "INVALID_ARGUMENT mask", /one channel/],
   [{ mask: { data: new Uint8Array(80 * 60), width: 80, height: 60 } }, "SIZE_MISMATCH mask", /80 × 60.*resizeMask/s],
   [{ resizeMask: "bilinear" }, "INVALID_ARGUMENT resizeMask", /"nearest"/],
-  [{ mask: new Uint8Array(pixels) }, "EMPTY_MASK mask", /no non-zero pixel/],
   [{ camera: null }, "INVALID_ARGUMENT camera", /null/],
   [{ camera: { ...camera, cx: Number.NaN } }, "INVALID_CAMERA camera.cx", /NaN/],
   [{ camera: { K: [300, 0, 0, 0, 300, 0, 80, 60, 1] } }, "INVALID_CAMERA camera.K", /transpose/],
@@ -66,11 +65,6 @@ refusesInputs([
   [positioned([0, 0, 0]), "INVALID_ARGUMENT mesh.positions", /Float32Array\.from/],
   [positioned(mesh.positions.slice(1)), "WRONG_LENGTH mesh.positions", /multiple of 3/],
   [indexed([0, 1, 2]), "INVALID_ARGUMENT mesh.indices", /Uint32Array\.from/],
-  [
-    indexed(mesh.indices.map((index, i) => (i === 7 ? 1e6 : index))),
-    "INDEX_OUT_OF_RANGE mesh.indices",
-    /1000000 in triangle 2/,
-  ],
   [colored({ colors: [0, 0, 0] }), "INVALID_ARGUMENT mesh.colors"],
   [colored({ colors: new Uint8Array(mesh.positions.length), colorSpace: "rgb" }), "INVALID_OPTION mesh.colorSpace"],
   [colored({ samples: { ...samples, colors: new Uint8Array(5) } }), "WRONG_LENGTH mesh.samples"],
@@ -80,19 +74,9 @@ refusesInputs([
 ]);
 
 const external = Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "mesh.bin" })));
-const bytes = new Uint8Array(pixels).fill(80);
-const unsized = { width: undefined, height: undefined };
 
 refusesInputs([
-  [{ ...unsized, depth: png(bytes, width, height) }, "EIGHT_BIT_DEPTH depth", /8-bit PNG/],
-  [
-    { ...unsized, depth: Buffer.from("BM a bitmap") },
-    "UNSUPPORTED_FORMAT depth",
-    /16-bit grey PNG, a \.npy array, or a \.npz/,
-  ],
   [{ mask: png(new Uint8Array(6).fill(1), 3, 2) }, "SIZE_MISMATCH mask", /3 × 2 pixels/],
-  [{ mask: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }, "UNSUPPORTED_FORMAT mask", /PNG/],
-  [{ mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, "CORRUPT_FILE mask", /JPEG/],
   [{ mesh: external }, "INVALID_ARGUMENT mesh.resources", /mesh\.bin/],
   [{ mesh: { bytes: glb(mesh), format: "fbx" } }, "INVALID_OPTION mesh.format", /fbx/],
   [{ image: Buffer.from("RIFF\0\0\0\0WEBPVP8 ") }, "CORRUPT_FILE image", /WebP/],
@@ -138,7 +122,6 @@ const others: Refusals<() => Promise<unknown>> = [
   [() => register(cloud, cloud, { guard: null }), "UNKNOWN_OPTION options.guard"],
   [() => estimate(Uint32Array.of(0, 0, 1, 1, 2, 2), withNaN), "NON_FINITE source", /NaN in point 1/],
   [() => estimate([0, 0]), "INVALID_ARGUMENT correspondences", /Uint32Array\.from/],
-  [() => estimate(Uint32Array.of(0, 0, 1, 1, 2, 1e6)), "INDEX_OUT_OF_RANGE correspondences", /pair 2/],
   [() => aligner.track(mesh, { quality: "nice" } as never), "INVALID_OPTION options.quality"],
   [() => drain(input), "INVALID_ARGUMENT inputs", /iterable/],
   [() => createAligner({ worker: 2 } as object), "UNKNOWN_OPTION worker", /workers/],

@@ -91,8 +91,6 @@ test("the commands of help texts and documents fit the flags of their commands",
     faultsOf(command).map((why) => `${place}: ${command}: ${why}`),
   );
   assert.deepEqual(faults, []);
-  assert.deepEqual(faultsOf("sim3align track videos/mug --jsn x"), ["track has no --jsn"]);
-  assert.deepEqual(faultsOf("sim3align track videos/mug --json --resume"), ["--json has no value"]);
 });
 
 before(() => {

@@ -1,6 +1,6 @@
 /** `align --report --overlay --glb`: the files, and what a resumed batch draws. */
 import assert from "node:assert/strict";
-import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { readdirSync, readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner } from "sim3align";
@@ -112,13 +112,4 @@ test("a resumed batch has the rows of all cases, and draws what is missing", asy
   const rows = rowsOf("resumed");
   assert.deepEqual(rows.map((row) => row.name).sort(), ["obj", "one", "two"]);
   assert.deepEqual(rows.map((row) => row.folder).sort(), ["cases/obj", "cases/one", "cases/two"]);
-});
-
-test("a page that is no report is not written over", () => {
-  mkdirSync(join(folder, "foreign"));
-  writeFileSync(join(folder, "foreign", "index.html"), "<h1>mine</h1>");
-  const { status, stderr } = run("align one --report foreign");
-  assert.equal(status, 2);
-  assert.match(stderr, /the folder has other content/);
-  assert.equal(read(join("foreign", "index.html")), "<h1>mine</h1>");
 });

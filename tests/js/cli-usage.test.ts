@@ -54,7 +54,6 @@ const usage: Record<string, Record<string, RegExp>> = {
     "align blob --resume": /--resume needs --jsonl FILE/,
     "align blob --jsonl - --resume": /--resume needs a file/,
     "align blob --jsonl free.jsonl --overlay file": /--overlay file/,
-    "align blob --jsonl same --csv ./same": /--jsonl and --csv name the same file/,
     "align blob --json - --jsonl -": /--json and --jsonl name the same file/,
     "align blob --report file": /--report file: the folder cannot be made/,
     "align blob --report other": /--report other: the folder has other content/,
@@ -75,7 +74,7 @@ test("the exit status is that of the process", () => {
 
 test("what is refused has written nothing, and leaves no lock", () => {
   assert.equal(read(join("other", "index.html")), "mine");
-  for (const path of ["nowhere", "same", "free.jsonl", "free.jsonl.lock", join("other", "rows.js")]) {
+  for (const path of ["nowhere", "free.jsonl", "free.jsonl.lock", join("other", "rows.js")]) {
     assert.ok(!existsSync(join(folder, path)), path);
   }
 });

@@ -12,7 +12,7 @@ import {
 } from "sim3align";
 import { readDepth, readMesh } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
-import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
+import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png, texturedJson } from "../support/files.js";
 import { assertNear } from "../support/random.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 import { deflated, zip } from "../support/zip.js";
@@ -229,19 +229,8 @@ test("photo and mesh colours: every form of arrays and files gives the same agre
 });
 
 test("a mesh with a texture that can't be read is aligned by its shape, with a warning where there is a photo", async () => {
-  const parts = gltfJson(mesh);
-  const [primitive] = parts.meshes[0]?.primitives ?? [];
-  const webp = glbOf(
-    {
-      ...parts,
-      meshes: [{ primitives: [{ ...primitive, attributes: { POSITION: 0, TEXCOORD_0: 2 }, material: 0 }] }],
-      accessors: [...parts.accessors, { bufferView: 0, componentType: 5126, count: vertices, type: "VEC2" }],
-      materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
-      textures: [{ source: 0 }],
-      images: [{ uri: "data:image/webp;base64,UklGRgAAAABXRUJQVlA4IA==" }],
-    },
-    gltfBuffer(mesh),
-  );
+  const images = [{ uri: "data:image/webp;base64,UklGRgAAAABXRUJQVlA4IA==" }];
+  const webp = glbOf(texturedJson(mesh, { source: 0 }, { images }), gltfBuffer(mesh));
   using pool = await createAligner({ workers: 1 });
   for (const [one, mesh] of [
     [aligner, webp],
@@ -255,21 +244,10 @@ test("a mesh with a texture that can't be read is aligned by its shape, with a w
 });
 
 test("a texture as KTX2 is decoded by the caller's decoder", async () => {
-  const parts = gltfJson(mesh);
-  const [primitive] = parts.meshes[0]?.primitives ?? [];
   const ktx2 = [0xab, 0x4b, 0x54, 0x58, 0x20, 0x32, 0x30, 0xbb, 0x0d, 0x0a, 0x1a, 0x0a];
-  const file = glbOf(
-    {
-      ...parts,
-      extensionsUsed: ["KHR_texture_basisu"],
-      meshes: [{ primitives: [{ ...primitive, attributes: { POSITION: 0, TEXCOORD_0: 2 }, material: 0 }] }],
-      accessors: [...parts.accessors, { bufferView: 0, componentType: 5126, count: vertices, type: "VEC2" }],
-      materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
-      textures: [{ extensions: { KHR_texture_basisu: { source: 0 } } }],
-      images: [{ uri: `data:image/ktx2;base64,${Buffer.from(ktx2).toString("base64")}` }],
-    },
-    gltfBuffer(mesh),
-  );
+  const images = [{ uri: `data:image/ktx2;base64,${Buffer.from(ktx2).toString("base64")}` }];
+  const texture = { extensions: { KHR_texture_basisu: { source: 0 } } };
+  const file = glbOf(texturedJson(mesh, texture, { images, extensionsUsed: ["KHR_texture_basisu"] }), gltfBuffer(mesh));
   const seen: number[][] = [];
   const read = await readMesh(file, {
     decodeImage: (bytes) => {

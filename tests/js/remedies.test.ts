@@ -9,7 +9,7 @@ import { createDefaultContainer, write } from "ktx-parse";
 import { readMesh, Sim3AlignError } from "sim3align/formats";
 import { dracoGltf, glbFrom, meshoptGltf } from "../support/compressed.js";
 import { repository } from "../support/environment.js";
-import { fixture, glbOf, gltfBuffer, gltfJson, png } from "../support/files.js";
+import { fixture, glbOf, gltfBuffer, gltfJson, png, texturedJson } from "../support/files.js";
 import { blob } from "../support/scene.js";
 
 const folder = mkdtempSync(join(tmpdir(), "sim3align-remedies-"));
@@ -17,7 +17,6 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 
 const isWindows = process.platform === "win32";
 const mesh = blob(8, 10);
-const vertices = mesh.positions.length / 3;
 
 /** Runs a command line with the files `in` and `out` in a folder; npx finds the programs of the repository. */
 function run(command: string, place: string): void {
@@ -43,21 +42,14 @@ async function complaint(file: Uint8Array): Promise<string> {
 
 /** A GLB with a texture. */
 function textured(image: Uint8Array, mimeType: string, texture: object, extensionsUsed: string[] = []): Uint8Array {
-  const parts = gltfJson(mesh);
-  const [primitive] = parts.meshes[0]?.primitives ?? [];
-  const coordinates = { bufferView: 0, componentType: 5126, count: vertices, type: "VEC2" };
   const place = gltfBuffer(mesh);
-  const json = {
-    ...parts,
+  const { bufferViews } = gltfJson(mesh);
+  const json = texturedJson(mesh, texture, {
     ...(extensionsUsed.length > 0 ? { extensionsUsed } : {}),
-    meshes: [{ primitives: [{ ...primitive, attributes: { POSITION: 0, TEXCOORD_0: 2 }, material: 0 }] }],
-    accessors: [...parts.accessors, coordinates],
-    bufferViews: [...parts.bufferViews, { buffer: 0, byteOffset: place.length, byteLength: image.length }],
+    bufferViews: [...bufferViews, { buffer: 0, byteOffset: place.length, byteLength: image.length }],
     buffers: [{ byteLength: place.length + image.length }],
-    materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
-    textures: [texture],
     images: [{ bufferView: 2, mimeType }],
-  };
+  });
   return glbOf(json, Buffer.concat([place, image]));
 }
 

@@ -1,8 +1,20 @@
-/** A browser and a static server for its pages. */
+/** A browser, a static server for its pages, and checks of accessibility by axe. */
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { after } from "node:test";
+import { pathToFileURL } from "node:url";
 import { type Browser, type BrowserContextOptions, chromium, type Page } from "playwright-core";
 import { repository } from "./environment.js";
-import { type Server, serve } from "./static-server.js";
+
+/** A running server. */
+export interface Server {
+  url: string;
+  close(): Promise<void>;
+}
+
+/** Serves a folder. */
+export const serve = async (folder: string): Promise<Server> =>
+  (await import(pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href)).serve(folder);
 
 const flags = [
   "--no-sandbox",
@@ -96,4 +108,12 @@ export function browserFor(...parameters: ConstructorParameters<typeof PageTest>
   const made = new PageTest(...parameters);
   after(() => made.stop());
   return made;
+}
+
+/** The violations that axe finds on a page, one line per rule. */
+export async function violations(page: Page): Promise<string[]> {
+  await page.evaluate(readFileSync(join(repository, "node_modules", "axe-core", "axe.min.js"), "utf8"));
+  const run = `axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] })`;
+  const found = (await page.evaluate(run)) as { violations: { id: string; nodes: { html: string }[] }[] };
+  return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 160)).join(" | ")}`);
 }

@@ -45,8 +45,3 @@ export const docsScene = {
   object3d: new Object3D(),
   threeCamera: new PerspectiveCamera(),
 };
-
-/** Makes the globals. */
-export function provideScene(): void {
-  Object.assign(globalThis, docsScene);
-}

@@ -19,3 +19,7 @@ export const installDir = process.cwd();
 
 /** The script of the installed package's command line, to be run by `process.execPath`. */
 export const commandLine = join(installDir, "node_modules", "sim3align", "cli", "main.js");
+
+/** The folder that tests of the element serve, and the element of the installed package below it. */
+export const servedFolder = join(repository, "target");
+export const elementFolder = "install-test/node_modules/sim3align/element";

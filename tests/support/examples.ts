@@ -5,6 +5,8 @@ import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { required } from "./environment.js";
+import { obj, viewFiles, writeFiles } from "./files.js";
+import { mesh, pinhole, render, truth } from "./scene.js";
 
 /** The folder of the examples, a copy of the repository's with its packages installed. */
 export const examplesDir = required("SIM3ALIGN_EXAMPLES");
@@ -32,6 +34,13 @@ export async function printedBy(script: string, args: string[] = [], env: NodeJS
   const { status, stdout, stderr } = await runExample(script, args, env);
   assert.equal(status, 0, stderr);
   return stdout;
+}
+
+/** Writes a case of the test scene, and returns its folder; an empty mask is an error. */
+export function writeCase(parent: string, name: string, { pose = truth, isEmpty = false } = {}): string {
+  const view = render(mesh, pose, pinhole, 160, 120);
+  if (isEmpty) view.mask.fill(0);
+  return writeFiles(join(parent, name), { ...viewFiles(view), "mesh.obj": obj(mesh) });
 }
 
 /** A case's files, as bytes. */

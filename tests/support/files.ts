@@ -140,6 +140,23 @@ export function gltfJson({ positions, indices }: Mesh, node: object = {}, buffer
   };
 }
 
+/** The JSON of a `.gltf` with a texture, whose coordinates are numbers of positions; `more` has its image. */
+export function texturedJson(mesh: Mesh, texture: object, more: object) {
+  const parts = gltfJson(mesh);
+  const [primitive] = parts.meshes[0]?.primitives ?? [];
+  return {
+    ...parts,
+    meshes: [{ primitives: [{ ...primitive, attributes: { POSITION: 0, TEXCOORD_0: 2 }, material: 0 }] }],
+    accessors: [
+      ...parts.accessors,
+      { bufferView: 0, componentType: 5126, count: mesh.positions.length / 3, type: "VEC2" },
+    ],
+    materials: [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }],
+    textures: [texture],
+    ...more,
+  };
+}
+
 /** The buffer of {@link gltfJson}. */
 export const gltfBuffer = ({ positions, indices }: Mesh) => Buffer.concat([bytesOf(positions), bytesOf(indices)]);
 

@@ -160,6 +160,14 @@ export const truth: Pose = {
   translation: [0.02, -0.01, 0.7],
 };
 
+/** Poses that differ from the test scene's in place, size and turn. */
+export function otherPose(i: number): Pose {
+  const [x, y, z] = truth.translation;
+  const half = 0.2 * i;
+  const rotation: Pose["rotation"] = [0.6 * Math.sin(half), 0.8 * Math.sin(half), 0, Math.cos(half)];
+  return { scale: truth.scale * (1 + 0.01 * i), rotation, translation: [x + 0.002 * i, y, z + 0.01 * i] };
+}
+
 function normalized(q: Pose["rotation"]): Pose["rotation"] {
   const length = Math.hypot(...q);
   return q.map((x) => x / length) as Pose["rotation"];

@@ -3,8 +3,7 @@ import assert from "node:assert/strict";
 import { join } from "node:path";
 import { type TestContext, test } from "node:test";
 import type { BrowserContextOptions, Locator, Page } from "playwright-core";
-import { violations } from "./axe.js";
-import { browserFor, WITHOUT_3D } from "./browser.js";
+import { browserFor, violations, WITHOUT_3D } from "./browser.js";
 import { repository } from "./environment.js";
 
 /** Output of `npm run build:www`. */

@@ -52,7 +52,7 @@ globalThis.harness = {
   ...{ camera, width, height, quarters, object },
   viewEvents: [],
   /** Creates a view in a host of that size. */
-  async start(hostWidth, hostHeight, forceWebGL) {
+  async start(hostWidth, hostHeight) {
     const host = document.createElement("div");
     host.id = "host";
     host.style.cssText = `width:${hostWidth}px;height:${hostHeight}px;background:rgb(250, 251, 252)`;
@@ -64,7 +64,7 @@ globalThis.harness = {
       onSelect: (id) => viewEvents.push({ kind: "select", id }),
       onHover: (pixel) => viewEvents.push({ kind: "hover", pixel }),
     };
-    harness.view = await SceneView.create(host, events, forceWebGL);
+    harness.view = await SceneView.create(host, events);
     return harness.view.backend;
   },
   /** Shows the wall from the camera. */
