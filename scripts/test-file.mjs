@@ -11,14 +11,15 @@ import { script } from "./lib/step.mjs";
 import { examplesDir, install, testEnvironment } from "./suites/installed.mjs";
 
 await script(async () => {
-  const args = process.argv.slice(2).map((arg) => {
-    const inside = relative(repository, resolve(arg));
-    return arg.endsWith(".ts") ? join(installDir, inside.replace(/ts$/, "js")) : arg;
-  });
+  const args = process.argv.slice(2);
+  const named = args.filter((arg) => arg.endsWith(".ts")).map((arg) => relative(repository, resolve(arg)));
+  const files = named.map((file) => join(installDir, file.replace(/ts$/, "js")));
+  // Node takes what follows the first file for another one.
+  const options = args.filter((arg) => !arg.endsWith(".ts"));
   await install();
-  if (args.some((arg) => /[\\/](browser|examples)[\\/]/.test(arg))) await buildSite();
+  if (named.some((file) => /[\\/](browser|examples)[\\/]/.test(file))) await buildSite();
   const programs = { CHROMIUM_PATH: await chromium(), FIREFOX_PATH: await firefox() };
   const env = { ...testEnvironment, ...programs, SIM3ALIGN_EXAMPLES: examplesDir };
-  const test = ["--enable-source-maps", "--test", "--test-reporter=spec", ...args];
+  const test = ["--enable-source-maps", "--test", "--test-reporter=spec", ...options, ...files];
   await run(process.execPath, test, { cwd: installDir, env, attach: true });
 });

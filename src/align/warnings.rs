@@ -174,7 +174,7 @@ impl<'a> Facts<'a> {
                 "The mask covers {mask} of the image's {image} pixels: it selects everything, not an object. It may be inverted, or not a mask."
             )
         };
-        self.covers_image().then(|| message().into())
+        self.covers_image().then(message)
     }
 
     fn about_border(&self) -> Option<String> {
@@ -189,7 +189,7 @@ impl<'a> Facts<'a> {
                 "Only {readings} of the mask's {mask} pixels have a depth reading; the pose depends on these alone."
             )
         };
-        (2 * readings < mask).then(|| message().into())
+        (2 * readings < mask).then(message)
     }
 }
 

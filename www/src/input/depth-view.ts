@@ -1,10 +1,9 @@
 /** Depth maps with their cameras, as far as both are known. */
 import type { DepthKind } from "sim3align";
-import { depthOfRays, doubtOfSize } from "sim3align/camera/pinhole";
+import { depthOfRays } from "sim3align/camera/pinhole";
 import type { DepthImage, ReadDepthOptions } from "sim3align/formats";
-import type { ImageSize } from "sim3align/values/pixels";
 import { corrected, provisional } from "../state/calibration.js";
-import type { CameraSource, NamedFile } from "../state/inputs.js";
+import type { NamedFile } from "../state/inputs.js";
 import type { RawView, Scene } from "../state/scene.js";
 import { readDepth } from "./reader.js";
 
@@ -51,22 +50,3 @@ export function viewOf(
   const { camera, focalUncertainty, warnings } = read;
   return { depthM, raw: { depth, width, height, depthKind, camera, focalUncertainty, warnings } };
 }
-
-/** How much larger one image of a camera usually is than another one. */
-const usual = [1 / 4, 1 / 3, 3 / 8, 1 / 2, 2 / 3, 3 / 4, 4 / 3, 3 / 2, 2, 8 / 3, 3, 4];
-/** How far principal points are from the middle, relative. */
-const TOLERANCE = 0.08;
-
-/** The factor that brings the principal point to the middle, if intrinsics seem to be those of an image of another size. */
-export function otherSize(camera: Scene["camera"], size: ImageSize): number | null {
-  if (doubtOfSize(camera, size) === undefined) return null;
-  const factors = [size.width / (2 * camera.cx + 1), size.height / (2 * camera.cy + 1)];
-  const isNear = (factor: number) => factors.every((one) => Math.abs(one / factor - 1) < TOLERANCE);
-  return usual.find(isNear) ?? null;
-}
-
-/** Intrinsics scaled by a factor. Pixel centres are at integers. */
-export const scaled = ({ fx, fy, cx, cy }: Scene["camera"], factor: number): CameraSource => ({
-  ...{ kind: "numbers", fx: factor * fx, fy: factor * fy },
-  ...{ cx: factor * (cx + 0.5) - 0.5, cy: factor * (cy + 0.5) - 0.5 },
-});

@@ -3,7 +3,7 @@ import type { Sim3 } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import { type Inputs, noInputs, withId } from "../state/inputs.js";
 import type { Video } from "../state/video.js";
-import { titleOf } from "./files.js";
+import { titleOf } from "./names.js";
 
 /** Whether the scenes can be frames: they show one object each, and have one mesh file in common. */
 export function canBeVideo(scenes: readonly Inputs[]): boolean {

@@ -1,7 +1,8 @@
 /** Groups the files of a drop by scenes, one depth map each, and the files of a scene by objects. */
 import { ofDepthCamera } from "sim3align/case-names";
 import { naturally } from "sim3align/values/order";
-import { baseName, folderOf, keyOf, stem, titleOf } from "../input/files.js";
+import { baseName, folderOf, stem } from "../input/files.js";
+import { keyOf, titleOf } from "../input/names.js";
 import {
   type Inputs,
   type MeshSource,

@@ -11,10 +11,12 @@ interface OfObject {
 const whenSettled = <P extends object>(load: () => Promise<ComponentType<P>>) =>
   lazy<P>(() => useWorkspace().isSettled.value, load);
 
-export const Advised = whenSettled<OfObject>(async () => (await import("./advised.js")).Advised);
-export const Alternatives = whenSettled<OfObject>(async () => (await import("./alternatives.js")).Alternatives);
-export const HandPanel = whenSettled(async () => (await import("./hand-panel.js")).HandPanel);
-export const OptionsPanel = whenSettled(async () => (await import("./options-panel.js")).OptionsPanel);
-export const Remedies = whenSettled<OfObject>(async () => (await import("./remedies.js")).Remedies);
-export const Details = whenSettled<OfObject>(async () => (await import("./details.js")).Details);
-export const Warnings = whenSettled<OfObject>(async () => (await import("./advised.js")).Warnings);
+const panels = () => import("./after-result.js");
+
+export const Advised = whenSettled<OfObject>(async () => (await panels()).Advised);
+export const Alternatives = whenSettled<OfObject>(async () => (await panels()).Alternatives);
+export const HandPanel = whenSettled(async () => (await panels()).HandPanel);
+export const OptionsPanel = whenSettled(async () => (await panels()).OptionsPanel);
+export const Remedies = whenSettled<OfObject>(async () => (await panels()).Remedies);
+export const Details = whenSettled<OfObject>(async () => (await panels()).Details);
+export const Warnings = whenSettled<OfObject>(async () => (await panels()).Warnings);
