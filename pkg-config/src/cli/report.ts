@@ -156,6 +156,7 @@ ${MARKER}
 <title>${escaped(title)}</title>
 <style>${style}</style>
 <script>${script}</script>
+<main>
 <h1>${escaped(title)}</h1>
 <table>
 <thead><tr>${heads.join("")}</thead>
