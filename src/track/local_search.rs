@@ -23,7 +23,7 @@ const NEAR: f64 = 0.04;
 /// The pose found in a frame.
 pub struct FramePose {
     /// The pose.
-    pub found: Candidate,
+    pub candidate: Candidate,
     /// The evidence.
     pub evidence: Evidence,
     /// The lead over other poses, if all rotations were searched.
@@ -38,7 +38,7 @@ impl FramePose {
     /// The share of the object that the frame shows: of its vertices, those inside the image, times the share of its
     /// silhouette in the image that the mask covers.
     pub fn shown_share(&self, frame: &Frame) -> f32 {
-        let pose = &self.found.pose;
+        let pose = &self.candidate.pose;
         let (scale, translation) = pose.scale_translation();
         let Pinhole { fx, fy, cx, cy } = frame.camera;
         let [width, height] = [frame.depth.width() as f64, frame.depth.height() as f64];
@@ -75,21 +75,21 @@ impl TrackedMesh {
         if wide {
             poses.extend(expected.iter().flat_map(|pose| evidence.search.around(*pose)).collect::<Vec<_>>());
         }
-        let mut found = self.refined(&evidence.search, &poses, !has_mask)?;
+        let mut candidate = self.refined(&evidence.search, &poses, !has_mask)?;
         if !has_mask {
             let mut from = first;
             for round in 1..PREDICTIONS {
-                let is_last = round + 1 == PREDICTIONS || apart(&from, &found.pose) < NEAR;
-                from = found.pose;
+                let is_last = round + 1 == PREDICTIONS || apart(&from, &candidate.pose) < NEAR;
+                from = candidate.pose;
                 evidence = of_pose(frame, &from, self).ok().flatten()?;
-                found = self.refined(&evidence.search, &[from], !is_last)?;
+                candidate = self.refined(&evidence.search, &[from], !is_last)?;
                 if is_last {
                     break;
                 }
             }
         }
-        let visible = if has_mask { 1.0 } else { visible(&evidence.search, &found.pose) };
-        Some(FramePose { found, evidence, lead: None, visible, is_predicted: !has_mask })
+        let visible = if has_mask { 1.0 } else { visible(&evidence.search, &candidate.pose) };
+        Some(FramePose { candidate, evidence, lead: None, visible, is_predicted: !has_mask })
     }
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.

@@ -252,7 +252,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             None => None,
         };
         let shows_enough_anew = |seen: &FramePose| {
-            let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
+            let has_turned = angle_between(seen.candidate.pose.rotation, before) > MAX_TURN;
             seen.shown_share(frame) >= if has_turned { MOST_SHOWN } else { ENOUGH }
         };
         let anew = anew.filter(shows_enough_anew).map(|seen| self.unturned(frame, seen, before));
@@ -267,9 +267,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     /// The pose of a lost object that has come back beside the place where it was last.
     fn beside(&self, frame: &Frame, last: &WorldPose) -> Option<FramePose> {
         let diagonal = libm::exp(last.log_scale);
-        let found =
+        let offsets =
             BESIDE.iter().flat_map(|&apart| DIRECTIONS.map(|[x, y]| DVec3::new(x, y, 0.0) * (apart * diagonal)));
-        let seen = found.filter_map(|offset| {
+        let seen = offsets.filter_map(|offset| {
             let pose = PlacedCamera::AT_ORIGIN.see(&WorldPose { center: last.center + offset, ..*last })?;
             self.tracked.around(frame, &self.tracked.evidence(frame, &pose)?, &[pose], false)
         });
@@ -280,12 +280,12 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     /// The pose found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
     /// part of it that comes out behind another may look like its other end.
     fn unturned(&self, frame: &Frame, seen: FramePose, before: DQuat) -> FramePose {
-        if angle_between(seen.found.pose.rotation, before) <= MAX_TURN {
+        if angle_between(seen.candidate.pose.rotation, before) <= MAX_TURN {
             return seen;
         }
-        let expected = CropPose { rotation: before, ..seen.found.pose };
+        let expected = CropPose { rotation: before, ..seen.candidate.pose };
         // The more of it is hidden, the less its fit counts.
-        let is_near = |other: &FramePose| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
+        let is_near = |other: &FramePose| (BETTER + other.candidate.score.hidden) * self.fit(other) >= self.fit(&seen);
         let near = self.tracked.evidence(frame, &expected);
         match near.and_then(|near| self.tracked.around(frame, &near, &[expected], true)) {
             Some(other) if is_near(&other) => FramePose { lead: seen.lead, ..other },
@@ -308,14 +308,14 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host, scheduler).await?;
         // With the settings of the frames after it, so that scores compare.
         let search = self.tracked.search(detection.observation);
-        let found = Candidate { score: search.score(&detection.found.pose), ..detection.found };
+        let candidate = Candidate { score: search.score(&detection.candidate.pose), ..detection.candidate };
         let evidence = Evidence { search, region: PhotoRegion::WHOLE };
-        Ok(FramePose { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
+        Ok(FramePose { candidate, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
 
     /// The agreement of a pose relative to that of earlier frames, about 1 for one as good.
     fn fit(&self, seen: &FramePose) -> f32 {
-        let fit = agreement(&seen.found.score);
+        let fit = agreement(&seen.candidate.score);
         self.usual.map_or(1.0, |usual| fit / usual.max(1e-3))
     }
 
@@ -324,7 +324,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let Some(seen) = seen else { return Ok(self.lost()) };
         let is_certain = self.fit(&seen) >= UNCERTAIN && seen.visible >= VISIBLE[0];
         let shows_enough = is_certain && seen.shown_share(frame) >= ENOUGH;
-        let FramePose { mut found, evidence, lead, is_predicted, .. } = seen;
+        let FramePose { mut candidate, evidence, lead, is_predicted, .. } = seen;
         let is_detected = lead.is_some();
         let search = &evidence.search;
         self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };
@@ -334,25 +334,25 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.motion = Motion::REST;
         }
         if is_certain {
-            let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
-            self.usual = Some(usual + NEW * (agreement(&found.score) - usual));
+            let usual = self.usual.unwrap_or_else(|| agreement(&candidate.score));
+            self.usual = Some(usual + NEW * (agreement(&candidate.score) - usual));
             if shows_enough {
-                self.certain = Some(found.pose.rotation);
+                self.certain = Some(candidate.pose.rotation);
             }
-            self.roll(frame, &evidence, &mut found);
+            self.roll(frame, &evidence, &mut candidate);
             self.size.advance();
-            self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
+            self.weigh_size(search, &mut candidate, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
-        let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
+        let pose = PlacedCamera::AT_ORIGIN.place(&candidate.pose);
         if let (Some(before), false) = (before, is_detected) {
             self.motion = Motion::between(&before, &pose);
         }
         let confidence = {
-            let (conditioning, _) = search.conditioning(&found.pose);
+            let (conditioning, _) = search.conditioning(&candidate.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
-            let shape = pose_probability(&found, self.lead.margin, conditioning.as_ref());
+            let shape = pose_probability(&candidate, self.lead.margin, conditioning.as_ref());
             let (color, relief_deviation) = (self.lead.color_probability, frame.relief_deviation);
             Confidence { shape, color, relief_deviation }.overall()
         };
@@ -374,38 +374,38 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             scale_sd: self.size.deviation(),
             is_scale_settled: self.size.is_settled(),
             is_detected,
-            score: f64::from(found.score.total),
-            terms: (&found.score).into(),
+            score: f64::from(candidate.score.total),
+            terms: (&candidate.score).into(),
             metrics: measured,
         })
     }
 
     /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
-    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Candidate) {
+    fn roll(&self, frame: &Frame, evidence: &Evidence, candidate: &mut Candidate) {
         let Evidence { search, .. } = evidence;
         let (Some(colors), true) = (self.mesh.borrow().colors(), frame.photo.is_some()) else { return };
-        if let Some(axis) = loose_axis(search, &found.pose, LOOSE_MIN_SD_RAD)
+        if let Some(axis) = loose_axis(search, &candidate.pose, LOOSE_MIN_SD_RAD)
             && let Some(photo) = evidence.photo(frame)
-            && let Some((pose, _)) = roll(search, &photo, colors, found.pose, axis)
+            && let Some((pose, _)) = roll(search, &photo, colors, candidate.pose, axis)
             && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
         {
-            *found = Candidate { pose, score: search.score(&pose), ..*found };
+            *candidate = Candidate { pose, score: search.score(&pose), ..*candidate };
         }
     }
 
     /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.
-    fn weigh_size(&mut self, search: &Search, found: &mut Candidate, silhouette_error: f64) {
-        if !self.size.wants(found.pose.rotation) {
+    fn weigh_size(&mut self, search: &Search, candidate: &mut Candidate, silhouette_error: f64) {
+        if !self.size.wants(candidate.pose.rotation) {
             return;
         }
         let objective = search.objective(FINE);
         let objective = Objective { prior: self.prior, ..objective };
-        let free = Refiner { objective, lock_scale: false }.refine(&mut Canvas::default(), found.pose, STEPS[0]);
+        let free = Refiner { objective, lock_scale: false }.refine(&mut Canvas::default(), candidate.pose, STEPS[0]);
         if let Some(evidence) = SizeEvidence::at(objective, &free.pose, silhouette_error) {
-            self.size.add(found.pose.rotation, evidence);
+            self.size.add(candidate.pose.rotation, evidence);
         }
         if let Some((log_scale, _)) = self.size.value() {
-            *found = refine_at(objective, found.pose, log_scale, STEPS[1]);
+            *candidate = refine_at(objective, candidate.pose, log_scale, STEPS[1]);
         }
     }
 
