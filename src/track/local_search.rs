@@ -17,8 +17,8 @@ use crate::precise::search::refine::Refiner;
 
 /// Most times that the mask of a frame without one is predicted, and how far a pose may be from that of its mask for the next
 /// mask to be the last one: relative to the diagonal of the object, about half of what a predicted mask grows.
-const PREDICTIONS: usize = 3;
-const NEAR: f64 = 0.04;
+const MAX_MASK_PREDICTIONS: usize = 3;
+const SETTLED_MASK_DISTANCE: f64 = 0.04;
 
 /// The pose found in a frame.
 pub struct FramePose {
@@ -78,8 +78,9 @@ impl TrackedMesh {
         let mut candidate = self.refined(&evidence.search, &poses, !has_mask)?;
         if !has_mask {
             let mut from = first;
-            for round in 1..PREDICTIONS {
-                let is_last = round + 1 == PREDICTIONS || apart(&from, &candidate.pose) < NEAR;
+            for round in 1..MAX_MASK_PREDICTIONS {
+                let is_last =
+                    round + 1 == MAX_MASK_PREDICTIONS || apart(&from, &candidate.pose) < SETTLED_MASK_DISTANCE;
                 from = candidate.pose;
                 evidence = of_pose(frame, &from, self).ok().flatten()?;
                 candidate = self.refined(&evidence.search, &[from], !is_last)?;
