@@ -78,7 +78,8 @@ export const perform = {
           ["depth", "camera", "mask", "rgb"].map((part) => optional(folder, `${name}/${part}`)),
         );
         if (depth === undefined) throw new Error(`no depth in ${folder.path}/${name}`);
-        const tracked = await tracker.next({ depth, cameraFile, mask, image });
+        const camera = cameraFile === undefined ? {} : { cameraFile };
+        const tracked = await tracker.next({ depth, ...camera, mask, image });
         frames.push({ name, state: tracked.state, ...poseOf(tracked) });
       }
       return { scale: frames.at(-1)?.scale, frames };

@@ -2,7 +2,8 @@
 //!
 //! The call and its helpers each have a share of the tasks of a list and go through it forwards. One that has finished takes
 //! the back part of the largest share. The results of a list are used in the order of its tasks: neither the number of
-//! helpers nor their speed changes a bit. What travels are numbers, without loss: the code of a serialiser is larger.
+//! helpers nor their speed changes a bit. What travels are numbers, without loss: with a serialiser (`postcard`), the core module is
+//! 2.5 kB larger, gzipped, for 49 lines less.
 
 use core::cell::{Cell, RefCell};
 use core::ops::Range;

@@ -17,7 +17,7 @@ import { step } from "../lib/step.mjs";
 export const testEnvironment = { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAMPLE: sampleDir };
 
 /** Tests that use the installed package, and what they share. */
-const testFolders = ["js", "browser", "bundlers", "examples", "support"];
+const testFolders = ["js", "repro", "browser", "bundlers", "examples", "support"];
 
 /** Far longer than any file of tests takes, on a busy machine too. */
 const HANGING_MINUTES = 15;
@@ -68,11 +68,11 @@ export const install = once(async () => {
  */
 
 /**
- * Runs one folder of tests with the installed package.
- * @param {string} folder
+ * Runs folders of tests with the installed package.
+ * @param {readonly string[]} folders
  * @param {TestOptions} [options]
  */
-async function nodeTest(folder, { env = {}, concurrency = availableParallelism(), without = [] } = {}) {
+async function nodeTest(folders, { env = {}, concurrency = availableParallelism(), without = [] } = {}) {
   await install();
   // By default, Node leaves one core free, and waits for ever for a test that hangs. Its versions before 20.11 know no
   // other way.
@@ -87,9 +87,11 @@ async function nodeTest(folder, { env = {}, concurrency = availableParallelism()
     });
   const counted = (/** @type {Awaited<ReturnType<typeof test>>} */ { output, reason }) =>
     withStatus(nodeCounts(output), reason === "");
-  const names = readdirSync(join(installDir, "tests", folder)).filter((name) => name.endsWith(".test.js"));
-  const chosen = names.filter((name) => !without.includes(name.replace(".test.js", "")));
-  const outcome = await test(chosen.map((name) => join(installDir, "tests", folder, name)));
+  const filesIn = (/** @type {string} */ folder) =>
+    readdirSync(join(installDir, "tests", folder))
+      .filter((name) => name.endsWith(".test.js") && !without.includes(name.replace(".test.js", "")))
+      .map((name) => join(installDir, "tests", folder, name));
+  const outcome = await test(folders.flatMap(filesIn));
   const hung = hungFiles(outcome.output);
   if (hung.length === 0) return counted(outcome);
   // Once more, because Node itself may hang: its end can deadlock (nodejs/node#54918).
@@ -111,7 +113,7 @@ export async function javaScript(isAll) {
     const python = await installedPython(folder);
     if (python !== undefined) env[name] = python;
   }
-  return nodeTest("js", { env });
+  return nodeTest(["js", "repro"], { env });
 }
 
 /** Counts where a program is missing: skipped on a developer's machine, failed in continuous integration. */
@@ -121,7 +123,7 @@ export const missing = () => ({ ...noTests(), ...(process.env.CI ? { failed: 1 }
 export async function inBrowser(folder) {
   const path = await chromium();
   const env = { CHROMIUM_PATH: path, FIREFOX_PATH: await firefox() };
-  if (path) return nodeTest(folder, { env, concurrency: 2 * availableParallelism() });
+  if (path) return nodeTest([folder], { env, concurrency: 2 * availableParallelism() });
   print(`No Chromium. Remedy: ${chromiumRemedy}.\n`);
   return missing();
 }
@@ -170,5 +172,5 @@ export async function examples(isAll) {
   await step("install the examples", installExamples);
   const [chromiumPath = "", redisPath = ""] = [await chromium(), isAll ? await redisServer() : ""];
   const env = { SIM3ALIGN_EXAMPLES: examplesDir, CHROMIUM_PATH: chromiumPath, REDIS_SERVER_PATH: redisPath };
-  return nodeTest("examples", { env, without: isAll ? [] : heavyExamples });
+  return nodeTest(["examples"], { env, without: isAll ? [] : heavyExamples });
 }

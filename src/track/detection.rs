@@ -45,7 +45,7 @@ pub struct Lead {
 /// A found object.
 pub struct Detection {
     /// The pose.
-    pub found: Candidate,
+    pub candidate: Candidate,
     /// The frame.
     pub observation: Rc<CleanObservation>,
     /// Its lead over other poses.
@@ -90,9 +90,9 @@ impl Detection {
             }
             let rounds = rounds.ok_or_else(no_candidate)?;
             let judgment = by_color(&rounds, observation, mesh, scheduler).await;
-            let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
+            let (candidate, margin) = chosen(&rounds, judgment.as_ref(), known)?;
             let color_probability = judgment.map_or(1.0, |judgment| judgment.probability);
-            Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, color_probability } })
+            Ok(Self { candidate, observation: rounds.search.observation, lead: Lead { margin, color_probability } })
         })
     }
 }
@@ -115,7 +115,7 @@ fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) 
     let is_colored = judgment.is_some_and(|judgment| judgment.is_used && !judgment.rivals.is_empty());
     if let (Some((_, before)), false) = (known.before, is_colored) {
         for other in rounds.candidates.iter().filter(|other| other.score.total > first.score.total - 0.5 * NOISE) {
-            let angle = |found: &Candidate| rounds.search.equivalence.angle(found.pose.rotation, before);
+            let angle = |candidate: &Candidate| rounds.search.equivalence.angle(candidate.pose.rotation, before);
             if angle(other) < angle(&chosen) {
                 chosen = *other;
             }

@@ -7,7 +7,7 @@ use crate::precise::drawing::pose::MeshFrame;
 use crate::views::world_pose::WorldPose;
 
 /// Number of frames that can be corrected, the newest ones: almost an hour at 30 frames per second.
-pub const MOST: usize = 100_000;
+pub const MAX_FRAMES: usize = 100_000;
 
 /// The poses of the newest frames, in stretches of frames: a new one begins where the object was found anew.
 #[derive(Debug, Clone, Default)]
@@ -29,7 +29,7 @@ impl History {
     pub fn add(&mut self, pose: WorldPose, is_anew: bool) {
         self.stretch += usize::from(is_anew);
         self.frames += 1;
-        if self.poses.len() == MOST {
+        if self.poses.len() == MAX_FRAMES {
             self.poses.pop_front();
         }
         self.poses.push_back((pose, self.stretch));

@@ -17,13 +17,13 @@ use crate::precise::search::refine::Refiner;
 
 /// Most times that the mask of a frame without one is predicted, and how far a pose may be from that of its mask for the next
 /// mask to be the last one: relative to the diagonal of the object, about half of what a predicted mask grows.
-const PREDICTIONS: usize = 3;
-const NEAR: f64 = 0.04;
+const MAX_MASK_PREDICTIONS: usize = 3;
+const SETTLED_MASK_DISTANCE: f64 = 0.04;
 
 /// The pose found in a frame.
 pub struct FramePose {
     /// The pose.
-    pub found: Candidate,
+    pub candidate: Candidate,
     /// The evidence.
     pub evidence: Evidence,
     /// The lead over other poses, if all rotations were searched.
@@ -38,7 +38,7 @@ impl FramePose {
     /// The share of the object that the frame shows: of its vertices, those inside the image, times the share of its
     /// silhouette in the image that the mask covers.
     pub fn shown_share(&self, frame: &Frame) -> f32 {
-        let pose = &self.found.pose;
+        let pose = &self.candidate.pose;
         let (scale, translation) = pose.scale_translation();
         let Pinhole { fx, fy, cx, cy } = frame.camera;
         let [width, height] = [frame.depth.width() as f64, frame.depth.height() as f64];
@@ -75,21 +75,22 @@ impl TrackedMesh {
         if wide {
             poses.extend(expected.iter().flat_map(|pose| evidence.search.around(*pose)).collect::<Vec<_>>());
         }
-        let mut found = self.refined(&evidence.search, &poses, !has_mask)?;
+        let mut candidate = self.refined(&evidence.search, &poses, !has_mask)?;
         if !has_mask {
             let mut from = first;
-            for round in 1..PREDICTIONS {
-                let is_last = round + 1 == PREDICTIONS || apart(&from, &found.pose) < NEAR;
-                from = found.pose;
+            for round in 1..MAX_MASK_PREDICTIONS {
+                let is_last =
+                    round + 1 == MAX_MASK_PREDICTIONS || apart(&from, &candidate.pose) < SETTLED_MASK_DISTANCE;
+                from = candidate.pose;
                 evidence = of_pose(frame, &from, self).ok().flatten()?;
-                found = self.refined(&evidence.search, &[from], !is_last)?;
+                candidate = self.refined(&evidence.search, &[from], !is_last)?;
                 if is_last {
                     break;
                 }
             }
         }
-        let visible = if has_mask { 1.0 } else { visible(&evidence.search, &found.pose) };
-        Some(FramePose { found, evidence, lead: None, visible, is_predicted: !has_mask })
+        let visible = if has_mask { 1.0 } else { visible(&evidence.search, &candidate.pose) };
+        Some(FramePose { candidate, evidence, lead: None, visible, is_predicted: !has_mask })
     }
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.

@@ -6,9 +6,9 @@ use crate::geometry::rotations::{angle_between, exp};
 use crate::views::world_pose::WorldPose;
 
 /// Share of the last motion that is expected of the next frame.
-const CARRIED: f64 = 0.9;
+const DAMPING: f64 = 0.9;
 /// Rotation, radians, beyond which a motion is not carried on: the object was found anew.
-pub const MAX_TURN: f64 = 0.8;
+pub const MAX_TURN_RAD: f64 = 0.8;
 
 /// The motion from one frame to the next, about the centre of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +26,7 @@ impl Motion {
     /// The motion between two poses.
     pub fn between(before: &WorldPose, after: &WorldPose) -> Self {
         let angle = angle_between(before.rotation, after.rotation);
-        if angle > MAX_TURN {
+        if angle > MAX_TURN_RAD {
             return Self::REST;
         }
         let turn = after.rotation * before.rotation.conjugate();
@@ -37,7 +37,7 @@ impl Motion {
 
     /// The pose to expect after `pose`.
     pub fn carried(&self, pose: &WorldPose) -> WorldPose {
-        let rotation = (exp(self.turn * CARRIED) * pose.rotation).normalize();
-        WorldPose { rotation, center: pose.center + self.shift * CARRIED, ..*pose }
+        let rotation = (exp(self.turn * DAMPING) * pose.rotation).normalize();
+        WorldPose { rotation, center: pose.center + self.shift * DAMPING, ..*pose }
     }
 }

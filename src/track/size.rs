@@ -6,9 +6,9 @@ use crate::geometry::rotations::angle_between;
 use crate::views::common_size::{DEPTH_ERROR, SizeEvidence, pooled, shape_error};
 
 /// Angle between the directions from which frames count as different evidence, radians.
-const APART: f64 = 0.12;
+const MIN_VIEW_ANGLE_RAD: f64 = 0.12;
 /// Number of frames, and standard deviation, relative, at which the size settles.
-const SETTLED: usize = 16;
+const SETTLED_FRAMES: usize = 16;
 const SETTLED_SD: f64 = 0.0028;
 /// Largest change of the size from frame to frame, relative.
 const MAX_STEP: f64 = 0.008;
@@ -58,7 +58,7 @@ impl Size {
 
     /// Whether a frame with this rotation would add evidence: frames from the same side share their errors.
     pub fn wants(&self, rotation: DQuat) -> bool {
-        !self.is_settled() && self.frames.iter().all(|(known, _)| angle_between(*known, rotation) > APART)
+        !self.is_settled() && self.frames.iter().all(|(known, _)| angle_between(*known, rotation) > MIN_VIEW_ANGLE_RAD)
     }
 
     /// Follows the evidence in the next frame.
@@ -73,7 +73,7 @@ impl Size {
     pub fn add(&mut self, rotation: DQuat, evidence: SizeEvidence) {
         self.frames.push((rotation, evidence));
         let all = self.evidence();
-        if self.frames.len() >= SETTLED || all.is_some_and(|(_, sd)| sd < SETTLED_SD) {
+        if self.frames.len() >= SETTLED_FRAMES || all.is_some_and(|(_, sd)| sd < SETTLED_SD) {
             self.settled = all;
         }
     }

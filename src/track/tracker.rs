@@ -10,9 +10,9 @@ use glam::{DQuat, DVec3};
 use super::TrackOptions;
 use super::detection::{Detection, DetectionPrior, Lead};
 use super::evidence::{Evidence, TrackedMesh, is_set};
-use super::history::{History, MOST};
+use super::history::{History, MAX_FRAMES};
 use super::local_search::{FramePose, agreement};
-use super::motion::{MAX_TURN, Motion};
+use super::motion::{MAX_TURN_RAD, Motion};
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
 use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
@@ -35,7 +35,7 @@ use crate::precise::search::problem::Search;
 use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::FINE;
 use crate::precise::search::refine::Refiner;
-use crate::precise::verdict::choice::AGREES;
+use crate::precise::verdict::choice::MIN_CORRELATION;
 use crate::precise::verdict::color::{LOOSE_MIN_SD_RAD, agreement_at, loose_axis, roll};
 use crate::precise::verdict::confidence::{Confidence, pose_probability};
 use crate::progress::Host;
@@ -49,22 +49,22 @@ use crate::views::world_pose::{PlacedCamera, WorldPose};
 const STEPS: [usize; 2] = [3, 2];
 /// Fit relative to that of earlier frames, below which the neighbourhood is searched, a frame is uncertain, and the object
 /// is lost.
-const FITS: f32 = 0.85;
-const UNCERTAIN: f32 = 0.7;
-const LOST: f32 = 0.45;
+const MIN_GOOD_FIT: f32 = 0.85;
+const MIN_CERTAIN_FIT: f32 = 0.7;
+const MIN_TRACKED_FIT: f32 = 0.45;
 /// The ratio of the fits at which a pose found anew counts instead of one that continues what was tracked.
-const BETTER: f32 = 1.1;
+const REDETECTION_FIT_RATIO: f32 = 1.1;
 /// Weight of a frame in the usual fit.
-const NEW: f32 = 0.1;
+const USUAL_FIT_GAIN: f32 = 0.1;
 /// Share of the silhouette that must be seen in a frame without a mask, for it to be certain, and not to be lost.
-const VISIBLE: [f32; 2] = [0.35, 0.12];
+const MIN_VISIBLE_SHARES: [f32; 2] = [0.35, 0.12];
 /// Share of the object that a frame must show for it to be searched for over all rotations, and for its rotation to count
 /// as known.
-const ENOUGH: f32 = 0.5;
+const MIN_SHOWN_SHARE: f32 = 0.5;
 /// The same for a rotation that differs from the last certain one by more than an object turns unseen.
-const MOST_SHOWN: f32 = 0.8;
+const MIN_SHOWN_SHARE_TURNED: f32 = 0.8;
 /// Distances from its last place, in diagonals, at which a lost object is looked for without a mask, and the directions.
-const BESIDE: [f64; 2] = [0.25, 0.5];
+const REAPPEARANCE_DIAGONALS: [f64; 2] = [0.25, 0.5];
 const DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.7, 0.7], [0.0, 1.0], [-0.7, 0.7], [-1.0, 0.0], [-0.7, -0.7], [0.0, -1.0], [0.7, -0.7]];
 /// Standard deviation of the size of a correction, relative.
@@ -172,7 +172,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
                 ErrorCode::InvalidArgument,
                 "frame",
                 frame.map_or("no frame".into(), |frame| format!("frame {} of {frames}", number(frame as f64))),
-                format!("the number of a frame that was tracked, one of the last {}", number(MOST as f64)),
+                format!("the number of a frame that was tracked, one of the last {}", number(MAX_FRAMES as f64)),
                 "Call next() with the frame first.",
             )
         };
@@ -230,20 +230,20 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let look = |wide| self.tracked.around(frame, evidence.as_ref()?, &seen, wide);
         let near = look(false);
         let fit = |seen: &Option<FramePose>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
-        if fit(&near, self) >= FITS && self.state != TrackState::Lost {
+        if fit(&near, self) >= MIN_GOOD_FIT && self.state != TrackState::Lost {
             return near;
         }
         scheduler.yield_point().await;
         let wide = look(true);
         let near = if fit(&wide, self) > fit(&near, self) { wide } else { near };
-        if fit(&near, self) >= UNCERTAIN && self.state != TrackState::Lost {
+        if fit(&near, self) >= MIN_CERTAIN_FIT && self.state != TrackState::Lost {
             return near;
         }
         // An object that leaves the image, or passes behind another, is not where all rotations should be searched: little
         // of it may look like anything.
-        let is_leaving = |seen: &FramePose| seen.shown_share(frame) < ENOUGH;
+        let is_leaving = |seen: &FramePose| seen.shown_share(frame) < MIN_SHOWN_SHARE;
         if self.state != TrackState::Lost && near.as_ref().is_some_and(is_leaving) {
-            return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= VISIBLE[1]);
+            return near.filter(|seen| self.fit(seen) >= MIN_TRACKED_FIT && seen.visible >= MIN_VISIBLE_SHARES[1]);
         }
         // Candidate anew, where a mask shows the object.
         let before = self.certain.unwrap_or(last.rotation);
@@ -252,40 +252,43 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             None => None,
         };
         let shows_enough_anew = |seen: &FramePose| {
-            let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
-            seen.shown_share(frame) >= if has_turned { MOST_SHOWN } else { ENOUGH }
+            let has_turned = angle_between(seen.candidate.pose.rotation, before) > MAX_TURN_RAD;
+            seen.shown_share(frame) >= if has_turned { MIN_SHOWN_SHARE_TURNED } else { MIN_SHOWN_SHARE }
         };
         let anew = anew.filter(shows_enough_anew).map(|seen| self.unturned(frame, seen, before));
-        let best = if fit(&anew, self) > BETTER * fit(&near, self) { anew } else { near };
-        if self.state == TrackState::Lost && frame.mask.is_none() && fit(&best, self) < UNCERTAIN {
+        let best = if fit(&anew, self) > REDETECTION_FIT_RATIO * fit(&near, self) { anew } else { near };
+        if self.state == TrackState::Lost && frame.mask.is_none() && fit(&best, self) < MIN_CERTAIN_FIT {
             return self.beside(frame, &sized(last));
         }
-        let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
-        best.filter(|seen| self.fit(seen) >= least && seen.visible >= VISIBLE[1])
+        let least = if self.state == TrackState::Lost { MIN_CERTAIN_FIT } else { MIN_TRACKED_FIT };
+        best.filter(|seen| self.fit(seen) >= least && seen.visible >= MIN_VISIBLE_SHARES[1])
     }
 
     /// The pose of a lost object that has come back beside the place where it was last.
     fn beside(&self, frame: &Frame, last: &WorldPose) -> Option<FramePose> {
         let diagonal = libm::exp(last.log_scale);
-        let found =
-            BESIDE.iter().flat_map(|&apart| DIRECTIONS.map(|[x, y]| DVec3::new(x, y, 0.0) * (apart * diagonal)));
-        let seen = found.filter_map(|offset| {
+        let offsets = REAPPEARANCE_DIAGONALS
+            .iter()
+            .flat_map(|&apart| DIRECTIONS.map(|[x, y]| DVec3::new(x, y, 0.0) * (apart * diagonal)));
+        let seen = offsets.filter_map(|offset| {
             let pose = PlacedCamera::AT_ORIGIN.see(&WorldPose { center: last.center + offset, ..*last })?;
             self.tracked.around(frame, &self.tracked.evidence(frame, &pose)?, &[pose], false)
         });
-        let fits = seen.filter(|seen| self.fit(seen) >= FITS && seen.visible >= VISIBLE[0]);
+        let fits = seen.filter(|seen| self.fit(seen) >= MIN_GOOD_FIT && seen.visible >= MIN_VISIBLE_SHARES[0]);
         fits.max_by(|a, b| self.fit(a).total_cmp(&self.fit(b)))
     }
 
     /// The pose found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
     /// part of it that comes out behind another may look like its other end.
     fn unturned(&self, frame: &Frame, seen: FramePose, before: DQuat) -> FramePose {
-        if angle_between(seen.found.pose.rotation, before) <= MAX_TURN {
+        if angle_between(seen.candidate.pose.rotation, before) <= MAX_TURN_RAD {
             return seen;
         }
-        let expected = CropPose { rotation: before, ..seen.found.pose };
+        let expected = CropPose { rotation: before, ..seen.candidate.pose };
         // The more of it is hidden, the less its fit counts.
-        let is_near = |other: &FramePose| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
+        let is_near = |other: &FramePose| {
+            (REDETECTION_FIT_RATIO + other.candidate.score.hidden) * self.fit(other) >= self.fit(&seen)
+        };
         let near = self.tracked.evidence(frame, &expected);
         match near.and_then(|near| self.tracked.around(frame, &near, &[expected], true)) {
             Some(other) if is_near(&other) => FramePose { lead: seen.lead, ..other },
@@ -308,23 +311,23 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host, scheduler).await?;
         // With the settings of the frames after it, so that scores compare.
         let search = self.tracked.search(detection.observation);
-        let found = Candidate { score: search.score(&detection.found.pose), ..detection.found };
+        let candidate = Candidate { score: search.score(&detection.candidate.pose), ..detection.candidate };
         let evidence = Evidence { search, region: PhotoRegion::WHOLE };
-        Ok(FramePose { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
+        Ok(FramePose { candidate, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
 
     /// The agreement of a pose relative to that of earlier frames, about 1 for one as good.
     fn fit(&self, seen: &FramePose) -> f32 {
-        let fit = agreement(&seen.found.score);
+        let fit = agreement(&seen.candidate.score);
         self.usual.map_or(1.0, |usual| fit / usual.max(1e-3))
     }
 
     /// Updates size, motion and state, and reports.
     fn conclude(&mut self, frame: &Frame, seen: Option<FramePose>) -> Result<TrackedFrame> {
         let Some(seen) = seen else { return Ok(self.lost()) };
-        let is_certain = self.fit(&seen) >= UNCERTAIN && seen.visible >= VISIBLE[0];
-        let shows_enough = is_certain && seen.shown_share(frame) >= ENOUGH;
-        let FramePose { mut found, evidence, lead, is_predicted, .. } = seen;
+        let is_certain = self.fit(&seen) >= MIN_CERTAIN_FIT && seen.visible >= MIN_VISIBLE_SHARES[0];
+        let shows_enough = is_certain && seen.shown_share(frame) >= MIN_SHOWN_SHARE;
+        let FramePose { mut candidate, evidence, lead, is_predicted, .. } = seen;
         let is_detected = lead.is_some();
         let search = &evidence.search;
         self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };
@@ -334,25 +337,25 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.motion = Motion::REST;
         }
         if is_certain {
-            let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
-            self.usual = Some(usual + NEW * (agreement(&found.score) - usual));
+            let usual = self.usual.unwrap_or_else(|| agreement(&candidate.score));
+            self.usual = Some(usual + USUAL_FIT_GAIN * (agreement(&candidate.score) - usual));
             if shows_enough {
-                self.certain = Some(found.pose.rotation);
+                self.certain = Some(candidate.pose.rotation);
             }
-            self.roll(frame, &evidence, &mut found);
+            self.roll(frame, &evidence, &mut candidate);
             self.size.advance();
-            self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
+            self.weigh_size(search, &mut candidate, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
-        let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
+        let pose = PlacedCamera::AT_ORIGIN.place(&candidate.pose);
         if let (Some(before), false) = (before, is_detected) {
             self.motion = Motion::between(&before, &pose);
         }
         let confidence = {
-            let (conditioning, _) = search.conditioning(&found.pose);
+            let (conditioning, _) = search.conditioning(&candidate.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
-            let shape = pose_probability(&found, self.lead.margin, conditioning.as_ref());
+            let shape = pose_probability(&candidate, self.lead.margin, conditioning.as_ref());
             let (color, relief_deviation) = (self.lead.color_probability, frame.relief_deviation);
             Confidence { shape, color, relief_deviation }.overall()
         };
@@ -374,38 +377,38 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             scale_sd: self.size.deviation(),
             is_scale_settled: self.size.is_settled(),
             is_detected,
-            score: f64::from(found.score.total),
-            terms: (&found.score).into(),
+            score: f64::from(candidate.score.total),
+            terms: (&candidate.score).into(),
             metrics: measured,
         })
     }
 
     /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
-    fn roll(&self, frame: &Frame, evidence: &Evidence, found: &mut Candidate) {
+    fn roll(&self, frame: &Frame, evidence: &Evidence, candidate: &mut Candidate) {
         let Evidence { search, .. } = evidence;
         let (Some(colors), true) = (self.mesh.borrow().colors(), frame.photo.is_some()) else { return };
-        if let Some(axis) = loose_axis(search, &found.pose, LOOSE_MIN_SD_RAD)
+        if let Some(axis) = loose_axis(search, &candidate.pose, LOOSE_MIN_SD_RAD)
             && let Some(photo) = evidence.photo(frame)
-            && let Some((pose, _)) = roll(search, &photo, colors, found.pose, axis)
-            && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
+            && let Some((pose, _)) = roll(search, &photo, colors, candidate.pose, axis)
+            && agreement_at(search, &photo, colors, &pose).is_some_and(|agreement| agreement >= MIN_CORRELATION)
         {
-            *found = Candidate { pose, score: search.score(&pose), ..*found };
+            *candidate = Candidate { pose, score: search.score(&pose), ..*candidate };
         }
     }
 
     /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.
-    fn weigh_size(&mut self, search: &Search, found: &mut Candidate, silhouette_error: f64) {
-        if !self.size.wants(found.pose.rotation) {
+    fn weigh_size(&mut self, search: &Search, candidate: &mut Candidate, silhouette_error: f64) {
+        if !self.size.wants(candidate.pose.rotation) {
             return;
         }
         let objective = search.objective(FINE);
         let objective = Objective { prior: self.prior, ..objective };
-        let free = Refiner { objective, lock_scale: false }.refine(&mut Canvas::default(), found.pose, STEPS[0]);
+        let free = Refiner { objective, lock_scale: false }.refine(&mut Canvas::default(), candidate.pose, STEPS[0]);
         if let Some(evidence) = SizeEvidence::at(objective, &free.pose, silhouette_error) {
-            self.size.add(found.pose.rotation, evidence);
+            self.size.add(candidate.pose.rotation, evidence);
         }
         if let Some((log_scale, _)) = self.size.value() {
-            *found = refine_at(objective, found.pose, log_scale, STEPS[1]);
+            *candidate = refine_at(objective, candidate.pose, log_scale, STEPS[1]);
         }
     }
 

@@ -19,33 +19,9 @@ const FILES: &[&[u8]] = fixtures![
     "photo-interlaced.png" "photo-exif.png" "photo-420.jpg" "photo-progressive.jpg" "photo-cmyk.jpg" "photo-exif-6.jpg"
 ];
 
-/// Words that replace words in text, and integers that replace fields.
-const WORDS: [&str; 24] = [
-    "0",
-    "-1",
-    "255",
-    "65536",
-    "2147483648",
-    "4294967296",
-    "18446744073709551616",
-    "1e400",
-    "nan",
-    "",
-    "5121",
-    "5126",
-    "VEC3",
-    "MAT4",
-    "sparse",
-    "matrix",
-    "children",
-    "double",
-    "uchar",
-    "list",
-    "face",
-    "<f8",
-    ">u2",
-    "True",
-];
+/// Words that replace words in text, one of them empty, and integers that replace fields.
+const WORDS: &str = "0 -1 255 65536 2147483648 4294967296 18446744073709551616 1e400 nan  5121 5126 VEC3 MAT4 sparse \
+    matrix children double uchar list face <f8 >u2 True";
 const FIELDS: [u32; 10] = [0, 1, 3, 255, 65_535, 65_536, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, 0xffff_ffff];
 
 /// A file with up to six damages.
@@ -100,7 +76,8 @@ fn replace_word(e: &mut Entropy<'_>, bytes: &mut Vec<u8>, at: usize) {
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || b"-+.<>".contains(byte);
     let Some(start) = bytes[at..].iter().position(is_word).map(|i| at + i) else { return };
     let length = bytes[start..].iter().take_while(|byte| is_word(byte)).count().min(40);
-    let mut word = e.pick(&WORDS).as_bytes().to_vec();
+    let words: Vec<&str> = WORDS.split(' ').collect();
+    let mut word = e.pick(&words).as_bytes().to_vec();
     word.resize(word.len().max(length), b' ');
     bytes.splice(start..start + length, word);
 }

@@ -174,6 +174,7 @@ fn point_maps_tell_their_camera_or_are_refused() {
 #[wasm_bindgen_test]
 fn clouds_and_pairs_that_can_not_be_registered_are_refused() {
     let good: Vec<f64> = (0..300).map(|i| f64::from(i * 7919 % 101)).collect();
+    let line: Vec<f64> = (0..300).map(|i| f64::from((i / 3 + 1) * (i % 3 + 1))).collect();
     for (cloud, code) in [
         (good[..100].to_vec(), ErrorCode::WrongLength),
         (good[..30].to_vec(), ErrorCode::TooFewPoints),
@@ -183,6 +184,14 @@ fn clouds_and_pairs_that_can_not_be_registered_are_refused() {
         let options = RegisterOptions::default();
         refused(register(&good, &cloud, &options, &mut Silent), code, "target");
         refused(register(&cloud, &good, &options, &mut Silent), code, "source");
+    }
+    // On one line, and beyond the squares that are numbers.
+    let huge = good.iter().map(|x| x * 1e200).collect();
+    for (cloud, code) in [(line, ErrorCode::NoConsensus), (huge, ErrorCode::DegeneratePoints)] {
+        let found = [(&good, &cloud), (&cloud, &good), (&cloud, &cloud)].map(|(source, target)| {
+            register(source, target, &RegisterOptions::default(), &mut Silent).map_err(|error| error.code).err()
+        });
+        assert_eq!(found, [Some(code); 3], "{:?}", &cloud[..6]);
     }
     for (pairs, code) in [
         (vec![0, 1, 2], ErrorCode::WrongLength),

@@ -66,11 +66,17 @@ pub fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|x| x.to_le_bytes()).collect()
 }
 
-/// A PNG of these colours.
-pub fn rgb_png(pixels: &[[u8; 3]], width: usize, height: usize) -> Vec<u8> {
+/// A PNG of these samples.
+pub fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, samples: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.write_header().unwrap().write_image_data(pixels.as_flattened()).unwrap();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(color);
+    encoder.set_depth(depth);
+    encoder.write_header().unwrap().write_image_data(samples).unwrap();
     bytes
+}
+
+/// A PNG of these colours.
+pub fn rgb_png(pixels: &[[u8; 3]], size: [u32; 2]) -> Vec<u8> {
+    png_of(size, png::ColorType::Rgb, png::BitDepth::Eight, pixels.as_flattened())
 }

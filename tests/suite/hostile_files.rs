@@ -46,7 +46,7 @@ fn photo(bytes: &[u8]) -> Result<(), ErrorCode> {
 }
 
 /// Every kind of file but the text formats OBJ, PLY and STL: whatever is cut off is missed.
-const MUST_BE_WHOLE: [(&str, &[u8], Reader); 21] = [
+const MUST_BE_WHOLE: [(&str, &[u8], Reader); 13] = [
     ("GLB scene", fixture!("scene.glb"), mesh),
     ("glTF", fixture!("mesh-data-uri.gltf"), mesh),
     ("PLY little-endian", fixture!("mesh-little.ply"), mesh),
@@ -54,19 +54,11 @@ const MUST_BE_WHOLE: [(&str, &[u8], Reader); 21] = [
     ("STL", fixture!("mesh.stl"), mesh),
     ("splat", fixture!("splat.ply"), splat),
     ("depth f4", fixture!("depth-f4.npy"), depth),
-    ("depth f8", fixture!("depth-f8-fortran.npy"), depth),
-    ("depth f2", fixture!("depth-f2.npy"), depth),
     ("depth >u2", fixture!("depth-u2-big-1hw.npy"), depth),
     ("depth PNG", fixture!("depth-16.png"), depth),
     ("mask 1 bit", fixture!("mask-1bit.png"), mask),
-    ("mask RGBA", fixture!("mask-cut-out.png"), mask),
-    ("mask palette", fixture!("mask-palette.png"), mask),
-    ("mask bool", fixture!("mask-bool.npy"), mask),
     ("JPEG", fixture!("photo.jpg"), photo),
-    ("CMYK JPEG", fixture!("photo-cmyk.jpg"), photo),
     ("progressive JPEG", fixture!("photo-progressive.jpg"), photo),
-    ("palette PNG", fixture!("photo-palette.png"), photo),
-    ("PNG of 16 bits", fixture!("photo-16.png"), photo),
     ("interlaced PNG", fixture!("photo-interlaced.png"), photo),
 ];
 

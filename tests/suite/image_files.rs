@@ -7,7 +7,7 @@ use sim3align_formats::mask::read_mask;
 use sim3align_formats::photo::{read_photo, read_stored_photo};
 use sim3align_formats::webp::read_webp;
 
-use crate::fixtures::fixture;
+use crate::fixtures::{fixture, floats, png_of};
 use crate::prelude::*;
 
 /// The depth in the fixtures: 7 × 5 pixels, no reading at (0, 0) and (3, 2).
@@ -124,10 +124,7 @@ fn images_that_claim_more_than_they_hold_are_refused() {
         ("()", Err(UnsupportedFormat)),
         ("(4, 4", Err(CorruptFile)),
     ] {
-        let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}\n");
-        let length = (header.len() as u16).to_le_bytes();
-        let bytes = [b"\x93NUMPY\x01\x00", length.as_slice(), header.as_bytes(), &[0; 64]].concat();
-        let found = depth(&bytes, None).map(|depth| depth.data().len()).map_err(|error| error.code);
+        let found = depth(&npy_of(shape, &[0.0; 16]), None).map(|depth| depth.data().len()).map_err(|error| error.code);
         assert_eq!(found, expected, "{shape}");
     }
 }
@@ -304,42 +301,27 @@ fn large_photos_are_reduced_also_where_they_are_progressive() {
 
 #[wasm_bindgen_test]
 fn photos_are_turned_as_their_exif_data_say() {
-    let [one, two, three, four] = [
+    let turned = [
         fixture!("photo-exif-1.jpg"),
         fixture!("photo-exif-2.jpg"),
         fixture!("photo-exif-3.jpg"),
         fixture!("photo-exif-4.jpg"),
-    ];
-    let [five, six, seven, eight] = [
         fixture!("photo-exif-5.jpg"),
         fixture!("photo-exif-6.jpg"),
         fixture!("photo-exif-7.jpg"),
         fixture!("photo-exif-8.jpg"),
     ];
-    let turned = [one, two, three, four, five, six, seven, eight];
     for (i, bytes) in turned.into_iter().enumerate() {
         check_photo(&format!("orientation {}", i + 1), bytes, QUARTERS, 4);
     }
     check_photo("PNG", fixture!("photo-exif.png"), QUARTERS, 0);
 }
 
-/// A PNG of these samples.
-fn png_of(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, samples: &[u8]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
-    encoder.set_color(color);
-    encoder.set_depth(depth);
-    encoder.write_header().unwrap().write_image_data(samples).unwrap();
-    bytes
-}
-
-/// A `.npy` array of f32, height × width.
-fn npy_of([width, height]: [usize; 2], values: &[f32]) -> Vec<u8> {
-    let dictionary = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({height}, {width}), }}");
-    let header = format!("{dictionary:<117}\n");
-    let mut bytes = [b"\x93NUMPY\x01\x00".as_slice(), &118_u16.to_le_bytes(), header.as_bytes()].concat();
-    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
-    bytes
+/// A `.npy` array of f32.
+fn npy_of(shape: &str, values: &[f32]) -> Vec<u8> {
+    let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}\n");
+    let length = (header.len() as u16).to_le_bytes();
+    [b"\x93NUMPY\x01\x00", length.as_slice(), header.as_bytes(), &floats(values)].concat()
 }
 
 /// Coverage of a disc of radius 20 in 64 × 64 pixels, with an edge `blur` pixels wide.
@@ -365,8 +347,8 @@ fn the_outline_of_a_soft_mask_is_at_half_of_its_range() {
             ("grey up to 180", png_of([64, 64], ColorType::Grayscale, BitDepth::Eight, &faint)),
             ("16 bits", png_of([64, 64], ColorType::Grayscale, BitDepth::Sixteen, &wide)),
             ("alpha", png_of([64, 64], ColorType::Rgba, BitDepth::Eight, &alpha)),
-            ("probabilities", npy_of([64, 64], &soft)),
-            ("logits", npy_of([64, 64], &logits)),
+            ("probabilities", npy_of("(64, 64)", &soft)),
+            ("logits", npy_of("(64, 64)", &logits)),
         ];
         for (name, bytes) in files {
             let read = read_mask(&bytes).unwrap();
@@ -379,14 +361,10 @@ fn the_outline_of_a_soft_mask_is_at_half_of_its_range() {
     // Labels are flat regions: all are the object, whatever their numbers.
     for [first, second] in [[1, 2], [100, 255], [40, 10]] {
         let labels: Vec<u8> = (0..64 * 64)
-            .map(|i| {
-                if i % 64 < 20 {
-                    first
-                } else if i % 64 < 40 {
-                    second
-                } else {
-                    0
-                }
+            .map(|i| match i % 64 {
+                0..20 => first,
+                20..40 => second,
+                _ => 0,
             })
             .collect();
         let read = read_mask(&png_of([64, 64], ColorType::Grayscale, BitDepth::Eight, &labels)).unwrap();
@@ -405,7 +383,7 @@ fn depth_in_three_equal_channels_is_read_and_depth_below_zero_is_named() {
     let other: Vec<u8> = (1..=6).flat_map(|i| pixel(500 * i, 499 * i)).collect();
     let error = depth(&png_of([3, 2], ColorType::Rgba, BitDepth::Sixteen, &other), None).unwrap_err();
     assert_eq!((error.code, &*error.found), (ErrorCode::UnsupportedFormat, "a 16-bit PNG with colours"));
-    let error = depth(&npy_of([3, 2], &[-0.5, -1.0, 0.0, f32::NAN, f32::NEG_INFINITY, -2.5]), None).unwrap_err();
+    let error = depth(&npy_of("(2, 3)", &[-0.5, -1.0, 0.0, f32::NAN, f32::NEG_INFINITY, -2.5]), None).unwrap_err();
     assert_eq!((error.code, &*error.found), (ErrorCode::NoDepthInMask, "only values below 0, down to -2.5"));
     assert!(error.remedy.contains("Pass -depth"), "{error}");
 }

@@ -35,7 +35,7 @@ fn block(column: i64, row: i64) -> Rgb {
 
 fn blocks_png() -> Vec<u8> {
     let pixels: Vec<Rgb> = (0..32 * 32).map(|i| block(i % 32 / 4, i / 32 / 4)).collect();
-    rgb_png(&pixels, 32, 32)
+    rgb_png(&pixels, [32, 32])
 }
 
 /// A GLB of the unit square of z = 0, facing +z, with `attributes` beside its positions, in the accessors from 2 on, whose
@@ -253,7 +253,7 @@ fn obj_colors(library: &str, vertex_color: &str) -> SurfaceColors {
     let obj = "\u{feff}mtllib #m.mtl\nmtllib #m.mtl\n".to_owned() + &[0, 1, 2].map(triangle).concat();
     let resources = |name: &str| match name {
         "#m.mtl" => Some(library.as_bytes().to_vec()),
-        "a #.png" => Some(rgb_png(&[[10, 200, 30]], 1, 1)),
+        "a #.png" => Some(rgb_png(&[[10, 200, 30]], [1, 1])),
         _ => None,
     };
     let options = MeshReadOptions { resources: Some(&resources), ..MeshReadOptions::default() };

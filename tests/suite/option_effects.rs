@@ -210,7 +210,7 @@ fn every_option_of_precise_has_its_effect() {
 #[wasm_bindgen_test]
 fn every_option_of_the_paper_preset_has_its_effect() {
     let mesh = shapes::body();
-    let observation = shapes::observe(&mesh, 1.0);
+    let observation = shapes::observe(&mesh);
     assert_effects(PAPER, &PaperOptions::default(), |found| found.diagnostics.counts, &|options| {
         align_paper(&observation, &mesh, options, &mut Silent).unwrap()
     });

@@ -137,27 +137,6 @@ fn equals_ray_casting() {
     assert!(compared > all * 99 / 100 && covered > all / 5 && covered < compared / 2, "{compared} {covered} of {all}");
 }
 
-#[wasm_bindgen_test]
-fn edges_follow_the_top_left_rule() {
-    let camera = Pinhole::new(1.0, 1.0, 0.0, 0.0).unwrap();
-    // The pixels drawn, as rows of `#` and `.`.
-    let picture = |corners: &[[f32; 3]], size: usize| {
-        let mut rasteriser = Rasteriser::new();
-        let mesh = Mesh::from_flat(corners.as_flattened(), None).unwrap();
-        rasteriser.render(&mesh, &Similarity::identity(), &camera, size, size);
-        let row = |row: &[f32]| row.iter().map(|z| if *z > 0.0 { '#' } else { '.' }).collect::<String>();
-        rasteriser.depth().chunks(size).map(row).collect::<Vec<_>>().join(" ")
-    };
-    let (a, b, c, d) = ([1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [3.0, 3.0, 1.0], [1.0, 3.0, 1.0]);
-    // A square on pixel centres: its left and top edges are in, its right and bottom ones out.
-    for square in [[a, b, c, a, c, d], [a, c, b, a, d, c], [b, c, d, b, d, a], [d, a, b, c, b, d]] {
-        assert_eq!(picture(&square, 5), "..... .##.. .##.. ..... .....");
-    }
-    // Its halves share the diagonal, and each pixel on it is in exactly one of them.
-    assert_eq!(picture(&[a, b, c], 4), ".... .##. ..#. ....");
-    assert_eq!(picture(&[a, c, d], 4), ".... .... .#.. ....");
-}
-
 /// A sheet of quads with corners on and between pixel centres, each cut along a random diagonal: no pixel is left out, and
 /// none is covered by two triangles.
 #[wasm_bindgen_test]

@@ -74,9 +74,6 @@ pub fn mapped(mesh: &Mesh, f: impl Fn(Vec3) -> Vec3) -> Mesh {
     Mesh::new(mesh.positions().iter().map(|&p| f(p)).collect(), mesh.triangles().to_vec()).unwrap()
 }
 
-const WIDTH: usize = 240;
-const HEIGHT: usize = 180;
-
 /// A body with bumps and dents at many places, so that no turn maps it onto itself.
 pub fn body() -> Mesh {
     let wave = |x: f32| libm::sinf(x);
@@ -91,10 +88,10 @@ pub fn truth() -> Similarity {
     similarity(0.17, [0.9, -0.5, 2.1], [0.015, -0.01, 0.55])
 }
 
-/// The image of the body in front of a wall; depths in units of `unit_m` metres.
-pub fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
+/// The image of the body in front of a wall.
+pub fn observe(mesh: &Mesh) -> Observation {
     let camera = Pinhole::new(420.0, 420.0, 119.5, 89.5).unwrap();
-    rendered(mesh, &truth(), camera, [WIDTH, HEIGHT], |z| if z > 0.0 { z / unit_m } else { 1.0 / unit_m })
+    rendered(mesh, &truth(), camera, [240, 180], |z| if z > 0.0 { z } else { 1.0 })
 }
 
 /// An observation of a posed mesh: its silhouette, and the depths that `depth` gives for rendered ones, 0 beside the mesh.

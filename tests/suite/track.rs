@@ -3,7 +3,7 @@
 use sim3align::evidence::frame::Frame;
 use sim3align::scheduler::{Scheduler, Task};
 use sim3align::track::TrackOptions;
-use sim3align::track::history::{History, MOST};
+use sim3align::track::history::{History, MAX_FRAMES};
 use sim3align::track::report::{TrackState, TrackedFrame};
 use sim3align::track::tracker::Tracker;
 use sim3align::views::world_pose::WorldPose;
@@ -158,7 +158,7 @@ fn the_newest_frames_are_remembered() {
         log_scale: 0.0,
         center: DVec3::new(0.0, 0.0, 1.0 + k as f64),
     };
-    let count = MOST + 3;
+    let count = MAX_FRAMES + 3;
     (0..count).for_each(|k| history.add(place(k), k == count - 2));
     assert_eq!((history.frames(), history.last()), (count, Some(place(count - 1))));
     for forgotten in [0, 2, count] {
@@ -167,7 +167,7 @@ fn the_newest_frames_are_remembered() {
     let (changed, is_present) = history.correct(count - 1, place(7), &mesh).unwrap();
     assert_eq!(changed.iter().map(|frame| frame.frame).collect::<Vec<_>>(), [count - 2, count - 1]);
     assert!(is_present && history.last() == Some(place(7)));
-    assert_eq!(history.correct(3, place(8), &mesh).unwrap().0.len(), MOST - 2);
+    assert_eq!(history.correct(3, place(8), &mesh).unwrap().0.len(), MAX_FRAMES - 2);
 }
 
 #[wasm_bindgen_test]

@@ -75,22 +75,6 @@ fn neighbours_are_those_of_brute_force_to_the_bit() {
     }
 }
 
-#[wasm_bindgen_test]
-fn queries_that_are_no_point_find_nothing() {
-    let points = Draw::new(1).points(100, 1.0);
-    let (tree, surface) = (KdTree::new(&points), TriangleTree::new(&cuboid(Vec3::ONE)));
-    let mut found = Vec::new();
-    assert_eq!(tree.nearest(Vec3::NAN), None);
-    for (query, radius) in [(Vec3::NAN, 10.0), (Vec3::ZERO, f32::NAN)] {
-        tree.within(query, radius, &mut found);
-        assert_eq!(found, []);
-    }
-    // Whatever an infinite query finds, the next one is right.
-    tree.k_nearest(Vec3::INFINITY, 3, &mut found);
-    assert_eq!(tree.nearest(points[42]).unwrap().index, 42);
-    assert_eq!([Vec3::NAN, Vec3::splat(1e30)].map(|query| surface.nearest(query)), [None; 2]);
-}
-
 /// Distance to the segments a + s(b − a) … a + s(c − a), minimised over s by trisection: the function is convex,
 /// whatever the triangle's shape.
 fn distance_by_search([a, b, c]: [DVec3; 3], query: DVec3) -> f64 {

@@ -2,10 +2,11 @@
 //! `UPDATE=1 cargo test --package sim3align-lab typescript` writes the files after a change.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
+use std::ops::RangeInclusive;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::json;
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
 use sim3align::calibrate::calibration::{CalibrationUncertainty, DepthCalibration};
 use sim3align::metrics::Metrics;
@@ -14,21 +15,16 @@ use sim3align::metrics::symmetry::Symmetry;
 use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::options::{AlignOptions, ExtentAxis, Proportions, Quality, SearchScope};
+use sim3align::precise::options::*;
 use sim3align::progress::Stage;
 use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
-use sim3align::register::report::{Registration, RegistrationDiagnostics};
-use sim3align::report::{
-    Alignment, Alternative, ColorReport, ColorVerdict, Counts, Diagnostics, Effort, PaperAlignment, PaperDiagnostics,
-    PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Stretch, Uncertainty, Warning, WarningCode,
-};
+use sim3align::register::report::*;
+use sim3align::report::*;
 use sim3align::scene::contact::Contact;
 use sim3align::track::TrackOptions;
-use sim3align::track::report::{CorrectedFrame, TrackState, TrackedFrame};
+use sim3align::track::report::*;
 use sim3align::views::ViewsOptions;
-use sim3align::views::report::{
-    CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty,
-};
+use sim3align::views::report::*;
 use sim3align_runtime::error::ErrorCode;
 use ts_rs::{Config, TS};
 
@@ -37,19 +33,13 @@ const HEADER: &str = "// Generated from the Rust declarations by lab/tests/suite
 /// The longest line of the package.
 const LINE_WIDTH: usize = 120;
 
-/// An option, as the tables of both packages have it.
+/// An option.
 struct Row {
     name: String,
-    doc: String,
-    /// The name of the kind in the table of options.
-    kind: &'static str,
-    /// The type in TypeScript.
-    ts: String,
-    /// The range, in words; empty where the type says it all.
-    range: String,
-    /// The rest of the entry: least and most value, choices.
-    limits: Vec<(&'static str, Value)>,
-    default: Value,
+    /// Its comment and its declaration in an interface.
+    member: String,
+    /// Its entry in the table of options: name, kind and the rest.
+    properties: Vec<String>,
 }
 
 /// A call whose options are a table.
@@ -59,205 +49,154 @@ struct Call {
     /// The name of its options' type.
     interface: &'static str,
     doc: &'static str,
-    /// The preset that its options name.
-    preset: Option<&'static str>,
+    /// The declaration of the preset that its options name.
+    preset: &'static str,
     rows: Vec<Row>,
 }
 
-fn call<T: Options>(key: &'static str, interface: &'static str, preset: Option<&'static str>) -> Call {
+fn call<T: Options>(key: &'static str, interface: &'static str, preset: &'static str) -> Call {
     let mut options = T::default();
-    let docs: Vec<String> = T::FIELDS.iter().map(|(_, doc)| text(doc)).collect();
     let rows =
-        options.named_fields().iter().zip(docs).map(|((name, field), doc)| row(name.clone(), doc, field)).collect();
-    Call { key, interface, doc: T::DOC, preset, rows }
+        options.named_fields().into_iter().zip(T::FIELDS).map(|((name, field), (_, doc))| row(&name, doc, &field));
+    Call { key, interface, doc: T::DOC, preset, rows: rows.collect() }
 }
 
 fn calls() -> [Call; 7] {
+    let precise = "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n";
     [
-        call::<AlignOptions>("align", "AlignOptions", Some("precise")),
-        call::<PaperOptions>("paper", "PaperOptions", Some("paper")),
-        call::<ViewsOptions>("alignViews", "ViewsOptions", None),
-        call::<TrackOptions>("track", "TrackOptions", None),
-        call::<EvaluateOptions>("evaluate", "EvaluateOptions", None),
-        call::<RegisterOptions>("register", "RegisterOptions", None),
-        call::<EstimateSim3Options>("estimateSim3", "EstimateSim3Options", None),
+        call::<AlignOptions>("align", "AlignOptions", precise),
+        call::<PaperOptions>("paper", "PaperOptions", "  /** The paper's method. */\n  preset: \"paper\";\n"),
+        call::<ViewsOptions>("alignViews", "ViewsOptions", ""),
+        call::<TrackOptions>("track", "TrackOptions", ""),
+        call::<EvaluateOptions>("evaluate", "EvaluateOptions", ""),
+        call::<RegisterOptions>("register", "RegisterOptions", ""),
+        call::<EstimateSim3Options>("estimateSim3", "EstimateSim3Options", ""),
     ]
 }
 
-fn row(name: String, doc: String, field: &Field<'_>) -> Row {
-    let between = |min: Value, max: Value| vec![("min", min), ("max", max)];
-    let or_null = |ts: &str| format!("{ts} | null");
-    let is_numeric = matches!(
-        field,
-        Field::Guard(_) | Field::Count(..) | Field::Number(..) | Field::OptionalNumber(..) | Field::Positive(_)
-    );
+fn between<T: Display>(range: &RangeInclusive<T>) -> Vec<String> {
+    vec![format!("min: {}", range.start()), format!("max: {}", range.end())]
+}
+
+fn row(name: &str, doc: &str, field: &Field<'_>) -> Row {
     let (kind, ts, limits, default) = match field {
-        Field::Count(value, range) => {
-            ("integer", "number".into(), between(json!(range.start()), json!(range.end())), json!(value))
-        }
-        Field::Number(value, range) => {
-            ("number", "number".into(), between(plain(*range.start()), plain(*range.end())), plain(**value))
-        }
-        Field::OptionalNumber(value, range) => {
-            let limits = between(plain(*range.start()), plain(*range.end()));
-            ("number", or_null("number"), limits, json!(value.map(plain)))
-        }
-        Field::Positive(value) => ("number", or_null("number"), vec![("above", json!(0))], json!(value.map(plain))),
-        Field::Flag(value) => ("boolean", "boolean".into(), vec![], json!(value)),
-        Field::Scale(value) => {
-            assert_eq!(**value, ScaleOption::Free);
-            ("scale", "ScaleOption".into(), vec![], json!("free"))
-        }
-        Field::Direction(value) => ("direction", or_null("Direction"), vec![], json!(value)),
-        Field::Symmetry(value) => {
-            let name = if **value == Symmetry::None { "none" } else { "auto" };
-            ("symmetry", "SymmetryOption".into(), vec![], json!(name))
-        }
-        Field::Transform(value) => {
-            assert!(value.is_none());
-            ("transform", or_null("Sim3Like"), vec![], Value::Null)
-        }
-        Field::Guard(value) => {
-            let bounds = value.map(|bounds| bounds.map(plain));
-            ("guard", or_null("readonly [min: number, max: number]"), vec![], json!(bounds))
-        }
+        Field::Count(value, range) => ("integer", "number", between(range), json!(value)),
+        Field::Number(value, range) => ("number", "number", between(range), json!(value)),
+        Field::OptionalNumber(value, range) => ("number", "number | null", between(range), json!(value)),
+        Field::Positive(value) => ("number", "number | null", vec!["above: 0".into()], json!(value)),
+        Field::Flag(value) => ("boolean", "boolean", vec![], json!(value)),
+        Field::Scale(ScaleOption::Free) => ("scale", "ScaleOption", vec![], json!("free")),
+        Field::Direction(value) => ("direction", "Direction | null", vec![], json!(value)),
+        Field::Symmetry(Symmetry::Auto) => ("symmetry", "SymmetryOption", vec![], json!("auto")),
+        Field::Transform(None) => ("transform", "Sim3Like | null", vec![], json!(null)),
+        Field::Guard(value) => ("guard", "readonly [min: number, max: number] | null", vec![], json!(value)),
         Field::Choice(choice) => {
-            ("choice", choice.type_name().into(), vec![("choices", json!(choice.names()))], json!(choice.name()))
+            ("choice", choice.type_name(), vec![format!("choices: {:?}", choice.names())], json!(choice.name()))
         }
+        Field::Scale(_) | Field::Symmetry(_) | Field::Transform(_) => panic!("{name}: a default without a name"),
     };
-    let range = if is_numeric { field.expected() } else { String::new() };
-    Row { name, doc, kind, ts, range, limits, default }
+    // JavaScript writes 5, not 5.0.
+    let default = default.to_string();
+    let default = default.strip_suffix(".0").unwrap_or(&default);
+    let range = match kind {
+        "integer" | "number" | "guard" => format!("Takes {}. ", field.expected()),
+        _ => String::new(),
+    };
+    let member = comment("  ", &format!("{doc} {range}Default `{default}`."));
+
+    let doc = doc.split_whitespace().collect::<Vec<_>>().join(" ");
+    let first_sentence = doc.split_once(". ").map_or(doc.trim_end_matches('.'), |(first, _)| first);
+    let mut properties = vec![format!("name: \"{name}\""), format!("kind: \"{kind}\"")];
+    properties.extend(limits);
+    properties.push(format!("isNullable: {}", ts.ends_with("| null")));
+    properties.push(format!("default: {}", default.replace(',', ", ")));
+    properties.push(format!("summary: {}", json!(first_sentence)));
+    Row { name: name.into(), member: format!("{member}  {name}?: {ts} | undefined;\n"), properties }
 }
 
-/// A number as JavaScript writes it: 5, not 5.0.
-fn plain(x: f64) -> Value {
-    if x.fract() == 0.0 { json!(x as i64) } else { json!(x) }
-}
-
-/// A doc comment as one paragraph.
-fn text(doc: &str) -> String {
-    doc.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// The part up to the first full stop that ends a sentence.
-fn first_sentence(doc: &str) -> &str {
-    doc.split_once(". ").map_or(doc.trim_end_matches('.'), |(first, _)| first)
-}
-
-/// A doc comment, in lines of the package's length.
+/// A doc comment, also one that `ts_rs` wrote, in lines of the package's length.
 fn comment(indent: &str, doc: &str) -> String {
-    let prefix = format!("{indent} * ");
+    let width = LINE_WIDTH - "* */".len() - indent.len() - 1;
+    let text: Vec<&str> = doc.lines().map(|line| line.trim_start_matches([' ', '/', '*'])).collect();
     let mut lines = Vec::new();
-    for paragraph in doc.split("\n\n") {
-        let mut line = prefix.clone();
+    for paragraph in text.join("\n").trim().split("\n\n") {
+        let mut line = String::new();
         for word in paragraph.split_whitespace() {
-            if line.len() > prefix.len() && line.chars().count() + word.chars().count() > LINE_WIDTH - 2 {
-                lines.push(std::mem::replace(&mut line, prefix.clone()).trim_end().to_owned());
+            if line.chars().count() + word.chars().count() > width {
+                lines.push(std::mem::take(&mut line));
             }
-            line += &format!("{word} ");
+            line += &format!(" {word}");
         }
-        lines.extend([line.trim_end().to_owned(), format!("{indent} *")]);
+        lines.extend([line, String::new()]);
     }
     lines.pop();
     match &lines[..] {
-        [line] if line.chars().count() + "/* */".len() <= LINE_WIDTH => {
-            format!("{indent}/**{} */\n", &line[prefix.len() - 1..])
+        [line] if indent.len() + "/** */".len() + line.chars().count() < LINE_WIDTH => {
+            format!("{indent}/**{line} */\n")
         }
-        _ => format!("{indent}/**\n{}\n{indent} */\n", lines.join("\n")),
+        _ => format!("{indent}/**\n{indent} *{}\n{indent} */\n", lines.join(&format!("\n{indent} *"))),
     }
 }
 
-/// The text of a doc comment that `ts_rs` wrote.
-fn uncommented(comment: &str) -> String {
-    let lines = comment.trim().trim_start_matches("/**").trim_end_matches("*/").trim().lines();
-    lines.map(|line| line.trim_start_matches([' ', '*'])).collect::<Vec<_>>().join("\n")
+/// Options as interfaces. An interface picks what earlier ones have as well.
+fn interfaces() -> String {
+    let mut code = String::new();
+    let calls = calls();
+    for (i, Call { interface, doc, preset, rows, .. }) in calls.iter().enumerate() {
+        let mut own: Vec<&Row> = rows.iter().collect();
+        let mut bases = Vec::new();
+        for base in &calls[..i] {
+            let is_shared = |row: &&Row| base.rows.iter().any(|other| other.member == row.member);
+            let (shared, others): (Vec<&Row>, Vec<&Row>) = own.into_iter().partition(is_shared);
+            let names: Vec<String> = shared.iter().map(|row| format!("\"{}\"", row.name)).collect();
+            if !names.is_empty() {
+                bases.push(format!("Pick<{}, {}>", base.interface, names.join(" | ")));
+            }
+            own = others;
+        }
+        let mut extends = if bases.is_empty() { String::new() } else { format!(" extends {}", bases.join(", ")) };
+        if "export interface  {".len() + interface.len() + extends.len() > LINE_WIDTH {
+            extends = format!("\n  extends {}", bases.join(",\n    "));
+        }
+        let own: String = own.iter().map(|row| &*row.member).collect();
+        let _ = write!(code, "{}export interface {interface}{extends} {{\n{preset}{own}}}\n\n", comment("", doc));
+    }
+    code
 }
 
-/// A property of a type.
-#[derive(PartialEq)]
-struct Member {
-    name: String,
-    /// Its comment and its declaration.
-    text: String,
-}
-
-/// The declarations of a file. A type names the earlier ones that have some of its members, and does not repeat these.
+/// The declarations of types, and the members of those that are objects. A type names the earlier ones that have some of its
+/// members, and does not repeat these.
 #[derive(Default)]
 struct Types {
-    declarations: Vec<String>,
-    objects: Vec<(String, Vec<Member>)>,
-    options: Vec<(String, Vec<Member>)>,
+    code: String,
+    objects: Vec<(String, Vec<String>)>,
 }
 
 impl Types {
     /// A result as an object type, everything else as it is.
     fn add<T: TS>(&mut self) {
         let config = Config::default();
-        let doc = T::docs().map(|doc| comment("", &uncommented(&doc))).unwrap_or_default();
-        let declaration = T::decl(&config);
-        let Some(body) = declaration.split_once("= { \n").and_then(|(_, body)| body.strip_suffix(", };")) else {
-            return self.declarations.push(format!("{doc}export {declaration}\n"));
-        };
-        let name = T::name(&config);
-        let mut members = members_of(body);
-        let mut code = String::new();
-        for (base, theirs) in self.objects.iter().rev() {
-            if theirs.iter().all(|member| members.contains(member)) {
-                let _ = write!(code, "{base} & ");
-                members.retain(|member| !theirs.contains(member));
+        let mut declaration = T::decl(&config);
+        if let Some(body) = declaration.split_once("= { \n").and_then(|(_, body)| body.strip_suffix(", };")) {
+            let member = |part: &str| {
+                let (doc, code) = part.split_once("*/\n").unwrap();
+                format!("{}  {code};\n", comment("  ", doc))
+            };
+            let all: Vec<String> = body.split(", \n").map(member).collect();
+            let mut own = all.clone();
+            declaration = format!("type {} = ", T::name(&config));
+            for (base, theirs) in self.objects.iter().rev() {
+                if theirs.iter().all(|member| own.contains(member)) {
+                    declaration += &format!("{base} & ");
+                    own.retain(|member| !theirs.contains(member));
+                }
             }
+            declaration += &format!("{{\n{}}};", own.concat());
+            self.objects.push((T::name(&config), all));
         }
-        let own: String = members.iter().map(|member| &*member.text).collect();
-        self.declarations.push(format!("{doc}export type {name} = {code}{{\n{own}}};\n"));
-        self.objects.push((name, members_of(body)));
+        let doc = T::docs().map(|doc| comment("", &doc)).unwrap_or_default();
+        let _ = write!(self.code, "{doc}export {declaration}\n\n");
     }
-
-    /// Options as an interface.
-    fn add_options(&mut self, call: &Call) {
-        let preset = match call.preset {
-            Some("precise") => {
-                "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n"
-            }
-            Some(_) => "  /** The paper's method. */\n  preset: \"paper\";\n",
-            None => "",
-        };
-        let member = |Row { name, doc, ts, range, default, .. }: &Row| {
-            let range = if range.is_empty() { String::new() } else { format!(" Takes {range}.") };
-            let comment = comment("  ", &format!("{doc}{range} Default `{default}`."));
-            Member { name: name.clone(), text: format!("{comment}  {name}?: {ts} | undefined;\n") }
-        };
-        let all: Vec<Member> = call.rows.iter().map(member).collect();
-        let mut bases = Vec::new();
-        let mut inherited: Vec<&Member> = Vec::new();
-        for (base, theirs) in &self.options {
-            let shared = |member: &&Member| theirs.contains(member) && !inherited.contains(member);
-            let taken: Vec<&Member> = all.iter().filter(shared).collect();
-            let names: Vec<String> = taken.iter().map(|member| format!("\"{}\"", member.name)).collect();
-            inherited.extend(taken);
-            if !names.is_empty() {
-                bases.push(format!("Pick<{base}, {}>", names.join(" | ")));
-            }
-        }
-        let own: String = all.iter().filter(|member| !inherited.contains(member)).map(|member| &*member.text).collect();
-        let mut extends = if bases.is_empty() { String::new() } else { format!(" extends {}", bases.join(", ")) };
-        if "export interface  {".len() + call.interface.len() + extends.len() > LINE_WIDTH {
-            extends = format!("\n  extends {}", bases.join(",\n    "));
-        }
-        let doc = comment("", call.doc);
-        self.declarations.push(format!("{doc}export interface {}{extends} {{\n{preset}{own}}}\n", call.interface));
-        self.options.push((call.interface.to_owned(), all));
-    }
-}
-
-/// The members in the braces of a type that `ts_rs` declares.
-fn members_of(body: &str) -> Vec<Member> {
-    let member = |part: &str| {
-        let (doc, code) = part.split_once("*/\n").unwrap();
-        let (name, ts) = code.split_once(':').unwrap();
-        let text = format!("{}  {name}:{ts};\n", comment("  ", &uncommented(doc)));
-        Member { name: name.trim_end_matches('?').to_owned(), text }
-    };
-    body.split(", \n").map(member).collect()
 }
 
 /// Adds declarations in their order.
@@ -272,15 +211,10 @@ fn types() -> String {
     add! { types:
         Preset, ColorVerdict, Quality, Effort, SearchScope, ExtentAxis, Proportions, GuardMode, Icp,
     }
-    for call in calls() {
-        types.add_options(&call);
-    }
+    types.code += &interfaces();
     types.add::<Stage>();
-    types.declarations.push(
-        "/** Milliseconds per stage, in the order in which the stages first ran, and their total. */\n\
-         export type Timings = Partial<Record<Stage, number>> & { total: number };\n"
-            .into(),
-    );
+    types.code += "/** Milliseconds per stage, in the order in which the stages first ran, and their total. */\n\
+        export type Timings = Partial<Record<Stage, number>> & { total: number };\n\n";
     add! { types:
         ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, SearchCounts,
         Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, Stretch, EvaluationDiagnostics, Diagnostics,
@@ -291,49 +225,14 @@ fn types() -> String {
     }
     let imports =
         "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../types/argument-types.js\";\n\n";
-    HEADER.to_owned() + imports + &types.declarations.join("\n")
-}
-
-/// JSON with spaces after its commas.
-fn spaced(value: &Value) -> String {
-    value.to_string().replace(',', ", ")
-}
-
-/// The entry of an option in the table, one property per item.
-fn properties(row: &Row) -> Vec<String> {
-    let Row { name, doc, kind, ts, limits, default, .. } = row;
-    let mut all = vec![format!("name: \"{name}\""), format!("kind: \"{kind}\"")];
-    all.extend(limits.iter().map(|(limit, value)| format!("{limit}: {}", spaced(value))));
-    all.push(format!("isNullable: {}", ts.ends_with("| null")));
-    all.extend([format!("default: {}", spaced(default)), format!("summary: {}", json!(first_sentence(doc)))]);
-    all
-}
-
-/// A row of the table of options: itself, or what differs from the row that calls share under its name.
-fn entry(row: &Row, shared: Option<&Vec<String>>) -> String {
-    let mut parts = properties(row);
-    if let Some(shared) = shared {
-        parts.retain(|property| !shared.contains(property));
-        if parts.is_empty() {
-            return row.name.clone();
-        }
-        parts.insert(0, format!("...{}", row.name));
-    }
-    format!("{{ {} }}", parts.join(", "))
+    format!("{HEADER}{imports}{}\n", types.code.trim_end())
 }
 
 /// The rows of `alignScene`: those of `align` for every object, and what the package does with the scene.
 fn scene_rows() -> Vec<Row> {
     let [align, ..] = calls();
-    let snap = Row {
-        name: "snap".into(),
-        doc: "Whether to move each object that touches something along the normal of the support, so that it touches exactly".into(),
-        kind: "boolean",
-        ts: "boolean".into(),
-        range: String::new(),
-        limits: vec![],
-        default: json!(false),
-    };
+    let snap = "Whether to move each object that touches something along the normal of the support, so that it touches exactly.";
+    let snap = row("snap", snap, &Field::Flag(&mut false));
     align.rows.into_iter().filter(|row| row.name != "initial").chain([snap]).collect()
 }
 
@@ -341,18 +240,25 @@ fn options() -> String {
     let mut tables: Vec<(&str, Vec<Row>)> = calls().into_iter().map(|call| (call.key, call.rows)).collect();
     tables.insert(2, ("alignScene", scene_rows()));
     let all: Vec<&Row> = tables.iter().flat_map(|(_, rows)| rows).collect();
-    // Options that several calls have, each as the first of them has it.
+    // Options of the same name and kind that several calls have, each as the first of them has it.
     let mut shared = BTreeMap::new();
     for row in &all {
-        if all.iter().filter(|other| other.name == row.name && other.kind == row.kind).count() > 1 {
-            shared.entry(&*row.name).or_insert_with(|| properties(row));
+        if all.iter().filter(|other| other.properties[..2] == row.properties[..2]).count() > 1 {
+            shared.entry(&*row.name).or_insert(&row.properties);
         }
     }
-    let constant = |(name, own): (&&str, &Vec<String>)| format!("const {name} = {{ {} }} as const;\n", own.join(", "));
+    let constant = |(name, own): (&&str, &&Vec<String>)| format!("const {name} = {{ {} }} as const;\n", own.join(", "));
     let constants: String = shared.iter().map(constant).collect();
+    // A row itself, or what differs from the shared one.
+    let entry = |row: &Row| {
+        let Some(first) = shared.get(&*row.name) else { return format!("{{ {} }}", row.properties.join(", ")) };
+        let other = row.properties.iter().filter(|property| !first.contains(property));
+        let other: String = other.map(|property| format!(", {property}")).collect();
+        if other.is_empty() { row.name.clone() } else { format!("{{ ...{}{other} }}", row.name) }
+    };
     let table = |(key, rows): &(&str, Vec<Row>)| {
-        let rows = rows.iter().map(|row| format!("    {},\n", entry(row, shared.get(&*row.name))));
-        format!("  {key}: [\n{}  ],\n", rows.collect::<String>())
+        let rows: String = rows.iter().map(|row| format!("    {},\n", entry(row))).collect();
+        format!("  {key}: [\n{rows}  ],\n")
     };
     // A call, because bundlers keep an unused object with spreads.
     format!(

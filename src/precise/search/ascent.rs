@@ -32,9 +32,9 @@ const MAX_DAMPING: f64 = 10.0;
 /// Smaller gains than the first threshold are no progress; if the last gain is below the second, the ascent has
 /// converged.
 const MIN_GAIN: f32 = 1e-5;
-const SMALL_GAIN: f32 = 2e-3;
+const CONVERGED_GAIN: f32 = 2e-3;
 /// Maximum rotation, in radians, and maximum relative change of size of a step.
-const MAX_TURN: f64 = 0.35;
+const MAX_TURN_RAD: f64 = 0.35;
 const MAX_STRETCH: f64 = 0.25;
 
 /// Ascends from `pose` in at most `iterations` steps.
@@ -59,7 +59,7 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
         let gain = score.total() - best.score.total();
         if gain > 0.0 {
             (best.pose, best.score) = (next, score);
-            best.converged = gain < SMALL_GAIN;
+            best.converged = gain < CONVERGED_GAIN;
             if gain < MIN_GAIN {
                 break;
             }
@@ -81,7 +81,7 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
 pub fn limited(mut step: Step) -> Step {
     let turn = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
     let stretch = step[3..6].iter().fold(0.0f64, |m, x| m.max(x.abs()));
-    let shorten = (MAX_TURN / turn).min(MAX_STRETCH / stretch).min(1.0);
+    let shorten = (MAX_TURN_RAD / turn).min(MAX_STRETCH / stretch).min(1.0);
     step.iter_mut().for_each(|x| *x *= shorten);
     step
 }

@@ -23,13 +23,13 @@ use crate::precise::scoring::score::Score;
 use crate::report::Effort;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
-const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
+const NEIGHBOR_TURNS_RAD: [f64; 2] = [0.17, 0.4];
 const NEIGHBORS: usize = 7;
 
 /// Number of rolls about each principal axis, and of each half turn followed by a roll, and the minimum rotation between
 /// those that are refined, radians.
 const ROLLS: usize = 24;
-const APART: f64 = 0.3;
+const MIN_TURN_RAD: f64 = 0.3;
 
 /// A search: the observation and the mesh, prepared.
 pub struct Search {
@@ -96,7 +96,7 @@ impl Search {
         let stage = Coarse { objective: self.objective(COARSE), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
         let mut near = vec![stage.at_its_distance(&mut canvas, pose)];
-        for angle in NEIGHBORHOOD {
+        for angle in NEIGHBOR_TURNS_RAD {
             for axis in 0..6 {
                 let mut step = [0.0; 7];
                 step[axis / 2] = if axis % 2 == 0 { angle } else { -angle };
@@ -105,7 +105,7 @@ impl Search {
         }
         self.renders += near.len();
         let mut poses = vec![pose];
-        poses.extend(distinct(near, NEIGHBORS, 0.5 * NEIGHBORHOOD[0]).iter().map(|c| c.pose));
+        poses.extend(distinct(near, NEIGHBORS, 0.5 * NEIGHBOR_TURNS_RAD[0]).iter().map(|c| c.pose));
         poses
     }
 
@@ -128,10 +128,11 @@ impl Search {
             stage.try_box_fits(&mut canvas, &mesh.outermost, pose.rotation, box_fits, &mut tried);
         }
         self.renders += tried.len();
-        let is_new =
-            |turned: &Candidate| poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > APART);
+        let is_new = |turned: &Candidate| {
+            poses.iter().all(|pose| angle_between(pose.rotation, turned.pose.rotation) > MIN_TURN_RAD)
+        };
         let tried = tried.into_iter().filter(is_new).collect();
-        distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
+        distinct(tried, self.settings.turns(), MIN_TURN_RAD).iter().map(|candidate| candidate.pose).collect()
     }
 
     /// Sizes and positions tried for each rotation.

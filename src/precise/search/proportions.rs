@@ -21,19 +21,19 @@ use crate::precise::scoring::score::Score;
 /// Number of parameters of E.
 pub const PROPORTIONS: usize = 5;
 /// Number of all parameters.
-const ALL: usize = PARAMETERS + PROPORTIONS;
+const ALL_PARAMETERS: usize = PARAMETERS + PROPORTIONS;
 
 /// Standard deviation of each parameter. From 0.02 to 0.1, the errors of the similarity on generated cases are about the same.
 const DEVIATION: f64 = 0.03;
 /// Maximum magnitude of a parameter.
-const MOST: f64 = 0.25;
+const MAX_PROPORTION: f64 = 0.25;
 /// Iterations that find the nearest similarity: each squares the relative error, which starts at the size of E.
 const ITERATIONS: usize = 4;
 /// Regularisation of the nearest rotation, relative to the trace: a line leaves its roll open.
 const ROLL: f64 = 1e-9;
 
 /// Change of a parameter by which derivatives are measured.
-const SMALL: f64 = 1e-4;
+const DERIVATIVE_STEP: f64 = 1e-4;
 
 /// 1/√2 and 1/√6: the parameters are coordinates in an orthonormal basis, so that the squares of all entries of E add up to
 /// those of the parameters, whatever the axes of the mesh are.
@@ -72,9 +72,9 @@ impl Shapes {
     }
 
     /// Adds the quadratic of the penalty. It keeps at 0 the parameters that are not free, on which no residual depends.
-    pub fn add_to(&self, Proportions(parameters): &Proportions, equations: &mut NormalEquationsOf<ALL>) {
+    pub fn add_to(&self, Proportions(parameters): &Proportions, equations: &mut NormalEquationsOf<ALL_PARAMETERS>) {
         for (i, x) in parameters.iter().enumerate() {
-            let mut jacobian = [0.0; ALL];
+            let mut jacobian = [0.0; ALL_PARAMETERS];
             jacobian[PARAMETERS + i] = 1.0;
             equations.add(&jacobian, *x, 2.0 * self.cost);
         }
@@ -103,7 +103,7 @@ impl Proportions {
     }
 
     /// The proportions after a step in all parameters, of which theirs are the last.
-    pub fn moved(self, step: &[f64; ALL]) -> Self {
+    pub fn moved(self, step: &[f64; ALL_PARAMETERS]) -> Self {
         let mut by = [0.0; PROPORTIONS];
         by.copy_from_slice(&step[PARAMETERS..]);
         self.by(by)
@@ -112,7 +112,7 @@ impl Proportions {
     /// The proportions after a change of the parameters.
     pub fn by(mut self, change: [f64; PROPORTIONS]) -> Self {
         for (x, by) in self.0.iter_mut().zip(change) {
-            *x = (*x + by).clamp(-MOST, MOST);
+            *x = (*x + by).clamp(-MAX_PROPORTION, MAX_PROPORTION);
         }
         self
     }
@@ -203,7 +203,7 @@ pub(crate) struct InProportion<'a, 'c> {
     shapes: Shapes,
 }
 
-impl Ascent<ALL> for InProportion<'_, '_> {
+impl Ascent<ALL_PARAMETERS> for InProportion<'_, '_> {
     type Pose = Stretched;
     type Score = Score;
 
@@ -218,13 +218,13 @@ impl Ascent<ALL> for InProportion<'_, '_> {
         score
     }
 
-    fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquationsOf<ALL> {
+    fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquationsOf<ALL_PARAMETERS> {
         let refiner = self.on.refiner;
         let canvas = &*self.on.canvas;
         let to_mesh: Mat3 = canvas.rotation.transpose();
         let mut equations = NormalEquationsOf::new();
         let turns = refiner.evidence(canvas, score, &mut |point, gradient, residual, weight| {
-            let mut jacobian = [0.0; ALL];
+            let mut jacobian = [0.0; ALL_PARAMETERS];
             let arm = to_mesh * (point - canvas.translation);
             let of_pose = refiner.jacobian(canvas, point, gradient);
             let of_proportions = Proportions::jacobian(arm, to_mesh * gradient).map(f64::from);
@@ -242,7 +242,7 @@ impl Ascent<ALL> for InProportion<'_, '_> {
         equations
     }
 
-    fn moved(&self, at: &Stretched, step: [f64; ALL]) -> Option<Stretched> {
+    fn moved(&self, at: &Stretched, step: [f64; ALL_PARAMETERS]) -> Option<Stretched> {
         let mut first: Step = [0.0; PARAMETERS];
         first.copy_from_slice(&step[..PARAMETERS]);
         let pose = self.on.refiner.moved(&at.pose, first)?;
@@ -279,15 +279,15 @@ impl Refiner<'_> {
         free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
         let of_all = covariance(&equations)?;
         // The change of the nearest similarity with each parameter.
-        let mut changes = [[0.0; PARAMETERS]; ALL];
+        let mut changes = [[0.0; PARAMETERS]; ALL_PARAMETERS];
         for (k, change) in changes.iter_mut().enumerate() {
             match k.checked_sub(PARAMETERS) {
                 None => change[k] = 1.0,
                 Some(k) => {
                     let mut parameters = [0.0; PROPORTIONS];
-                    parameters[k] = SMALL;
+                    parameters[k] = DERIVATIVE_STEP;
                     let nearest = stretched(Proportions(parameters)).nearest(surface, false);
-                    *change = pose.step_to(&nearest).map(|x| x / SMALL);
+                    *change = pose.step_to(&nearest).map(|x| x / DERIVATIVE_STEP);
                 }
             }
         }

@@ -172,10 +172,10 @@ impl Tasks for Run<'_> {
 
     fn read_result(message: &mut &[f64]) -> Option<TaskResult> {
         let (&[count, work], candidates) = message.split_first_chunk()?;
-        let (numbers, rest) = candidates.split_at_checked(FOUND * count as usize)?;
+        let (numbers, rest) = candidates.split_at_checked(CANDIDATE * count as usize)?;
         *message = rest;
         let mut candidates = Vec::with_capacity(count as usize);
-        for numbers in numbers.as_chunks::<FOUND>().0 {
+        for numbers in numbers.as_chunks::<CANDIDATE>().0 {
             let (pose, numbers) = numbers.split_first_chunk()?;
             let (score, numbers) = numbers.split_first_chunk::<SCORE>()?;
             let &[renders, converged] = numbers.first_chunk()?;
@@ -186,10 +186,10 @@ impl Tasks for Run<'_> {
     }
 }
 
-/// Numbers of a pose, of a score, and of a pose that was candidates.
+/// Numbers of a pose, of a score, and of a candidate.
 const POSE: usize = 8;
 const SCORE: usize = 11;
-const FOUND: usize = POSE + SCORE + 2;
+const CANDIDATE: usize = POSE + SCORE + 2;
 
 fn pose_numbers(CropPose { rotation, size, place, distance }: &CropPose) -> [f64; POSE] {
     let [x, y, z, w] = rotation.to_array();

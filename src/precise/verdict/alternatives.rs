@@ -10,13 +10,13 @@ use crate::report::Alternative;
 
 /// Score below an unsure best pose down to which poses are alternatives: where such a pose is wrong, the right one scores lower
 /// by up to this much.
-pub(crate) const UNSURE: f32 = 3.0 * NOISE;
+pub(crate) const UNSURE_MAX_SCORE_LOSS: f32 = 3.0 * NOISE;
 /// Maximum number of alternatives of another shape score than the best pose.
-const MOST: usize = 12;
+const MAX_ALTERNATIVES: usize = 12;
 /// Maximum number of alternatives that only their colours tell from the best pose, and the margin from which on colour has
 /// refuted them.
 const MAX_RIVALS: usize = 4;
-const CLEAR: f64 = 0.5;
+const REFUTED_COLOR_MARGIN: f64 = 0.5;
 
 /// The poses after the first whose scores are within `margin` of it. Poses near it or near each other, and those that the
 /// symmetry of the mesh makes equivalent, are excluded.
@@ -26,7 +26,7 @@ pub(crate) fn alternatives(candidates: &[Candidate], search: &Search, margin: f3
     for other in others.iter().filter(|other| other.score.total > best.score.total - margin) {
         let differs =
             |k: &&Candidate| search.equivalence.angle(k.pose.rotation, other.pose.rotation) > DISTINCT_MIN_ANGLE_RAD;
-        if kept.len() <= MOST && kept.iter().all(differs) {
+        if kept.len() <= MAX_ALTERNATIVES && kept.iter().all(differs) {
             kept.push(other);
         }
     }
@@ -61,7 +61,7 @@ pub(crate) fn add_rivals<'a>(
             Some(known) => {
                 known.color_margin.get_or_insert(rival.margin);
             }
-            None if added < MAX_RIVALS && rival.margin < CLEAR => {
+            None if added < MAX_RIVALS && rival.margin < REFUTED_COLOR_MARGIN => {
                 added += 1;
                 alternatives.push(alternative(best, &rival.candidate, Some(rival.margin), search));
             }

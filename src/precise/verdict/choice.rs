@@ -4,15 +4,15 @@ use crate::geometry::order::largest;
 use crate::report::{ColorReport, ColorVerdict};
 
 /// Minimum correlation of the best pose with the photo for colour to decide.
-pub const AGREES: f64 = 0.3;
+pub const MIN_CORRELATION: f64 = 0.3;
 /// Correlation that outweighs a difference of 1 between shape scores.
-pub const SHAPE: f64 = 0.5;
+pub const CORRELATION_PER_SCORE: f64 = 0.5;
 /// Gain for which another pose than that of shape is taken.
 const MIN_GAIN: f64 = 0.02;
 /// Factor of the correlation in the logarithm of the odds of two poses.
-const ODDS: f64 = 15.0;
+const LOG_ODDS_PER_CORRELATION: f64 = 15.0;
 /// Minimum probability of the pose where none agrees with the photo.
-pub const UNMATCHED: f64 = 0.5;
+pub const UNMATCHED_PROBABILITY: f64 = 0.5;
 
 /// The score of a pose by colour.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +26,7 @@ pub struct ColorScore {
 impl ColorScore {
     /// A pose whose shape score is above that of the best pose by this much, per view.
     pub fn new(agreement: f64, shape: f32) -> Self {
-        Self { agreement, total: agreement + SHAPE * f64::from(shape) }
+        Self { agreement, total: agreement + CORRELATION_PER_SCORE * f64::from(shape) }
     }
 }
 
@@ -46,7 +46,7 @@ impl Choice {
     /// The choice among poses; `differ` decides whether the poses of two indices are rivals. `None` without any.
     pub fn among(scores: Vec<ColorScore>, differ: impl Fn(usize, usize) -> bool) -> Option<Self> {
         let first = scores.first()?;
-        let is_used = scores.iter().fold(f64::NEG_INFINITY, |most, look| most.max(look.agreement)) >= AGREES;
+        let is_used = scores.iter().fold(f64::NEG_INFINITY, |most, look| most.max(look.agreement)) >= MIN_CORRELATION;
         let best = (0..scores.len()).fold(0, |best, k| if scores[k].total > scores[best].total { k } else { best });
         let chosen = if is_used && scores[best].total > first.total + MIN_GAIN { best } else { 0 };
         let rivals: Vec<usize> = (0..scores.len()).filter(|&other| differ(other, chosen)).collect();
@@ -58,7 +58,7 @@ impl Choice {
     /// Probability that the chosen pose is right, given that it or one of these rivals is. `gain` is by how much its agreement
     /// has grown since.
     pub fn probability(&self, gain: f64, rivals: impl Iterator<Item = usize>) -> f64 {
-        let odds: f64 = rivals.map(|rival| libm::exp(-ODDS * self.lead(rival, gain))).sum();
+        let odds: f64 = rivals.map(|rival| libm::exp(-LOG_ODDS_PER_CORRELATION * self.lead(rival, gain))).sum();
         1.0 / (1.0 + odds)
     }
 

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use glam::{DQuat, DVec3};
 
-use super::choice::{Choice, ColorScore, HIDDEN, SHAPE, UNMATCHED, best_roll};
+use super::choice::{CORRELATION_PER_SCORE, Choice, ColorScore, HIDDEN, UNMATCHED_PROBABILITY, best_roll};
 use super::lookalikes::{Likeness, Lookalike, lookalikes};
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::{Photo, PhotoRegion};
@@ -207,7 +207,7 @@ impl Judgment {
             let known = choice.probability(gain, these.map(|(k, _)| *k));
             // Where no pose agrees, the colours of the mesh as likely as not mean nothing, and all turns are right; but which of
             // them colour would choose is open.
-            if are_turns || choice.is_used { known } else { known.max(UNMATCHED) }
+            if are_turns || choice.is_used { known } else { known.max(UNMATCHED_PROBABILITY) }
         };
         Self {
             chosen: is_other.then_some(end),
@@ -225,7 +225,9 @@ impl Judgment {
         if !self.is_used {
             return f64::NEG_INFINITY;
         }
-        self.rivals.iter().fold(f64::from(NOISE), |least, rival| least.min(rival.margin.max(0.0) / SHAPE))
+        self.rivals
+            .iter()
+            .fold(f64::from(NOISE), |least, rival| least.min(rival.margin.max(0.0) / CORRELATION_PER_SCORE))
     }
 
     /// Nothing can be compared.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::alternatives::{UNSURE, add_rivals, alternatives};
+use super::alternatives::{UNSURE_MAX_SCORE_LOSS, add_rivals, alternatives};
 use super::color::Judgment;
 use super::confidence::{Confidence, shape_confidence};
 use crate::error::Result;
@@ -65,7 +65,7 @@ pub fn reliability(
         color: color.map_or(1.0, |color| color.probability),
         relief_deviation: 0.0,
     };
-    let alternatives = listed(if confidence.overall() < SURE { UNSURE } else { NOISE }, true);
+    let alternatives = listed(if confidence.overall() < SURE { UNSURE_MAX_SCORE_LOSS } else { NOISE }, true);
     Ok(Reliability { confidence, alternatives })
 }
 

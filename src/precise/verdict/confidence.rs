@@ -5,7 +5,7 @@
 //! half-hidden objects have low scores. Informative are the margin to the next best placement, the agreement of
 //! independent terms, and how sharply the score falls around the pose.
 
-use super::choice::SHAPE;
+use super::choice::CORRELATION_PER_SCORE;
 use crate::precise::scoring::conditioning::Conditioning;
 use crate::precise::scoring::score::NOISE;
 use crate::precise::search::ranking::Candidate;
@@ -56,7 +56,8 @@ pub(crate) fn shape_confidence(
 ) -> f64 {
     let score = f64::from(best.score.total);
     // Colour has lowered the odds of poses that shape alone cannot exclude.
-    let lead = |other: &Alternative| score - other.score + other.color_margin.unwrap_or(0.0).max(0.0) / SHAPE;
+    let lead =
+        |other: &Alternative| score - other.score + other.color_margin.unwrap_or(0.0).max(0.0) / CORRELATION_PER_SCORE;
     let margin = alternatives.iter().fold(f64::from(NOISE), |margin, other| margin.min(lead(other)));
     pose_probability(best, margin, conditioning)
 }

@@ -13,13 +13,13 @@ use crate::precise::search::rounds::Rounds;
 pub const ROLLS: usize = 24;
 /// Minimum rotation between lookalikes, radians: of those whose score is that of the best pose, such as rolls of a can,
 /// and of the others, which are refined.
-const APART: [f64; 2] = [0.2, 0.45];
+const MIN_TURNS_RAD: [f64; 2] = [0.2, 0.45];
 /// Maximum number of lookalikes.
-const MOST: usize = 60;
+const MAX_LOOKALIKES: usize = 60;
 /// Score on the coarse grid below that of the best pose at which a turn is no lookalike, and down to which it needs no
 /// refinement.
-const FAR: f32 = 0.25;
-const SAME: f32 = 0.02;
+const LOOKALIKE_MAX_SCORE_LOSS: f32 = 0.25;
+const REFINED_MIN_SCORE_LOSS: f32 = 0.02;
 
 /// The kind of likeness between a lookalike and the best pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,16 +65,17 @@ pub fn among<P: Posed, S: Total>(
     scored: impl Iterator<Item = Candidate<P, S>>,
     equal: impl Iterator<Item = P>,
 ) -> Vec<Lookalike<P>> {
-    let likely: Vec<Candidate<P, S>> = scored.filter(|pose| pose.score.total() > score - FAR).collect();
+    let likely: Vec<Candidate<P, S>> =
+        scored.filter(|pose| pose.score.total() > score - LOOKALIKE_MAX_SCORE_LOSS).collect();
     let mut alike: Vec<Lookalike<P>> = equal.map(|pose| Lookalike { pose, likeness: Likeness::Equal }).collect();
     let mut kept: Vec<DQuat> = vec![best];
     kept.extend(alike.iter().map(|equal| equal.pose.rotation()));
     let likely = best_of(&likely, likely.len());
-    for (apart, likeness) in APART.into_iter().zip([Likeness::Same, Likeness::Rough]) {
+    for (apart, likeness) in MIN_TURNS_RAD.into_iter().zip([Likeness::Same, Likeness::Rough]) {
         for pose in &likely {
             let is_near = |other: &DQuat| angle_between(*other, pose.pose.rotation()) < apart;
-            let is_rough = pose.score.total() < score - SAME;
-            if is_rough == (likeness == Likeness::Rough) && kept.len() <= MOST && !kept.iter().any(is_near) {
+            let is_rough = pose.score.total() < score - REFINED_MIN_SCORE_LOSS;
+            if is_rough == (likeness == Likeness::Rough) && kept.len() <= MAX_LOOKALIKES && !kept.iter().any(is_near) {
                 kept.push(pose.pose.rotation());
                 alike.push(Lookalike { pose: pose.pose, likeness });
             }

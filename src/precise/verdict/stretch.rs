@@ -29,7 +29,7 @@ const DEVIATION: f64 = 0.06;
 /// The part of the deviations of lengths and stretches that does not follow from the score: the surfaces of generated meshes
 /// are a per cent off in shape, which shows as a stretch; and the factor of the other, which counts neither that the residuals
 /// of neighbouring pixels are alike, nor that the score has other maxima. From errors of generated, rendered and real objects.
-const FLOOR: f64 = 0.015;
+const MIN_SHAPE_SD: f64 = 0.015;
 const INFLATION: f64 = 1.5;
 /// Grids of the refinement.
 pub const GRIDS: [usize; 2] = [FINE, FINEST];
@@ -38,11 +38,11 @@ pub const STEPS: [usize; 2] = [12, 6];
 /// Distances of the other starts in each direction of E, by grid.
 pub const REACHES: [[f64; 2]; 2] = [[0.04, 0.02], [0.02, 0.01]];
 /// Number of the first parameters of E, which stretch along the axes.
-const STRAIGHT: usize = 2;
+const AXIAL_PARAMETERS: usize = 2;
 /// Share of a direction that has to be free.
-const FREE: f64 = 0.1;
+const MIN_FREE_SHARE: f64 = 0.1;
 /// Square of the length below which a direction is no other than those before it.
-const LEAST: f64 = 1e-6;
+const MIN_SQUARED_LENGTH: f64 = 1e-6;
 
 /// The best proportions of a mesh near a pose; `None` if they are not asked for, or the size of the mesh is given, so that
 /// it is right.
@@ -95,7 +95,7 @@ pub fn climb<A: Ascent<ALL>>(
             let mut by = [0.0; PROPORTIONS];
             by[k] = reach;
             let by = shapes.free(by);
-            if by[k] / reach < FREE {
+            if by[k] / reach < MIN_FREE_SHARE {
                 continue;
             }
             let candidate = ascend(problem, stretched(best.pose, by), STEPS[1]);
@@ -121,10 +121,10 @@ pub fn deviations_of_lengths(
 ) -> Option<[f64; 3]> {
     let covariance = covariance(equations)?;
     let along = |axis| deviation_along(&covariance, &change_of_length(of_scale, axis, shapes));
-    Some(DVec3::AXES.map(|axis| libm::hypot(along(axis), FLOOR)))
+    Some(DVec3::AXES.map(|axis| libm::hypot(along(axis), MIN_SHAPE_SD)))
 }
 
-/// The standard deviation of what changes so with each parameter, without the [`FLOOR`].
+/// The standard deviation of what changes so with each parameter, without the [`MIN_SHAPE_SD`].
 fn deviation_along(covariance: &[[f64; ALL]; ALL], change: &[f64; ALL]) -> f64 {
     let row = |row: &[f64; ALL]| row.iter().zip(change).map(|(a, b)| a * b).sum::<f64>();
     INFLATION * deviation(covariance.iter().zip(change).map(|(of_row, by)| by * row(of_row)).sum())
@@ -132,7 +132,7 @@ fn deviation_along(covariance: &[[f64; ALL]; ALL], change: &[f64; ALL]) -> f64 {
 
 /// The part of a fit that the evidence supports. The fit differs from the similarity by `growth` (of log s) and by the E of
 /// `proportions`; changes of length along their principal directions are kept if they exceed their deviation, and dropped
-/// otherwise. The [`FLOOR`] is not added to that deviation: it would drop changes that bring lengths nearer to the truth.
+/// otherwise. The [`MIN_SHAPE_SD`] is not added to that deviation: it would drop changes that bring lengths nearer to the truth.
 pub fn significant(
     equations: &NormalEquationsOf<ALL>,
     of_scale: &[f64; PARAMETERS],
@@ -158,7 +158,7 @@ fn add_direction(free: &mut [[f64; PROPORTIONS]; PROPORTIONS], mut direction: [f
     let known = free.map(|row| dot(&row, &direction));
     direction.iter_mut().zip(known).for_each(|(x, known)| *x -= known);
     let length = dot(&direction, &direction);
-    if length > LEAST {
+    if length > MIN_SQUARED_LENGTH {
         for (row, x) in free.iter_mut().zip(direction) {
             row.iter_mut().zip(direction).for_each(|(entry, y)| *entry += x * y / length);
         }
@@ -170,7 +170,7 @@ fn add_direction(free: &mut [[f64; PROPORTIONS]; PROPORTIONS], mut direction: [f
 fn free(equivalence: &Equivalence, freedom: Freedom) -> [[f64; PROPORTIONS]; PROPORTIONS] {
     let mut free = [[0.0; PROPORTIONS]; PROPORTIONS];
     // All stretches along the axes are combinations of the first two.
-    for k in 0..if freedom == Freedom::Axes { STRAIGHT } else { PROPORTIONS } {
+    for k in 0..if freedom == Freedom::Axes { AXIAL_PARAMETERS } else { PROPORTIONS } {
         let mut unit = [0.0; PROPORTIONS];
         unit[k] = 1.0;
         let symmetric = equivalence.mean(&Proportions::new(unit).exponent());
