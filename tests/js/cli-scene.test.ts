@@ -3,17 +3,16 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { exportPly } from "sim3align/conventions";
 import { Quaternion, Vector3 } from "three";
+import { writeBop } from "../support/bop.js";
 import { folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
 import { png } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
 import { assertNear } from "../support/random.js";
 import { sam3dFiles } from "../support/sam3d.js";
-import { rotationRows } from "../support/scene.js";
 import { masks, plane, poses, standingGlb, standingMesh, tableFiles, tableView } from "../support/table.js";
 
-const { width, height, depth, camera } = tableView;
+const { width, height, camera } = tableView;
 const bytes = (path: string) => new Uint8Array(readFileSync(join(folder, path)));
 const names = ["thing-0", "thing-1", "thing-2"];
 writeCase("table", tableFiles());
@@ -57,31 +56,16 @@ test("the support and one scale for all objects are options; a scene that cannot
 });
 
 test("an image of BOP is a scene", () => {
-  const scene = join("bop", "test", "000007");
-  const K = [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1];
-  const two = poses.slice(0, 2);
-  const entries = two.map((pose, i) => ({
-    ...{ obj_id: i + 1, cam_R_m2c: rotationRows(pose.rotation).flat() },
-    cam_t_m2c: pose.translation.map((x) => 1000 * x),
-  }));
-  writeCase(scene, {
-    "scene_camera.json": { "3": { cam_K: K, depth_scale: 0.1 } },
-    "scene_gt.json": { "3": entries },
-    "depth/000003.png": png(
-      Uint16Array.from(depth, (z) => Math.round(10_000 * z)),
-      width,
-      height,
-    ),
-  });
-  for (const [i, pose] of two.entries()) {
-    writeCase(scene, { [`mask_visib/000003_00000${i}.png`]: png(masks[i] as Uint8Array, width, height) });
-    const positions = standingMesh.positions.map((x) => 1000 * pose.scale * x);
-    writeCase("bop", { [`models/obj_00000${i + 1}.ply`]: exportPly({ ...standingMesh, positions }) });
+  writeBop(join(folder, "bop", "tudl"));
+  for (const [flag, image, names] of [
+    ["", "000000", "1-0,2-1"],
+    ["--image-id 7", "000007", "2-0,3-1,2-2,2-3"],
+  ]) {
+    succeeds(`scene bop/tudl/test/000001 --quality fast --json b.json ${flag}`);
+    const { objects } = results("b.json")[`000001/${image}`];
+    assert.equal(objects.map(({ name }: { name: string }) => name).join(), names);
+    for (const { name, errors } of objects) assert.ok(errors.scaleError < 0.05, name);
   }
-  succeeds("scene", scene, "--quality", "fast", "--json", "b.json");
-  const { objects } = results("b.json")["000007/000003"];
-  for (const [i, name] of ["1-0", "2-1"].entries())
-    assert.ok(objects[i].name === name && objects[i].errors.scaleError < 0.05);
 });
 
 test("an output of SAM 3D is a scene; a scale goes before its placements, and simulators need metres", async () => {
