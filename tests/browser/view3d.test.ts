@@ -20,13 +20,14 @@ import {
 const [webGpu, webGl] = [withWebGpu(), withoutWebGpu()];
 
 const modes = [
-  [webGpu, "webgpu"],
-  [webGl, "webgl"],
+  ["WebGPU", webGpu, false, "webgpu"],
+  ["WebGL, forced", webGpu, true, "webgl"],
+  ["WebGL, without WebGPU", webGl, false, "webgl"],
 ] as const;
 
-for (const [browser, expected] of modes) {
-  test(`${expected}: points and mesh are drawn where the depth camera sees them`, async () => {
-    const { page, errors, facts, backend, colours } = await openCube(browser);
+for (const [name, browser, isForced, expected] of modes) {
+  test(`${name}: points and mesh are drawn where the depth camera sees them`, async () => {
+    const { page, errors, facts, backend, colours } = await openCube(browser, isForced);
     assert.equal(backend, expected);
     const at = (u: number, v: number) => placeOf(facts, u, v);
     const points = await colours([at(10, 10), at(78, 30), at(82, 30), at(10, 110), at(150, 110), [3, 150], [497, 150]]);
@@ -58,7 +59,7 @@ for (const [browser, expected] of modes) {
 }
 
 test("glTF node transforms are applied, and an invalid GLB leaves the view unchanged", async () => {
-  const { page, errors, facts, colours } = await openCube(webGl, "glb");
+  const { page, errors, facts, colours } = await openCube(webGl, false, "glb");
   const [u, v] = pixelOf(facts, 0, 0, 0.75);
   const [beside] = [pixelOf(facts, 0.056, 0, 0.75)];
   const places = [placeOf(facts, u, v), placeOf(facts, ...beside)];

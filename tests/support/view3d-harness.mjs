@@ -52,7 +52,7 @@ globalThis.harness = {
   ...{ camera, width, height, quarters, object },
   viewEvents: [],
   /** Creates a view in a host of that size. */
-  async start(hostWidth, hostHeight) {
+  async start(hostWidth, hostHeight, forceWebGL) {
     const host = document.createElement("div");
     host.id = "host";
     host.style.cssText = `width:${hostWidth}px;height:${hostHeight}px;background:rgb(250, 251, 252)`;
@@ -64,7 +64,7 @@ globalThis.harness = {
       onSelect: (id) => viewEvents.push({ kind: "select", id }),
       onHover: (pixel) => viewEvents.push({ kind: "hover", pixel }),
     };
-    harness.view = await SceneView.create(host, events);
+    harness.view = await SceneView.create(host, events, forceWebGL);
     return harness.view.backend;
   },
   /** Shows the wall from the camera. */

@@ -23,7 +23,7 @@ interface Harness {
   height: number;
   quarters: [number, number, number][];
   object(id: string, colour: string, kind?: string): object;
-  start(width: number, height: number): Promise<"webgpu" | "webgl">;
+  start(width: number, height: number, forceWebGL?: boolean): Promise<"webgpu" | "webgl">;
   show(display?: object): void;
   colours(places: Place[]): Promise<[number, number, number][]>;
   view: {
@@ -99,9 +99,10 @@ export async function open(browser: PageTest): Promise<{ page: Page; errors: str
 }
 
 /** Opens a view of the wall from the camera, with a green cube. */
-export async function openCube(browser: PageTest, kind = "arrays") {
+export async function openCube(browser: PageTest, forceWebGL = false, kind = "arrays") {
   const opened = await open(browser);
-  const backend = await opened.page.evaluate(({ width, height }) => harness.start(width, height), host);
+  const start = ([size, isForced]: [typeof host, boolean]) => harness.start(size.width, size.height, isForced);
+  const backend = await opened.page.evaluate(start, [host, forceWebGL] as [typeof host, boolean]);
   const show = async ([kind, pose]: [string, number[]]) => {
     harness.show();
     await harness.view.setObjects([harness.object("cube", "#00c040", kind)]);

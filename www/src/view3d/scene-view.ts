@@ -61,8 +61,8 @@ export class SceneView {
    * Creates a view that fills its host element.
    * @throws {NoGraphics} if the browser supports neither WebGPU nor WebGL 2
    */
-  static async create(host: HTMLElement, events: ViewEvents): Promise<SceneView> {
-    return new SceneView(await Stage.create(host), host, events);
+  static async create(host: HTMLElement, events: ViewEvents, forceWebGL = false): Promise<SceneView> {
+    return new SceneView(await Stage.create(host, forceWebGL), host, events);
   }
 
   private constructor(

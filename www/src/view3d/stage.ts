@@ -99,14 +99,14 @@ export class Stage {
   private isDisposed = false;
   private graphics: Graphics | null = null;
 
-  /** After the loss of a device of WebGPU. */
-  private forceWebGL = false;
-
-  private constructor(private readonly host: HTMLElement) {}
+  private constructor(
+    private readonly host: HTMLElement,
+    private forceWebGL: boolean,
+  ) {}
 
   /** Creates the renderer and appends its canvas to the host. */
-  static async create(host: HTMLElement): Promise<Stage> {
-    const stage = new Stage(host);
+  static async create(host: HTMLElement, forceWebGL: boolean): Promise<Stage> {
+    const stage = new Stage(host, forceWebGL);
     await stage.start();
     return stage;
   }
