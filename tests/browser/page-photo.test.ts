@@ -130,5 +130,15 @@ test("a photo, relative disparity, a mask and a mesh without a camera are aligne
   assert.ok(Math.abs(distance / truth.translation[2] - 1) < 0.25, `${distance} m away`);
   const known = JSON.parse(`${(await opened.saved("JSON")).bytes}`);
   assert.equal(known._about.units, "metres");
+  // Undoing it leaves what was shown before.
+  await page.click("#undo");
+  await page.locator("#dimensions", { hasText: "relative" }).waitFor();
+  assert.deepEqual(await opened.dimensions(), sizes);
+  await page.click("#redo");
+  // It is kept by the next alignment.
+  await page.click("#align");
+  await page.locator("#cancel").waitFor({ state: "detached" });
+  await opened.aligned();
+  assert.ok(Math.abs(Math.max(...(await opened.dimensions())) - longest) < 0.1);
   assert.deepEqual(await opened.violations(), []);
 });
