@@ -69,6 +69,9 @@ test("a body that leans is put at rest, with its pose before in every file; one 
   const [at, [x, y, z, w]] = [position.map(short), rotation.map(short)];
   const numeric = /<numeric name="leans_found" size="7" data="([^"]*)"/.exec(toMjcf(scene)["scene.xml"] ?? "");
   assert.equal(numeric?.[1], [...at, w, x, y, z].join(" "));
+  const resting = /<body name="leans" [^>]*quat="([^"]*)"/.exec(toMjcf(scene)["scene.xml"] ?? "")?.[1];
+  const [restX = 0, restY = 0, restZ = 0, restW = 1] = leans.rotation;
+  assertNear((resting ?? "").split(" ").map(Number), [restW, restX, restY, restZ], "w comes first in MuJoCo", 1e-6);
   const [, inJson] = JSON.parse(toUrdf(scene)["scene.json"] ?? "").bodies;
   assert.deepEqual(inJson.found, { position, quaternion: rotation });
   assert.ok(toUsd(scene).includes(`custom double3 found:translate = (${at.join(", ")})`));
