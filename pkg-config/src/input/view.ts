@@ -1,7 +1,6 @@
 /** Reads what a camera saw: the depth map or the point map, the photo and the camera. */
 
-import type { Pinhole } from "../camera/pinhole.js";
-import { depthOfRays } from "../camera/pinhole.js";
+import { depthOfRays, type Pinhole } from "../camera/pinhole.js";
 import type { CoreInput, CoreView } from "../modules/core-input.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { DepthImage, DepthKind, ReadDepthOptions } from "../types/inputs.js";

@@ -46,10 +46,12 @@ async function boxOfMesh(shot: Shot, pose: Matrix): Promise<Box | undefined> {
   const view = View.whole(shot.width, shot.height, COARSE);
   const box = boxOf(await shot.render(view, pose), view.width, view.height);
   if (box === undefined) return undefined;
-  const [left, top, width, height] = [box.left, box.top, box.width, box.height].map((x) => x / COARSE) as [
-    ...[number, number, number, number],
-  ];
-  return { left, top, width, height };
+  return {
+    left: box.left / COARSE,
+    top: box.top / COARSE,
+    width: box.width / COARSE,
+    height: box.height / COARSE,
+  };
 }
 
 /** The whole image with the mask's outline and the shaded mesh, as a PNG. */

@@ -39,7 +39,7 @@ export class Shot {
     const { core } = await resolveInput(hasCamera ? plain : input, fileReaders, nextMeshId());
     const { depth = new Float32Array(), mask, mesh } = core;
     const size = { width: Number(core.width), height: Number(core.height) };
-    const { image } = await readPhoto(photo, size, fileReaders);
+    const { image } = hasCamera ? await readPhoto(photo, size, fileReaders) : core;
     const { width, height } = size;
     const scale = Number(core.depthScale ?? (isTypedArray(depth, "Uint16Array") ? 0.001 : 1));
     const metres = new Float32Array(depth.length);
