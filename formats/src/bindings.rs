@@ -145,17 +145,28 @@ pub fn depth_image(depth: &DepthImage) -> JsValue {
         let numbers = [("fx", camera.fx), ("fy", camera.fy), ("cx", camera.cx), ("cy", camera.cy)];
         properties.push(("camera", object(&numbers.map(|(name, number)| (name, number.into())))));
     }
+    if !depth.unread.is_empty() {
+        properties.push(("unread", strings(&depth.unread)));
+    }
     object(&properties)
 }
 
+/// An array of strings.
+pub fn strings(texts: &[String]) -> JsValue {
+    texts.iter().map(JsValue::from).collect::<Array>().into()
+}
+
 /// `{ positions, indices, origin?, copies?, samples?, warnings }`.
-pub fn mesh_arrays(ColoredMesh { mesh, colors, flipped, copies, origin, problem }: &ColoredMesh) -> JsValue {
+pub fn mesh_arrays(ColoredMesh { mesh, colors, flipped, copies, origin, unread, problem }: &ColoredMesh) -> JsValue {
     let warnings = problem.iter().map(|problem| JsValue::from(without_colors(problem)));
     let mut properties = vec![
         ("positions", flat(mesh.positions()).into()),
         ("indices", Uint32Array::from(mesh.triangles().as_flattened()).into()),
         ("warnings", warnings.collect::<Array>().into()),
     ];
+    if !unread.is_empty() {
+        properties.push(("unread", strings(unread)));
+    }
     if *origin != DVec3::ZERO {
         let numbers: Array = origin.to_array().into_iter().map(JsValue::from).collect();
         properties.push(("origin", numbers.into()));

@@ -29,6 +29,8 @@ pub struct DepthImage {
     pub camera: Option<Pinhole>,
     /// The unit of the values in the file.
     pub unit: DepthUnit,
+    /// What the file holds besides, and the reader does not know.
+    pub unread: Vec<String>,
 }
 
 /// The unit of the values of a depth map.
@@ -83,7 +85,7 @@ impl Stored {
                 Image::new("depth", width, height, values.collect())?
             }
         };
-        Ok(DepthImage { values, camera: None, unit })
+        Ok(DepthImage { values, camera: None, unit, unread: Vec::new() })
     }
 
     /// The factor of a value, and its unit. The values of affine-invariant kinds have no factor.

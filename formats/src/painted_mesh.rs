@@ -69,7 +69,15 @@ impl PaintedMesh {
 
     /// The mesh without colours.
     pub fn plain(self, problem: Option<Error>) -> ColoredMesh {
-        ColoredMesh { mesh: self.mesh, colors: None, flipped: Vec::new(), copies: 0, origin: self.origin, problem }
+        ColoredMesh {
+            mesh: self.mesh,
+            colors: None,
+            flipped: Vec::new(),
+            copies: 0,
+            origin: self.origin,
+            unread: Vec::new(),
+            problem,
+        }
     }
 }
 

@@ -68,6 +68,8 @@ pub enum WarningCode {
     /// No camera was given, and neither the depth file nor the photo states a focal length: it was estimated from the object.
     /// The package's camera reader warns of it.
     FocalLengthUnknown,
+    /// A file states something that its reader does not know and did not use. The package's readers warn of it.
+    ContentNotRead,
     /// The colours of the mesh file cannot be read, such as a texture in an unsupported format: the mesh is aligned by its
     /// shape alone. The package's mesh reader warns of it.
     ColorsNotRead,

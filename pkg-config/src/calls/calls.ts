@@ -161,7 +161,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const placed = { ...found, ...withoutUndefined({ origin }) };
       if (placed.alignment === undefined) return placed;
       // The view belongs to the scene, which reports what its files say.
-      const notes = withMesh({ core: data, notes: { warnings: [], colors: [] } }, read);
+      const notes = withMesh({ core: data, notes: { warnings: [], unread: [], colors: [] } }, read);
       return { ...placed, alignment: withNotes(placed.alignment, notes) };
     },
   },

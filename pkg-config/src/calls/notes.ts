@@ -4,7 +4,7 @@ import type { InputNotes } from "../types/results.js";
 import { fromOrigin } from "./origin.js";
 
 /** The readings of the files of a view. */
-export const sourcesOf = ({ warnings: _, colors: __, origin: ___, ...sources }: InputNotes) => sources;
+export const sourcesOf = ({ warnings: _, unread: __, colors: ___, origin: ____, ...sources }: InputNotes) => sources;
 
 /** Confidence below which a pose is in doubt. */
 export const DOUBT = 0.5;
@@ -22,9 +22,10 @@ export function withNotes<T extends { warnings: Warning[]; confidence?: number |
   notes: InputNotes,
 ): T {
   const ofColors = notes.colors.map((message) => ({ code: "COLORS_NOT_READ", message }) as const);
+  const ofContent = notes.unread.map((message) => ({ code: "CONTENT_NOT_READ", message }) as const);
   // Of a unit that is stated, no size is doubtful.
   const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || notes.depthUnit?.isAssumed === true);
   const hasLabels = notes.maskReading?.endsWith(": labels") === true && (result.confidence ?? 0) < DOUBT;
-  const warnings = [...notes.warnings, ...(hasLabels ? [labels] : []), ...ofColors, ...ofCore];
+  const warnings = [...notes.warnings, ...(hasLabels ? [labels] : []), ...ofContent, ...ofColors, ...ofCore];
   return { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };
 }

@@ -30,6 +30,8 @@ export interface ResolvedCamera {
   /** The source of the intrinsics, if they were not given. */
   source?: string;
   warnings: readonly Warning[];
+  /** What the file holds besides, and its reader does not know. */
+  unread?: readonly string[];
 }
 
 const notPinhole = (message: string): Warning => ({ code: "CAMERA_NOT_PINHOLE", message });

@@ -27,6 +27,8 @@ export interface ReadDepth extends SizedArray<DepthArray> {
   camera?: Pinhole;
   /** The unit of the values. */
   unit: DepthImage["unit"];
+  /** What the file holds besides, and its reader does not know. */
+  unread?: readonly string[];
 }
 
 const depthForms = () =>

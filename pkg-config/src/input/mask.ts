@@ -16,6 +16,8 @@ const kinds = () =>
 export interface ReadMask extends SizedArray<Bytes> {
   /** The values of its file that are the object, for people. */
   reading?: string;
+  /** What the file holds besides, and its reader does not know. */
+  unread?: readonly string[];
 }
 
 /** The pixels of a mask.

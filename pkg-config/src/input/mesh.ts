@@ -46,10 +46,11 @@ export async function decodeMesh(
 const kinds = () =>
   `{ positions, indices? }, or the bytes of a file: ${formatsText("mesh")} (also as { bytes, format?, resources? })`;
 
-/** A mesh for the core, and why it has no colours. */
+/** A mesh for the core, why it has no colours, and what its file holds besides. */
 export interface MeshAndWarnings {
   mesh: CoreMesh;
   warnings: readonly string[];
+  unread?: readonly string[] | undefined;
 }
 
 /**
@@ -59,7 +60,7 @@ export interface MeshAndWarnings {
 export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: boolean): Promise<MeshAndWarnings> {
   if (isRecord(mesh) && "positions" in mesh) {
     // `readMesh` of `sim3align/formats` adds warnings.
-    return { mesh: arrays(mesh, withColors), warnings: stringsIn(mesh.warnings) };
+    return { mesh: arrays(mesh, withColors), warnings: stringsIn(mesh.warnings), unread: stringsIn(mesh.unread) };
   }
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes("mesh", file.bytes);
@@ -67,9 +68,9 @@ export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: 
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = { ...withoutUndefined({ format, resources }), colors: withColors };
   const read = await decodeMesh("mesh", bytes, options, readers, ofMesh);
-  const { warnings, origin, ...found } = read;
+  const { warnings, unread, origin, ...found } = read;
   // Poses are of the mesh that the caller passed: that of a file keeps its coordinates.
-  return { mesh: { ...found, ...withoutUndefined({ fileOrigin: origin }) }, warnings };
+  return { mesh: { ...found, ...withoutUndefined({ fileOrigin: origin }) }, warnings, unread };
 }
 
 /**
@@ -83,8 +84,8 @@ export async function readCoreMesh(
   meshId?: number,
 ): Promise<MeshAndWarnings> {
   // A prepared mesh is cached with its colours: a later call may have a photo.
-  const { mesh: arrays, warnings } = await readMesh(mesh, readers, withColors || meshId !== undefined);
-  return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, warnings };
+  const { mesh: arrays, ...notes } = await readMesh(mesh, readers, withColors || meshId !== undefined);
+  return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, ...notes };
 }
 
 /** The options of the reader are properties of the mesh. */

@@ -99,7 +99,8 @@ async function frameOf(
   const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
   const masked = { ...frame, mask: mask.data, maskWidth: mask.width, maskHeight: mask.height };
   const maskNotes = withoutUndefined({ maskReading: mask.reading });
-  return { core: withoutUndefined(masked) as CoreFrame, notes: { ...notes, ...maskNotes } };
+  const unread = [...notes.unread, ...(mask.unread ?? [])];
+  return { core: withoutUndefined(masked) as CoreFrame, notes: { ...notes, ...maskNotes, unread } };
 }
 
 const holdsCopies = (copies: number): Warning => ({
@@ -110,9 +111,10 @@ const holdsCopies = (copies: number): Warning => ({
 /** Notes with those on the mesh; its colours matter only where there is a photo to compare them with. */
 export const withMesh = (
   { core, notes }: { core: Pick<CoreFrame, "image">; notes: InputNotes },
-  { mesh, warnings }: MeshAndWarnings,
+  { mesh, warnings, unread = [] }: MeshAndWarnings,
 ): InputNotes => ({
   ...notes,
+  unread: [...notes.unread, ...unread],
   warnings: [...notes.warnings, ...(mesh.copies === undefined ? [] : [holdsCopies(mesh.copies)])],
   ...(core.image === undefined ? {} : { colors: warnings }),
   ...withoutUndefined({ origin: mesh.fileOrigin }),

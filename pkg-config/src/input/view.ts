@@ -52,11 +52,11 @@ export async function readView(input: Record<string, unknown>, readers: FileRead
   const photo = await readPhoto(input.image, measured, readers);
   const { camera: pinhole, ...lens } = await resolveCamera(camera, measured, photo, input, readers);
 
-  const { width, height, unit } = measured;
+  const { width, height, unit, unread = [] } = measured;
   const depth = measured.rays === undefined || pinhole === undefined ? measured.core : measured.rays(pinhole);
   const view = { ...depth, width, height, image: photo.image, camera: pinhole, focalDeviation: lens.focalDeviation };
   const { imageReading } = photo;
-  const notes = { warnings: lens.warnings, colors: [], depthUnit: unit };
+  const notes = { warnings: lens.warnings, unread: [...unread, ...(lens.unread ?? [])], colors: [], depthUnit: unit };
   return {
     core: withoutUndefined(view) as CoreView,
     notes: { ...notes, ...withoutUndefined({ cameraSource: lens.source, imageReading }) },
@@ -69,6 +69,8 @@ interface Measured extends Omit<SizedArray<unknown>, "data"> {
   unit: DepthImage["unit"];
   /** The camera in the file of the depth; `"fitted"` for a point map, to which the core fits one. */
   camera: Pinhole | "fitted" | undefined;
+  /** What the file holds besides, and its reader does not know. */
+  unread?: readonly string[] | undefined;
   /** Converts distances along rays to depth. */
   rays?: (camera: Pinhole) => Measured["core"];
 }

@@ -313,4 +313,6 @@ export interface DepthImage extends PixelArray<Float32Array> {
   };
   /** The camera in the file, in pixels of the depth map: from its intrinsics, its focal length or its field of view. */
   camera?: PinholeCamera;
+  /** What the file holds besides, and the reader does not know. */
+  unread?: readonly string[];
 }
