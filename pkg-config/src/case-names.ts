@@ -12,6 +12,16 @@ export const caseNames = {
     stems: [
       ...["camera", "cameras", "scene_camera", "camera_info", "camera_intrinsics", "cam_K", "K"],
       ...["intrinsics", "intrinsic", "intrinsics_depth", "intrinsic_depth", "intrinsics_color", "intrinsic_color"],
+      ...[
+        "camera_matrix",
+        "camera_params",
+        "cam_params",
+        "camera_settings",
+        "cam",
+        "calib",
+        "calibration",
+        "transforms",
+      ],
     ],
     extensions: extensionsOf("camera"),
   },
@@ -42,20 +52,30 @@ export function namesText(part: Part): string {
   return stems.length === 1 ? `${stems[0]}${endings}` : `${either(stems)} (${endings})`;
 }
 
+/** Names that cameras of other programs have as well: they do not count beside the others. */
+const rareCameras = /^(camera_(matrix|params|settings)|cam_params|cam|calib|calibration|transforms)\.|\.pincam$/i;
+
 /** The part that a file is by its name; `undefined` for another file, and for one in a folder below. */
 export function partOf(path: string): Part | undefined {
   const [, stem, ending = ""] = /^(?:\.\.\/)?(.*)\.([^.]+)$/s.exec(path.toLowerCase()) ?? [];
   return parts.find((part) => {
     const { stems, extensions } = caseNames[part];
-    return extensions.includes(ending) && stems.some((known) => known.toLowerCase() === stem);
+    // Files of ARKitScenes are named by their time.
+    const isNamed = part === "camera" && ending === "pincam";
+    return isNamed || (extensions.includes(ending) && stems.some((known) => known.toLowerCase() === stem));
   });
 }
 
-/** The files of intrinsics; beside those of the depth camera, which come first, without those of the colour camera. */
+/**
+ * The files of intrinsics: without rare names beside usual ones, and beside those of the depth camera, which come first,
+ * without those of the colour camera.
+ */
 export function ofDepthCamera<T>(files: readonly T[], nameOf: (file: T) => string): readonly T[] {
-  const ofDepth = files.filter((file) => /depth/i.test(nameOf(file)));
-  const others = files.filter((file) => !/depth|color/i.test(nameOf(file)));
-  return ofDepth.length === 0 ? files : [...ofDepth, ...others];
+  const usual = files.filter((file) => !rareCameras.test(nameOf(file)));
+  const all = usual.length === 0 ? files : usual;
+  const ofDepth = all.filter((file) => /depth/i.test(nameOf(file)));
+  const others = all.filter((file) => !/depth|color/i.test(nameOf(file)));
+  return ofDepth.length === 0 ? all : [...ofDepth, ...others];
 }
 
 /** Files of operating systems and of results of this package, which belong to no case. */

@@ -4,7 +4,7 @@
  * @packageDocumentation
  */
 
-import { type CameraFile, parseCameraFile, type ReadCameraOptions } from "./camera/camera-file.js";
+import type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
@@ -187,13 +187,15 @@ export async function externalResources(file: EncodedBytes): Promise<ExternalRes
 
 /**
  * Reads a camera file: sim3align's `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, the intrinsics of Open3D,
- * RealSense, Record3D, Polycam or nerfstudio, OpenCV's YAML, COLMAP's cameras.txt, or numbers as text (`K.txt`); bytes, text
- * or parsed JSON. It needs no WebAssembly. Intrinsics for an image of another size are scaled to `options`.
+ * RealSense, Record3D, Polycam or nerfstudio, OpenCV's YAML, COLMAP's cameras.txt, numbers as text (`K.txt`) or as NPY, and
+ * more, which the guide on frames lists; bytes, text or parsed JSON. It needs no WebAssembly. Intrinsics for an image of another size are scaled to `options`.
  * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of an image of another shape
  */
 export async function readCamera(file: CameraFileInput, options: ReadCameraOptions = {}): Promise<CameraFile> {
   const given = optionsOf(options, ["width", "height", "imageId"]);
-  return parseCameraFile(await jsonOf("camera", file), given);
+  const content = await jsonOf("camera", file);
+  const { parseCameraFile } = await import("./camera/camera-file.js");
+  return parseCameraFile(content, given);
 }
 
 /**
@@ -209,7 +211,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 /**
  * Reads a case folder: a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM) called `depth`, a mask file (PNG, NPY, COCO RLE
  * or JPEG) called `mask`, a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT) called `mesh`, and optionally a camera file (JSON,
- * text or YAML: `camera`, `K`, `intrinsics`, …), a photo file (PNG, JPEG or WebP: `rgb`, `image`, …), and `gt.json`. The guide
+ * text, YAML, XML, INI or NPY: `camera`, `K`, `intrinsics`, …), a photo file (PNG, JPEG or WebP: `rgb`, `image`, …), and `gt.json`. The guide
  * on frames lists all names. Upper and lower case are the same. Intrinsics of the colour camera are passed over beside those of
  * the depth camera (`intrinsic_depth.txt`). What is not read is in `unread`.
  * @param files by name, relative to the folder

@@ -51,7 +51,7 @@ refusesInputs([
   [{ camera: { cam_K: [] } }, "INVALID_ARGUMENT camera", /cameraFile/],
   [{ camera: { focal: 600 } }, "INVALID_ARGUMENT camera", /\{ fx, fy, cx, cy \}.*`focal`/],
   [{ cameraFile: "{}" }, "INVALID_ARGUMENT cameraFile", /not both/],
-  [{ camera: undefined, cameraFile: { "1": K, "2": K } }, "INVALID_ARGUMENT imageId", /one of 1, 2/],
+  [{ camera: undefined, cameraFile: { "1": K, "2": { cam_K: [1] } } }, "INVALID_ARGUMENT imageId", /one of 1, 2/],
 ]);
 
 const positioned = (positions: unknown) => ({ mesh: { ...mesh, positions } });

@@ -3,10 +3,13 @@
 import type { PinholeCamera } from "../types/inputs.js";
 import { describe, failure, invalidArgument } from "../values/error.js";
 import { isNumber, type JsonFile, keysText, parsedJson } from "../values/json.js";
-import { isRecord } from "../values/kinds.js";
+import { isKind, isRecord } from "../values/kinds.js";
 import type { ImageSize } from "../values/pixels.js";
-import { cameraText } from "./camera-text.js";
-import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole, resizedPinhole } from "./pinhole.js";
+import { type CameraFileNames, noCamera } from "./camera-errors.js";
+import { type StatedUnit, unitOf } from "./depth-unit.js";
+import { imageCamera, inPixels } from "./image-camera.js";
+import { intrinsicsOf, type StatedCamera, sizeOf } from "./intrinsics.js";
+import { type CameraPlace, camerasOf } from "./statements.js";
 
 /** The content of a camera file. */
 export interface CameraFile extends PinholeCamera {
@@ -18,6 +21,10 @@ export interface CameraFile extends PinholeCamera {
   depthScale?: number;
   /** Warnings about lens distortion, which the pinhole model does not include. */
   warnings: string[];
+  /** Reasons why the intrinsics may belong to another image, or the depth scale mean another unit; absent without any. */
+  doubts?: readonly string[];
+  /** What the file holds besides, and the reader does not know. */
+  unread?: readonly string[];
 }
 
 /** Options for reading a camera file. */
@@ -26,248 +33,186 @@ export interface ReadCameraOptions {
   width?: number | undefined;
   /** Image height in pixels: required for a field of view, otherwise compared with the height in the file. */
   height?: number | undefined;
-  /** The image id in a BOP `scene_camera.json`. */
+  /** The image id in a BOP `scene_camera.json`, or the name of one of several cameras. */
   imageId?: string | number | undefined;
 }
 
-/** Longest text of a camera file. */
-const MAX_TEXT = 1 << 16;
-
-/** An image size, possibly incomplete. */
-interface StatedSize {
-  width?: number | undefined;
-  height?: number | undefined;
+/** A camera file, whose intrinsics may depend on the image. */
+export interface OpenCameraFile {
+  /** The unit of integer depth, if the file states it. */
+  unit: StatedUnit | undefined;
+  /** The camera of an image; without its size, that of the image in the file. */
+  of(image: ImageSize | undefined): CameraFile;
 }
 
-/** The names of a camera file and of its options in errors. */
-export interface CameraFileNames {
-  file: string;
-  /** Prefix of the names of options. */
-  options: "" | "options.";
-}
-
-const forms =
-  "{ fx, fy, cx, cy }, { K } or another name of a 3 × 3, 3 × 4 or 4 × 4 matrix, { fovYDeg }, a BOP scene_camera.json, or the numbers as text";
+/** Keys that a sentence names at most. */
+const MAX_NAMED = 8;
 
 /**
- * Reads a camera file, JSON or text, each with or without the size of the image. Supported forms:
- *
- * | form | written by |
- * |---|---|
- * | `fx`, `fy`, `cx`, `cy`; `ppx`, `ppy`; `fl_x`, `fl_y`; also below `intrinsics` | RealSense, Polycam, nerfstudio |
- * | a matrix of 3 × 3, 3 × 4 or 4 × 4 numbers by rows or by columns: `K`, `cam_K`, `intrinsic(s)`, `camera_matrix`, … | BOP, FoundationPose, VGGT, OpenCV; by columns: Open3D, Record3D, ARKit |
- * | four numbers `fx`, `fy`, `cx`, `cy`, or a bare matrix, as JSON or as text | `K.txt`, `cam_K.txt`, `intrinsics.txt` |
- * | `fovYDeg`, a vertical field of view in degrees, for square pixels; nerfstudio's `camera_angle_x`, radians | |
- * | one entry or all of BOP's `scene_camera.json`, with `imageId` | BOP |
- * | ROS' CameraInfo; OpenCV's YAML; COLMAP's cameras.txt with one camera | |
- *
- * `depthScale` is metres per unit of depth, BOP's `depth_scale` millimetres per unit. Intrinsics for an image of another
- * size but the same shape are scaled.
+ * Reads a camera file, JSON, text or NPY, each with or without the size of the image: what the table of keys in `keys.ts` and
+ * the forms of text in `camera-text.ts` know. `depthScale` is metres per unit of depth, BOP's `depth_scale` millimetres per
+ * unit. Intrinsics for an image of another size but the same shape are scaled.
  */
-export function parseCameraFile(
+export async function parseCameraFile(
   content: JsonFile,
   { width, height, imageId }: ReadCameraOptions = {},
   names: CameraFileNames = { file: "camera", options: "options." },
-): CameraFile {
-  const given = { width: side(names, "width", width), height: side(names, "height", height) };
+): Promise<CameraFile> {
+  const image = pair({ width: side(names, "width", width), height: side(names, "height", height) });
+  return (await openCameraFile(content, imageId, names)).of(image);
+}
+
+/** Opens a camera file, without the size of the image of its depth map. */
+export async function openCameraFile(
+  content: JsonFile,
+  imageId: unknown,
+  names: CameraFileNames = { file: "camera", options: "options." },
+): Promise<OpenCameraFile> {
   const id = idOf(names, imageId);
-  const json = cameraJson(names.file, content);
-  const bare = Array.isArray(json) ? matrixOf(json, names.file) : undefined;
-  if (bare !== undefined) return { ...inPixels(bare, sizeOf(given)), warnings: [] };
-  if (!isRecord(json)) throw noCamera(names, "JSON that is not an object");
-  const entry = sceneEntry(json, id, names) ?? json;
-  const own = statedSize(entry);
-  const image = sizeOf(given);
-  const depthScale = depthScaleOf(entry, names);
-  const intrinsics = inPixels(intrinsicsOf(entry, own ?? image, names), own ?? image);
-  const scaled =
-    own === undefined || image === undefined ? undefined : scaledCamera(names.file, intrinsics, own, image);
+  const json = await contentOf(names.file, content);
+  const places = camerasOf(Array.isArray(json) ? { K: json } : isRecord(json) ? json : {});
+  if (places.length === 0) {
+    throw noCamera(names, isRecord(json) ? `an object with ${keysText(json)}` : "JSON that is not an object");
+  }
+
   return {
-    ...(scaled ?? intrinsics),
-    ...(scaled === undefined ? own : image),
-    ...(depthScale === undefined ? {} : { depthScale }),
-    warnings: isDistorted(entry) ? [distortion] : [],
+    unit: commonUnit(idMatch(places, id, names) ?? places, names),
+    of(image) {
+      const { place, doubts } = chosen(places, id, image, names);
+      const stated = intrinsicsOf(place.facts, image, names);
+      const unit = unitOf(place.facts, names);
+      const { camera, size, ...fit } = fitted(stated, image, names);
+      const all = [...doubts, ...stated.doubts, ...fit.doubts, ...(unit?.doubt === undefined ? [] : [unit.doubt])];
+      const unread = unreadOf(place, names.file);
+      return {
+        ...camera,
+        ...size,
+        ...(unit === undefined ? {} : { depthScale: unit.metres }),
+        warnings: stated.distortions(camera, size),
+        ...(all.length === 0 ? {} : { doubts: all }),
+        ...(unread === undefined ? {} : { unread: [unread] }),
+      };
+    },
   };
 }
 
-/** The JSON of a camera file, or that with the meaning of its text. */
-function cameraJson(argument: string, content: JsonFile): unknown {
+/** The intrinsics for an image, and its size; without an image, as the file has them. */
+function fitted({ camera, size }: StatedCamera, image: ImageSize | undefined, { file }: CameraFileNames) {
+  if (image === undefined) return { camera: inPixels(camera, size), size, doubts: [] };
+  return { ...imageCamera(file, camera, size, image), size: size === undefined ? undefined : image };
+}
+
+/** The parsed JSON of a camera file, or that with the meaning of its text or array. */
+async function contentOf(argument: string, content: JsonFile): Promise<unknown> {
+  if (typeof content !== "string" && !isKind<Uint8Array>(content, "Uint8Array")) return content;
   try {
     return parsedJson(argument, content);
   } catch (error) {
-    const text = typeof content === "string" ? content : new TextDecoder().decode(content as Uint8Array);
-    const read = text.length < MAX_TEXT ? cameraText(text) : undefined;
-    if (read === undefined) throw error;
-    return read;
+    // Most files are JSON.
+    const { cameraContent } = await import("./camera-text.js");
+    return cameraContent(argument, content, error);
   }
 }
 
-/**
- * Intrinsics for an image that is `image` instead of `own` pixels large.
- * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for sizes of other shapes: one of the images is cropped
- */
-export function scaledCamera(argument: string, camera: Pinhole, own: ImageSize, image: ImageSize): Pinhole {
-  const [x, y] = [image.width / own.width, image.height / own.height];
-  // Sides are rounded to whole pixels.
-  const rounding = 1 / Math.min(own.width, own.height, image.width, image.height);
-  if (Math.abs(Math.log(x / y)) <= 2 * rounding) return resizedPinhole(camera, own, image);
-  throw failure(
-    "SIZE_MISMATCH",
-    argument,
-    `intrinsics for ${own.width} × ${own.height} pixels, but an image of ${image.width} × ${image.height}`,
-    "intrinsics of the same image, or of one of the same shape",
-    "Subtract from cx and cy where the crop begins, and leave out width and height.",
-  );
+/** The cameras of the id, if the file has ids; `undefined` without an id, or where ids do not matter. */
+function idMatch(places: readonly CameraPlace[], id: string | undefined, names: CameraFileNames) {
+  const isById = places.length > 1 || /^\d+$/.test(places[0]?.names.at(-1) ?? "");
+  if (id === undefined || !isById) return undefined;
+  // In BOP, ids have no leading zeros, unlike file names; nerfstudio has paths of files.
+  const short = (text: string) => text.replace(/^.*[\\/]|\.\w+$/g, "").replace(/^0+(?=.)/, "");
+  const exact = places.filter((place) => place.names.includes(id));
+  const found =
+    exact.length > 0 ? exact : places.filter((place) => place.names.some((name) => short(name) === short(id)));
+  if (found.length > 0) return found;
+  throw severalCameras(places, JSON.stringify(id), names);
 }
 
-/** The scale of integer depth in a camera file, if the image size is still unknown. */
-export function depthScaleIn(content: JsonFile, imageId?: string | number): number | undefined {
-  try {
-    // Any size is valid here: only a field of view needs it, and only for the intrinsics.
-    const json = cameraJson("camera", content);
-    if (!isRecord(json)) return undefined;
-    const names: CameraFileNames = { file: "camera", options: "options." };
-    return depthScaleOf(sceneEntry(json, idOf(names, imageId), names) ?? json, names);
-  } catch {
-    // The call with the image size reports the error.
-    return undefined;
-  }
-}
-
-const distortion =
-  "The camera has lens distortion, which is not modelled: pass a rectified depth map and mask, and its K.";
-
-/** The entry of a BOP `scene_camera.json`; `null` for any other object. */
-function sceneEntry(
-  json: Record<string, unknown>,
-  id: string | undefined,
-  names: CameraFileNames,
-): Record<string, unknown> | null {
-  const entries = Object.entries(json).filter((pair): pair is [string, Record<string, unknown>] => isRecord(pair[1]));
-  if (!entries.some(([, entry]) => "cam_K" in entry)) return null;
-  const ids = Object.keys(json);
-  // In BOP, ids have no leading zeros, unlike file names.
-  const short = (text: string) => text.replace(/^0+/, "");
-  const matches = ([key]: [string, unknown]) => key === id || short(key) === short(id ?? "");
-  const image = id === undefined ? (ids.length === 1 ? entries[0] : undefined) : entries.find(matches);
-  if (image !== undefined) return image[1];
-  const sorted = ids.sort((a, b) => a.length - b.length || (a < b ? -1 : 1));
-  const more = sorted.length > 20 ? `, … (${sorted.length} in all)` : "";
-  const found = id === undefined ? "no image id for a file of several images" : JSON.stringify(id);
-  const expected = `one of ${sorted.slice(0, 20).join(", ")}${more}`;
-  const remedy = "Pass the id of the image of the depth map.";
-  throw failure("INVALID_ARGUMENT", `${names.options}imageId`, found, expected, remedy);
-}
-
-/** Names of a matrix of intrinsics, or of an object with them. */
-const matrixNames = [
-  ...["K", "k", "cam_K", "camera_K", "intrinsic", "intrinsics", "intrinsic_matrix", "intrinsics_matrix"],
-  ...["intrinsicMatrix", "camera_matrix", "cameraMatrix", "camera_intrinsic", "camera_intrinsics", "cameraIntrinsics"],
-  "color_intrinsics",
+/** Words in the names of cameras to which depth mostly belongs, and in those of others, beside which that is certain. */
+const preferred: readonly [name: RegExp, others?: RegExp][] = [
+  [/depth/i],
+  // Depth of stereo is that of the left camera.
+  [/left/i, /left|right/i],
+  [/^camera1$|^cam0$/i],
 ];
 
-function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefined, names: CameraFileNames): Pinhole {
-  const invalid = (found: string) => noCamera(names, found);
-  const matrixName = matrixNames.find((name) => name in entry);
-  if (matrixName !== undefined) {
-    const matrix = entry[matrixName];
-    const numbers = isRecord(matrix) ? matrix.data : matrix;
-    if (isRecord(matrix) && numbers === undefined) return intrinsicsOf(matrix, size, names);
-    const found = Array.isArray(numbers) ? matrixOf(numbers, names.file) : undefined;
-    if (found === undefined) throw invalid(`${matrixName} that is not 3 × 3 numbers`);
-    return found;
-  }
-  const number = (...aliases: string[]): number | undefined => {
-    const name = aliases.find((alias) => alias in entry);
-    if (name === undefined) return undefined;
-    const value = entry[name];
-    if (isNumber(value)) return value;
-    throw invalid(`${name} that is not a number`);
+/** The camera of an image: by its id, by the size of the image, or by its name. */
+function chosen(
+  places: readonly CameraPlace[],
+  id: string | undefined,
+  image: ImageSize | undefined,
+  names: CameraFileNames,
+): { place: CameraPlace; doubts: string[] } {
+  const candidates = idMatch(places, id, names) ?? places;
+  const single = (found: readonly CameraPlace[]) => {
+    const [first] = found;
+    const same = first !== undefined && found.every((place) => isSame(place, first));
+    return same ? { place: first, doubts: [] } : undefined;
   };
-  const [fx, fy] = [number("fx", "fl_x"), number("fy", "fl_y")];
-  const [cx, cy] = [number("cx", "ppx"), number("cy", "ppy")];
-  if (fx !== undefined && fy !== undefined && cx !== undefined && cy !== undefined) {
-    return checkedPinhole(names.file, { fx, fy, cx, cy });
+  const whole = single(candidates);
+  if (whole !== undefined) return whole;
+  const sized = candidates.map((place) => ({ place, size: sizeOf(place.facts) }));
+  const matching = (fits: (size: ImageSize, image: ImageSize) => boolean) =>
+    sized.flatMap(({ place, size }) => (image !== undefined && size !== undefined && fits(size, image) ? [place] : []));
+  const exact = matching((size, { width, height }) => size.width === width && size.height === height);
+  const similar = matching(
+    (size, { width, height }) => Math.abs((size.width * height) / (size.height * width) - 1) < 0.01,
+  );
+  const bySize = single(exact) ?? (exact.length === 0 ? single(similar) : undefined);
+  if (bySize !== undefined) return bySize;
+  const rest = exact.length > 0 ? exact : candidates;
+  for (const [word, others] of preferred) {
+    const named = single(rest.filter((place) => place.names.some((name) => word.test(name))));
+    if (named === undefined) continue;
+    if (others !== undefined && rest.every((place) => place.names.some((name) => others.test(name)))) return named;
+    const other = `The file holds ${places.length} cameras (${listOf(places.map(labelOf))}): ${labelOf(named.place)} was used. Pass the name of another one as imageId.`;
+    return { ...named, doubts: [`${names.file}: ${other}`] };
   }
-  const fovYDeg = number("fovYDeg", "fov_y_deg");
-  const angleX = number("camera_angle_x");
-  if (fovYDeg === undefined && angleX === undefined) throw invalid(`an object with ${keysText(entry)}`);
-  if (size !== undefined) {
-    if (fovYDeg !== undefined) return fromFieldOfView(names.file, fovYDeg, size);
-    const turned = { width: size.height, height: size.width };
-    const { fx: f } = fromFieldOfView(names.file, ((angleX as number) * 180) / Math.PI, turned);
-    return { fx: f, fy: f, cx: 0.5 * (size.width - 1), cy: 0.5 * (size.height - 1) };
-  }
-  const remedy = "Pass the width and height of the depth map in pixels.";
-  const found = "a field of view without image size";
-  throw failure("INVALID_ARGUMENT", `${names.options}width`, found, "width and height", remedy);
+  throw severalCameras(candidates, "no image id for a file of several images or cameras", names);
 }
 
-/** The intrinsics in four numbers, or in a matrix by rows or by columns; `undefined` for anything else. */
-function matrixOf(value: readonly unknown[], file: string): Pinhole | undefined {
-  const numbers: unknown[] = value.flat(3);
-  if (!numbers.every(isNumber)) return undefined;
-  if (numbers.length === 4) {
-    const [fx, fy, cx, cy] = numbers;
-    return checkedPinhole(file, { fx, fy, cx, cy });
-  }
-  // By columns, what is a row here is a column.
-  const columns = { 9: 3, 12: Array.isArray(value[0]) && value.length !== 3 ? undefined : 4, 16: 4 }[numbers.length];
-  if (columns === undefined) return undefined;
-  const square = [0, 1, 2].flatMap((row) => [0, 1, 2].map((column) => numbers[columns * row + column] as number));
-  const transposed = [0, 3, 6, 1, 4, 7, 2, 5, 8].map((i) => square[i] as number);
-  const isByColumns = (square[6] !== 0 || square[7] !== 0) && square[2] === 0 && square[5] === 0;
-  return fromMatrix(file, isByColumns ? transposed : square);
+/** Whether two cameras of a file state the same. */
+const isSame = (a: CameraPlace, b: CameraPlace): boolean => a === b || essence(a) === essence(b);
+
+const essence = ({ facts }: CameraPlace) =>
+  JSON.stringify(
+    facts.flatMap(({ meaning, value }) => (meaning === undefined || meaning === "up" ? [] : [[meaning, value]])),
+  );
+
+const labelOf = ({ names }: CameraPlace) => names.at(-1) ?? "";
+
+function severalCameras(places: readonly CameraPlace[], found: string, { options }: CameraFileNames) {
+  const all = [...new Set(places.map(labelOf))].sort((a, b) => a.length - b.length || (a < b ? -1 : 1));
+  const expected = `one of ${listOf(all, 20)}`;
+  const remedy = "Pass the id of the image of the depth map, or the name of its camera.";
+  return failure("INVALID_ARGUMENT", `${options}imageId`, found, expected, remedy);
 }
 
-/** Largest principal point and focal length of intrinsics in image sizes; those in pixels are larger. */
-const maxNormalised = { center: 2, focal: 20 } as const;
+const listOf = (all: readonly string[], most = MAX_NAMED) =>
+  `${all.slice(0, most).join(", ")}${all.length > most ? `, … (${all.length} in all)` : ""}`;
 
-/** Intrinsics in pixels. Those in image sizes, as MoGe writes them, count from the outer edge of the first pixel. */
-function inPixels({ fx, fy, cx, cy }: Pinhole, size: ImageSize | undefined): Pinhole {
-  const isNormalised = Math.max(cx, cy) < maxNormalised.center && Math.max(fx, fy) < maxNormalised.focal;
-  if (!isNormalised || size === undefined) return { fx, fy, cx, cy };
-  const { width, height } = size;
-  return { fx: fx * width, fy: fy * height, cx: cx * width - 0.5, cy: cy * height - 0.5 };
+/** The unit of all cameras of a file. */
+function commonUnit(places: readonly CameraPlace[], names: CameraFileNames): StatedUnit | undefined {
+  const units = places.map(({ facts }) => unitOf(facts, names));
+  return units.every((unit) => unit?.metres === units[0]?.metres) ? units[0] : undefined;
 }
 
-/** The error for JSON that is not the content of a camera file. */
-function noCamera({ file }: CameraFileNames, found: string) {
-  const remedy = "Write the focal lengths and the principal point as fx, fy, cx and cy, in pixels of the depth map.";
-  return failure("INVALID_CAMERA", file, found, forms, remedy);
+/** What a camera states besides, as a sentence. */
+function unreadOf({ facts }: CameraPlace, file: string): string | undefined {
+  const up = facts.find(({ meaning }) => meaning === "up");
+  const unknown = facts.filter(({ meaning }) => meaning === undefined).map(({ path }) => path);
+  const sentences = [
+    ...(unknown.length === 0 ? [] : [`${listOf(unknown)}: numbers whose meaning is not known.`]),
+    ...(up === undefined ? [] : [`${up.path}: pass it as the option cameraUp, with meshUp, if it is to count.`]),
+  ];
+  return sentences.length === 0 ? undefined : `${file}: ${sentences.join(" ")}`;
 }
 
-function depthScaleOf({ depthScale, depth_scale }: Record<string, unknown>, names: CameraFileNames) {
-  if (depthScale === undefined && depth_scale === undefined) return undefined;
-  const fromBop = isNumber(depth_scale) ? depth_scale / 1000 : depth_scale;
-  const scale = depthScale === undefined ? fromBop : depthScale;
-  if (isNumber(scale) && scale > 0) return scale;
-  const remedy = "Write metres per unit as depthScale, or BOP's millimetres per unit as depth_scale.";
-  const found = "a depth scale that is not a number above 0";
-  throw failure("INVALID_CAMERA", `${names.file}.depthScale`, found, "a number above 0", remedy);
-}
-
-function isDistorted({ D, d = D }: Record<string, unknown>): boolean {
-  const coefficients = D ?? d;
-  return Array.isArray(coefficients) && coefficients.some((number) => isNumber(number) && number !== 0);
-}
-
-const wholeIn = (value: unknown) =>
-  Number.isSafeInteger(value) && (value as number) >= 0 ? (value as number) : undefined;
-
-/** The size of the image that the intrinsics belong to, if the file states it. */
-function statedSize(entry: Record<string, unknown>): ImageSize | undefined {
-  const nested = matrixNames.map((name) => entry[name]).find(isRecord);
-  const of = (...aliases: string[]) =>
-    [entry, nested ?? {}].flatMap((object) => aliases.map((name) => wholeIn(object[name]))).find((value) => value);
-  return sizeOf({ width: of("width", "w", "image_width"), height: of("height", "h", "image_height") });
-}
-
-const sizeOf = ({ width, height }: StatedSize): ImageSize | undefined =>
+const pair = ({ width, height }: { width: number | undefined; height: number | undefined }): ImageSize | undefined =>
   width === undefined || height === undefined ? undefined : { width, height };
 
 function side({ options }: CameraFileNames, name: string, value: unknown): number | undefined {
-  if (value === undefined || value === null || wholeIn(value) !== undefined) return wholeIn(value);
+  if (value === undefined || value === null) return undefined;
+  if (isNumber(value) && Number.isSafeInteger(value) && value >= 0) return value;
   throw failure("INVALID_ARGUMENT", `${options}${name}`, describe(value), "an integer", "Pass the size in pixels.");
 }
 

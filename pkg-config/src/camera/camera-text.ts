@@ -1,51 +1,279 @@
-/** Camera files that are no JSON: numbers, named values, COLMAP's cameras.txt and OpenCV's YAML. */
+/** Camera files that are no JSON: numbers, named values, YAML, INI, XML, COLMAP's cameras.txt, NPY. */
+import { failure } from "../values/error.js";
 import { isNumber } from "../values/json.js";
+import { isRecord } from "../values/kinds.js";
+import { npyNumbers } from "./npy-numbers.js";
+
+type Content = Record<string, unknown>;
+
+/** Longest text of a camera file. */
+const MAX_TEXT = 1 << 16;
 
 const numeral = "[-+]?(?:\\d+\\.?\\d*|\\.\\d+)(?:e[-+]?\\d+)?";
+const ending = "(?![\\w.])";
 
 /**
- * The camera in a text, as the JSON with the same meaning: the numbers of a matrix, or an object of named values.
- * `undefined` if it is another text.
+ * The content of a camera file that is no JSON, as the JSON with the same meaning.
+ * @param broken the error of JSON, for a text that begins as JSON
+ * @throws {@link Sim3AlignError} `UNSUPPORTED_FORMAT` for a form that is not known, `broken` for broken JSON
  */
-export function cameraText(text: string): number[] | Record<string, unknown> | undefined {
-  const content = text.replace(/^\ufeff/, "").replace(/^%YAML.*$|#.*$|^---.*$/gm, "");
-  return colmap(content) ?? yaml(content) ?? named(content) ?? numbersOf(content);
+export function cameraContent(argument: string, content: Uint8Array | string, broken: unknown): unknown {
+  if (content.length > MAX_TEXT) throw broken;
+  const beginning = typeof content === "string" ? "" : String.fromCharCode(...content.subarray(0, 6));
+  if (beginning === "\x93NUMPY") return ofArray(argument, content as Uint8Array);
+  const text = (typeof content === "string" ? content : new TextDecoder().decode(content)).replace(/^\ufeff/, "");
+  const read = cameraText(text);
+  if (read !== undefined) return read;
+  if (/^\s*[{[]/.test(text)) throw broken;
+  const first = text.trim().slice(0, 40).replace(/\s+/g, " ");
+  // biome-ignore lint/suspicious/noControlCharactersInRegex: files that are no text
+  const isText = !/[\0-\x08\ufffd]/.test(first);
+  const found =
+    first === "" ? "nothing" : isText ? `text that begins with ${JSON.stringify(first)}` : "bytes that are no text";
+  throw failure(
+    "UNSUPPORTED_FORMAT",
+    argument,
+    found,
+    "JSON, YAML, XML or INI with intrinsics, COLMAP's cameras.txt, the numbers of K as text, or K as NPY",
+    "Write the focal lengths and the principal point as a text of four numbers, fx fy cx cy, in pixels of the depth map.",
+  );
+}
+
+function ofArray(argument: string, bytes: Uint8Array): unknown {
+  const matrices = npyNumbers(bytes);
+  const [first, ...others] = matrices ?? [];
+  if (first !== undefined && others.every((matrix) => `${matrix}` === `${first}`)) return { K: first };
+  const found =
+    first === undefined
+      ? "an NPY file that is no small array of numbers"
+      : `an NPY file of ${others.length + 1} matrices`;
+  throw failure(
+    "UNSUPPORTED_FORMAT",
+    argument,
+    found,
+    "one matrix K",
+    'Save one: numpy.save("K.npy", K.astype(float)).',
+  );
+}
+
+/** The camera in a text; `undefined` if it is another text. */
+function cameraText(text: string): unknown {
+  const content = text.replace(/^%YAML.*$/gm, "").replace(/(^|\s)(#|\/\/).*$/gm, "");
+  return (
+    ofXml(text) ??
+    ofPython(content) ??
+    colmap(content) ??
+    realSense(content) ??
+    ofNumbers(content) ??
+    ofStereo(ofLines(content))
+  );
 }
 
 /** Numbers with spaces, commas, semicolons or brackets between them, also as NumPy prints them. */
-function numbersOf(text: string): number[] | undefined {
-  if (text.replace(new RegExp(`${numeral}|\\barray\\b|[\\s,;()[\\]]`, "gi"), "") !== "") return undefined;
-  const numbers = (text.match(new RegExp(numeral, "gi")) ?? []).map(Number);
+function numbersIn(text: string): number[] | undefined {
+  const rest = text.replace(
+    new RegExp(`${numeral}${ending}|\\b(?:np|numpy|array|matrix|dtype|float\\d*)\\b|[\\s,;()[\\]=.]`, "gi"),
+    "",
+  );
+  if (rest !== "") return undefined;
+  const numbers = (text.replace(/float\d+/g, "").match(new RegExp(numeral, "gi")) ?? []).map(Number);
   return numbers.length > 0 && numbers.every(isNumber) ? numbers : undefined;
 }
 
-/** `CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS` of one camera; the centre of COLMAP's first pixel is at 0.5. */
-function colmap(text: string): Record<string, unknown> | undefined {
+/** A matrix, with the baseline of a pair of cameras behind it or not; four numbers; or these with the size of the image. */
+function ofNumbers(text: string): unknown {
+  // Spreadsheets name their columns.
+  const header = /^\s*f_?x\W+f_?y\W+c_?x\W+c_?y\W*$/im.exec(text)?.[0] ?? "";
+  const numbers = numbersIn(text.replace(header, ""));
+  if (numbers === undefined) return undefined;
+  const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0] = numbers;
+  // FoundationStereo writes the baseline in a second line.
+  if (numbers.length === 10 && numbers[8] === 1) return { K: numbers.slice(0, 9) };
+  if (numbers.length !== 6) return numbers;
+  const isWithin = (cx: number, cy: number, width: number, height: number) =>
+    [cx / width, cy / height].every((place) => place > 0.2 && place < 0.8) && width % 1 === 0 && height % 1 === 0;
+  // ARKitScenes' .pincam has the size first.
+  if (isWithin(e, f, a, b)) return { width: a, height: b, fx: c, fy: d, cx: e, cy: f };
+  return isWithin(c, d, e, f) ? { fx: a, fy: b, cx: c, cy: d, width: e, height: f } : numbers;
+}
+
+/** A dictionary as Python prints it. */
+function ofPython(text: string): unknown {
+  if (!/^\s*[{[]/.test(text)) return undefined;
+  const json = text
+    .replace(/\b(?:np\.|numpy\.)?(?:array|float\d*)\(/g, "(")
+    .replace(/,?\s*dtype=\w+/g, "")
+    .replace(/[()]/g, (bracket) => (bracket === "(" ? "[" : "]"))
+    .replaceAll("'", '"')
+    .replace(/\bTrue\b/g, "true")
+    .replace(/\bFalse\b/g, "false")
+    .replace(/\b(?:None|NaN|nan)\b/g, "null")
+    .replace(/(\d)\.(?=[\s,\]}])/g, "$1")
+    .replace(/,(\s*[\]}])/g, "$1");
+  try {
+    return JSON.parse(json);
+  } catch {
+    return undefined;
+  }
+}
+
+/** The coefficients of COLMAP's models come behind these parameters. */
+const oneFocal = /^(SIMPLE_|RADIAL)|^DIVISION$/;
+
+/** `CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS` a line; the centre of COLMAP's first pixel is at 0.5. */
+function colmap(text: string): Content | undefined {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() !== "");
-  const [, model = "", ...rest] = lines[0]?.trim().split(/\s+/) ?? [];
-  const [width, height, ...parameters] = rest.map(Number);
-  const single = /^(SIMPLE_PINHOLE|SIMPLE_RADIAL|RADIAL)$/.test(model);
-  if (lines.length !== 1 || !(single || /^(PINHOLE|OPENCV|FULL_OPENCV)$/.test(model))) return undefined;
-  const [fx, fy, cx, cy, ...D] = single ? [parameters[0], ...parameters] : parameters;
-  return { width, height, fx, fy, cx: Number(cx) - 0.5, cy: Number(cy) - 0.5, D };
+  const cameras = lines.map((line) => {
+    const [id = "", model = "", ...rest] = line.trim().split(/\s+/);
+    const [width, height, ...parameters] = rest.map(Number);
+    if (!/^\d+$/.test(id) || !/^[A-Z][A-Z_]+$/.test(model) || !parameters.every(isNumber) || parameters.length < 3)
+      return undefined;
+    const [fx, fy, cx, cy, ...D] =
+      oneFocal.test(model) && model !== "DIVISION" ? [parameters[0], ...parameters] : parameters;
+    return [id, { camera_model: model, width, height, fx, fy, cx: Number(cx) - 0.5, cy: Number(cy) - 0.5, D }] as const;
+  });
+  return cameras.length > 0 && cameras.every((camera) => camera !== undefined)
+    ? Object.fromEntries(cameras)
+    : undefined;
 }
 
-/** The `data` of OpenCV's and ROS' `camera_matrix`, with the image size. */
-function yaml(text: string): Record<string, unknown> | undefined {
-  const matrix = /\b(camera_matrix|K)\s*:[^[]*\[([^\]]*)\]/.exec(text)?.[2];
-  if (matrix === undefined) return undefined;
-  const side = (name: string) => {
-    const value = new RegExp(`\\b(?:image_)?${name}\\s*:\\s*(\\d+)`).exec(text)?.[1];
-    return value === undefined ? undefined : Number(value);
+/** What librealsense prints: `[ 640x480  p[320 240]  f[600 600]  Brown Conrady [0 0 0 0 0] ]`. */
+function realSense(text: string): Content | undefined {
+  const [, width, height, p = "", f = "", model, D = ""] =
+    /^\W*(\d+)x(\d+)\s+p\[([^\]]*)\]\s+f\[([^\]]*)\]\s+([\w ]*?)\s*\[([^\]]*)\]\W*$/.exec(text.trim()) ?? [];
+  if (width === undefined) return undefined;
+  const size = { width: Number(width), height: Number(height) };
+  return { ...size, principal_point: numbersIn(p), focal: numbersIn(f), model, coeffs: numbersIn(D) ?? [] };
+}
+
+/** Elements with text or elements in them, as OpenCV's FileStorage writes XML; attributes do not matter. */
+function ofXml(text: string): Content | undefined {
+  if (!/^\s*<[?\w!]/.test(text)) return undefined;
+  const element = /<([A-Za-z_][\w.-]*)[^>]*>([\s\S]*?)<\/\1>/g;
+  const elementValue = (inner: string): unknown => {
+    const parts = [...inner.matchAll(element)];
+    return parts.length === 0
+      ? scalar(inner.trim())
+      : Object.fromEntries(parts.map(([, name = "", part = ""]) => [name, elementValue(part)]));
   };
-  const distortion = /\b(?:distortion_coefficients|D)\s*:[^[]*\[([^\]]*)\]/.exec(text)?.[1] ?? "";
-  return { K: numbersOf(matrix), width: side("width"), height: side("height"), D: numbersOf(distortion) ?? [] };
+  const value = elementValue(text.replace(/<[?!][\s\S]*?>/g, ""));
+  return isRecord(value) ? value : undefined;
 }
 
-/** `fx: 600` or `fx = 600`, one or several in a line. */
-function named(text: string): Record<string, unknown> | undefined {
-  const pair = new RegExp(`["']?([a-z_]\\w*)["']?\\s*[:=]\\s*(${numeral})`, "gi");
-  const pairs = [...text.matchAll(pair)].map(([, name = "", value]) => [name, Number(value)] as const);
-  if (pairs.length === 0 || text.replace(pair, "").replace(/[\s,;{}]/g, "") !== "") return undefined;
-  return Object.fromEntries(pairs);
+/** The value in a line: numbers, a flow list or mapping, or a text. */
+function scalar(text: string): unknown {
+  const value = text.replace(/^!!?[\w:-]*\s*/, "").replace(/[,;]$/, "");
+  const numbers = numbersIn(value);
+  if (numbers !== undefined) return numbers.length === 1 && !value.startsWith("[") ? numbers[0] : numbers;
+  if (/^\[\s*\]$/.test(value)) return [];
+  const inner = /^\{(.*)\}$/s.exec(value)?.[1];
+  if (inner !== undefined) return ofLines(inner.replace(/,(?![^[]*\])/g, "\n")) ?? value;
+  return value.replace(/^(["'])(.*)\1$/, "$2");
+}
+
+/** Lines of `key: value` or `key = value`, several in a line as well; blocks of YAML by indentation, sections of INI by name. */
+function ofLines(text: string): Content | undefined {
+  const lines = linesOf(text);
+  const [value, next] = mapping(lines, 0, 0, false);
+  return next === lines.length && Object.keys(value).length > 0 ? value : undefined;
+}
+
+interface Line {
+  indent: number;
+  line: string;
+}
+
+/** The value of a block, and the line behind it. */
+type Block<T> = [value: T, next: number];
+
+const isItem = (line: Line | undefined): boolean => line !== undefined && /^-(\s|$)/.test(line.line);
+
+/** A mapping of YAML, or the lines of a section of INI. */
+function mapping(lines: readonly Line[], begin: number, indent: number, isSection: boolean): Block<Content> {
+  const value: Content = {};
+  let at = begin;
+  for (let line = lines[at]; line !== undefined && line.indent >= indent; line = lines[at]) {
+    const section = /^\[([A-Za-z0-9_][\w. -]*)\]$/.exec(line.line)?.[1];
+    if (section !== undefined && isSection) break;
+    const [, key, text = ""] = /^["']?([A-Za-z0-9_][\w. -]*?)["']?\s*[:=]\s*(.*)$/.exec(line.line) ?? [];
+    at++;
+    if (section !== undefined) [value[section], at] = mapping(lines, at, indent, true);
+    else if (key !== undefined) {
+      const [inner, next] = text === "" || isTag(text) ? block(lines, at, line.indent) : [scalar(text), at];
+      if (!(key in value)) value[key] = inner;
+      at = next;
+    }
+    // Titles do not matter.
+    else if (isItem(line) || /\d/.test(line.line)) return [value, begin];
+  }
+  return [value, at];
+}
+
+/** What is below a key: a list, whose items may stand below the key itself, or a mapping. */
+function block(lines: readonly Line[], at: number, indent: number): Block<unknown> {
+  const line = lines[at];
+  if (line === undefined) return ["", at];
+  if (isItem(line) && line.indent >= indent) return list(lines, at, line.indent);
+  return line.indent > indent ? mapping(lines, at, line.indent, false) : ["", at];
+}
+
+/** A list of YAML, whose items are values, lists or mappings. */
+function list(lines: readonly Line[], begin: number, indent: number): Block<unknown[]> {
+  const values: unknown[] = [];
+  let at = begin;
+  for (let line = lines[at]; line !== undefined && isItem(line) && line.indent === indent; line = lines[at]) {
+    const item = { indent: indent + 2, line: line.line.slice(1).trim() };
+    const isBlock = isItem(item) || /^["']?[A-Za-z_][\w. -]*["']?:(\s|$)/.test(item.line);
+    if (!isBlock) values.push(scalar(item.line));
+    const below = [...lines.slice(0, at), item, ...lines.slice(at + 1)];
+    const [value, next] = isBlock ? block(below, at, indent + 1) : [undefined, at + 1];
+    if (isBlock) values.push(value);
+    // An item that cannot be read would never end.
+    if (next === at) break;
+    at = next;
+  }
+  return [values, at];
+}
+
+/** A tag, such as OpenCV's, stands before a block. */
+const isTag = (text: string) => /^!!?[\w:-]+$/.test(text);
+
+/** Sizes of images by the names of ZED's resolutions. */
+const zedSizes: Record<string, readonly [number, number]> = {
+  ...{ "4K": [3840, 2160], "2K": [2208, 1242], FHD: [1920, 1080], FHD1200: [1920, 1200], HD: [1280, 720] },
+  ...{ HD1200: [1920, 1200], SVGA: [960, 600], VGA: [672, 376] },
+};
+
+/** Cameras of a pair: Middlebury's disparities are those of the first, ZED's sections of several sizes are named by these. */
+function ofStereo(content: Content | undefined): Content | undefined {
+  if (content === undefined) return undefined;
+  const { cam1: _, ...first } = content;
+  if ("cam0" in content && "doffs" in content) return first;
+  const sections = Object.entries(content).filter(([name, value]) => name.startsWith("LEFT_CAM_") && isRecord(value));
+  if (sections.length < 2) return content;
+  const sized = ([name, value]: [string, unknown]) => {
+    const resolution = zedSizes[name.replace(/^(LEFT|RIGHT)_CAM_/, "")];
+    return [name, isRecord(value) && resolution !== undefined ? { resolution, ...value } : value];
+  };
+  return Object.fromEntries(Object.entries(content).map(sized));
+}
+
+/** Lines with their indentation, those of an open bracket joined, up to the end of the first document of YAML. */
+function linesOf(text: string): Line[] {
+  const lines: Line[] = [];
+  let joined = "";
+  for (const raw of text.split(/\r?\n/)) {
+    if (/^(---|\.\.\.)/.test(raw) && lines.length > 0) break;
+    if (raw.trim() === "" || raw.startsWith("---") || /^\s*;/.test(raw)) continue;
+    joined = joined === "" ? raw : `${joined} ${raw.trim()}`;
+    if ((joined.match(/[[{(]/g)?.length ?? 0) > (joined.match(/[\]})]/g)?.length ?? 0)) continue;
+    const indent = joined.search(/\S/);
+    // Several pairs in a line, unless they are in brackets.
+    const parts = /[{]/.test(joined)
+      ? [joined]
+      : joined.split(/[,;]?\s+(?=[A-Za-z_][\w.]*\s*[:=]\s*[^\s:=])(?![^[]*\])/);
+    lines.push(...parts.filter((part) => part.trim() !== "").map((part) => ({ indent, line: part.trim() })));
+    joined = "";
+  }
+  return lines;
 }

@@ -45,59 +45,65 @@ export function resizedPinhole({ fx, fy, cx, cy }: Pinhole, from: ImageSize, to:
   return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5 };
 }
 
-/** Distance of a principal point from the centre, in image sizes, from which it is that of a crop or of another image. */
-const OFF_CENTRE = 0.15;
+/** Skew that moves no pixel by as much is left out, pixels. */
+const MAX_SKEW_PX = 0.5;
 
-/** Difference of the coordinates of a principal point, in image sizes and relative to the focal lengths, that one scale explains. */
-const ON_DIAGONAL = 0.02;
-
-/**
- * Why intrinsics may be those of an image of another size: the principal point is outside the image, or on the diagonal and
- * off the centre. That of a crop may be outside, too. `undefined` without such a doubt.
- */
-export function doubtOfSize({ fx, fy, cx, cy }: Pinhole, { width, height }: ImageSize): string | undefined {
-  const [x, y] = [(cx + 0.5) / width, (cy + 0.5) / height];
-  const isOutside = [x, y].some((place) => place < 0 || place > 1);
-  // Another ratio of the sides stretches the focal lengths as well.
-  const isScaled =
-    Math.abs(x - (y * fx) / fy) < ON_DIAGONAL && Math.max(Math.abs(x - 0.5), Math.abs(y - 0.5)) > OFF_CENTRE;
-  if (!isOutside && !isScaled) return undefined;
-  const place = isOutside
-    ? "outside the image"
-    : `${Math.round(100 * x)} % of the way across and ${Math.round(100 * y)} % down the image`;
-  return `The principal point (${Math.round(cx)}, ${Math.round(cy)}) is ${place} of ${width} × ${height} pixels: the intrinsics seem to be those of an image of another size. Write the width and height of that image into the camera file, and they are scaled; for a crop, write the size of the crop.`;
-}
+/** Matrices whose zeros are as small, relative to the focal length, are upright. */
+const ZERO = 1e-6;
 
 /**
- * Intrinsics from a 3×3 matrix, row-major, up to a common factor. Skew is rejected, because depth cameras have none.
+ * Intrinsics from a 3×3 matrix, row-major, up to a common factor. Skew is left out where it moves pixels by less than half a
+ * pixel; more of it is refused.
  */
 export function fromMatrix(argument: string, K: unknown): Pinhole {
+  const { camera, skewPx } = skewedMatrix(argument, K);
+  if (skewPx <= MAX_SKEW_PX) return camera;
+  const remedy = "Pass rectified images and the K of these.";
+  throw failure(
+    "INVALID_CAMERA",
+    `${argument}.K`,
+    `a skew that moves pixels by ${skewPx.toFixed(1)}`,
+    "no skew",
+    remedy,
+  );
+}
+
+/** Intrinsics from a 3×3 matrix, row-major, up to a common factor, and by how many pixels its skew moves a pixel at most. */
+export function skewedMatrix(argument: string, K: unknown): { camera: Pinhole; skewPx: number } {
   const name = `${argument}.K`;
   const numbers = flattened(K) ?? [];
   const isNumeric = numbers.length === 9 && numbers.every((number) => typeof number === "number");
   // Reports a wrong length or non-numeric elements.
   if (!isNumeric) finiteNumbers(name, K, 9, "9 numbers, row-major");
-  const [fx = 0, skew, cx = 0, b, fy = 0, cy = 0, c, d, w = 0] = numbers as number[];
-  const tolerance = 1e-6 * Math.abs(fx);
-  const isUpright = [skew, b, c, d].every((zero) => Math.abs(zero ?? 0) <= tolerance);
-  if (isUpright && Number.isFinite(w) && w !== 0) {
-    return checkedPinhole(argument, { fx: fx / w, fy: fy / w, cx: cx / w, cy: cy / w });
+  const [fx = 0, skew = 0, cx = 0, b = 0, fy = 0, cy = 0, c = 0, d = 0, w = 0] = numbers as number[];
+  const areZero = (...zeros: number[]) => zeros.every((zero) => Math.abs(zero) <= ZERO * Math.abs(fx));
+  if (areZero(b, c, d) && Number.isFinite(w) && w !== 0) {
+    const camera = checkedPinhole(argument, { fx: fx / w, fy: fy / w, cx: cx / w, cy: cy / w });
+    // At the border of an image with this centre.
+    return { camera, skewPx: areZero(skew) ? 0 : Math.abs(((skew / w) * camera.cy) / camera.fy) };
   }
-  const remedy = "Pass K row-major. A column-major K has cx and cy in its last row: transpose it.";
+  const isTransposed = areZero(skew, cx, cy) && w !== 0;
+  const remedy = isTransposed
+    ? "cx and cy are in the last row: transpose the matrix, K is row-major."
+    : "Pass K row-major: focal lengths on the diagonal, the principal point in the last column.";
   throw failure("INVALID_CAMERA", name, `[${numbers.join(", ")}]`, "[fx, 0, cx, 0, fy, cy, 0, 0, 1]", remedy);
 }
 
 /** Intrinsics from a vertical field of view in degrees: square pixels, centred principal point. */
 export function fromFieldOfView(argument: string, fovYDeg: unknown, { width, height }: ImageSize): Pinhole {
-  const name = `${argument}.fovYDeg`;
-  const remedy = "Pass the vertical field of view in degrees, like PerspectiveCamera.fov of three.js.";
-  if (typeof fovYDeg !== "number") throw invalidArgument(name, fovYDeg, "a number", remedy);
-  if (!(fovYDeg > 0 && fovYDeg < 180)) {
-    throw failure("INVALID_CAMERA", name, describe(fovYDeg), "an angle above 0 and below 180 degrees", remedy);
-  }
-  const [sin, cos] = sinCos(0.5 * (fovYDeg * (Math.PI / 180)));
-  const f = (0.5 * height * cos) / sin;
+  const f = focalOfAngle(`${argument}.fovYDeg`, fovYDeg, height);
   return { fx: f, fy: f, cx: 0.5 * (width - 1), cy: 0.5 * (height - 1) };
+}
+
+/** The focal length in pixels of a field of view in degrees across `side` pixels. */
+export function focalOfAngle(name: string, angleDeg: unknown, side: number): number {
+  const remedy = "Pass the vertical field of view in degrees, like PerspectiveCamera.fov of three.js.";
+  if (typeof angleDeg !== "number") throw invalidArgument(name, angleDeg, "a number", remedy);
+  if (!(angleDeg > 0 && angleDeg < 180)) {
+    throw failure("INVALID_CAMERA", name, describe(angleDeg), "an angle above 0 and below 180 degrees", remedy);
+  }
+  const [sin, cos] = sinCos(0.5 * (angleDeg * (Math.PI / 180)));
+  return (0.5 * side * cos) / sin;
 }
 
 /** π/2 as the sum of two numbers, the first with 33 bits. */

@@ -106,7 +106,7 @@ export async function writeSceneFiles(
   files: RunFiles,
 ): Promise<string[]> {
   const { sceneGlb, mjcf, urdf, usd, density, parts, rest, upright } = flags;
-  const camera = cameraOf(scene.input, result);
+  const camera = await cameraOf(scene.input, result);
   if (sceneGlb !== undefined)
     files.write({ flag: "--scene-glb", path: sceneGlb }, await glbOf(scene, result, camera, upright));
   if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
@@ -186,13 +186,13 @@ async function glbOf(
   return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
 }
 
-function cameraOf(input: SceneInput, { depthCalibration }: SceneResult): ImageCamera | undefined {
+async function cameraOf(input: SceneInput, { depthCalibration }: SceneResult): Promise<ImageCamera | undefined> {
   const { cameraFile, imageId } = input as { cameraFile?: Uint8Array; imageId?: string };
   const found = depthCalibration?.camera;
   // The principal point of a camera that was not given is the centre.
   if (cameraFile === undefined) return found && { fy: found.fy, width: 2 * found.cx + 1, height: 2 * found.cy + 1 };
   try {
-    const { fy, cx, cy, width, height } = parseCameraFile(cameraFile, withoutUndefined({ imageId }));
+    const { fy, cx, cy, width, height } = await parseCameraFile(cameraFile, withoutUndefined({ imageId }));
     // A file without size: the principal point is about the middle.
     return { fy, width: width ?? 2 * cx + 1, height: height ?? 2 * cy + 1 };
   } catch {

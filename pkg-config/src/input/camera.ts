@@ -1,7 +1,8 @@
 /** The camera of an input: intrinsics or a camera file. */
 
-import { depthScaleIn, parseCameraFile, scaledCamera } from "../camera/camera-file.js";
-import { doubtOfSize, type Pinhole, pinholeOf } from "../camera/pinhole.js";
+import type { StatedUnit } from "../camera/depth-unit.js";
+import { imageCamera } from "../camera/image-camera.js";
+import { type Pinhole, pinholeOf } from "../camera/pinhole.js";
 import type { Warning } from "../generated/types.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
@@ -13,8 +14,8 @@ import { type CameraHints, foundCamera } from "./lens.js";
 
 /** A parsed camera, whose intrinsics may depend on the image size. */
 export interface Camera {
-  /** Metres per unit of integer depth, if given in the camera file. */
-  integerDepthScale: number | undefined;
+  /** The unit of integer depth, if the camera states it. */
+  unit: StatedUnit | undefined;
   /** Whether the intrinsics were given. */
   isGiven: boolean;
   /** The intrinsics for an image of this size; `hints` where they were not given. */
@@ -34,7 +35,8 @@ export interface ResolvedCamera {
   unread?: readonly string[];
 }
 
-const notPinhole = (message: string): Warning => ({ code: "CAMERA_NOT_PINHOLE", message });
+const warningsOf = (code: Warning["code"], messages: readonly string[]): Warning[] =>
+  messages.map((message) => ({ code, message }));
 
 const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
 const fileRemedy = "Pass the content of a camera file as cameraFile.";
@@ -42,9 +44,10 @@ const fileRemedy = "Pass the content of a camera file as cameraFile.";
 /** Property names of camera files only. */
 const fileProperties = ["cam_K", "k", "d", "D", "intrinsic_matrix", "ppx", "ppy", "fov_y_deg", "depth_scale"];
 
-/** `readCamera` adds `warnings` and `depthScale` to the intrinsics of a camera file. */
+/** `readCamera` adds what it found besides to the intrinsics of a camera file. */
 const cameraProperties = [
-  ...["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "focalUncertainty", "warnings", "depthScale"],
+  ...["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "focalUncertainty"],
+  ...["depthScale", "warnings", "doubts", "unread"],
 ];
 
 /** The properties that state intrinsics. */
@@ -66,29 +69,37 @@ function statedCamera(camera: unknown): Camera {
     const remedy = isFile ? fileRemedy : `Rename or omit \`${other}\`; lengths are in pixels.`;
     throw invalidArgument("camera", camera, forms, remedy);
   }
-  const { width, height, depthScale, warnings } = camera as Partial<ImageSize> & Record<string, unknown>;
+  const { width, height, depthScale, warnings, doubts, unread } = camera as Partial<ImageSize> &
+    Record<string, unknown>;
   checkSides("camera.", { width, height });
   const stated = focalUncertainty(camera.focalUncertainty);
   const isGiven = intrinsics.some((name) => camera[name] !== undefined);
   return {
-    integerDepthScale: depthScale as number | undefined,
+    unit: depthScale === undefined ? undefined : { metres: depthScale as number, key: "depthScale" },
     isGiven,
     resolve(imageWidth, imageHeight, hints = {}) {
       const size = sizeOf(imageWidth, imageHeight);
       if (size === undefined) return { camera: undefined, warnings: [] };
       const own = sizeOf(width, height);
       const given = () => {
-        const stated = pinholeOf("camera", camera, own ?? size);
-        return {
-          camera: own === undefined ? stated : scaledCamera("camera", stated, own, size),
-          warnings: stringsIn(warnings).map(notPinhole),
-        };
+        const fitted = imageCamera("camera", pinholeOf("camera", camera, own ?? size), own, size);
+        return resolved({ camera: fitted.camera, warnings, doubts: [...stringsIn(doubts), ...fitted.doubts], unread });
       };
       const found: ResolvedCamera = isGiven ? given() : foundCamera(size, hints);
       return stated === undefined ? found : { ...found, focalDeviation: stated || undefined };
     },
   };
 }
+
+/** A camera with what its reader says of it. */
+const resolved = (of: { camera: Pinhole; warnings: unknown; doubts: unknown; unread: unknown }): ResolvedCamera => ({
+  camera: of.camera,
+  warnings: [
+    ...warningsOf("CAMERA_NOT_PINHOLE", stringsIn(of.warnings)),
+    ...warningsOf("CAMERA_DOUBTFUL", stringsIn(of.doubts)),
+  ],
+  unread: stringsIn(of.unread),
+});
 
 /** The relative standard deviation of a focal length; 0 for one that is known. */
 function focalUncertainty(value: unknown): number | undefined {
@@ -104,18 +115,17 @@ async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
     const expected = "the bytes, the text or the parsed JSON of a camera file";
     throw invalidArgument("cameraFile", file, expected, "Pass intrinsics such as { fx, fy, cx, cy } as camera.");
   }
+  // Most calls pass intrinsics.
+  const { openCameraFile } = await import("../camera/camera-file.js");
+  const opened = await openCameraFile(content, imageId, { file: "cameraFile", options: "" });
   return {
-    integerDepthScale: depthScaleIn(content, imageId as string | undefined),
+    unit: opened.unit,
     isGiven: true,
     resolve(width, height) {
       const size = sizeOf(width, height);
       if (size === undefined) return { camera: undefined, warnings: [] };
-      const options = { ...size, imageId: imageId as string | undefined };
-      const file = parseCameraFile(content, options, { file: "cameraFile", options: "" });
-      const { fx, fy, cx, cy, warnings } = file;
-      const doubt = file.width === undefined ? doubtOfSize(file, size) : undefined;
-      const doubts: Warning[] = doubt === undefined ? [] : [{ code: "CAMERA_DOUBTFUL", message: doubt }];
-      return { camera: { fx, fy, cx, cy }, warnings: [...warnings.map(notPinhole), ...doubts] };
+      const { fx, fy, cx, cy, warnings, doubts, unread } = opened.of(size);
+      return resolved({ camera: { fx, fy, cx, cy }, warnings, doubts, unread });
     },
   };
 }

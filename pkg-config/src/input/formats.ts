@@ -16,7 +16,10 @@ export const fileFormats = {
     ...{ GLB: ["glb"], glTF: ["gltf"], OBJ: ["obj"], PLY: ["ply"], STL: ["stl"], SPLAT: ["splat"] },
   } satisfies Record<string, MeshFormat[]>,
   photo: { PNG: ["png"], JPEG: ["jpg", "jpeg"], WebP: ["webp"] },
-  camera: { JSON: ["json"], text: ["txt"], YAML: ["yaml", "yml"] },
+  camera: {
+    ...{ JSON: ["json"], text: ["txt", "csv", "pincam"], YAML: ["yaml", "yml"], XML: ["xml"], INI: ["conf", "ini"] },
+    NPY: ["npy"],
+  },
 } as const satisfies Record<string, FormatList>;
 
 /** A kind of file. */

@@ -48,7 +48,7 @@ export const viewProperties: readonly string[] = [
 export async function readView(input: Record<string, unknown>, readers: FileReaders): Promise<Resolved<CoreView>> {
   checkSides("", input);
   const camera = await cameraOf(input);
-  const measured = await readMeasured(input, camera.integerDepthScale, readers);
+  const measured = await readMeasured(input, camera.unit?.metres, readers);
   const photo = await readPhoto(input.image, measured, readers);
   const { camera: pinhole, ...lens } = await resolveCamera(camera, measured, photo, input, readers);
 
@@ -56,12 +56,19 @@ export async function readView(input: Record<string, unknown>, readers: FileRead
   const depth = measured.rays === undefined || pinhole === undefined ? measured.core : measured.rays(pinhole);
   const view = { ...depth, width, height, image: photo.image, camera: pinhole, focalDeviation: lens.focalDeviation };
   const { imageReading } = photo;
-  const notes = { warnings: lens.warnings, unread: [...unread, ...(lens.unread ?? [])], colors: [], depthUnit: unit };
+  const depthUnit = namedUnit(unit, camera);
+  const notes = { warnings: lens.warnings, unread: [...unread, ...(lens.unread ?? [])], colors: [], depthUnit };
   return {
     core: withoutUndefined(view) as CoreView,
     notes: { ...notes, ...withoutUndefined({ cameraSource: lens.source, imageReading }) },
   };
 }
+
+/** A unit with the key of the camera file that states it. */
+export const namedUnit = (unit: DepthImage["unit"], camera: Camera): DepthImage["unit"] =>
+  unit.source === "camera file" && camera.unit !== undefined
+    ? { ...unit, source: `camera file: ${camera.unit.key}` }
+    : unit;
 
 /** What was measured: a depth map or a point map. */
 interface Measured extends Omit<SizedArray<unknown>, "data"> {

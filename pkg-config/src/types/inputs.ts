@@ -112,7 +112,8 @@ export interface UnknownCamera extends CameraSize, NoPinhole {
 
 /**
  * A camera file: its bytes, its text, or its parsed JSON. Supported are sim3align's `camera.json`, BOP's
- * `scene_camera.json` (select the entry with `imageId`), ROS CameraInfo, and the intrinsics of Open3D and RealSense.
+ * `scene_camera.json` (select the entry with `imageId`), ROS CameraInfo, the intrinsics of Open3D and RealSense, and more,
+ * which the guide on frames lists.
  */
 export type CameraFileInput = EncodedBytes | string | Readonly<Record<string, unknown>>;
 
@@ -185,7 +186,7 @@ export type DepthView = {
       camera?: undefined;
       /** A camera file, instead of `camera`. It also sets the scale of integer depth, unless `depthScale` is given. */
       cameraFile: CameraFileInput;
-      /** The image id in a BOP `scene_camera.json`. */
+      /** The image id in a BOP `scene_camera.json`, or the name of one of several cameras. */
       imageId?: string | number | undefined;
     }
 ) &
@@ -304,8 +305,8 @@ export interface DepthImage extends PixelArray<Float32Array> {
     /** Metres per unit; `null` for values whose unit is unknown, or that are no lengths. */
     metres: number | null;
     /**
-     * Where the unit comes from: `"depthScale"`, `"camera file"`, `"point map"`, `"float values"`, `"16-bit integers"`; without
-     * metres, the kind of depth.
+     * Where the unit comes from: `"depthScale"`, `"camera file"` with the key that states it (`"camera file: factor_depth"`),
+     * `"point map"`, `"float values"`, `"16-bit integers"`; without metres, the kind of depth.
      */
     source: string;
     /** Whether nothing states the unit. */

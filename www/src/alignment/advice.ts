@@ -1,6 +1,6 @@
 /** The cause of a result that is not right, and what helps: what the package warns of, and what the page measures. An unknown cause is not guessed. */
 import type { DepthKind, Metrics, WarningCode } from "sim3align";
-import { doubtOfSize } from "sim3align/camera/pinhole";
+import { doubtOfSize } from "sim3align/camera/image-camera";
 import { unitText } from "sim3align/input/depth-kinds";
 import type { ImageSize } from "sim3align/values/pixels";
 import { type Evidence, evidenceOf } from "../pictures/evidence.js";

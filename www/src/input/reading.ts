@@ -90,7 +90,7 @@ export async function readInputs(
   // The camera file may state the unit of an integer depth map.
   const cameraFile = source?.kind === "file" ? source.file : null;
   const stated = await attempt("camera", cameraFile, () => cameraFrom(source, imageId));
-  const scales = { depthScale: inputs.depthScale ?? undefined, integerDepthScale: stated?.integerDepthScale };
+  const scales = { depthScale: inputs.depthScale ?? undefined, integerDepthScale: stated?.unit?.metres };
   const read =
     depthFile === null
       ? null
@@ -195,7 +195,7 @@ function resolved(
 ): ReadCamera {
   const found = camera.resolve(width, height, hints);
   if (found.camera === undefined) throw new Error("The image has no pixels.");
-  const warnings = found.warnings.map(({ message }) => message);
+  const warnings = [...found.warnings.map(({ message }) => message), ...(found.unread ?? [])];
   const assumed =
     source?.kind === "assumed"
       ? [`The camera is assumed (vertical field of view ${source.fovYDeg}°), so the size is approximate.`]
