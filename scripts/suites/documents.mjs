@@ -61,8 +61,8 @@ export async function checkNames() {
     .map((name) => `The guides have no ${name}`);
 
   const frames = read(at("docs", "guides", "frames.md"));
-  for (const [, , by] of keyTable)
-    for (const tool of by.split(", ")) if (!frames.includes(tool)) faults.push(`frames.md: cameras of ${tool}`);
+  for (const { by } of keyTable)
+    for (const tool of by) if (!frames.includes(tool)) faults.push(`frames.md: cameras of ${tool}`);
 
   const commented = ["formats.ts", "types/inputs.ts"].map((name) => ({
     path: name,

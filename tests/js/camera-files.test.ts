@@ -229,6 +229,7 @@ test("a camera's size, depth scale and field of view are those of the file", asy
     const found = await readCamera(angle, size);
     assert.ok(Math.abs(found.fx - fx) < 1e-9 && /no principal point/.test(found.doubts?.[0] ?? ""));
   }
+  assert.equal((await readCamera({ ...intrinsics, focalUncertainty: 0.1 })).focalUncertainty, 0.1);
   const isaac = {
     cameraAperture: [20, 15],
     cameraFocalLength: 18.75,

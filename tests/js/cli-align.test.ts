@@ -99,19 +99,19 @@ test("files that were read are named with how they were read; a line has the oth
   const clean = succeeds("align clean --json clean.json", ...quick).stdout;
   assert.doesNotMatch(clean, /not read|assumed/);
   const { inputs } = results("clean.json").clean;
-  const unit = { metres: 0.001, source: "camera file", isAssumed: false };
+  const unit = { metres: 0.001, source: "camera file: depthScale", isAssumed: false };
   assert.deepEqual(inputs["depth.npy"], { as: "depth", unit });
   assert.deepEqual(inputs["mask.png"], { as: "mask", reading: "values of 255" });
   assert.deepEqual(inputs["K.json"], { as: "camera" });
-  writeCase("left", { ...rest, "depth.npy": npy(millimetres, height, width), "rgb.bmp": "", "K.npy": "" });
+  writeCase("left", { ...rest, "depth.npy": npy(millimetres, height, width), "rgb.bmp": "", "pose.npy": "" });
   const left = succeeds("align left", ...quick).stdout;
   assert.match(
     left,
-    /\n\nnot read: K\.npy, rgb\.bmp\nassumed: depth unit 0\.001 m \(16-bit integers\); focal length\n$/,
+    /\n\nnot read: pose\.npy, rgb\.bmp\nassumed: depth unit 0\.001 m \(16-bit integers\); focal length\n$/,
   );
-  writeCase("also-left", { ...rest, "depth.npy": npy(millimetres, height, width), "rgb.bmp": "", "K.npy": "" });
+  writeCase("also-left", { ...rest, "depth.npy": npy(millimetres, height, width), "rgb.bmp": "", "pose.npy": "" });
   const both = succeeds("align left also-left clean --workers 1", ...quick).stdout;
-  assert.match(both, /\nnot read: K\.npy, rgb\.bmp \(left, also-left\)\n/);
+  assert.match(both, /\nnot read: pose\.npy, rgb\.bmp \(left, also-left\)\n/);
 });
 
 test("bad cases are reported, the good ones aligned, and the exit status is that of a failure", () => {

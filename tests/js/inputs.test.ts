@@ -10,7 +10,7 @@ import {
   type MeshArrays,
   type SceneInput,
 } from "sim3align";
-import { readDepth, readMesh } from "sim3align/formats";
+import { readCamera, readDepth, readMesh } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
 import { cocoRle, glb, glbOf, gltfBuffer, gltfJson, maskPng, npy, obj, png, texturedJson } from "../support/files.js";
 import { assertNear } from "../support/random.js";
@@ -312,19 +312,33 @@ test("a mesh at the coordinates of a map has the pose of its file", async () => 
   assert.ok((metrics.iou ?? 0) > 0.95, `${metrics.iou}`);
 });
 
-test("intrinsics that seem to be those of another image are named", async () => {
+test("intrinsics that seem to be those of another image are named, in memory as in a file", async () => {
   const { fx, fy, cx, cy } = camera;
   const twice = { fx: 2 * fx, fy: 2 * fy, cx: 2 * cx + 0.5, cy: 2 * cy + 0.5 };
   // The photo has other proportions than the depth map.
   const stretched = { fx: 1.8 * fx, fy: 1.4 * fy, cx: 1.8 * cx + 0.4, cy: 1.4 * cy + 0.2 };
-  const of = (cameraFile: object) =>
-    aligner.align({ ...plain, camera: undefined, cameraFile } as AlignInput, { quality: "fast" });
-  for (const other of [twice, stretched]) {
-    assert.ok(codesOf((await of(other)).warnings).includes("CAMERA_DOUBTFUL"));
+  const turned = { fx: fy, fy: fx, cx: cy, cy: cx };
+  for (const name of ["camera", "cameraFile"]) {
+    const of = (intrinsics: object) =>
+      aligner.align({ ...plain, camera: undefined, [name]: intrinsics } as AlignInput, { quality: "fast" });
+    for (const other of [twice, stretched, turned]) {
+      assert.ok(codesOf((await of(other)).warnings).includes("CAMERA_DOUBTFUL"), name);
+    }
+    const known = await of({ fx, fy, cx, cy });
+    assert.ok(!codesOf(known.warnings).includes("CAMERA_DOUBTFUL"), name);
+    assert.deepEqual((await of({ ...twice, width: 2 * width, height: 2 * height })).matrix, known.matrix);
+    const relative = { fx: fx / width, fy: fy / height, cx: (cx + 0.5) / width, cy: (cy + 0.5) / height };
+    assert.ok(Math.abs((await of(relative)).scale / known.scale - 1) < 1e-3, "in sizes of the image");
   }
-  const stated = await of({ ...twice, width: 2 * width, height: 2 * height });
-  const known = await of({ fx, fy, cx, cy });
-  assert.deepEqual([stated.matrix, codesOf(known.warnings).includes("CAMERA_DOUBTFUL")], [known.matrix, false]);
+});
+
+test("what a camera file holds besides is named in results, and in memory as well", async () => {
+  const file = { ...camera, factor_depth: 1000, zoom: 2, D: [0.5, 0, 0, 0, 0] };
+  const read = await readCamera(file, size);
+  for (const input of [fileOf(file), { camera: read }]) {
+    const { warnings } = await evaluated(input);
+    assert.deepEqual(codesOf(warnings), ["CAMERA_NOT_PINHOLE", "CONTENT_NOT_READ"]);
+  }
 });
 
 test("a mask with the labels of several objects is named where the pose is in doubt", async () => {

@@ -19,6 +19,8 @@ export interface CameraFile extends PinholeCamera {
   height?: number;
   /** Metres per unit of integer depth. */
   depthScale?: number;
+  /** Relative standard deviation of the focal length, where it is a guess. */
+  focalUncertainty?: number;
   /** Warnings about lens distortion, which the pinhole model does not include. */
   warnings: string[];
   /** Reasons why the intrinsics may belong to another image, or the depth scale mean another unit; absent without any. */
@@ -84,10 +86,12 @@ export async function openCameraFile(
       const { camera, size, ...fit } = fitted(stated, image, names);
       const all = [...doubts, ...stated.doubts, ...fit.doubts, ...(unit?.doubt === undefined ? [] : [unit.doubt])];
       const unread = unreadOf(place, names.file);
+      const uncertainty = place.facts.find(({ meaning }) => meaning === "focalUncertainty")?.value;
       return {
         ...camera,
         ...size,
         ...(unit === undefined ? {} : { depthScale: unit.metres }),
+        ...(isNumber(uncertainty) ? { focalUncertainty: uncertainty } : {}),
         warnings: stated.distortions(camera, size),
         ...(all.length === 0 ? {} : { doubts: all }),
         ...(unread === undefined ? {} : { unread: [unread] }),

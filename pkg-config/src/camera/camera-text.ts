@@ -26,34 +26,33 @@ export function cameraContent(argument: string, content: Uint8Array | string, br
   if (read !== undefined) return read;
   if (/^\s*[{[]/.test(text)) throw broken;
   const first = text.trim().slice(0, 40).replace(/\s+/g, " ");
+  const kind = Object.entries(binary).find(([, magic]) => first.startsWith(magic))?.[0];
   // biome-ignore lint/suspicious/noControlCharactersInRegex: files that are no text
   const isText = !/[\0-\x08\ufffd]/.test(first);
-  const found =
-    first === "" ? "nothing" : isText ? `text that begins with ${JSON.stringify(first)}` : "bytes that are no text";
-  throw failure(
-    "UNSUPPORTED_FORMAT",
-    argument,
-    found,
-    "JSON, YAML, XML or INI with intrinsics, COLMAP's cameras.txt, the numbers of K as text, or K as NPY",
-    "Write the focal lengths and the principal point as a text of four numbers, fx fy cx cy, in pixels of the depth map.",
-  );
+  const other = isText ? `text that begins with ${JSON.stringify(first)}` : "bytes that are no text";
+  const found = kind ?? (first === "" ? "nothing" : other);
+  const expected =
+    "JSON, YAML, XML or INI with intrinsics, COLMAP's cameras.txt, the numbers of K as text, or K as NPY";
+  const remedy =
+    "Write the focal lengths and the principal point as a text of four numbers, fx fy cx cy, in pixels of the depth map.";
+  throw failure("UNSUPPORTED_FORMAT", argument, found, expected, remedy);
 }
+
+/** Files that may hold a camera, by their first bytes. */
+const binary = {
+  "a ZIP archive, such as NPZ": "PK",
+  HDF5: "\ufffdHDF",
+  "a MAT-file": "MATLAB",
+  "a picture": "\ufffdPNG",
+};
 
 function ofArray(argument: string, bytes: Uint8Array): unknown {
   const matrices = npyNumbers(bytes);
   const [first, ...others] = matrices ?? [];
   if (first !== undefined && others.every((matrix) => `${matrix}` === `${first}`)) return { K: first };
-  const found =
-    first === undefined
-      ? "an NPY file that is no small array of numbers"
-      : `an NPY file of ${others.length + 1} matrices`;
-  throw failure(
-    "UNSUPPORTED_FORMAT",
-    argument,
-    found,
-    "one matrix K",
-    'Save one: numpy.save("K.npy", K.astype(float)).',
-  );
+  const what = first === undefined ? "that is no small array of numbers" : `of ${others.length + 1} matrices`;
+  const remedy = 'Save one: numpy.save("K.npy", K.astype(float)).';
+  throw failure("UNSUPPORTED_FORMAT", argument, `an NPY file ${what}`, "one matrix K", remedy);
 }
 
 /** The camera in a text; `undefined` if it is another text. */

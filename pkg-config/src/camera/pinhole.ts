@@ -34,7 +34,8 @@ export function checkedPinhole(argument: string, intrinsics: Record<keyof Pinhol
     const isFocalLength = name.startsWith("f");
     if (Number.isFinite(value) && (value > 0 || !isFocalLength)) continue;
     const expected = isFocalLength ? "a finite number above 0" : "a finite number";
-    throw failure("INVALID_CAMERA", `${argument}.${name}`, `${value}`, expected, pixels);
+    const remedy = isFocalLength && value < 0 ? "Images with y up have a negative fy: pass its amount." : pixels;
+    throw failure("INVALID_CAMERA", `${argument}.${name}`, `${value}`, expected, remedy);
   }
   return intrinsics as Pinhole;
 }
@@ -45,8 +46,8 @@ export function resizedPinhole({ fx, fy, cx, cy }: Pinhole, from: ImageSize, to:
   return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5 };
 }
 
-/** Skew that moves no pixel by as much is left out, pixels. */
-const MAX_SKEW_PX = 0.5;
+/** Skew that moves no pixel by more is left out, pixels. */
+export const MAX_SKEW_PX = 0.5;
 
 /** Matrices whose zeros are as small, relative to the focal length, are upright. */
 const ZERO = 1e-6;

@@ -92,7 +92,7 @@ function statedCamera(camera: unknown): Camera {
 }
 
 /** A camera with what its reader says of it. */
-const resolved = (of: { camera: Pinhole; warnings: unknown; doubts: unknown; unread: unknown }): ResolvedCamera => ({
+const resolved = (of: { camera: Pinhole; warnings: unknown; doubts?: unknown; unread?: unknown }): ResolvedCamera => ({
   camera: of.camera,
   warnings: [
     ...warningsOf("CAMERA_NOT_PINHOLE", stringsIn(of.warnings)),
@@ -124,8 +124,9 @@ async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
     resolve(width, height) {
       const size = sizeOf(width, height);
       if (size === undefined) return { camera: undefined, warnings: [] };
-      const { fx, fy, cx, cy, warnings, doubts, unread } = opened.of(size);
-      return resolved({ camera: { fx, fy, cx, cy }, warnings, doubts, unread });
+      const { fx, fy, cx, cy, focalUncertainty: uncertainty, ...notes } = opened.of(size);
+      const focalDeviation = focalUncertainty(uncertainty) || undefined;
+      return { ...resolved({ camera: { fx, fy, cx, cy }, ...notes }), ...(focalDeviation && { focalDeviation }) };
     },
   };
 }
