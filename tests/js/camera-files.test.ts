@@ -172,6 +172,12 @@ const texts: Record<string, readonly [text: string, depthScale?: number]> = {
   "OpenCV's YAML": [
     "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n   data: [ 600., 0., 319.5, 0.,\n       610., 239.5, 0., 0., 1. ]\n",
   ],
+  "ROS, in braces": [
+    "{header: {seq: 1}, height: 480, width: 640, K: [600.0, 0, 319.5, 0, 610.0, 239.5, 0, 0, 1], D: []}",
+  ],
+  "Metashape's": [
+    "<calibration><width>640</width><height>480</height><f>600</f><fy>610</fy><cx>0.0</cx><cy>0</cy></calibration>",
+  ],
   "OpenCV's XML": [
     `<?xml version="1.0"?>\n<opencv_storage>\n<camera_matrix type_id="opencv-matrix">\n  <rows>3</rows><data>\n ${K.join(" ")}</data></camera_matrix>\n</opencv_storage>`,
   ],

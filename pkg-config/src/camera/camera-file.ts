@@ -72,7 +72,8 @@ export async function openCameraFile(
 ): Promise<OpenCameraFile> {
   const id = idOf(names, imageId);
   const json = await contentOf(names.file, content);
-  const places = camerasOf(Array.isArray(json) ? { K: json } : isRecord(json) ? json : {});
+  const isList = Array.isArray(json) && json.some(isRecord);
+  const places = camerasOf(isList ? { cameras: json } : Array.isArray(json) ? { K: json } : isRecord(json) ? json : {});
   if (places.length === 0) {
     throw noCamera(names, isRecord(json) ? `an object with ${keysText(json)}` : "JSON that is not an object");
   }

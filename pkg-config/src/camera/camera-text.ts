@@ -96,7 +96,7 @@ function ofNumbers(text: string): unknown {
   return isWithin(c, d, e, f) ? { fx: a, fy: b, cx: c, cy: d, width: e, height: f } : numbers;
 }
 
-/** A dictionary as Python prints it. */
+/** A dictionary as Python prints it, or a mapping of YAML in braces. */
 function ofPython(text: string): unknown {
   if (!/^\s*[{[]/.test(text)) return undefined;
   const json = text
@@ -104,6 +104,7 @@ function ofPython(text: string): unknown {
     .replace(/,?\s*dtype=\w+/g, "")
     .replace(/[()]/g, (bracket) => (bracket === "(" ? "[" : "]"))
     .replaceAll("'", '"')
+    .replace(/([{,]\s*)([A-Za-z_]\w*)\s*:/g, '$1"$2":')
     .replace(/\bTrue\b/g, "true")
     .replace(/\bFalse\b/g, "false")
     .replace(/\b(?:None|NaN|nan)\b/g, "null")

@@ -62,13 +62,19 @@ export function intrinsicsOf(
   const has = (keys: RegExp) => facts.some(({ key }) => keys.test(key));
   const shift = centredBy !== undefined ? 0 : has(fromEdge) ? 0.5 : has(fromOne) ? 1 : 0;
   const shifted = { ...camera, cx: camera.cx - shift, cy: camera.cy - shift };
+  // Metashape counts from the middle of the image.
+  const middle = size !== undefined && has(/^f$/) && isNearCorner(camera, size) ? size : { width: 1, height: 1 };
+  const placed = { ...shifted, cx: shifted.cx + 0.5 * (middle.width - 1), cy: shifted.cy + 0.5 * (middle.height - 1) };
   const doubt = `${names.file}: beside ${centredBy}, no principal point is stated: the middle of the image was used. Write cx and cy.`;
   return {
-    ...regionOf(facts, shifted, size, image),
+    ...regionOf(facts, placed, size, image),
     doubts: centredBy === undefined || isCentred.test(centredBy) ? [] : [doubt],
     distortions: (ofImage, imageSize) => [...skewed(skewPx), ...distorted(facts, model, ofImage, imageSize)],
   };
 }
+
+const isNearCorner = ({ cx, cy }: Pinhole, { width, height }: ImageSize) =>
+  Math.abs(cx) < 0.1 * width && Math.abs(cy) < 0.1 * height;
 
 /** Intrinsics by focal lengths and a principal point, by a matrix, by the size of the sensor, or by a field of view. */
 function pinholeIn(facts: readonly Fact[], size: ImageSize | undefined, names: CameraFileNames): Read {
@@ -92,16 +98,17 @@ function pinholeIn(facts: readonly Fact[], size: ImageSize | undefined, names: C
   const matrix = factOf(facts, "matrix");
   if (matrix !== undefined) return matrixOf(matrix, names);
 
-  const ofFocal = focal !== undefined && lengths !== undefined;
-  const angle = factOf(facts, "fovX", "fovY", "fov");
-  const found = ofFocal ? focal : angle;
-  const isPartial = !ofFocal && (fx ?? fy) !== undefined;
+  const alone = cx === undefined && cy === undefined ? (factOf(facts, "fx") ?? focal) : undefined;
+  const found = alone ?? factOf(facts, "fovX", "fovY", "fov");
+  const isPartial = alone === undefined && (fx ?? fy) !== undefined;
   if (found === undefined || isPartial) {
     const keys = facts.filter(({ meaning }) => meaning !== "model").map(({ path }) => path);
     throw noCamera(names, `an object with ${keys.slice(0, 12).join(", ") || "nothing"}`);
   }
-  if (size === undefined) throw withoutSize(ofFocal ? `${found.key} alone` : "a field of view", names);
-  const { x, y } = ofFocal ? focalLengths(found.key, lengths, sensor, size, names) : focalsOfAngles(facts, size, names);
+  if (size === undefined) throw withoutSize(alone === undefined ? "a field of view" : `${found.key} alone`, names);
+  const stated = lengths ?? (fx !== undefined && fy !== undefined ? [fx, fy] : undefined);
+  const isFocal = alone !== undefined && stated !== undefined;
+  const { x, y } = isFocal ? focalLengths(found.key, stated, sensor, size, names) : focalsOfAngles(facts, size, names);
   const middle = { cx: cx ?? 0.5 * (size.width - 1), cy: cy ?? 0.5 * (size.height - 1) };
   const camera = checkedPinhole(names.file, { fx: x ?? y, fy: y ?? x, ...middle });
   return { camera, centredBy: cx === undefined ? found.key : undefined };

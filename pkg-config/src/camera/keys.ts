@@ -17,7 +17,7 @@ fx | fx flx focalx focallengthx fu | RealSense, Polycam, nerfstudio, instant-ngp
 fy | fy fly focaly focallengthy fv | RealSense, Polycam, nerfstudio, instant-ngp, ORB-SLAM, ZED, Replica, DOPE
 cx | cx ppx u0 cu mx principalpointx | RealSense, nerfstudio, ScanNet
 cy | cy ppy v0 cv my principalpointy | RealSense, nerfstudio, ScanNet
-focal | f focal focals focallength focallengths | DUSt3R, Unity, MATLAB, Isaac Sim
+focal | f focal focals focallength focallengths | DUSt3R, Unity, MATLAB, Isaac Sim, Metashape
 focal | focalpx focallengthpx fpx fc lens focallengthmm | Depth Pro, Blender
 focalUncertainty | focaluncertainty |
 center | pp principalpoint principalpoints opticalcenter cc | DUSt3R, Unity, MATLAB
@@ -100,8 +100,11 @@ const otherLists = globs(others.lists);
 
 const byKey = new Map(keyTable.flatMap(({ meaning, keys }) => keys.map((key) => [key, meaning] as const)));
 
-/** The name of one of several cameras in a key. */
-const role = /depth|colou?r|rgb|infra\w*?(?:red)?|left|right|^cam(?:era)?[0-9](?=[a-z])/;
+/** The name of one of several cameras in a key; KITTI's have two digits. */
+const role = /depth|colou?r|rgb|infra\w*?(?:red)?|left|right|^cam(?:era)?[0-9](?=[a-z])|0[0-9]$/;
+
+/** Matrices and distortion of the two cameras of OpenCV's stereo. */
+const numbered = /^([kmd])([12])$/;
 
 const withoutCamera = (name: string) => name.replace(/^cam(era)?/, "");
 
@@ -121,6 +124,8 @@ export function meaningOf(key: string, value: unknown): { meaning: Meaning; came
   // Our own is metres per unit; that of others may be anything.
   if (key === "depthScale") return { meaning: "metresPerUnit" };
   const name = key.toLowerCase().replace(/[^a-z0-9]/g, "");
+  const [, letter, digit] = (Array.isArray(value) && numbered.exec(name)) || [];
+  if (letter !== undefined) return { meaning: letter === "d" ? "distortion" : "matrix", camera: `camera${digit}` };
   const meaning = byKey.get(name) ?? byKey.get(withoutCamera(name));
   if (meaning !== undefined) return { meaning };
   const camera = role.exec(name)?.[0];

@@ -52,52 +52,61 @@ export function numbersOf(value: unknown): number[] | undefined {
   return numbers.length > 0 && numbers.every(isNumber) ? numbers : undefined;
 }
 
-/** The object or the pair of numbers in a record: OpenCV's `{ rows, cols, data }`, Unity's `{ x, y }`. */
-function valueIn(record: Record<string, unknown>): unknown {
+/** The value that a record stands for: OpenCV's `{ rows, cols, data }`, Unity's `{ x, y }`, coefficients by other names. */
+function valueIn(record: Record<string, unknown>, meaning: Meaning | undefined): unknown {
+  if (meaning === "region") return record;
   if (record.data !== undefined) return record.data;
-  return isNumber(record.x) && isNumber(record.y) && Object.keys(record).length === 2
-    ? [record.x, record.y]
-    : undefined;
+  const values = Object.values(record);
+  if (isNumber(record.x) && isNumber(record.y) && values.length === 2) return values;
+  const isNamed = Object.entries(record).some(([key, value]) => meaningOf(key, value)?.meaning === "coefficient");
+  return meaning === "distortion" && !isNamed ? (numbersOf(values) ?? undefined) : undefined;
 }
 
 const hasNumbers = (value: unknown) => isNumber(value) || numbersOf(value) !== undefined;
 const isZero = (value: unknown) => [numbersOf(value) ?? value].flat().every((number) => number === 0);
 
-function nodeOf(record: Record<string, unknown>, names: readonly string[], isListed = false): Node {
+function nodeOf(record: Record<string, unknown>, names: readonly string[], path: string, isListed = false): Node {
   const node: Node = { names, facts: [], children: [], isListed };
-  for (const [key, value] of Object.entries(record)) {
-    const known = meaningOf(key, value);
-    const owner = known?.camera === undefined ? node : childOf(node, known.camera);
-    const path = [...names, key].join(".");
-    const inner = isRecord(value) ? valueIn(value) : value;
-    if (known?.meaning === "other") continue;
-    const isPart = isRecord(value) && inner === undefined && known?.meaning !== "region";
-    if (isPart) node.children.push(...partsOf(value, [...names, key]));
-    else if (isRecord(value) && inner === undefined) node.facts.push({ meaning: "region", key, path, value });
-    else if (Array.isArray(value) && value.some((item) => isRecord(item) || holdsRecord(item)))
-      node.children.push(...listed(value, [...names, key]));
-    else if (/^[km][12]$/i.test(key) && Array.isArray(inner))
-      childOf(node, `camera${key.at(-1)}`).facts.push({ meaning: "matrix", key, path, value: inner });
-    else if (known !== undefined) owner.facts.push({ ...known, key, path, value: inner });
-    else if (looksLikeMatrix(numbersOf(inner) ?? [])) node.facts.push({ meaning: "matrix", key, path, value: inner });
-    else if (hasNumbers(inner) && !isZero(inner)) node.facts.push({ meaning: undefined, key, path, value: inner });
-  }
+  for (const [key, value] of Object.entries(record)) addTo(node, key, value, `${path}${key}`);
   return node;
 }
 
-const partsOf = (record: Record<string, unknown>, names: readonly string[]): Node[] =>
-  names.length < MAX_LEVELS ? [nodeOf(record, names, /^\d+$/.test(names.at(-1) ?? ""))] : [];
+/** Adds what a key states to an object: a fact, or other objects. */
+function addTo(node: Node, key: string, value: unknown, path: string): void {
+  const known = meaningOf(key, value);
+  const names = [...node.names, key];
+  if (known?.meaning === "other" || names.length > MAX_LEVELS) return;
+  const inner = isRecord(value) ? valueIn(value, known?.meaning) : value;
+  if (isRecord(value) && inner === undefined) {
+    node.children.push(nodeOf(value, names, `${path}.`, /^\d+$/.test(key)));
+  } else if (Array.isArray(inner) && inner.some((item) => isRecord(item) || holdsRecord(item))) {
+    node.children.push(...listed(inner, names, path));
+  } else {
+    const meaning = known?.meaning ?? (looksLikeMatrix(numbersOf(inner) ?? []) ? "matrix" : undefined);
+    if (meaning === undefined && (!hasNumbers(inner) || isZero(inner))) return;
+    const owner = known?.camera === undefined ? node : childOf(node, known.camera);
+    owner.facts.push({ meaning, key, path, value: inner });
+  }
+}
 
 const holdsRecord = (value: unknown) => Array.isArray(value) && value.some(isRecord);
 
 /** The objects in a list, also as pairs of a number and an object. */
-const listed = (list: readonly unknown[], names: readonly string[]): Node[] =>
+const listed = (list: readonly unknown[], names: readonly string[], path: string): Node[] =>
   list.flatMap((item, i) => {
     const [label, value] = Array.isArray(item) && item.length === 2 && isRecord(item[1]) ? item : [i, item];
     if (!isRecord(value)) return [];
-    const own = [value.name, value.camera_name, value.file_path, value.camera_id, value.id, value.image_id];
+    const own = [
+      value.image_id,
+      value.id,
+      value.camera_id,
+      value.img_name,
+      value.file_path,
+      value.camera_name,
+      value.name,
+    ];
     const named = own.filter((name) => typeof name === "string" || isNumber(name)).map(String);
-    return names.length < MAX_LEVELS ? [nodeOf(value, [...names, ...named, `${label}`], true)] : [];
+    return [nodeOf(value, [...names, `${label}`, ...named], `${path}[${label}].`, true)];
   });
 
 function childOf(node: Node, name: string): Node {
@@ -129,7 +138,7 @@ function factsOf(node: Node, isCamera: (node: Node) => boolean): Fact[] {
 
 /** All cameras that the content of a file states. */
 export function camerasOf(content: Record<string, unknown>): CameraPlace[] {
-  const root = nodeOf(content, []);
+  const root = nodeOf(content, [], "");
   const found = camerasIn(root, strong);
   const places = found.length > 0 ? found : camerasIn(root, weak);
   const cameras = new Set(places.map((path) => path.at(-1)));
