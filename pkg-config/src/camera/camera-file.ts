@@ -43,7 +43,7 @@ export interface ReadCameraOptions {
 export interface OpenCameraFile {
   /** The unit of integer depth, if the file states it. */
   unit: StatedUnit | undefined;
-  /** The camera of an image; without its size, that of the image in the file. */
+  /** The camera of an image, without doubts about the unit; without a size, that of the image in the file. */
   of(image: ImageSize | undefined): CameraFile;
 }
 
@@ -61,7 +61,10 @@ export async function parseCameraFile(
   names: CameraFileNames = { file: "camera", options: "options." },
 ): Promise<CameraFile> {
   const image = pair({ width: side(names, "width", width), height: side(names, "height", height) });
-  return (await openCameraFile(content, imageId, names)).of(image);
+  const { unit, of } = await openCameraFile(content, imageId, names);
+  const { doubts = [], ...file } = of(image);
+  const all = unit?.doubt === undefined ? doubts : [...doubts, unit.doubt];
+  return all.length === 0 ? file : { ...file, doubts: all };
 }
 
 /** Opens a camera file, without the size of the image of its depth map. */
@@ -85,7 +88,7 @@ export async function openCameraFile(
       const stated = intrinsicsOf(place.facts, image, names);
       const unit = unitOf(place.facts, names);
       const { camera, size, ...fit } = fitted(stated, image, names);
-      const all = [...doubts, ...stated.doubts, ...fit.doubts, ...(unit?.doubt === undefined ? [] : [unit.doubt])];
+      const all = [...doubts, ...stated.doubts, ...fit.doubts];
       const unread = unreadOf(place, names.file);
       const uncertainty = place.facts.find(({ meaning }) => meaning === "focalUncertainty")?.value;
       return {
@@ -93,7 +96,7 @@ export async function openCameraFile(
         ...size,
         ...(unit === undefined ? {} : { depthScale: unit.metres }),
         ...(isNumber(uncertainty) ? { focalUncertainty: uncertainty } : {}),
-        warnings: stated.distortions(camera, size),
+        warnings: stated.distortions(camera, image ?? size),
         ...(all.length === 0 ? {} : { doubts: all }),
         ...(unread === undefined ? {} : { unread: [unread] }),
       };

@@ -4,6 +4,7 @@ import type { StatedUnit } from "../camera/depth-unit.js";
 import { imageCamera } from "../camera/image-camera.js";
 import { type Pinhole, pinholeOf } from "../camera/pinhole.js";
 import type { Warning } from "../generated/types.js";
+import type { DepthImage } from "../types/inputs.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import type { ImageSize } from "../values/pixels.js";
@@ -100,6 +101,13 @@ const resolved = (of: { camera: Pinhole; warnings: unknown; doubts?: unknown; un
   ],
   unread: stringsIn(of.unread),
 });
+
+/** A unit of depth with the key of the camera file that states it, and the doubt of its meaning. */
+export function unitOf(unit: DepthImage["unit"], { unit: stated }: Camera) {
+  if (unit.source !== "camera file" || stated === undefined) return { unit, warnings: [] };
+  const warnings = warningsOf("CAMERA_DOUBTFUL", stated.doubt === undefined ? [] : [stated.doubt]);
+  return { unit: { ...unit, source: `camera file: ${stated.key}` }, warnings };
+}
 
 /** The relative standard deviation of a focal length; 0 for one that is known. */
 function focalUncertainty(value: unknown): number | undefined {

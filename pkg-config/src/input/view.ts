@@ -8,7 +8,7 @@ import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { oneOf, withoutUndefined } from "../values/validation.js";
-import { type Camera, cameraOf, type ResolvedCamera } from "./camera.js";
+import { type Camera, cameraOf, type ResolvedCamera, unitOf } from "./camera.js";
 import {
   checkSides,
   DEFAULT_SCALE,
@@ -56,19 +56,14 @@ export async function readView(input: Record<string, unknown>, readers: FileRead
   const depth = measured.rays === undefined || pinhole === undefined ? measured.core : measured.rays(pinhole);
   const view = { ...depth, width, height, image: photo.image, camera: pinhole, focalDeviation: lens.focalDeviation };
   const { imageReading } = photo;
-  const depthUnit = namedUnit(unit, camera);
-  const notes = { warnings: lens.warnings, unread: [...unread, ...(lens.unread ?? [])], colors: [], depthUnit };
+  const { unit: depthUnit, warnings } = unitOf(unit, camera);
+  const ofCamera = [...lens.warnings, ...warnings];
+  const notes = { warnings: ofCamera, unread: [...unread, ...(lens.unread ?? [])], colors: [], depthUnit };
   return {
     core: withoutUndefined(view) as CoreView,
     notes: { ...notes, ...withoutUndefined({ cameraSource: lens.source, imageReading }) },
   };
 }
-
-/** A unit with the key of the camera file that states it. */
-export const namedUnit = (unit: DepthImage["unit"], camera: Camera): DepthImage["unit"] =>
-  unit.source === "camera file" && camera.unit !== undefined
-    ? { ...unit, source: `camera file: ${camera.unit.key}` }
-    : unit;
 
 /** What was measured: a depth map or a point map. */
 interface Measured extends Omit<SizedArray<unknown>, "data"> {

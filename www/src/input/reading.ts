@@ -1,7 +1,7 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
 import type { DepthKind, MeshArrays, PixelArray } from "sim3align";
 import { type MeshFromFile, readExif, readPose } from "sim3align/formats";
-import { type Camera, cameraOf } from "sim3align/input/camera";
+import { type Camera, cameraOf, unitOf } from "sim3align/input/camera";
 import type { ImageSize } from "sim3align/values/pixels";
 import type { CameraSource, Field, Inputs, NamedFile } from "../state/inputs.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
@@ -140,12 +140,14 @@ export async function readInputs(
           return resolved(stated, size, hints, source);
         });
   const view = read && viewOf(read, camera);
+  const { unit, warnings: ofUnit } =
+    read && stated ? unitOf(read.unit, stated) : { unit: read?.unit ?? null, warnings: [] };
   return {
-    ...{ photo, objects, problems, size, shown, warnings: camera?.warnings ?? [] },
+    ...{ photo, objects, problems, size, shown, warnings: [...(camera?.warnings ?? []), ...ofUnit.map(messageOf)] },
     depth: view && read && { data: view.depthM, width: read.width, height: read.height },
     raw: view?.raw ?? null,
     depthKind: read?.depthKind ?? "metric",
-    depthUnit: read?.unit ?? null,
+    depthUnit: unit,
     camera: camera?.camera ?? null,
     cameraSource: camera?.source ?? null,
     focalUncertainty: camera?.focalUncertainty ?? 0,
@@ -173,6 +175,8 @@ export function sceneOf(inputs: Inputs, reading: SceneReading, isFrame = false):
   };
 }
 
+const messageOf = ({ message }: { message: string }) => message;
+
 const isSameSize = (a: ImageSize, b: ImageSize | null) => a.width === b?.width && a.height === b.height;
 
 /** The camera of a source, whose intrinsics may depend on the size of the image. */
@@ -195,7 +199,7 @@ function resolved(
 ): ReadCamera {
   const found = camera.resolve(width, height, hints);
   if (found.camera === undefined) throw new Error("The image has no pixels.");
-  const warnings = [...found.warnings.map(({ message }) => message), ...(found.unread ?? [])];
+  const warnings = [...found.warnings.map(messageOf), ...(found.unread ?? [])];
   const assumed =
     source?.kind === "assumed"
       ? [`The camera is assumed (vertical field of view ${source.fovYDeg}°), so the size is approximate.`]
