@@ -1,6 +1,6 @@
 /** Transforms from JSON files. */
 import { read } from "../case-folder.js";
-import { parsePoseFile } from "../conventions/pose-file.js";
+import { isPose, parsePoseFile, poseJson } from "../conventions/pose-file.js";
 import { failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { oncePerKey } from "../values/validation.js";
@@ -37,7 +37,7 @@ export async function readTransform(
 /** A JSON file, or the entries of a record by case. */
 function parse(text: string, argument: string, path: string): unknown {
   try {
-    if (!/^\{"(?:case|sim3align)":/.test(text)) return JSON.parse(text);
+    if (!/^\{"(?:case|sim3align)":/.test(text)) return poseJson(argument, text);
     const lines = text.split("\n").filter((line) => line.trim() !== "" && !/^\{"sim3align":/.test(line));
     // Of a case that a record has twice, the first line counts, as for --resume.
     return Object.fromEntries(
@@ -52,11 +52,11 @@ function parse(text: string, argument: string, path: string): unknown {
 }
 
 function entryOf(json: unknown, name: string, invalid: (found: string, expected: string) => Error): object {
-  if (Array.isArray(json)) return { matrix: json };
+  if (Array.isArray(json)) return json;
   if (!isRecord(json)) throw invalid(JSON.stringify(json), "an object");
-  // Cases may have these names, too.
-  if (["matrix", "scale", "available"].some((key) => key in json && !isRecord(json[key]))) return json;
+  if (isPose(json)) return json;
   const entry = json[name];
+  if (Array.isArray(entry)) return entry;
   if (isRecord(entry) && !("error" in entry)) return entry;
   if (isRecord(entry)) throw invalid(`the failure of ${name}`, "an aligned case");
   throw invalid(
