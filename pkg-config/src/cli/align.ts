@@ -1,16 +1,9 @@
 /** `sim3align align`: reads cases, aligns them, and prints the results. */
 import { basename, extname, join } from "node:path";
-import {
-  type CaseOnDisk,
-  frameNames,
-  inputOfFrame,
-  openFrames,
-  type ReadCaseOptions,
-  readCaseFiles,
-  readCaseFolder,
-} from "../case-folder.js";
+import { type CaseOnDisk, type ReadCaseOptions, readCaseFiles, readCaseFolder } from "../case-folder.js";
 import { partOf } from "../case-names.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
+import { type FramesFolder, frameNames, inputOfFrame, openFrames } from "../frames-folder.js";
 import {
   type Aligner,
   type AlignInput,
@@ -173,8 +166,8 @@ export interface CaseView extends Pick<CaseOnDisk, "input" | "truth">, Partial<P
 /** The view of a case, or those of its frames with a mask. */
 export async function viewsOf(folder: string, settings: ReadCaseOptions): Promise<CaseView[]> {
   if ((await frameNames(folder)).length === 0) return [await readCaseFolder(folder, settings)];
-  const { mesh, names, read } = await openFrames(folder, settings);
-  const frames = await Promise.all(names.map(read));
+  const { mesh, views, read } = await openFrames(folder, settings);
+  const frames = await Promise.all(views.map(read));
   return frames.flatMap(({ name, ...frame }) => {
     const input = inputOfFrame(frame, mesh);
     return input === undefined ? [] : [{ ...frame, frame: name, input }];
@@ -183,9 +176,28 @@ export async function viewsOf(folder: string, settings: ReadCaseOptions): Promis
 
 async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun: CaseRun): Promise<Entry> {
   const { name, folder } = task;
-  if (folder !== undefined && (await frameNames(folder)).length > 0)
-    return alignFrames(aligner, name, folder, flags, caseRun);
-  const { input, truth, found } = await task.read();
+  if (folder === undefined || (await frameNames(folder)).length === 0) {
+    return alignView(aligner, name, await task.read(), flags, caseRun);
+  }
+  const opened = await openFrames(folder, caseSettings(flags));
+  const [only, ...others] = opened.views;
+  if (only === undefined || others.length > 0 || opened.names.length === 1) {
+    return alignFrames(aligner, name, opened, flags, caseRun);
+  }
+  const frame = await opened.read(only);
+  const { files, unread } = opened.found();
+  const found = { folder, files: { ...frame.found.files, ...files }, unread };
+  const input = inputOfFrame(frame, opened.mesh) as AlignInput;
+  return alignView(aligner, name, { ...frame, input, found }, flags, caseRun);
+}
+
+async function alignView(
+  aligner: Aligner,
+  name: string,
+  { input, truth, found }: CaseView,
+  flags: Flags,
+  caseRun: CaseRun,
+): Promise<Entry> {
   caseRun.found = found;
   const options = await alignOptions(flags, name);
   const settings = withoutUndefined({ ...options, onProgress: caseRun.onProgress });
@@ -194,8 +206,8 @@ async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun
 }
 
 /** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
-async function alignFrames(aligner: Aligner, name: string, folder: string, flags: Flags, caseRun: CaseRun) {
-  const { mesh, names, read, found } = await openFrames(folder, caseSettings(flags));
+async function alignFrames(aligner: Aligner, name: string, opened: FramesFolder, flags: Flags, caseRun: CaseRun) {
+  const { mesh, views: names, read, found } = opened;
   const frames = await Promise.all(names.map(read));
   caseRun.found = found();
   const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
