@@ -27,6 +27,8 @@ A case folder holds
 or a mesh and folders frame_*, each with a depth map, and optionally a camera and a photo as above, and
   a mask                         in at least one frame; in all of them without pose.json
   pose.json or pose.txt          {"camera_to_world": 4×4 row by row, m}: the camera's pose; in all frames or it is not used
+or the folders of FoundationPose: depth/, and optionally rgb/, masks/ and poses/, with a file NAME.* per frame; mesh/ with one
+mesh; and a camera such as cam_K.txt. "align" then takes the frames that have a mask.
 A camera beside the frames is that of the frames without one. Frames are in the order of their numbers. Upper and lower case
 are the same. Files that are not read are named at the end.`;
 
