@@ -1,11 +1,11 @@
 /** Cases on disk (Node only). */
-import { readdir, readFile, stat } from "node:fs/promises";
+import { readdir, stat } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
-import { type Case, type CaseFiles, caseFrom, fileNotFound, meshFile, type ReadCaseOptions } from "./case-files.js";
+import { type Case, type CaseFiles, caseFrom, meshFile, type ReadCaseOptions } from "./case-files.js";
 import { partOf } from "./case-names.js";
 import { refersToFiles } from "./input/formats.js";
+import { read, unreadable } from "./read-files.js";
 import type { AlignInput, CameraInput, MeshFile } from "./types/inputs.js";
-import { failure, Sim3AlignError } from "./values/error.js";
 import { withoutUndefined } from "./values/validation.js";
 
 export type { ReadCaseOptions } from "./case-files.js";
@@ -107,28 +107,4 @@ export async function readCaseFiles(
   const named = withoutUndefined({ ...files, camera: cameraPath, image: withImage ? imagePath : undefined });
   const found = { folder: "", files: named as FoundFiles["files"], unread: [] };
   return { name, input: input as AlignInput, found, truth: null };
-}
-
-/** The largest file that Node reads at once, bytes. */
-const LARGEST = 2 ** 31 - 1;
-
-/** The bytes of a file. Pipes and devices, which may have no end, are not read. */
-export async function read(argument: string, path: string): Promise<Uint8Array> {
-  try {
-    const file = await stat(path);
-    if (!file.isFile()) throw fileNotFound(argument, `no ordinary file at ${path}`, "a readable file");
-    if (file.size > LARGEST) {
-      const remedy = "Crop the image to the object, or simplify the mesh.";
-      throw failure("FILE_TOO_LARGE", argument, `${file.size} bytes at ${path}`, `at most ${LARGEST}`, remedy);
-    }
-    return await readFile(path);
-  } catch (cause) {
-    throw cause instanceof Sim3AlignError ? cause : unreadable(argument, path, "a readable file", cause);
-  }
-}
-
-function unreadable(argument: string, path: string, expected: string, cause: unknown) {
-  const isMissing = cause instanceof Error && "code" in cause && cause.code === "ENOENT";
-  const reason = cause instanceof Error && "code" in cause && !isMissing ? ` (${cause.code})` : "";
-  return fileNotFound(argument, `nothing to read at ${path}${reason}`, expected, cause);
 }

@@ -97,7 +97,8 @@ function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOp
   const name = basename(mesh).replace(/\.[^.]*$/, "");
   const read = () => readCaseFiles(name, { depth, mask, mesh, camera, image: named[0] }, settings);
   // Of the files, the mask is that of one object in one image.
-  return { name, path: absolutePath(mask), hasTruth: false, read };
+  const files = [depth, mask, mesh, ...(typeof camera === "string" ? [camera] : []), ...named].map(absolutePath);
+  return { name, path: absolutePath(mask), files, hasTruth: false, read };
 }
 
 /** Whether an argument names a photo; folders may be named like one. */

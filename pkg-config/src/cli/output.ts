@@ -1,4 +1,5 @@
 /** The outputs of a batch: JSON, a record, comma-separated values, and text for people. */
+import type { Checksums } from "../read-files.js";
 import type { Entry } from "./entry.js";
 import type { Flags } from "./flags.js";
 import { type CaseKey, JsonlFile, type RecordHeader, type Resumed } from "./record.js";
@@ -44,13 +45,16 @@ export class Output {
   }
 
   /** The entries of the record, before it is written, each with its case. */
-  resumed<T extends CaseKey>(tasks: readonly T[]): AsyncIterable<Resumed<T>> | readonly Resumed<T>[] {
-    return this.#record?.resumed(tasks) ?? [];
+  resumed<T extends CaseKey>(
+    tasks: readonly T[],
+    changed: (task: T) => void,
+  ): AsyncIterable<Resumed<T>> | readonly Resumed<T>[] {
+    return this.#record?.resumed(tasks, changed) ?? [];
   }
 
   /** Adds the entry of a case to the record. */
-  record(key: CaseKey, entry: Entry): void {
-    this.#record?.add(key, entry);
+  record(key: CaseKey, entry: Entry, read: Checksums): void {
+    this.#record?.add(key, entry, read);
   }
 
   /** Adds the entry of a case to the other files. */

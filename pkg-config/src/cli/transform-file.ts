@@ -1,6 +1,7 @@
 /** Transforms from JSON files. */
-import { read } from "../case-folder.js";
+
 import { isPose, parsePoseFile, poseJson } from "../conventions/pose-file.js";
+import { read } from "../read-files.js";
 import { failure } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { oncePerKey } from "../values/validation.js";
