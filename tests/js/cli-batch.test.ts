@@ -111,7 +111,7 @@ test("--jsonl has a line for each case, the entry of --json; --csv its numbers",
   assert.deepEqual([Object.keys(json).sort(), casesOf("whole.jsonl").length], [all, all.length]);
   for (const line of casesOf("whole.jsonl")) {
     const { case: name, path, files, content, ...entry } = JSON.parse(line);
-    assert.deepEqual([entry, path], [json[name], name]);
+    assert.deepEqual([{ path, ...entry }, path], [json[name], name]);
     assert.equal(typeof content, name.startsWith("x") ? "undefined" : "string");
     assert.equal(files?.includes("depth.npy") ?? false, typeof content === "string");
   }
@@ -206,6 +206,19 @@ test("cases that have changed since are done again, and the last line counts", (
     assert.match(succeeds(`align loop ${flags} --json loop.json`).stderr, /resumed: 1 of 1 cases are in loop\.jsonl\n/);
   }
   assert.ok(Math.abs(results("loop.json").loop.scale / truth.scale - 0.5) < 0.02);
+});
+
+test("a transform is that of the case by its path, not of another one by its name", () => {
+  for (const name of ["here/x", "there/x"]) writeCase(name, complete);
+  succeeds(`align here/x ${quick.join(" ")} --jsonl here.jsonl --json here.json`);
+  for (const file of ["here.jsonl", "here.json"]) {
+    succeeds(`evaluate here/x --transform ${file}`);
+    const refused = run("evaluate", "there/x", "--transform", file);
+    assert.equal(refused.status, 1);
+    assert.match(refused.stdout + refused.stderr, /INVALID_TRANSFORM.*here.x, which has the same name/);
+  }
+  renameSync(inFolder("here"), inFolder("moved"));
+  succeeds("evaluate moved/x --transform here.jsonl");
 });
 
 test("a record of files has a row for each set of files", () => {

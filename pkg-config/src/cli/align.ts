@@ -176,45 +176,46 @@ export async function viewsOf(folder: string, settings: ReadCaseOptions): Promis
 }
 
 async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun: CaseRun): Promise<Entry> {
-  const { name, folder } = task;
+  const { folder } = task;
   if (folder === undefined || (await frameNames(folder)).length === 0) {
-    return alignView(aligner, name, await task.read(), flags, caseRun);
+    return alignView(aligner, task, await task.read(), flags, caseRun);
   }
   const opened = await openFrames(folder, caseSettings(flags));
   const [only, ...others] = opened.views;
   if (only === undefined || others.length > 0 || opened.names.length === 1) {
-    return alignFrames(aligner, name, opened, flags, caseRun);
+    return alignFrames(aligner, task, opened, flags, caseRun);
   }
   const frame = await opened.read(only);
   const { files, unread } = opened.found();
   const found = { folder, files: { ...frame.found.files, ...files }, unread };
   const input = inputOfFrame(frame, opened.mesh) as AlignInput;
-  return alignView(aligner, name, { ...frame, input, found }, flags, caseRun);
+  return alignView(aligner, task, { ...frame, input, found }, flags, caseRun);
 }
 
 async function alignView(
   aligner: Aligner,
-  name: string,
+  task: CaseToDo,
   { input, truth, found }: CaseView,
   flags: Flags,
   caseRun: CaseRun,
 ): Promise<Entry> {
   caseRun.found = found;
-  const options = await alignOptions(flags, name);
+  const options = await alignOptions(flags, task);
   const settings = withoutUndefined({ ...options, onProgress: caseRun.onProgress });
   const alignment = await aligner.align<Preset, boolean>(input, settings);
   return withFiles(alignEntry(alignment, await errorsOf(aligner, input, alignment, truth)), found);
 }
 
 /** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
-async function alignFrames(aligner: Aligner, name: string, opened: FramesFolder, flags: Flags, caseRun: CaseRun) {
+async function alignFrames(aligner: Aligner, task: CaseToDo, opened: FramesFolder, flags: Flags, caseRun: CaseRun) {
   const { mesh, views: names, read, found } = opened;
   const frames = await Promise.all(names.map(read));
   caseRun.found = found();
   const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
   const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
-  const { preset, ...options } = await alignOptions(flags, name);
-  if (preset === "paper") throw new UsageError(`${name} has several frames, for which --preset paper has no method.`);
+  const { preset, ...options } = await alignOptions(flags, task);
+  if (preset === "paper")
+    throw new UsageError(`${task.name} has several frames, for which --preset paper has no method.`);
   const { onProgress } = caseRun;
   const alignment = await aligner.alignViews(
     { mesh, views },
@@ -241,12 +242,12 @@ export async function errorsOf(
 }
 
 /** The options set by `--options` and by flags. */
-async function alignOptions(flags: Flags, name: string): Promise<OptionsOf<Preset, boolean>> {
+async function alignOptions(flags: Flags, key: Pick<CaseKey, "name" | "path">): Promise<OptionsOf<Preset, boolean>> {
   const options: Record<string, unknown> = {
     ...flags.options,
     ...optionValues(flags, [...shared, ...precise, ...paper]),
     ...withoutUndefined({ preset: flags.preset }),
   };
-  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
+  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, key);
   return options as unknown as OptionsOf<Preset, boolean>;
 }

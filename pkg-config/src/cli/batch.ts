@@ -167,10 +167,10 @@ class Batch<T extends CaseKey> {
     const isChanged = () => {
       changed += 1;
     };
-    for await (const { task, name, entry } of output.resumed(job.tasks, isChanged)) {
+    for await (const { task, name, path, entry } of output.resumed(job.tasks, isChanged)) {
       recorded += 1;
       if (task !== undefined && !isFailure(entry) && job.isComplete?.() === false) continue;
-      output.add(name, entry);
+      output.add(name, entry, path);
       if (task === undefined) continue;
 
       resumed.add(task);
@@ -204,7 +204,7 @@ class Batch<T extends CaseKey> {
         if (line === undefined) early.push(...lines);
         else output.lines(lines);
       },
-      partial: (entry) => line && output.begin(task.name, entry),
+      partial: (entry) => line && output.begin(task.name, entry, task.path),
       make: async (files) => {
         if (!(await this.#make(task, files))) isComplete = false;
       },
@@ -230,7 +230,7 @@ class Batch<T extends CaseKey> {
     const hasErrors = this.#count(task.name, entry).length > 0;
     if (isComplete) output.record(task, entry, read);
     else this.#incomplete += 1;
-    output.add(task.name, entry);
+    output.add(task.name, entry, task.path);
 
     for (const line of intakeLines(entry)) this.#intake.set(line, [...(this.#intake.get(line) ?? []), task.name]);
     const { rows = [], remarks = [] } = this.#linesOf(task, entry);

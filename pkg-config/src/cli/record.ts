@@ -39,7 +39,7 @@ interface RecordedEntry {
 }
 
 /** An entry of the record of a batch, with the case of the batch and the name of that case. */
-export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" | "entry"> {
+export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" | "path" | "entry"> {
   task: T | undefined;
 }
 
@@ -60,6 +60,7 @@ const NEWLINE = 0x0a;
 export class JsonlFile {
   /** The folder to which paths are relative; that of stdout is the current one. */
   readonly #folder: string;
+  readonly #relative: (path: string) => string;
   readonly #file: OutputFile;
   readonly #header: Readonly<Record<string, unknown>>;
   #isBegun = false;
@@ -78,17 +79,14 @@ export class JsonlFile {
   ) {
     const ordinary = isOrdinary(path);
     if (isResumed && !ordinary) throw new UsageError(`--resume needs a file: --jsonl ${path} is none.`);
-    this.#folder = path === "-" ? realPath(".") : dirname(realPath(path));
+    this.#folder = folderOf(path);
+    this.#relative = relativeTo(path);
     this.#header = { sim3align: version, ...header((file) => this.#relative(absolutePath(file))) };
     if (ordinary) this.#lock = lockRecord("--jsonl", path);
     if (ordinary && !isResumed && sizeOf(path) > 0) {
       throw new UsageError(`--jsonl ${path}: the file has content. Pass --resume to go on, or remove the file.`);
     }
     this.#file = new OutputFile(path, true);
-  }
-
-  #relative(path: string): string {
-    return relative(this.#folder, path).split(sep).join("/") || ".";
   }
 
   /** Adds a case that the file does not hold yet, with the checksums of the files that it was computed from. */
@@ -187,7 +185,8 @@ export class JsonlFile {
       }
       if (task !== undefined) this.#done.add(keyOf(task));
       // Another batch may have called another case so.
-      yield { task, entry, name: task?.name ?? (names.has(name) ? keyOf(recorded) : name) };
+      const path = task?.path ?? recorded.path;
+      yield { task, path, entry, name: task?.name ?? (names.has(name) ? keyOf(recorded) : name) };
     }
   }
 
@@ -265,6 +264,15 @@ function parsed(line: string): Entry | undefined {
   } catch {
     return undefined;
   }
+}
+
+/** The folder to which the paths in an output are relative; that of stdout is the current one. */
+const folderOf = (path: string) => (path === "-" ? realPath(".") : dirname(realPath(path)));
+
+/** Makes the paths of cases relative to the folder of an output. */
+export function relativeTo(output: string): (path: string) => string {
+  const folder = folderOf(output);
+  return (path) => relative(folder, path).split(sep).join("/") || ".";
 }
 
 const sizeOf = (path: string) => statOf(path)?.size ?? 0;

@@ -32,13 +32,14 @@ export async function trackJob(args: readonly string[], flags: Flags): Promise<J
 
 async function trackVideo(
   aligner: Aligner,
-  { name, folder }: FolderToDo,
+  { name, path, folder }: FolderToDo,
   flags: Flags,
   caseRun: CaseRun,
 ): Promise<Entry> {
   const { mesh, names, read, found } = await openFrames(folder, caseSettings(flags));
   const options = optionValues(flags, OPTIONS.track);
-  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
+  if (typeof options.initial === "string")
+    options.initial = await readTransform("initial", options.initial, { name, path });
   caseRun.found = found();
   const tracker = await aligner.track(mesh, options as TrackOptions);
   try {
