@@ -142,7 +142,10 @@ export class RunFiles {
       if (beginning === "" || isOwn === undefined || isOwn(beginning)) return;
       throw new UsageError(`${flag} ${path}: this file was not written by ${flag}. Remove it, or pass another name.`);
     };
-    if (isOwn !== undefined && isOwn !== isExport) return checkOwn();
+    if (isOwn !== undefined && isOwn !== isExport) {
+      checkOwn();
+      return;
+    }
     // The next run would read it.
     for (const folder of this.#whole) if (place.startsWith(`${folder}${sep}`)) refuse(folder);
     if (identity === undefined) return;
