@@ -79,7 +79,8 @@ test("--json has everything that align returns, and the proportions; --json - le
   const input = { depth: files["depth.npy"], mask: pixels, mesh: files["mesh.glb"], camera };
   const alignment = await aligner.align(input, { seed: 5, quality: "fast", proportions: "axes" });
   const { errors } = await aligner.evaluate(input, alignment, { truth });
-  const { errors: foundErrors, inputs, unread, ...found } = blob;
+  const { errors: foundErrors, inputs, unread, path, ...found } = blob;
+  assert.equal(path, "blob");
   const parts = { "depth.npy": "depth", "mask.png": "mask", "mesh.glb": "mesh" };
   for (const [name, part] of Object.entries({ ...parts, "camera.json": "camera", "gt.json": "truth" }))
     assert.equal(inputs[name].as, part);
@@ -210,7 +211,10 @@ test("evaluate scores the truth, a file, and what align wrote, and reports what 
   }
   // A case whose name is a field of transforms.
   cpSync(join(folder, "blob"), join(folder, "scale"), { recursive: true });
-  writeFileSync(join(folder, "named.json"), JSON.stringify({ scale: results("aligned.json").blob }));
+  writeFileSync(
+    join(folder, "named.json"),
+    JSON.stringify({ scale: { ...results("aligned.json").blob, path: "scale" } }),
+  );
   succeeds("evaluate scale --transform named.json");
   const failing: [args: string, code: string, message: RegExp][] = [
     ["nowhere", "FILE_NOT_FOUND", /nowhere/],

@@ -28,7 +28,7 @@ import { camera, jsonObject } from "./parse.js";
 import { pictureFiles } from "./pictures.js";
 import type { CaseKey } from "./record.js";
 import { lockOf } from "./record-lock.js";
-import { type OutputName, RunFiles } from "./run-files.js";
+import { isExport, type OutputName, RunFiles } from "./run-files.js";
 import { sceneJob } from "./scene.js";
 import { trackJob } from "./track.js";
 
@@ -193,7 +193,8 @@ export async function runCommand(command: CommandRow, args: readonly string[], f
     ...(command.writes?.(args, flags) ?? []),
     ...(isOrdinary(jsonl) ? [lockOf(jsonl)] : []),
   ];
-  files.check(outputs);
+  // An input, which is not known yet, is named as such, rather than as a file of another program.
+  files.check(outputs.map(({ isOwn, ...output }) => (isOwn === isExport ? output : { ...output, isOwn })));
   const job = await command.prepare(args, flags, files);
   const inputs = [...new Set(job.folders)].map((path) => ({
     flag: argument,

@@ -9,7 +9,7 @@ import { withoutUndefined } from "../values/validation.js";
 import { UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
 import { isCsv, isResults } from "./result-files.js";
-import type { NamedFile, OutputName } from "./run-files.js";
+import { isExport, type NamedFile, type OutputName } from "./run-files.js";
 
 /** Settings of a flag. */
 interface FlagSettings {
@@ -38,6 +38,8 @@ export type Flag = readonly [flag: string, meaning: string, facts?: FlagSettings
 
 export const reads = { use: "reads" } as const;
 export const writes = { use: "writes" } as const;
+/** Outputs that name the package, and that replace only each other. */
+const exports = { ...writes, isOwn: isExport } as const;
 /** A file of one case, which does not belong to the settings of a batch. */
 export const ofCase = { use: "reads", isIndifferent: true } as const;
 
@@ -105,8 +107,8 @@ export const pictureFlags: readonly Flag[] = [
     "write a page with a table, pictures and a 3D view of each case",
     { ...writes, holds: ["index.html", "rows.js"] },
   ],
-  ["--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh", writes],
-  ["--glb <folder>", "write the posed mesh of each case as a GLB file", writes],
+  ["--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh", exports],
+  ["--glb <folder>", "write the posed mesh of each case as a GLB file", exports],
   ["--upright", "give the meshes in exported files upright frames: up along the support, a tight box"],
 ];
 
@@ -121,18 +123,18 @@ export const caseFlags: readonly Flag[] = [
 
 /** Files of a whole scene, of which there is one. */
 export const sceneFileFlags: readonly Flag[] = [
-  ["--scene-glb <file>", "write the scene as one GLB file", writes],
+  ["--scene-glb <file>", "write the scene as one GLB file", exports],
   [
     "--mjcf <folder>",
     "write the scene for MuJoCo: scene.xml and meshes",
-    { ...writes, holds: ["meshes", "scene.xml"] },
+    { ...exports, holds: ["meshes", "scene.xml"] },
   ],
   [
     "--urdf <folder>",
     "write the scene as URDF: a file per object, scene.json, load.py for PyBullet",
-    { ...writes, holds: ["meshes", "scene.json"] },
+    { ...exports, holds: ["meshes", "scene.json"] },
   ],
-  ["--usd <file>", "write the scene as USD with physics (.usda)", writes],
+  ["--usd <file>", "write the scene as USD with physics (.usda)", exports],
   ["--density <kg/m³>", `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`, { parse: number }],
   [
     "--parts <n>",

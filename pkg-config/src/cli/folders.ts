@@ -21,7 +21,11 @@ export interface FolderKind {
   is(folder: string): boolean;
 }
 
-const hasMesh = (folder: string) => namesIn(folder).some((name) => partOf(name) === "mesh");
+const hasMesh = (folder: string) => {
+  const names = namesIn(folder);
+  // A mesh, or the folders of FoundationPose.
+  return names.some((name) => partOf(name) === "mesh") || (names.includes("mesh") && names.includes("depth"));
+};
 
 export const caseKind: FolderKind = { noun: "case", mark: "a mesh", is: hasMesh };
 export const videoKind: FolderKind = { noun: "video", mark: "a mesh", is: hasMesh };
