@@ -9,6 +9,7 @@ import { type CameraFileNames, noCamera } from "./camera-errors.js";
 import { type StatedUnit, unitOf } from "./depth-unit.js";
 import { imageCamera, inPixels } from "./image-camera.js";
 import { intrinsicsOf, type StatedCamera, sizeOf } from "./intrinsics.js";
+import { isOther } from "./keys.js";
 import { type CameraPlace, camerasOf } from "./statements.js";
 
 /** The content of a camera file. */
@@ -47,8 +48,12 @@ export interface OpenCameraFile {
   of(image: ImageSize | undefined): CameraFile;
 }
 
-/** Keys that a sentence names at most. */
+/** More cameras than images of any scene of a data set. */
+const MAX_CAMERAS = 1 << 16;
+
+/** Keys that a sentence names at most, and that are looked up for it. */
 const MAX_NAMED = 8;
+const MAX_LOOKED_UP = 1000;
 
 /**
  * Reads a camera file, JSON, text or NPY, each with or without the size of the image: what the table of keys in `keys.ts` and
@@ -74,11 +79,16 @@ export async function openCameraFile(
   names: CameraFileNames = { file: "camera", options: "options." },
 ): Promise<OpenCameraFile> {
   const id = idOf(names, imageId);
-  const json = await contentOf(names.file, content);
-  const isList = Array.isArray(json) && json.some(isRecord);
-  const places = camerasOf(isList ? { cameras: json } : Array.isArray(json) ? { K: json } : isRecord(json) ? json : {});
+  const whole = await contentOf(names.file, content);
+  if (!isRecord(whole) && !Array.isArray(whole)) throw noCamera(names, "JSON that is not an object");
+  const json = entryOf(whole, id);
+  const places = camerasOf(json);
+  if (places.length > MAX_CAMERAS) {
+    const remedy = "Pass the entry of one image.";
+    throw failure("FILE_TOO_LARGE", names.file, `${places.length} cameras`, `at most ${MAX_CAMERAS}`, remedy);
+  }
   if (places.length === 0) {
-    throw noCamera(names, isRecord(json) ? `an object with ${keysText(json)}` : "JSON that is not an object");
+    throw noCamera(names, `an object with ${keysText(json)}`);
   }
 
   return {
@@ -102,6 +112,13 @@ export async function openCameraFile(
       };
     },
   };
+}
+
+/** The content as an object: of BOP's many images only that of the id, and what is a list by a name. */
+function entryOf(json: Record<string, unknown> | unknown[], id: string | undefined): Record<string, unknown> {
+  if (Array.isArray(json)) return json.some(isRecord) ? { cameras: json } : { K: json };
+  const entry = id !== undefined && /^\d+$/.test(id) ? json[id] : undefined;
+  return id !== undefined && isRecord(entry) ? { [id]: entry } : json;
 }
 
 /** The intrinsics for an image, and its size; without an image, as the file has them. */
@@ -207,7 +224,8 @@ function commonUnit(places: readonly CameraPlace[], names: CameraFileNames): Sta
 /** What a camera states besides, as a sentence. */
 function unreadOf({ facts }: CameraPlace, file: string): string | undefined {
   const up = facts.find(({ meaning }) => meaning === "up");
-  const unknown = facts.filter(({ meaning }) => meaning === undefined).map(({ path }) => path);
+  const other = facts.filter(({ meaning }) => meaning === undefined).slice(0, MAX_LOOKED_UP);
+  const unknown = other.filter(({ key, value }) => !isOther(key, value)).map(({ path }) => path);
   const sentences = [
     ...(unknown.length === 0 ? [] : [`${listOf(unknown)}: numbers whose meaning is not known.`]),
     ...(up === undefined ? [] : [`${up.path}: pass it as the option cameraUp, with meshUp, if it is to count.`]),

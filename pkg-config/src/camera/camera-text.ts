@@ -6,10 +6,12 @@ import { npyNumbers } from "./npy-numbers.js";
 
 type Content = Record<string, unknown>;
 
-/** Longest text of a camera file. */
-const MAX_TEXT = 1 << 16;
+/** Longest text of a camera file, of one in XML, and longest line that may hold several values. */
+const MAX_TEXT = 1 << 18;
+const MAX_XML = 1 << 16;
+const MAX_LINE = 1 << 12;
 
-const numeral = "[-+]?(?:\\d+\\.?\\d*|\\.\\d+)(?:e[-+]?\\d+)?";
+const numeral = "[-+]?(?:\\d{1,40}(?:\\.\\d{0,40})?|\\.\\d{1,40})(?:e[-+]?\\d{1,4})?";
 const ending = "(?![\\w.])";
 
 /**
@@ -18,11 +20,10 @@ const ending = "(?![\\w.])";
  * @throws {@link Sim3AlignError} `UNSUPPORTED_FORMAT` for a form that is not known, `broken` for broken JSON
  */
 export function cameraContent(argument: string, content: Uint8Array | string, broken: unknown): unknown {
-  if (content.length > MAX_TEXT) throw broken;
   const beginning = typeof content === "string" ? "" : String.fromCharCode(...content.subarray(0, 6));
   if (beginning === "\x93NUMPY") return ofArray(argument, content as Uint8Array);
   const text = (typeof content === "string" ? content : new TextDecoder().decode(content)).replace(/^\ufeff/, "");
-  const read = cameraText(text);
+  const read = text.length > MAX_TEXT ? undefined : cameraText(text);
   if (read !== undefined) return read;
   if (/^\s*[{[]/.test(text)) throw broken;
   const first = text.trim().slice(0, 40).replace(/\s+/g, " ");
@@ -55,8 +56,18 @@ function ofArray(argument: string, bytes: Uint8Array): unknown {
   throw failure("UNSUPPORTED_FORMAT", argument, `an NPY file ${what}`, "one matrix K", remedy);
 }
 
-/** The camera in a text; `undefined` if it is another text. */
+/** The camera in a text; `undefined` if it is another text, or nested too deep. */
 function cameraText(text: string): unknown {
+  try {
+    return textOfForms(text);
+  } catch (error) {
+    if (error instanceof RangeError) return undefined;
+    throw error;
+  }
+}
+
+/** The content of a text in the form that it has. */
+function textOfForms(text: string): unknown {
   const content = text.replace(/^%YAML.*$/gm, "").replace(/(^|\s)(#|\/\/).*$/gm, "");
   return (
     ofXml(text) ??
@@ -82,7 +93,7 @@ function numbersIn(text: string): number[] | undefined {
 /** A matrix, with the baseline of a pair of cameras behind it or not; four numbers; or these with the size of the image. */
 function ofNumbers(text: string): unknown {
   // Spreadsheets name their columns.
-  const header = /^\s*f_?x\W+f_?y\W+c_?x\W+c_?y\W*$/im.exec(text)?.[0] ?? "";
+  const header = /^[ \t]*f_?x\W+f_?y\W+c_?x\W+c_?y\W*$/im.exec(text)?.[0] ?? "";
   const numbers = numbersIn(text.replace(header, ""));
   if (numbers === undefined) return undefined;
   const [a = 0, b = 0, c = 0, d = 0, e = 0, f = 0] = numbers;
@@ -101,7 +112,7 @@ function ofPython(text: string): unknown {
   if (!/^\s*[{[]/.test(text)) return undefined;
   const json = text
     .replace(/\b(?:np\.|numpy\.)?(?:array|float\d*)\(/g, "(")
-    .replace(/,?\s*dtype=\w+/g, "")
+    .replace(/,? ?dtype=\w+/g, "")
     .replace(/[()]/g, (bracket) => (bracket === "(" ? "[" : "]"))
     .replaceAll("'", '"')
     .replace(/([{,]\s*)([A-Za-z_]\w*)\s*:/g, '$1"$2":')
@@ -140,7 +151,9 @@ function colmap(text: string): Content | undefined {
 /** What librealsense prints: `[ 640x480  p[320 240]  f[600 600]  Brown Conrady [0 0 0 0 0] ]`. */
 function realSense(text: string): Content | undefined {
   const [, width, height, p = "", f = "", model, D = ""] =
-    /^\W*(\d+)x(\d+)\s+p\[([^\]]*)\]\s+f\[([^\]]*)\]\s+([\w ]*?)\s*\[([^\]]*)\]\W*$/.exec(text.trim()) ?? [];
+    /^\[? ?(\d+)x(\d+) p\[([^\]]*)\] f\[([^\]]*)\] ([\w ]*?) ?\[([^\]]*)\] ?\]?$/.exec(
+      text.trim().replace(/\s+/g, " "),
+    ) ?? [];
   if (width === undefined) return undefined;
   const size = { width: Number(width), height: Number(height) };
   return { ...size, principal_point: numbersIn(p), focal: numbersIn(f), model, coeffs: numbersIn(D) ?? [] };
@@ -148,7 +161,7 @@ function realSense(text: string): Content | undefined {
 
 /** Elements with text or elements in them, as OpenCV's FileStorage writes XML; attributes do not matter. */
 function ofXml(text: string): Content | undefined {
-  if (!/^\s*<[?\w!]/.test(text)) return undefined;
+  if (text.length > MAX_XML || !/^\s*<[?\w!]/.test(text)) return undefined;
   const element = /<([A-Za-z_][\w.-]*)[^>]*>([\s\S]*?)<\/\1>/g;
   const elementValue = (inner: string): unknown => {
     const parts = [...inner.matchAll(element)];
@@ -189,7 +202,7 @@ type Block<T> = [value: T, next: number];
 const isItem = (line: Line | undefined): boolean => line !== undefined && /^-(\s|$)/.test(line.line);
 
 /** A mapping of YAML, or the lines of a section of INI. */
-function mapping(lines: readonly Line[], begin: number, indent: number, isSection: boolean): Block<Content> {
+function mapping(lines: Line[], begin: number, indent: number, isSection: boolean): Block<Content> {
   const value: Content = {};
   let at = begin;
   for (let line = lines[at]; line !== undefined && line.indent >= indent; line = lines[at]) {
@@ -210,7 +223,7 @@ function mapping(lines: readonly Line[], begin: number, indent: number, isSectio
 }
 
 /** What is below a key: a list, whose items may stand below the key itself, or a mapping. */
-function block(lines: readonly Line[], at: number, indent: number): Block<unknown> {
+function block(lines: Line[], at: number, indent: number): Block<unknown> {
   const line = lines[at];
   if (line === undefined) return ["", at];
   if (isItem(line) && line.indent >= indent) return list(lines, at, line.indent);
@@ -218,15 +231,15 @@ function block(lines: readonly Line[], at: number, indent: number): Block<unknow
 }
 
 /** A list of YAML, whose items are values, lists or mappings. */
-function list(lines: readonly Line[], begin: number, indent: number): Block<unknown[]> {
+function list(lines: Line[], begin: number, indent: number): Block<unknown[]> {
   const values: unknown[] = [];
   let at = begin;
   for (let line = lines[at]; line !== undefined && isItem(line) && line.indent === indent; line = lines[at]) {
     const item = { indent: indent + 2, line: line.line.slice(1).trim() };
     const isBlock = isItem(item) || /^["']?[A-Za-z_][\w. -]*["']?:(\s|$)/.test(item.line);
     if (!isBlock) values.push(scalar(item.line));
-    const below = [...lines.slice(0, at), item, ...lines.slice(at + 1)];
-    const [value, next] = isBlock ? block(below, at, indent + 1) : [undefined, at + 1];
+    lines[at] = item;
+    const [value, next] = isBlock ? block(lines, at, indent + 1) : [undefined, at + 1];
     if (isBlock) values.push(value);
     // An item that cannot be read would never end.
     if (next === at) break;
@@ -261,19 +274,24 @@ function ofStereo(content: Content | undefined): Content | undefined {
 /** Lines with their indentation, those of an open bracket joined, up to the end of the first document of YAML. */
 function linesOf(text: string): Line[] {
   const lines: Line[] = [];
-  let joined = "";
+  let joined: string[] = [];
+  let [indent, open] = [0, 0];
   for (const raw of text.split(/\r?\n/)) {
     if (/^(---|\.\.\.)/.test(raw) && lines.length > 0) break;
-    if (raw.trim() === "" || raw.startsWith("---") || /^\s*;/.test(raw)) continue;
-    joined = joined === "" ? raw : `${joined} ${raw.trim()}`;
-    if ((joined.match(/[[{(]/g)?.length ?? 0) > (joined.match(/[\]})]/g)?.length ?? 0)) continue;
-    const indent = joined.search(/\S/);
+    const line = raw.trim().replace(/\s+/g, " ");
+    if (line === "" || raw.startsWith("---") || line.startsWith(";")) continue;
+    if (joined.length === 0) indent = raw.search(/\S/);
+    joined.push(line);
+    open += (line.match(/[[{(]/g)?.length ?? 0) - (line.match(/[\]})]/g)?.length ?? 0);
+    if (open > 0) continue;
+    const whole = joined.join(" ");
     // Several pairs in a line, unless they are in brackets.
-    const parts = /[{]/.test(joined)
-      ? [joined]
-      : joined.split(/[,;]?\s+(?=[A-Za-z_][\w.]*\s*[:=]\s*[^\s:=])(?![^[]*\])/);
+    const parts =
+      whole.includes("{") || whole.length > MAX_LINE
+        ? [whole]
+        : whole.split(/[,;]? (?=[A-Za-z_][\w.]* ?[:=] ?[^ :=])(?![^[]*\])/);
     lines.push(...parts.filter((part) => part.trim() !== "").map((part) => ({ indent, line: part.trim() })));
-    joined = "";
+    [joined, open] = [[], 0];
   }
   return lines;
 }

@@ -1,12 +1,12 @@
 /** The keys of camera files: one table, from which they are read. */
 
-/** What a key says; `other` does not matter for intrinsics. */
+/** What a key says. */
 export type Meaning =
   | ("fx" | "fy" | "cx" | "cy" | "focal" | "center" | "matrix" | "skew" | "focalUncertainty")
   | ("width" | "height" | "size" | "shape" | "region" | "binningX" | "binningY")
   | ("fovX" | "fovY" | "fov" | "apertureX" | "apertureY" | "aperture")
   | ("metresPerUnit" | "unitsPerMetre" | "depthScale" | "scale" | "unit")
-  | ("distortion" | "coefficient" | "model" | "up" | "other");
+  | ("distortion" | "coefficient" | "model" | "up");
 
 /**
  * Meaning, keys, programs that write them. Keys are in lower case, without other signs than letters and digits; {@link meaningOf}
@@ -108,9 +108,14 @@ const numbered = /^([kmd])([12])$/;
 
 const withoutCamera = (name: string) => name.replace(/^cam(era)?/, "");
 
-/** Whether a key has no bearing on intrinsics. */
-const isOther = (name: string, value: unknown): boolean =>
-  otherKeys.test(name) && !(typeof value === "number" && otherLists.test(name));
+const plain = (key: string) => key.toLowerCase().replace(/[^a-z0-9]/g, "");
+
+/** Whether a key that is not in the table has no bearing on intrinsics. */
+export function isOther(key: string, value: unknown): boolean {
+  const isNumber = typeof value === "number";
+  const name = plain(key);
+  return [name, withoutCamera(name)].some((one) => otherKeys.test(one) && !(isNumber && otherLists.test(one)));
+}
 
 /** What a key that is not in the table says by the words in it. */
 function likeness(name: string, value: unknown): Meaning | undefined {
@@ -119,11 +124,30 @@ function likeness(name: string, value: unknown): Meaning | undefined {
   return /depth/.test(name) && /scale|factor|unit|divi|multipl/.test(name) ? "depthScale" : undefined;
 }
 
-/** What a key says, and of which of several cameras, if it says so; `undefined` for an unknown key. */
-export function meaningOf(key: string, value: unknown): { meaning: Meaning; camera?: string } | undefined {
+/** What a key says, and of which of several cameras, if it says so. */
+interface KeyMeaning {
+  meaning: Meaning;
+  camera?: string;
+}
+
+/** The keys that were looked up: files of many images have the same ones again and again. */
+const known = new Map<string, KeyMeaning | undefined>();
+const MAX_KNOWN = 1000;
+
+/** What a key says; `undefined` for an unknown key. */
+export function meaningOf(key: string, value: unknown): KeyMeaning | undefined {
+  const place = `${Array.isArray(value) ? "list" : typeof value} ${key}`;
+  if (known.has(place)) return known.get(place);
+  const meaning = lookedUp(key, value);
+  if (known.size < MAX_KNOWN && key.length < 100) known.set(place, meaning);
+  return meaning;
+}
+
+/** What a key says, as far as it is known, and of which of several cameras, if it says so. */
+function lookedUp(key: string, value: unknown): KeyMeaning | undefined {
   // Our own is metres per unit; that of others may be anything.
   if (key === "depthScale") return { meaning: "metresPerUnit" };
-  const name = key.toLowerCase().replace(/[^a-z0-9]/g, "");
+  const name = plain(key);
   const [, letter, digit] = (Array.isArray(value) && numbered.exec(name)) || [];
   if (letter !== undefined) return { meaning: letter === "d" ? "distortion" : "matrix", camera: `camera${digit}` };
   const meaning = byKey.get(name) ?? byKey.get(withoutCamera(name));
@@ -131,7 +155,6 @@ export function meaningOf(key: string, value: unknown): { meaning: Meaning; came
   const camera = role.exec(name)?.[0];
   const ofCamera = camera === undefined ? undefined : byKey.get(withoutCamera(name.replace(camera, "")));
   if (camera !== undefined && ofCamera !== undefined) return { meaning: ofCamera, camera };
-  if (isOther(name, value) || isOther(withoutCamera(name), value)) return { meaning: "other" };
   const similar = likeness(name, value);
-  return similar === undefined ? undefined : { meaning: similar };
+  return similar === undefined || isOther(key, value) ? undefined : { meaning: similar };
 }

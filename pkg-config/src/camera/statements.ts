@@ -1,9 +1,9 @@
 /** What a camera file states: its cameras, each with the facts that hold for it. */
 import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
-import { type Meaning, meaningOf } from "./keys.js";
+import { isOther, type Meaning, meaningOf } from "./keys.js";
 
-/** A key with its value; `meaning` is `undefined` for a key with numbers that is unknown. */
+/** A key with its value; `meaning` is `undefined` for a key with numbers that is not in the table. */
 export interface Fact {
   meaning: Meaning | undefined;
   /** The key as the file has it. */
@@ -74,13 +74,16 @@ function nodeOf(record: Record<string, unknown>, names: readonly string[], path:
 /** Adds what a key states to an object: a fact, or other objects. */
 function addTo(node: Node, key: string, value: unknown, path: string): void {
   const known = meaningOf(key, value);
-  const names = [...node.names, key];
-  if (known?.meaning === "other" || names.length > MAX_LEVELS) return;
+  if (node.names.length >= MAX_LEVELS) return;
   const inner = isRecord(value) ? valueIn(value, known?.meaning) : value;
-  if (isRecord(value) && inner === undefined) {
-    node.children.push(nodeOf(value, names, `${path}.`, /^\d+$/.test(key)));
-  } else if (Array.isArray(inner) && inner.some((item) => isRecord(item) || holdsRecord(item))) {
-    node.children.push(...listed(inner, names, path));
+  const isPart = isRecord(value) && inner === undefined;
+  if (isPart || (Array.isArray(inner) && inner.some((item) => isRecord(item) || holdsRecord(item)))) {
+    if (known === undefined && isOther(key, value)) return;
+    const names = [...node.names, key];
+    const parts = isPart
+      ? [nodeOf(value, names, `${path}.`, /^\d+$/.test(key))]
+      : listed(inner as unknown[], names, path);
+    for (const part of parts) node.children.push(part);
   } else {
     const meaning = known?.meaning ?? (looksLikeMatrix(numbersOf(inner) ?? []) ? "matrix" : undefined);
     if (meaning === undefined && (!hasNumbers(inner) || isZero(inner))) return;
@@ -121,37 +124,38 @@ function childOf(node: Node, name: string): Node {
 const strong: ReadonlySet<Meaning | undefined> = new Set<Meaning>(["fx", "focal", "matrix"]);
 const weak: ReadonlySet<Meaning | undefined> = new Set<Meaning>(["fovX", "fovY", "fov"]);
 
-/** The outermost objects with facts of these meanings, each with the objects around it. */
-function camerasIn(node: Node, meanings: typeof strong, around: readonly Node[] = []): Node[][] {
-  const here = [...around, node];
-  if (node.facts.some(({ meaning }) => meanings.has(meaning))) return [here];
-  return node.children.flatMap((child) => camerasIn(child, meanings, here));
-}
+/** Facts of the objects around a camera that count for it, with a meaning and without: more are in no file of cameras. */
+const MAX_SHARED = 32;
 
-/** The facts of an object and of those in it that are no cameras themselves. */
-function factsOf(node: Node, isCamera: (node: Node) => boolean): Fact[] {
-  const parts = node.children.filter((child) => !isCamera(child));
-  const inner = parts.flatMap((child) => factsOf(child, isCamera));
-  // Of the entries of a list, what is unknown is not of the camera.
-  return [...node.facts, ...inner].filter(({ meaning }) => meaning !== undefined || !node.isListed || isCamera(node));
+const isAny = (node: Node, meanings: typeof strong) => node.facts.some(({ meaning }) => meanings.has(meaning));
+
+/** Whether an object inside a camera is another one. */
+const isOtherCamera = (node: Node): boolean =>
+  node.isListed || isAny(node, strong) || node.children.some(isOtherCamera);
+
+/** The facts of an object and of its parts. */
+const factsOf = (node: Node): Fact[] => [
+  ...node.facts,
+  ...node.children.flatMap((child) => (isOtherCamera(child) ? [] : factsOf(child))),
+];
+
+/** The outermost cameras in an object, each with the facts of what is around it. */
+function camerasIn(node: Node, meanings: typeof strong): CameraPlace[] {
+  if (isAny(node, meanings)) return [{ names: node.names, facts: factsOf(node) }];
+  const inner = node.children.map((child) => ({ child, cameras: camerasIn(child, meanings) }));
+  const around = inner.flatMap(({ child, cameras }) => (cameras.length > 0 ? [] : factsOf(child)));
+  const cameras = inner.flatMap((part) => part.cameras);
+  if (cameras.length === 0) return [];
+  const all = [...node.facts, ...around];
+  const shared = [true, false].flatMap((hasMeaning) =>
+    all.filter(({ meaning }) => (meaning !== undefined) === hasMeaning).slice(0, MAX_SHARED),
+  );
+  return shared.length === 0 ? cameras : cameras.map(({ names, facts }) => ({ names, facts: [...facts, ...shared] }));
 }
 
 /** All cameras that the content of a file states. */
 export function camerasOf(content: Record<string, unknown>): CameraPlace[] {
   const root = nodeOf(content, [], "");
   const found = camerasIn(root, strong);
-  const places = found.length > 0 ? found : camerasIn(root, weak);
-  const cameras = new Set(places.map((path) => path.at(-1)));
-  const holds = (node: Node): boolean => cameras.has(node) || node.children.some(holds);
-  return places.map((path) => {
-    const own = path.at(-1) as Node;
-    const facts = [...path]
-      .reverse()
-      .flatMap((node) => factsOf(node, node === own ? (child) => child !== own && strongIn(child) : holds));
-    return { names: own.names, facts };
-  });
+  return found.length > 0 ? found : camerasIn(root, weak);
 }
-
-/** Whether an object inside a camera is another one. */
-const strongIn = (node: Node): boolean =>
-  node.isListed || node.facts.some(({ meaning }) => strong.has(meaning)) || node.children.some(strongIn);
