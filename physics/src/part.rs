@@ -103,7 +103,7 @@ pub fn convex_parts(mesh: &Mesh, volume: Option<f64>, most: usize) -> Vec<Convex
     let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
     // All of a flat mesh is one plate.
     let Some(hull) = ConvexPart::hull(&points) else {
-        return thickened(&points, f64::from(mesh.diagonal())).into_iter().collect();
+        return thickened(&points, mesh.diagonal()).into_iter().collect();
     };
     if most <= 1 || volume.is_some_and(|volume| volume > CONVEX * hull.volume()) {
         return vec![hull];

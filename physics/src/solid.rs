@@ -32,7 +32,7 @@ impl Solid {
         let mut corners: Vec<[DVec3; 3]> = mesh.triangles().iter().map(|t| t.map(corner)).collect();
         let volume =
             corners.iter().map(|t| t.map(|p| p - center)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum::<f64>();
-        if volume.abs() <= LEAST * f64::from(mesh.diagonal()).powi(3) {
+        if volume.abs() <= LEAST * mesh.diagonal().powi(3) {
             return None;
         }
         if volume < 0.0 {

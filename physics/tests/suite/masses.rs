@@ -154,7 +154,7 @@ fn walls_without_thickness_have_parts() {
     for finer in [0, 3] {
         let mesh = crate_of(finer);
         let parts = convex_parts(&mesh, None, 16);
-        let cell = f64::from(mesh.diagonal()) / 64.0;
+        let cell = mesh.diagonal() / 64.0;
         let (mut near, mut count) = (0, 0);
         for triangle in mesh.triangles() {
             let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize].as_dvec3());
