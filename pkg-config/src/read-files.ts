@@ -7,8 +7,8 @@ import { fileNotFound } from "./case-files.js";
 import { failure, Sim3AlignError } from "./values/error.js";
 import { oncePerKey } from "./values/validation.js";
 
-/** The largest file that Node reads at once, bytes. */
-const LARGEST = 2 ** 31 - 1;
+/** The largest file that the readers take, bytes. */
+const LARGEST = 2 ** 30;
 
 /** Checksums of files by their absolute paths. */
 export type Checksums = Map<string, string>;

@@ -208,6 +208,19 @@ test("cases that have changed since are done again, and the last line counts", (
   assert.ok(Math.abs(results("loop.json").loop.scale / truth.scale - 0.5) < 0.02);
 });
 
+test("check reads cases without aligning them", () => {
+  writeCase("sound", files);
+  writeCase("doubtful", { ...files, "mask.png": maskPng(new Uint8Array(160 * 120).fill(1), 160, 120) });
+  const { status, stdout } = run("check", "sound", "doubtful", "a", 'x, "y"', "--json", "checked.json");
+  assert.equal(status, 1);
+  assert.match(stdout, /^sound: can be aligned$/m);
+  assert.match(stdout, /^doubtful: .*MASK_COVERS_IMAGE/m);
+  assert.match(stdout, /failed x, "y": FILE_NOT_FOUND/);
+  const { doubtful, sound } = results("checked.json");
+  assert.deepEqual([sound.warnings, doubtful.inputs["mask.png"].as], [[], "mask"]);
+  assert.equal(run("check", "sound").status, 0);
+});
+
 test("a transform is that of the case by its path, not of another one by its name", () => {
   for (const name of ["here/x", "there/x"]) writeCase(name, complete);
   succeeds(`align here/x ${quick.join(" ")} --jsonl here.jsonl --json here.json`);

@@ -97,7 +97,8 @@ function refuseParent({ noun, is }: FolderKind, folder: string): void {
 }
 
 /** Expands a pattern that the shell did not expand. What exists is no pattern. */
-function expanded({ mark, is }: FolderKind, arg: string): string[] {
+function expanded({ noun, mark, is }: FolderKind, arg: string): string[] {
+  if (arg === "") throw new UsageError(`An empty argument is no ${noun} folder; "." is the current one.`);
   const pattern = process.platform === "win32" ? arg.replaceAll("\\", "/") : arg;
   if (!isPattern(pattern) || existsSync(arg)) return [arg];
   const { folders, unread } = matchingFolders(pattern);

@@ -82,6 +82,7 @@ const columns = csvHeadings.join(", ").replace(/(.{80,100}), /g, "$1,\n  ");
 export const programHelp = `
 Examples
   sim3align align cases/mug                      align one case and show everything about it
+  sim3align check 'cases/**'                     read all cases, and name what would fail or be doubted
   sim3align align cases/* --json results.json    align several cases; print a table and write a JSON file
   sim3align scene scenes/desk --scene-glb desk.glb     align all objects of a scene; write it as one file
   sim3align track videos/mug                     track an object through the frames of a video
@@ -143,6 +144,18 @@ Examples
   sim3align track videos/mug --json poses.json
   sim3align track 'videos/**' --jsonl videos.jsonl --resume --workers 4
   sim3align track videos/mug --known-extent 0.095 --known-extent-axis y
+${status}`;
+
+export const checkHelp = `${caseFolder}
+
+Output
+  A line per case, or per frame with a mask: that it can be aligned, its error, or a line for each doubt about depth, mask,
+  camera and mesh file that reading alone can tell. --json writes { "<case>": { warnings, inputs, unread } or { error } }.
+
+Examples
+  sim3align check cases/mug
+  sim3align check 'cases/**' --json checked.json
+  sim3align check --list cases.txt --depth-scale 0.0002
 ${status}`;
 
 export const evaluateHelp = `${caseFolder}

@@ -38,7 +38,7 @@ export interface SimulatorOptions {
   support?: (Plane & { confidence?: number | undefined }) | null | undefined;
   /** The camera. */
   camera?: SceneCamera | undefined;
-  /** Mass per volume of the convex parts, kg/m³. Default {@link SIMULATOR_DEFAULTS}: household things are mostly hollow. */
+  /** Mass per volume that a mesh encloses, or of the convex parts of an open one, kg/m³. Default {@link SIMULATOR_DEFAULTS}: household things are mostly hollow. */
   density?: number | undefined;
   /** Most convex parts of a body; 1 is the convex hull. */
   maxParts?: number | undefined;
