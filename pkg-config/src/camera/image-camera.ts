@@ -102,7 +102,7 @@ function turnedCamera({ fx, fy, cx, cy }: Pinhole, { width, height }: ImageSize)
   const camera = { fx: fy, fy: fx, cx: width - 1 - cy, cy: cx };
   // The other direction differs by twice the distance from the centre.
   const difference = Math.round(2 * Math.hypot(camera.cx - 0.5 * (width - 1), camera.cy - 0.5 * (height - 1)));
-  const doubt = `The principal point (${Math.round(cx)}, ${Math.round(cy)}) is that of an image of ${height} × ${width} pixels, turned by 90° against the depth map of ${width} × ${height}: x and y are swapped. The intrinsics were turned clockwise; after a turn to the other side, the principal point differs by ${difference} pixels. Pass the intrinsics of the image as it is.`;
+  const doubt = `The principal point (${Math.round(cx)}, ${Math.round(cy)}) fits an image turned by 90°, of ${height} × ${width} pixels: x and y were swapped (clockwise; to the other side, it differs by ${difference} pixels). Pass those of the image as it is.`;
   return { camera, doubts: [doubt] };
 }
 
@@ -120,5 +120,5 @@ export function doubtOfSize(camera: Pinhole, { width, height }: ImageSize): stri
   const place = isOutside
     ? "outside the image"
     : `${Math.round(100 * x)} % of the way across and ${Math.round(100 * y)} % down the image`;
-  return `The principal point (${Math.round(cx)}, ${Math.round(cy)}) is ${place} of ${width} × ${height} pixels: the intrinsics seem to be those of an image of another size. State the width and height of that image beside them, and they are scaled; for a crop, state the size of the crop.`;
+  return `The principal point (${Math.round(cx)}, ${Math.round(cy)}) is ${place} of ${width} × ${height} pixels: the intrinsics seem to be those of an image of another size. State its width and height beside them; for a crop, those of the crop.`;
 }

@@ -42,9 +42,6 @@ const warningsOf = (code: Warning["code"], messages: readonly string[]): Warning
 const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
 const fileRemedy = "Pass the content of a camera file as cameraFile.";
 
-/** Property names of camera files only. */
-const fileProperties = ["cam_K", "k", "d", "D", "intrinsic_matrix", "ppx", "ppy", "fov_y_deg", "depth_scale"];
-
 /** `readCamera` adds what it found besides to the intrinsics of a camera file. */
 const cameraProperties = [
   ...["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "focalUncertainty"],
@@ -66,8 +63,7 @@ function statedCamera(camera: unknown): Camera {
   if (!isRecord(camera)) throw invalidArgument("camera", camera, forms, fileRemedy);
   const other = Object.keys(camera).find((name) => !cameraProperties.includes(name));
   if (other !== undefined) {
-    const isFile = isRecord(camera[other]) || fileProperties.includes(other);
-    const remedy = isFile ? fileRemedy : `Rename or omit \`${other}\`; lengths are in pixels.`;
+    const remedy = `Rename or omit \`${other}\`; lengths are in pixels. ${fileRemedy}`;
     throw invalidArgument("camera", camera, forms, remedy);
   }
   const { width, height, depthScale, warnings, doubts, unread } = camera as Partial<ImageSize> &
