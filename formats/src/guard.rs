@@ -1,5 +1,6 @@
 //! Size limits of the readers, and their errors.
 
+use crate::text::quoted;
 use sim3align_geometry::image::check_not_empty;
 use sim3align_runtime::error::{Error, ErrorCode, Result, Text};
 
@@ -51,6 +52,29 @@ pub(crate) fn unsupported(
     remedy: impl Into<Text>,
 ) -> Error {
     Error::new(ErrorCode::UnsupportedFormat, argument.to_owned(), found, expected, remedy)
+}
+
+/// Names in a file that its reader does not know: the first few, once each.
+#[derive(Debug, Default)]
+pub(crate) struct Unknown(Vec<String>);
+
+impl Unknown {
+    /// Adds a name.
+    pub fn insert(&mut self, name: &[u8]) {
+        const MOST: usize = 8;
+        if self.0.len() < MOST {
+            let name = quoted(name);
+            if !self.0.contains(&name) {
+                self.0.push(name);
+            }
+        }
+    }
+
+    /// The sentence about them, if there are any; `what` they are.
+    pub fn named(&self, what: &str) -> Vec<String> {
+        let sentence = || format!("The mesh file holds {what} {}: not read, their meaning is not known.", self.0.join(", "));
+        (!self.0.is_empty()).then(sentence).into_iter().collect()
+    }
 }
 
 /// The number of pixels, or an error if the size is 0 or exceeds the limit.

@@ -49,7 +49,7 @@ fn external_buffers_come_from_the_caller() {
         "gltf_buffer_1.bin" => Some(fixture!("mesh-external-gltf_buffer_1.bin").to_vec()),
         _ => None,
     };
-    let options = MeshReadOptions { format: None, resources: Some(&files), images: None };
+    let options = MeshReadOptions { format: None, resources: Some(&files), ..MeshReadOptions::default() };
     let mesh = read_mesh(gltf, &options).unwrap();
     assert_eq!(corners(&mesh), corners(&read(fixture!("mesh.glb")).unwrap()));
     let error = read(gltf).unwrap_err();
