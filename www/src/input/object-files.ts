@@ -50,7 +50,8 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
   }
   const bytes = await file.bytes();
   const ending = extension(file.path);
-  if (!refersToFiles(file.path)) return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
+  const glb = ending === "glb" ? bytes : null;
+  if (!refersToFiles(file.path)) return { mesh: await readMesh(bytes), glb };
   const resources: Record<string, Uint8Array> = {};
   const addResources = async (file: Uint8Array) => {
     const { shape, colors } = await externalResources(file);
@@ -64,7 +65,9 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
     }
   };
   await addResources(bytes);
-  return { mesh: await readMesh(bytes, { format: ending as MeshFormat, resources }), glb: null };
+  // A binary file with buffers beside it cannot be shown alone.
+  const isAlone = Object.keys(resources).length === 0;
+  return { mesh: await readMesh(bytes, { format: ending as MeshFormat, resources }), glb: isAlone ? glb : null };
 }
 
 /** A name in a mesh file, which may be a URI. */
