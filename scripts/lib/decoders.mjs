@@ -19,10 +19,11 @@ export function writeDecoders() {
     file("meshopt.d.ts"),
     `${ofInput("MeshoptDecoder")}export declare const MeshoptDecoder: MeshoptDecoder;\n`,
   );
-  // A script for Node, which reads files, or for pages. With its module, it needs neither.
+  // A script that reads files in Node or in pages, by what it finds in the realm. With its module it needs neither.
   const script = readFileSync(resolve("draco3d/draco_decoder_nodejs.js"), "utf8");
-  const unknown = "const module = { exports: {} }, exports = module.exports;\nlet process, require, window, importScripts, __filename, __dirname;";
-  writeFileSync(file("draco.js"), `${unknown}\n${script}\nexport default module.exports;\n`);
+  const realm = "Object.create(globalThis, { process: {}, window: {}, WorkerGlobalScope: {} })";
+  const whole = `export default ((globalThis, module, exports, require) => {\n${script}\nreturn module.exports;\n})(${realm}, { exports: {} }, {});\n`;
+  writeFileSync(file("draco.js"), whole);
   const settings = "instantiateWasm(imports: object, done: (instance: object) => void): object";
   writeFileSync(
     file("draco.d.ts"),

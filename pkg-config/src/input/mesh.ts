@@ -97,7 +97,8 @@ export async function readCoreMesh(
 ): Promise<MeshAndWarnings> {
   // A prepared mesh is cached with its colours: a later call may have a photo.
   const { mesh: arrays, ...notes } = await readMesh(mesh, readers, withColors || meshId !== undefined);
-  return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, ...notes };
+  const lacksColors = notes.warnings.length > 0 || undefined;
+  return { mesh: withoutUndefined({ ...arrays, id: meshId, lacksColors }) as CoreMesh, ...notes };
 }
 
 /** The options of the reader are properties of the mesh. */
