@@ -92,7 +92,7 @@ pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result
 
 /// Describes the start of an unrecognised file, for the error message.
 pub(crate) fn beginning(bytes: &[u8]) -> String {
-    const KNOWN: [(&[u8], &str); 10] = [
+    const KNOWN: [(&[u8], &str); 9] = [
         (b"\x89PNG\r\n\x1a\n", "a PNG image"),
         (b"\x93NUMPY", "a NumPy array"),
         (b"\xff\xd8\xff", "a JPEG image"),
@@ -100,8 +100,7 @@ pub(crate) fn beginning(bytes: &[u8]) -> String {
         (b"II*\0", "a TIFF image"),
         (b"MM\0*", "a TIFF image"),
         (b"v/1\x01", "an OpenEXR image"),
-        (b"Kaydara FBX", "an FBX scene"),
-        (b"PK\x03\x04", "a ZIP archive (NPZ, USDZ, 3MF?)"),
+        (b"PK\x03\x04", "a ZIP archive (NPZ?)"),
         (b"\x1f\x8b", "a gzip stream"),
     ];
     if bytes.is_empty() {

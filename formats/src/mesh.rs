@@ -70,7 +70,7 @@ fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result
             "mesh",
             beginning(bytes),
             "GLB, glTF, OBJ, PLY, STL or .splat",
-            "Convert it, for example with Blender or trimesh; if it is one of these, it is damaged.",
+            "Convert it to GLB or PLY; if it is one of these, it is damaged.",
         )),
     }
 }

@@ -30,8 +30,8 @@ pub(crate) struct MeshBuilder {
     vertex_codes: Vec<Codes>,
     face_codes: Vec<Codes>,
     materials: HashMap<[u64; 3], u32>,
-    /// The largest number of these colours.
-    most: f64,
+    /// The largest number of the colours of vertices, and of those of faces.
+    most: [f64; 2],
 }
 
 /// An sRGB-encoded colour by numbers, if they are from 0 to 1, and if they are from 0 to 255.
@@ -107,7 +107,7 @@ impl MeshBuilder {
 
     /// Sets the sRGB-encoded colour of the last vertex. Its numbers are from 0 to 1, or from 0 to 255 if any of the file is larger.
     pub fn color_vertex(&mut self, color: [f64; 3]) {
-        let codes = self.codes(color);
+        let codes = codes(color, &mut self.most[0]);
         self.vertex_codes.resize(self.positions.len().saturating_sub(1), [WHITE; 2]);
         self.vertex_codes.push(codes);
     }
@@ -117,15 +117,9 @@ impl MeshBuilder {
         let next = self.face_codes.len();
         let material = *self.materials.entry(color.map(f64::to_bits)).or_insert(next as u32) as usize;
         if material == next {
-            let codes = self.codes(color);
-            self.face_codes.push(codes);
+            self.face_codes.push(codes(color, &mut self.most[1]));
         }
         self.use_material(Some(material));
-    }
-
-    fn codes(&mut self, color: [f64; 3]) -> Codes {
-        self.most = color.into_iter().fold(self.most, f64::max);
-        [255.0, 1.0].map(|factor| color.map(|x| (x * factor).round() as u8))
     }
 
     /// Sets the sRGB-encoded colours of all vertices.
@@ -191,9 +185,9 @@ impl MeshBuilder {
     /// Those of [`Mesh::new`].
     pub fn finish(self) -> Result<PaintedMesh> {
         let Self { positions, triangles, mut paint, vertex_codes, face_codes, most, .. } = self;
-        let color = |codes: &Codes| codes[usize::from(most > MOST_OF_ONE)];
-        paint.vertex_colors.extend(vertex_codes.iter().map(color));
-        paint.face_colors = face_codes.iter().map(color).collect();
+        let [of_vertices, of_faces] = most.map(|most| usize::from(most > MOST_OF_ONE));
+        paint.vertex_colors.extend(vertex_codes.iter().map(|codes| codes[of_vertices]));
+        paint.face_colors = face_codes.iter().map(|codes| codes[of_faces]).collect();
         if !paint.vertex_colors.is_empty() {
             paint.vertex_colors.resize(positions.len(), WHITE);
         }
@@ -207,6 +201,12 @@ impl MeshBuilder {
         let mesh = Mesh::new(positions, used.renumbered(&triangles))?;
         Ok(PaintedMesh { mesh, paint, origin })
     }
+}
+
+/// The codes of a colour, whose numbers count for the largest one.
+fn codes(color: [f64; 3], most: &mut f64) -> Codes {
+    *most = color.into_iter().fold(*most, f64::max);
+    [255.0, 1.0].map(|factor| color.map(|x| (x * factor).round() as u8))
 }
 
 /// The positions relative to an origin: the centre of their bounding box if they are far from zero, otherwise zero.

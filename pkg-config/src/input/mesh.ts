@@ -1,8 +1,9 @@
 /** Meshes from arrays or mesh files. */
 
+import type { Formats } from "../modules/exports.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { MeshFile } from "../types/inputs.js";
-import { failure, invalidArgument } from "../values/error.js";
+import { failure, invalidArgument, Sim3AlignError } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
 import { oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/validation.js";
@@ -41,7 +42,16 @@ export async function decodeMesh(
   const decoder = colors === false ? undefined : await imageDecoder(bytes, resources, decodeImage, readers);
   const read = { ...options, ...withoutUndefined({ decodeImage: decoder }) } as ReadMeshOptions;
   const decode = await geometryDecoder(gltfText(bytes), own);
-  return callReader(readers.formats, argument, bytes, (module) => module.readMesh(...decode(bytes, read)), rename);
+  try {
+    const mesh = (module: Formats) => module.readMesh(...decode(bytes, read));
+    return await callReader(readers.formats, argument, bytes, mesh, rename);
+  } catch (error) {
+    if (!(error instanceof Sim3AlignError && error.code === "UNSUPPORTED_FORMAT")) throw error;
+    const { foreignMesh } = await import("./foreign-meshes.js");
+    const known = foreignMesh(bytes);
+    if (known === undefined) throw error;
+    throw failure(error.code, error.argument, known.found, error.expected, known.remedy);
+  }
 }
 
 /** Rewrites a glTF file, whose JSON this is, without the compression of its geometry. The decoders are loaded only for compressed files. */
