@@ -72,7 +72,8 @@ impl Unknown {
 
     /// The sentence about them, if there are any; `what` they are.
     pub fn named(&self, what: &str) -> Vec<String> {
-        let sentence = || format!("The mesh file holds {what} {}: not read, their meaning is not known.", self.0.join(", "));
+        let sentence =
+            || format!("The mesh file holds {what} {}: not read, their meaning is not known.", self.0.join(", "));
         (!self.0.is_empty()).then(sentence).into_iter().collect()
     }
 }

@@ -121,8 +121,7 @@ impl MaterialLibrary {
             let (Some(slot), Some(entry)) = (loaded.get_mut(index), self.entries.get(index)) else { continue };
             let Some(map) = entry.map() else {
                 // Viewers take the numbers as they are for display, sRGB-encoded.
-                slot.factor =
-                    entry.color().map_or([1.0; 3], |color| linear(color.map(|x| (x * 255.0).round() as u8)));
+                slot.factor = entry.color().map_or([1.0; 3], |color| linear(color.map(|x| (x * 255.0).round() as u8)));
                 continue;
             };
             // With a texture, Kd is ignored: exporters write 0, 0.8 or 1 there, whatever the texture.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
-use crate::guard::{Unknown, MAX_VERTICES, corrupt, too_large, unsupported};
+use crate::guard::{MAX_VERTICES, Unknown, corrupt, too_large, unsupported};
 use crate::mesh_builder::MeshBuilder;
 use crate::mesh_format::MeshReadOptions;
 use crate::mtl::{MaterialLibrary, uncommented};
@@ -72,7 +72,12 @@ pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
         Some(missing) => Err(missing),
         None if lines(bytes).any(|line| line.starts_with(b"#MRGB")) => {
             let found = "colours of ZBrush in comments (#MRGB)";
-            Err(unsupported("mesh", found, "colours after the coordinates, or a texture", "Export the mesh with a texture, or as PLY."))
+            Err(unsupported(
+                "mesh",
+                found,
+                "colours after the coordinates, or a texture",
+                "Export the mesh with a texture, or as PLY.",
+            ))
         }
         None => colors.library.load(&painted.paint.used_materials(), options),
     };

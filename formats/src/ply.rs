@@ -104,7 +104,8 @@ impl PlyMesh {
             if self.has_colors {
                 if !textures.is_empty() {
                     // −1 stands for no texture.
-                    self.builder.use_material(number.map_or(Some(0), |place| usize::try_from(record[place] as i64).ok()));
+                    self.builder
+                        .use_material(number.map_or(Some(0), |place| usize::try_from(record[place] as i64).ok()));
                 } else if let Some(places) = colors {
                     self.builder.color_faces(places.map(|place| element.fraction(place, &record)));
                 }
@@ -150,7 +151,8 @@ impl PlyMesh {
             }
         };
         if painted.paint.vertex_colors.is_empty() && painted.paint.face_colors.is_empty() {
-            let expected = "\"comment TextureFile NAME\" in the header, and texture_u and texture_v, or texcoord and texnumber";
+            let expected =
+                "\"comment TextureFile NAME\" in the header, and texture_u and texture_v, or texcoord and texnumber";
             let remedy = "Export the mesh as GLB, which holds its textures.";
             return Ok(painted.plain(Some(unsupported("mesh", problem, expected, remedy))));
         }
@@ -173,9 +175,10 @@ fn textures_of(files: &[String], used: &[usize], options: &MeshReadOptions<'_>) 
 
 /// The place of the list of the vertices of faces or strips.
 fn corners_of(element: &Element) -> Result<usize> {
-    CORNERS.iter().find_map(|name| element.list(name)).ok_or_else(|| {
-        corrupt("mesh", "faces without vertex_indices", "a list property vertex_indices")
-    })
+    CORNERS
+        .iter()
+        .find_map(|name| element.list(name))
+        .ok_or_else(|| corrupt("mesh", "faces without vertex_indices", "a list property vertex_indices"))
 }
 
 /// What −1 between strips arrives as.

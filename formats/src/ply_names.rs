@@ -6,11 +6,8 @@ use crate::text::is_listed;
 
 /// Colours of vertices or faces, sRGB-encoded: whole numbers up to the largest of their type, or floats. The first that are
 /// there count. MeshLab and most others write the first, older programs the second, others the third.
-pub(crate) const COLORS: [[&[u8]; 3]; 3] = [
-    [b"red", b"green", b"blue"],
-    [b"diffuse_red", b"diffuse_green", b"diffuse_blue"],
-    [b"r", b"g", b"b"],
-];
+pub(crate) const COLORS: [[&[u8]; 3]; 3] =
+    [[b"red", b"green", b"blue"], [b"diffuse_red", b"diffuse_green", b"diffuse_blue"], [b"r", b"g", b"b"]];
 
 /// Texture coordinates of vertices, from the lower left corner of the image: of BlenderProc and the models of BOP, of Blender,
 /// and of others.

@@ -66,7 +66,8 @@ struct Palette {
 
 impl Palette {
     fn of(header: &[u8]) -> Self {
-        let after = |window: &[u8]| window.strip_prefix(b"COLOR=").map(|rgb| [0, 1, 2].map(|i| f64::from(rgb[i]) / 255.0));
+        let after =
+            |window: &[u8]| window.strip_prefix(b"COLOR=").map(|rgb| [0, 1, 2].map(|i| f64::from(rgb[i]) / 255.0));
         Self { object: header.windows(9).find_map(after) }
     }
 

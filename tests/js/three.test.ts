@@ -151,7 +151,10 @@ test("what three.js draws is read: morph targets, bones, levels, ranges and grou
     geometry.setDrawRange(0, 12);
     return new Mesh(geometry);
   };
-  const several = new Mesh(cube(2), [0, 1, 2, 3, 4, 5].map((i) => new MeshBasicMaterial({ visible: i < 2 })));
+  const several = new Mesh(
+    cube(2),
+    [0, 1, 2, 3, 4, 5].map((i) => new MeshBasicMaterial({ visible: i < 2 })),
+  );
   const cases: readonly [name: string, object: Object3D, height: number, triangles: number][] = [
     ["morph targets", stretched(), 2, 12],
     ["bones", skinned(), 2, 12],

@@ -344,7 +344,8 @@ fn a_ply_has_the_colors_of_textures_or_of_vertices_or_of_faces() {
     let faces = ["200 30 60 255", "0 90 255 255"];
     check(&colors(ply_of(&format!("|{rgb}"), [""; 4], faces)), 0, by_face);
     // Vertices that all have one colour are not finer; others are.
-    let vertex = rgb.replace("uchar red", "float diffuse_red").replace("uchar", "float").replace("float b", "float diffuse_b");
+    let vertex =
+        rgb.replace("uchar red", "float diffuse_red").replace("uchar", "float").replace("float b", "float diffuse_b");
     let vertex = vertex.replace("float green", "float diffuse_green");
     check(&colors(ply_of(&format!("{vertex}|{rgb}"), ["255 255 255 255"; 4], faces)), 0, by_face);
     let red = ["0 0 0 1", "255 0 0 1", "0 0 0 1", "255 0 0 1"];
@@ -377,7 +378,9 @@ fn colors_that_others_write_otherwise_are_read() {
     // glTF: a texture that is emitted over a black base.
     let emitted = TEXTURED.replace("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}", "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]},\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}");
     assert_ne!(emitted, TEXTURED);
-    check(&colors(&upright(&blocks_png(), &emitted)), 1, |p| block_at([f64::from(p.x), 1.0 - f64::from(p.y)], [10_497; 2]));
+    check(&colors(&upright(&blocks_png(), &emitted)), 1, |p| {
+        block_at([f64::from(p.x), 1.0 - f64::from(p.y)], [10_497; 2])
+    });
 
     // STL: five bits a channel, blue lowest; with a colour of the object in the header, red lowest.
     let stl = |header: &[u8], attribute: u16| {
@@ -398,9 +401,16 @@ fn colors_that_others_write_otherwise_are_read() {
 #[wasm_bindgen_test]
 fn vertex_colors_of_gltf_are_codes_if_their_writer_or_the_caller_says_so() {
     let square = |kind: u32, chunk: &[u8], generator: &'static str| {
-        let accessors = format!(r#",{{"bufferView":2,"componentType":{kind},"normalized":true,"count":4,"type":"VEC3"}}"#);
+        let accessors =
+            format!(r#",{{"bufferView":2,"componentType":{kind},"normalized":true,"count":4,"type":"VEC3"}}"#);
         let chunks = [chunk];
-        let square = Square { attributes: r#","COLOR_0":2"#, accessors: &accessors, chunks: &chunks, generator, ..Square::default() };
+        let square = Square {
+            attributes: r#","COLOR_0":2"#,
+            accessors: &accessors,
+            chunks: &chunks,
+            generator,
+            ..Square::default()
+        };
         square.glb()
     };
     let float = floats(&[0.25, 0.5, 1.0].repeat(4));

@@ -289,7 +289,8 @@ fn what_a_reader_does_not_know_is_named_and_what_does_not_matter_is_not() {
             element {element} 1\nproperty float weight\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2 1\n1\n"
         )
     };
-    let obj = |statement: &str| format!("o a\ng b\ns 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n{statement} 1 2\nf 1 2 3\n");
+    let obj =
+        |statement: &str| format!("o a\ng b\ns 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n{statement} 1 2\nf 1 2 3\n");
     let gltf = |extension: &str| {
         let data = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
         let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["EXTENSION"],"nodes":[{"mesh":0}],"meshes":[{"primitives":[

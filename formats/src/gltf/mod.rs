@@ -37,8 +37,7 @@ pub(crate) fn read_gltf(bytes: &[u8], options: &MeshReadOptions<'_>, content: Co
     document.check_extensions()?;
     let buffers = buffers::Buffers::new(&document.buffers, container.binary, options.resources);
     let MeshReadOptions { images, color_space, .. } = *options;
-    let mut reader =
-        accessor::AccessorReader { document: &document, buffers, images, color_space, elements_read: 0 };
+    let mut reader = accessor::AccessorReader { document: &document, buffers, images, color_space, elements_read: 0 };
     let materials = match content {
         Content::Shape => None,
         Content::ShapeAndColors => Some(Materials::parse(&json)),

@@ -172,12 +172,7 @@ struct Deformation<'a> {
 }
 
 impl Deformation<'_> {
-    fn apply(
-        &self,
-        positions: &mut [Vec3],
-        primitive: &Primitive,
-        reader: &mut AccessorReader<'_>,
-    ) -> Result<()> {
+    fn apply(&self, positions: &mut [Vec3], primitive: &Primitive, reader: &mut AccessorReader<'_>) -> Result<()> {
         for (target, &weight) in primitive.targets.iter().zip(self.weights) {
             let Some(&accessor) = target.get("POSITION").filter(|_| weight != 0.0) else { continue };
             let offsets = reader.positions(accessor)?;

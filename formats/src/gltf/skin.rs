@@ -38,8 +38,7 @@ impl Skin {
         let mut sums = vec![(DVec3::ZERO, 0.0_f64); positions.len()];
         for set in 0.. {
             let attribute = |name: &str| primitive.attributes.get(&format!("{name}_{set}")).copied();
-            let (Some(joints), Some(weights)) = (attribute("JOINTS"), attribute("WEIGHTS"))
-            else {
+            let (Some(joints), Some(weights)) = (attribute("JOINTS"), attribute("WEIGHTS")) else {
                 break;
             };
             let (joints, weights) = (reader.joints(joints)?, reader.weights(weights)?);

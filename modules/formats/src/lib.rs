@@ -7,7 +7,8 @@ use sim3align_formats::bindings::{
 use sim3align_formats::depth::read_depth_image;
 use sim3align_formats::mask::read_mask as mask_from_bytes;
 use sim3align_formats::mesh::{
-    ColorSpace, MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes, read_shape,
+    ColorSpace, MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
+    read_shape,
 };
 use sim3align_formats::photo::{read_exif as exif_from_bytes, read_photo, read_stored_photo};
 use wasm_bindgen::prelude::*;

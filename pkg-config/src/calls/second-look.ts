@@ -60,7 +60,10 @@ export async function lookedAtAgain(
     const message = `A part of the mesh is ${large} times as large as the rest, as the floor or the walls of a scene are. If the mask does not show it, pass the object alone.`;
     const known = warnings.findIndex(({ code }) => code === "MESH_DOUBTFUL");
     const [doubtful] = known < 0 ? [] : warnings.splice(known, 1);
-    warnings.push({ code: "MESH_DOUBTFUL", message: doubtful === undefined ? message : `${doubtful.message} ${message}` });
+    warnings.push({
+      code: "MESH_DOUBTFUL",
+      message: doubtful === undefined ? message : `${doubtful.message} ${message}`,
+    });
   }
   const agreement = agreementOf(found) ?? DOUBTFUL_COLORS;
   if (samples?.flippedColors !== undefined && agreement < DOUBTFUL_COLORS) {

@@ -15,7 +15,11 @@ const blender = "Open it in Blender and export it as GLB.";
 /** By how a file begins; in archives, by the names in them. */
 const formats: readonly (readonly [beginning: RegExp, found: string, remedy: string])[] = [
   [/^NGSP/, "3D Gaussians as SPZ", splats("in.spz")],
-  [/^\x1f\x8b/, "a gzip stream, as of 3D Gaussians in an .spz", `${splats("in.spz")} If it is another file, unpack it.`],
+  [
+    /^\x1f\x8b/,
+    "a gzip stream, as of 3D Gaussians in an .spz",
+    `${splats("in.spz")} If it is another file, unpack it.`,
+  ],
   [/^PK[\s\S]*means_l\./, "3D Gaussians as SOG", splats("in.sog")],
   [
     /^(glTF|\s*\{)[\s\S]*KHR_gaussian_splatting/,
@@ -33,7 +37,11 @@ const formats: readonly (readonly [beginning: RegExp, found: string, remedy: str
   [/^(Kaydara FBX|; FBX)/, "an FBX scene", blender],
   [/^(BLENDER|\x28\xb5\x2f\xfd)/, "a Blender file", blender],
   [/^(# \.PCD|VERSION \.7)/, "a point cloud (PCD)", "A point cloud can't be rendered: mesh it first."],
-  [/^# vtk DataFile|^<VTKFile/, "a VTK file", "Convert it with meshio (pip install meshio): meshio convert in.vtk out.obj."],
+  [
+    /^# vtk DataFile|^<VTKFile/,
+    "a VTK file",
+    "Convert it with meshio (pip install meshio): meshio convert in.vtk out.obj.",
+  ],
   [/^\$MeshFormat/, "a mesh of Gmsh", "Convert it with meshio (pip install meshio): meshio convert in.msh out.obj."],
   [
     /^\s*<(!DOCTYPE html|html)/i,

@@ -230,7 +230,9 @@ function drawn({ drawRange, groups }: GeometryLike, material: unknown, count: nu
   ];
   const [first, end] = within(drawRange);
   if (!Array.isArray(material)) return isShown(material) ? [[first, end]] : [];
-  const shown = (groups ?? []).filter(({ materialIndex = 0 }) => material[materialIndex] && isShown(material[materialIndex]));
+  const shown = (groups ?? []).filter(
+    ({ materialIndex = 0 }) => material[materialIndex] && isShown(material[materialIndex]),
+  );
   return shown.map(within).map(([from, to]) => [Math.max(first, from), Math.min(end, to)]);
 }
 

@@ -179,8 +179,7 @@ impl Level {
                 ratio = ratio.min(if is_beyond { length(own) / length(other) } else { 0.0 });
             }
             let is_high = top - interval(faces, is_plate, false, down)[0] >= HEIGHT * longest;
-            let is_ground =
-                ratio >= LARGER && share <= 1.0 - OBJECT && is_high || ratio >= FLOOR && is_own_part;
+            let is_ground = ratio >= LARGER && share <= 1.0 - OBJECT && is_high || ratio >= FLOOR && is_own_part;
             let removed_parts = RemovedParts { ground: share, ..RemovedParts::default() };
             is_ground.then(|| Trimmed::split(mesh, removed_parts, &|triangle| is_plate[triangle])).flatten()
         })

@@ -65,7 +65,17 @@ impl<'a> PreparedMesh<'a> {
     fn with(whole: Cow<'a, Mesh>, trimmed: OnceCell<Option<Trimmed>>, plates: Option<OnceCell<Box<Plate>>>) -> Self {
         let (is_checked, pyramids, trimmed_colors) = (Cell::new(false), RefCell::default(), OnceCell::new());
         let symmetry = OnceCell::new();
-        Self { whole, trimmed, colors: None, trimmed_colors, lacks_colors: false, is_checked, symmetry, pyramids, plates }
+        Self {
+            whole,
+            trimmed,
+            colors: None,
+            trimmed_colors,
+            lacks_colors: false,
+            is_checked,
+            symmetry,
+            pyramids,
+            plates,
+        }
     }
 
     /// The mesh with the colours of its surface, or without any.
