@@ -12,11 +12,11 @@ const trimesh = (name: string, more = "") =>
   `Convert it with trimesh (pip install trimesh${more}): python -c "import trimesh; trimesh.load('${name}').export('out.glb')".`;
 const blender = "Open it in Blender and export it as GLB.";
 
-/** By how a file begins; in archives, by the names in them. */
+/** By how a file begins; in archives, by the names in them. Of "latin1", runtimes make ISO 8859-1 or Windows-1252. */
 const formats: readonly (readonly [beginning: RegExp, found: string, remedy: string])[] = [
   [/^NGSP/, "3D Gaussians as SPZ", splats("in.spz")],
   [
-    /^\x1f\x8b/,
+    /^[^ -~][\u008b\u2039]/,
     "a gzip stream, as of 3D Gaussians in an .spz",
     `${splats("in.spz")} If it is another file, unpack it.`,
   ],
@@ -28,7 +28,7 @@ const formats: readonly (readonly [beginning: RegExp, found: string, remedy: str
   ],
   [/^PK[\s\S]*3D\/3dmodel\.model/, "a 3MF file", trimesh("in.3mf", " lxml networkx")],
   [/^(PK[\s\S]*\.usd[ac]?|#usda|PXR-USDC)/, "a USD file", blender],
-  [/^PK\x03\x04/, "a ZIP archive", "Unpack it, and pass the mesh in it."],
+  [/^PK[^ -~]/, "a ZIP archive", "Unpack it, and pass the mesh in it."],
   [/^\s*<\?xml[\s\S]*<COLLADA|^\s*<COLLADA/, "a COLLADA file (DAE)", assimp("in.dae")],
   [/^\s*<\?xml[\s\S]*<X3D|^\s*<X3D|^#VRML/, "an X3D or VRML file", assimp("in.x3d")],
   [/^\s*<\?xml[\s\S]*<amf/, "an AMF file", assimp("in.amf")],
