@@ -37,7 +37,19 @@ pub(crate) fn read_ply(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
             _ => read_records(element, &mut body, |_, _| Ok(()))?,
         }
     }
-    Ok(ColoredMesh { unread: ply_names::unread(&header), ..mesh.finish(&header.textures, options)? })
+    let unread = ply_names::unread(&header);
+    let has_colors = mesh.has_colors;
+    let mut read = mesh.finish(&header.textures, options)?;
+    if has_colors && read.colors.is_none() && unread.iter().any(|names| ply_names::concern_colors(names)) {
+        read.problem = read.problem.or_else(|| Some(uncolored("colours in properties that are not known")));
+    }
+    Ok(ColoredMesh { unread, ..read })
+}
+
+/// The error for colours that cannot be read.
+fn uncolored(found: &'static str) -> Error {
+    let expected = "red, green and blue, or \"comment TextureFile NAME\" in the header with texture_u and texture_v, or texcoord and texnumber";
+    unsupported("mesh", found, expected, "Export the mesh as GLB, which holds its textures.")
 }
 
 /// A mesh as its elements are read.

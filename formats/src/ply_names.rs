@@ -53,3 +53,8 @@ pub(crate) fn unread(header: &Header) -> Vec<String> {
     }
     unknown.named("the PLY properties")
 }
+
+/// Whether unknown names are those of colours.
+pub(crate) fn concern_colors(names: &str) -> bool {
+    ["color", "colour", "rgb", "red", "material", "texture", "texcoord"].iter().any(|part| names.contains(part))
+}

@@ -363,6 +363,8 @@ fn a_ply_has_the_colors_of_textures_or_of_vertices_or_of_faces() {
         let read = ply_of(header, vertices, [""; 2]);
         assert_eq!((read.colors, read.problem.map(|problem| problem.found.to_string())), (None, Some(found.into())));
     }
+    let by_material = ply_of("|property int material_index\n", [""; 4], ["0", "1"]);
+    assert_eq!((by_material.problem.is_some(), by_material.unread.len()), (true, 1));
 }
 
 #[wasm_bindgen_test]
