@@ -1,5 +1,6 @@
 //! Size limits of the readers, and their errors.
 
+use crate::text::quoted;
 use sim3align_geometry::image::check_not_empty;
 use sim3align_runtime::error::{Error, ErrorCode, Result, Text};
 
@@ -53,6 +54,30 @@ pub(crate) fn unsupported(
     Error::new(ErrorCode::UnsupportedFormat, argument.to_owned(), found, expected, remedy)
 }
 
+/// Names in a file that its reader does not know: the first few, once each.
+#[derive(Debug, Default)]
+pub(crate) struct Unknown(Vec<String>);
+
+impl Unknown {
+    /// Adds a name.
+    pub fn insert(&mut self, name: &[u8]) {
+        const MOST: usize = 8;
+        if self.0.len() < MOST {
+            let name = quoted(name);
+            if !self.0.contains(&name) {
+                self.0.push(name);
+            }
+        }
+    }
+
+    /// The sentence about them, if there are any; `what` they are.
+    pub fn named(&self, what: &str) -> Vec<String> {
+        let sentence =
+            || format!("The mesh file holds {what} {}: not read, their meaning is not known.", self.0.join(", "));
+        (!self.0.is_empty()).then(sentence).into_iter().collect()
+    }
+}
+
 /// The number of pixels, or an error if the size is 0 or exceeds the limit.
 pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result<usize> {
     check_not_empty(argument, width, height)?;
@@ -68,7 +93,7 @@ pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result
 
 /// Describes the start of an unrecognised file, for the error message.
 pub(crate) fn beginning(bytes: &[u8]) -> String {
-    const KNOWN: [(&[u8], &str); 10] = [
+    const KNOWN: [(&[u8], &str); 9] = [
         (b"\x89PNG\r\n\x1a\n", "a PNG image"),
         (b"\x93NUMPY", "a NumPy array"),
         (b"\xff\xd8\xff", "a JPEG image"),
@@ -76,8 +101,7 @@ pub(crate) fn beginning(bytes: &[u8]) -> String {
         (b"II*\0", "a TIFF image"),
         (b"MM\0*", "a TIFF image"),
         (b"v/1\x01", "an OpenEXR image"),
-        (b"Kaydara FBX", "an FBX scene"),
-        (b"PK\x03\x04", "a ZIP archive (NPZ, USDZ, 3MF?)"),
+        (b"PK\x03\x04", "a ZIP archive (NPZ?)"),
         (b"\x1f\x8b", "a gzip stream"),
     ];
     if bytes.is_empty() {

@@ -32,6 +32,7 @@ mod pfm;
 pub mod photo;
 pub mod ply;
 mod ply_header;
+mod ply_names;
 mod png;
 mod polygon;
 mod reducer;

@@ -2,8 +2,9 @@
 
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{beginning, unsupported};
-pub use crate::mesh_format::{MeshFormat, MeshReadOptions};
-use crate::resources::ExternalResources;
+pub use crate::mesh_format::{ColorSpace, MeshFormat, MeshReadOptions};
+use crate::ply_header::Header;
+use crate::resources::{ExternalResources, distinct};
 use crate::{gltf, obj, ply, stl};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_runtime::error::Result;
@@ -17,6 +18,10 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
     let is_text = |bytes: &[u8]| !bytes.contains(&0);
     match MeshFormat::sniff(bytes) {
         Some(MeshFormat::Gltf) => gltf::external_resources(bytes),
+        Some(MeshFormat::Ply) => {
+            let textures = Header::read(bytes)?.0.textures;
+            Ok(ExternalResources { shape: Vec::new(), colors: distinct(textures.iter().map(String::as_str)) })
+        }
         // A library looks like other text.
         Some(MeshFormat::Obj) | None if is_text(bytes) => {
             Ok(ExternalResources { shape: Vec::new(), colors: obj::external_resources(bytes)? })
@@ -59,13 +64,13 @@ fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result
     match options.format.or_else(|| MeshFormat::sniff(bytes)) {
         Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options, content),
         Some(MeshFormat::Obj) => obj::read_obj(bytes, options, content),
-        Some(MeshFormat::Ply) => ply::read_ply(bytes, content),
-        Some(MeshFormat::Stl) => stl::read_stl(bytes),
+        Some(MeshFormat::Ply) => ply::read_ply(bytes, options, content),
+        Some(MeshFormat::Stl) => stl::read_stl(bytes, content),
         None => Err(unsupported(
             "mesh",
             beginning(bytes),
             "GLB, glTF, OBJ, PLY, STL or .splat",
-            "Convert it, for example with Blender or trimesh; if it is one of these, it is damaged.",
+            "Convert it to GLB or PLY; if it is one of these, it is damaged.",
         )),
     }
 }

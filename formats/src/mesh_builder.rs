@@ -1,5 +1,7 @@
 //! Builds a mesh within the size limits.
 
+use std::collections::HashMap;
+
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::color::WHITE;
@@ -23,7 +25,20 @@ pub(crate) struct MeshBuilder {
     polygon: Polygon,
     /// Of the vertices and triangles so far, or fewer: the rest has no colour or coordinates of its own.
     paint: Paint,
+    /// Colours of the first vertices, and the distinct colours of faces, each a material; the indices of these by the bits of their
+    /// numbers.
+    vertex_codes: Vec<Codes>,
+    face_codes: Vec<Codes>,
+    materials: HashMap<[u64; 3], u32>,
+    /// The largest number of the colours of vertices, and of those of faces.
+    most: [f64; 2],
 }
+
+/// An sRGB-encoded colour by numbers, if they are from 0 to 1, and if they are from 0 to 255.
+type Codes = [Rgb; 2];
+
+/// Largest number of colours from 0 to 1: some are slightly too bright.
+const MOST_OF_ONE: f64 = 2.0;
 
 impl MeshBuilder {
     /// A builder with initial vertices.
@@ -90,11 +105,21 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Sets the sRGB-encoded colour of the last vertex.
-    pub fn color_vertex(&mut self, color: Rgb) {
-        let count = self.positions.len();
-        self.paint.vertex_colors.resize(count.saturating_sub(1), WHITE);
-        self.paint.vertex_colors.push(color);
+    /// Sets the sRGB-encoded colour of the last vertex. Its numbers are from 0 to 1, or from 0 to 255 if any of the file is larger.
+    pub fn color_vertex(&mut self, color: [f64; 3]) {
+        let codes = codes(color, &mut self.most[0]);
+        self.vertex_codes.resize(self.positions.len().saturating_sub(1), [WHITE; 2]);
+        self.vertex_codes.push(codes);
+    }
+
+    /// The same for the triangles that follow.
+    pub fn color_faces(&mut self, color: [f64; 3]) {
+        let next = self.face_codes.len();
+        let material = *self.materials.entry(color.map(f64::to_bits)).or_insert(next as u32) as usize;
+        if material == next {
+            self.face_codes.push(codes(color, &mut self.most[1]));
+        }
+        self.use_material(Some(material));
     }
 
     /// Sets the sRGB-encoded colours of all vertices.
@@ -159,7 +184,10 @@ impl MeshBuilder {
     /// # Errors
     /// Those of [`Mesh::new`].
     pub fn finish(self) -> Result<PaintedMesh> {
-        let Self { positions, triangles, mut paint, .. } = self;
+        let Self { positions, triangles, mut paint, vertex_codes, face_codes, most, .. } = self;
+        let [of_vertices, of_faces] = most.map(|most| usize::from(most > MOST_OF_ONE));
+        paint.vertex_colors.extend(vertex_codes.iter().map(|codes| codes[of_vertices]));
+        paint.face_colors = face_codes.iter().map(|codes| codes[of_faces]).collect();
         if !paint.vertex_colors.is_empty() {
             paint.vertex_colors.resize(positions.len(), WHITE);
         }
@@ -173,6 +201,12 @@ impl MeshBuilder {
         let mesh = Mesh::new(positions, used.renumbered(&triangles))?;
         Ok(PaintedMesh { mesh, paint, origin })
     }
+}
+
+/// The codes of a colour, whose numbers count for the largest one.
+fn codes(color: [f64; 3], most: &mut f64) -> Codes {
+    *most = color.into_iter().fold(*most, f64::max);
+    [255.0, 1.0].map(|factor| color.map(|x| (x * factor).round() as u8))
 }
 
 /// The positions relative to an origin: the centre of their bounding box if they are far from zero, otherwise zero.

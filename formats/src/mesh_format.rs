@@ -69,4 +69,35 @@ pub struct MeshReadOptions<'a> {
     pub resources: Option<Resources<'a>>,
     /// Decodes textures that are neither PNG nor JPEG.
     pub images: Option<ImageDecoder<'a>>,
+    /// What the vertex colours of a glTF file are; by default, bytes are sRGB-encoded and others mostly linear.
+    pub color_space: Option<ColorSpace>,
+}
+
+/// The meaning of colour numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColorSpace {
+    /// Codes for display.
+    Srgb,
+    /// Linear light.
+    Linear,
+}
+
+impl ColorSpace {
+    /// The space of this name: `srgb` or `linear`.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn from_name(name: &str) -> Result<Self> {
+        match name {
+            "srgb" => Ok(Self::Srgb),
+            "linear" => Ok(Self::Linear),
+            _ => Err(Error::new(
+                ErrorCode::InvalidOption,
+                "options.colorSpace",
+                format!("{name:?}"),
+                "\"srgb\" or \"linear\"",
+                "Omit it unless the colours of the mesh come out too dark or too bright.",
+            )),
+        }
+    }
 }

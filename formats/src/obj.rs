@@ -1,22 +1,24 @@
-//! Wavefront OBJ: vertices, faces and colours; other statements are ignored.
+//! Wavefront OBJ: vertices, faces and colours.
 
 use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
-use crate::guard::{MAX_VERTICES, corrupt, too_large};
+use crate::guard::{MAX_VERTICES, Unknown, corrupt, too_large, unsupported};
 use crate::mesh_builder::MeshBuilder;
 use crate::mesh_format::MeshReadOptions;
 use crate::mtl::{MaterialLibrary, uncommented};
 use crate::resources::{Resources, distinct, external};
-use crate::text::{lines, number, parsed, quoted, words};
-use sim3align_geometry::surface_colors::Rgb;
+use crate::text::{is_listed, lines, number, parsed, quoted, words};
 use sim3align_runtime::error::{Error, ErrorCode, Result};
 
+/// Statements of no matter for shape and colour: normals, names, groups, smoothing, points and lines, and what belongs to rendering.
+const HARMLESS: &str = "vn vt mtllib usemtl o g s mg p l lod bevel c_interp d_interp shadow_obj trace_obj ctech stech";
+
 /// Reads `v` and `f` lines: polygons become triangles, negative indices count back from the latest vertex, and a
-/// backslash at the end of a line continues it. Normals and free-form surfaces are not read.
+/// backslash at the end of a line continues it. Normals are not read.
 ///
 /// Colours are the textures of the materials (`map_Kd` with the `vt` of the faces), else those of the vertices (`v x y z r g b`,
-/// sRGB-encoded, 0 to 1), else `Kd`.
+/// sRGB-encoded, 0 to 1 or 0 to 255), else `Kd`.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`] with the line number, [`ErrorCode::IndexOutOfRange`], [`ErrorCode::FileTooLarge`],
@@ -26,6 +28,7 @@ pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
     let mut builder = MeshBuilder::default();
     let mut colors = (content == Content::ShapeAndColors).then(|| ObjColors::new(resources));
     let mut corners = Vec::new();
+    let mut unknown = Unknown::default();
     for_each_statement(bytes, &mut |line, statement| {
         match statement.split_first() {
             Some((&b"v", rest)) => {
@@ -34,7 +37,7 @@ pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
                     builder.color_vertex(color);
                 }
             }
-            Some((&b"f", rest)) => {
+            Some((&(b"f" | b"fo"), rest)) => {
                 corners.clear();
                 for word in rest {
                     corners.push(corner(word, builder.vertex_count(), line)?);
@@ -50,6 +53,9 @@ pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
                 }
             }
             Some((&word, rest)) => {
+                if !is_listed(word, HARMLESS) {
+                    unknown.insert(word);
+                }
                 if let Some(colors) = &mut colors {
                     colors.read(word, rest, &mut builder)?;
                 }
@@ -58,22 +64,24 @@ pub(crate) fn read_obj(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
         }
         Ok(())
     })?;
-    let mut painted = builder.finish()?;
-    let Some(colors) = colors else { return Ok(painted.plain(None)) };
-    let has_own = !painted.paint.vertex_colors.is_empty();
-    if let (Some(missing), false) = (colors.missing, has_own) {
-        return Ok(painted.plain(Some(missing)));
-    }
-    let materials = colors.library.load(&painted.paint.used_materials(), options);
-    // Scanners and generators write colours of vertices beside materials, whose Kd is then that of no surface. A texture is finer.
-    match &materials {
-        Ok(materials) if materials.iter().any(|material| material.texture.is_some()) => {
-            painted.paint.vertex_colors.clear();
+    let painted = builder.finish()?;
+    let mut unread = unknown.named("the OBJ statements");
+    let Some(colors) = colors else { return Ok(ColoredMesh { unread, ..painted.plain(None) }) };
+    unread.extend(colors.library.unknown.named("in its materials the statements"));
+    let materials = match colors.missing {
+        Some(missing) => Err(missing),
+        None if lines(bytes).any(|line| line.starts_with(b"#MRGB")) => {
+            let found = "colours of ZBrush in comments (#MRGB)";
+            Err(unsupported(
+                "mesh",
+                found,
+                "colours after the coordinates, or a texture",
+                "Export the mesh with a texture, or as PLY.",
+            ))
         }
-        _ if has_own => return Ok(painted.colored(Ok(Vec::new()))),
-        _ => {}
-    }
-    Ok(painted.colored(materials))
+        None => colors.library.load(&painted.paint.used_materials(), options),
+    };
+    Ok(ColoredMesh { unread, ..painted.colored_by_finest(materials) })
 }
 
 /// The files that an OBJ or MTL names: its libraries or textures, as written.
@@ -197,10 +205,10 @@ fn vertex(words: &[&[u8]], line: usize) -> Result<DVec3> {
 }
 
 /// The colour after the coordinates of a vertex. A single number there is a weight.
-fn vertex_color(words: &[&[u8]]) -> Option<Rgb> {
-    let mut color = [0; 3];
+fn vertex_color(words: &[&[u8]]) -> Option<[f64; 3]> {
+    let mut color = [0.0; 3];
     for (channel, word) in color.iter_mut().zip(words.get(3..6)?) {
-        *channel = (number(word)? * 255.0).round() as u8;
+        *channel = number(word)?;
     }
     Some(color)
 }

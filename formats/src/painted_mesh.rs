@@ -21,6 +21,8 @@ pub(crate) struct Paint {
     pub coordinates: Vec<[[f32; 2]; 3]>,
     /// First triangle and material of each part, ascending.
     pub parts: Vec<(usize, Option<usize>)>,
+    /// sRGB-encoded colours of faces, each the material of its index.
+    pub face_colors: Vec<Rgb>,
 }
 
 /// A mesh and its paint.
@@ -65,6 +67,33 @@ impl PaintedMesh {
             }
             Err(problem) => self.plain(Some(problem)),
         }
+    }
+
+    /// The same for a file that may have colours of vertices as well: those of a texture are finer, those of materials are not, and
+    /// are often those of no surface.
+    pub fn colored_by_finest(mut self, materials: Result<Vec<Material>>) -> ColoredMesh {
+        let has_own = !self.paint.vertex_colors.is_empty();
+        match &materials {
+            Ok(materials) if materials.iter().any(|material| material.texture.is_some()) => {
+                self.paint.vertex_colors.clear();
+            }
+            _ if has_own => return self.colored(Ok(Vec::new())),
+            _ => {}
+        }
+        self.colored(materials)
+    }
+
+    /// The mesh with the colours of its faces, or of its vertices if these differ.
+    pub fn colored_by_faces(mut self) -> ColoredMesh {
+        let colors = core::mem::take(&mut self.paint.face_colors);
+        if let Some((first, rest)) = self.paint.vertex_colors.split_first()
+            && !colors.is_empty()
+            && rest.iter().all(|other| other == first)
+        {
+            self.paint.vertex_colors.clear();
+        }
+        let material = |&color: &Rgb| Material { factor: linear(color), ..Material::default() };
+        self.colored_by_finest(Ok(colors.iter().map(material).collect()))
     }
 
     /// The mesh without colours.

@@ -1,115 +1,219 @@
 //! Stanford PLY, ASCII and binary of both byte orders.
 
+use std::borrow::Cow;
+
 use glam::DVec3;
 
 use crate::colored_mesh::{ColoredMesh, Content};
 use crate::cursor::Cursor;
-use crate::guard::corrupt;
+use crate::guard::{corrupt, unsupported};
 use crate::mesh_builder::MeshBuilder;
+use crate::mesh_format::MeshReadOptions;
+use crate::painted_mesh::Material;
 use crate::ply_header::{Element, Encoding, Header, Scalar};
+use crate::ply_names::{self, COLORS, COORDINATES, CORNER_COORDINATES, CORNERS, TEXTURE_NUMBER};
+use crate::resources::external;
 use crate::text::{number, quoted};
-use sim3align_geometry::surface_colors::Rgb;
+use crate::texture::TextureLoader;
 use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Reads the elements `vertex` (x, y, z of any type, at any position among the properties), `face` (polygons, as
-/// triangles) and `tristrips`; ignores the others. Colours are the properties red, green and blue of the vertices: whole numbers
-/// up to the largest of their type, or floats from 0 to 1, sRGB-encoded.
+/// triangles) and `tristrips`. Colours are those of the textures, of the vertices or of the faces: see
+/// [`ply_names`](crate::ply_names).
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`],
 /// [`ErrorCode::IndexOutOfRange`] and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
-pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
+pub(crate) fn read_ply(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result<ColoredMesh> {
     let (header, body) = Header::read(bytes)?;
     let mut body = Body::new("mesh", header.encoding, body);
-    let mut builder = MeshBuilder::default();
+    let mut mesh = PlyMesh { has_colors: content == Content::ShapeAndColors, ..PlyMesh::default() };
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
         match element.name.as_slice() {
-            b"vertex" => read_vertices(element, &mut body, |point, color| {
-                builder.push_vertex(point)?;
-                if let (Some(color), Content::ShapeAndColors) = (color, content) {
-                    builder.color_vertex(color);
-                }
-                Ok(())
-            })?,
-            b"face" => read_faces(element, &mut body, &mut |corners| builder.push_polygon(corners))?,
-            b"tristrips" => read_faces(element, &mut body, &mut |corners| {
-                // −1, which arrives as u32::MAX, separates the strips.
-                corners.split(|&corner| corner == u32::MAX).try_for_each(|strip| builder.push_strip(strip))
-            })?,
+            b"vertex" => mesh.read_vertices(element, &mut body)?,
+            b"face" => mesh.read_faces(element, &mut body, &header.textures)?,
+            b"tristrips" => mesh.read_strips(element, &mut body)?,
             _ => read_records(element, &mut body, |_, _| Ok(()))?,
         }
     }
-    Ok(builder.finish()?.colored(Ok(Vec::new())))
+    let unread = ply_names::unread(&header);
+    let has_colors = mesh.has_colors;
+    let mut read = mesh.finish(&header.textures, options)?;
+    if has_colors && read.colors.is_none() && unread.iter().any(|names| ply_names::concern_colors(names)) {
+        read.problem = read.problem.or_else(|| Some(uncolored("colours in properties that are not known")));
+    }
+    Ok(ColoredMesh { unread, ..read })
 }
 
-fn read_vertices(
-    element: &Element,
-    body: &mut Body<'_>,
-    mut push: impl FnMut(DVec3, Option<Rgb>) -> Result<()>,
-) -> Result<()> {
-    let place_of = |name: &[u8]| element.properties.iter().position(|p| p.name == name && p.list_length.is_none());
-    let mut place = [0; 3];
-    for (place, name) in place.iter_mut().zip([b"x", b"y", b"z"]) {
-        *place = place_of(name).ok_or_else(|| {
-            corrupt("mesh", format!("vertices without {}", name.escape_ascii()), "the properties x, y and z")
-        })?;
-    }
-    let colors = match [b"red".as_slice(), b"green", b"blue"].map(place_of) {
-        [Some(red), Some(green), Some(blue)] => Some([red, green, blue]),
-        _ => None,
-    };
-    let last = element.properties.len() - 1;
-    let (mut xyz, mut rgb) = ([0.0; 3], [0; 3]);
-    read_records(element, body, |property, values| {
-        for (x, place) in xyz.iter_mut().zip(place) {
-            if property == place {
-                *x = values.first().copied().unwrap_or(f64::NAN);
-            }
+/// The error for colours that cannot be read.
+fn uncolored(found: &'static str) -> Error {
+    let expected = "red, green and blue, or \"comment TextureFile NAME\" in the header with texture_u and texture_v, or texcoord and texnumber";
+    unsupported("mesh", found, expected, "Export the mesh as GLB, which holds its textures.")
+}
+
+/// A mesh as its elements are read.
+#[derive(Default)]
+struct PlyMesh {
+    builder: MeshBuilder,
+    has_colors: bool,
+    /// Texture coordinates of the vertices.
+    coordinates: Vec<[f32; 2]>,
+    /// Whether the faces have texture coordinates, and numbers of textures.
+    has_corner_coordinates: bool,
+    has_numbers: bool,
+}
+
+impl PlyMesh {
+    fn read_vertices(&mut self, element: &Element, body: &mut Body<'_>) -> Result<()> {
+        let mut place = [0; 3];
+        for (place, name) in place.iter_mut().zip([b"x", b"y", b"z"]) {
+            *place = element.scalar(name).ok_or_else(|| {
+                corrupt("mesh", format!("vertices without {}", name.escape_ascii()), "the properties x, y and z")
+            })?;
         }
-        if let Some(places) = colors {
-            for (channel, place) in rgb.iter_mut().zip(places) {
-                if property == place {
-                    let most = element.properties.get(place).map_or(1.0, |property| property.scalar.most());
-                    *channel = (values.first().copied().unwrap_or_default() / most * 255.0).round() as u8;
+        let colors = COLORS.iter().find_map(|names| element.scalars(names)).filter(|_| self.has_colors);
+        let coordinates = COORDINATES.iter().find_map(|names| element.scalars(names)).filter(|_| self.has_colors);
+        let last = element.properties.len() - 1;
+        let mut record = vec![0.0; last + 1];
+        read_records(element, body, |property, values| {
+            record[property] = values.first().copied().unwrap_or(f64::NAN);
+            if property < last {
+                return Ok(());
+            }
+            self.builder.push_vertex(DVec3::from_array(place.map(|place| record[place])))?;
+            if let Some(places) = colors {
+                self.builder.color_vertex(places.map(|place| element.fraction(place, &record)));
+            }
+            if let Some([u, v]) = coordinates {
+                // Rows of images count from the top.
+                self.coordinates.push([record[u] as f32, 1.0 - record[v] as f32]);
+            }
+            Ok(())
+        })
+    }
+
+    fn read_faces(&mut self, element: &Element, body: &mut Body<'_>, textures: &[String]) -> Result<()> {
+        let place = corners_of(element)?;
+        let colors = COLORS.iter().find_map(|names| element.scalars(names)).filter(|_| textures.is_empty());
+        let mapped = element.list(CORNER_COORDINATES);
+        let number = element.scalar(TEXTURE_NUMBER);
+        (self.has_corner_coordinates, self.has_numbers) = (mapped.is_some(), number.is_some());
+        let last = element.properties.len() - 1;
+        let mut record = vec![0.0; last + 1];
+        let (mut corners, mut coordinates) = (Vec::new(), Vec::new());
+        read_records(element, body, |property, values| {
+            record[property] = values.first().copied().unwrap_or_default();
+            if property == place {
+                read_corners(values, false, &mut corners)?;
+            } else if mapped == Some(property) {
+                let pairs = values.as_chunks().0.iter();
+                coordinates = pairs.map(|&[u, v]: &[f64; 2]| [u as f32, 1.0 - v as f32]).collect();
+            }
+            if property < last {
+                return Ok(());
+            }
+            if self.has_colors {
+                if !textures.is_empty() {
+                    // −1 stands for no texture.
+                    self.builder
+                        .use_material(number.map_or(Some(0), |place| usize::try_from(record[place] as i64).ok()));
+                } else if let Some(places) = colors {
+                    self.builder.color_faces(places.map(|place| element.fraction(place, &record)));
                 }
             }
+            let first = self.builder.triangle_count();
+            self.builder.push_polygon(&corners)?;
+            if self.has_colors && !coordinates.is_empty() && coordinates.len() >= corners.len() {
+                self.builder.map_polygon(first, &coordinates);
+            }
+            Ok(())
+        })
+    }
+
+    fn read_strips(&mut self, element: &Element, body: &mut Body<'_>) -> Result<()> {
+        let place = corners_of(element)?;
+        let mut corners = Vec::new();
+        read_records(element, body, |property, values| {
+            if property != place {
+                return Ok(());
+            }
+            read_corners(values, true, &mut corners)?;
+            corners.split(|&corner| corner == SEPARATOR).try_for_each(|strip| self.builder.push_strip(strip))
+        })
+    }
+
+    fn finish(mut self, textures: &[String], options: &MeshReadOptions<'_>) -> Result<ColoredMesh> {
+        let has_coordinates = self.has_corner_coordinates || !self.coordinates.is_empty();
+        if !self.has_corner_coordinates && !textures.is_empty() {
+            self.builder.map_vertices(&self.coordinates);
         }
-        if property == last {
-            push(DVec3::from_array(xyz), colors.map(|_| rgb))?;
+        let painted = self.builder.finish()?;
+        if !self.has_colors {
+            return Ok(painted.plain(None));
         }
-        Ok(())
-    })
+        let problem = match (textures.len(), has_coordinates) {
+            (0, true) => "texture coordinates without a texture",
+            (1.., false) => "a texture without texture coordinates",
+            (2.., true) if !self.has_numbers => "several textures, and faces without texnumber",
+            (0, false) => return Ok(painted.colored_by_faces()),
+            _ => {
+                let materials = textures_of(textures, &painted.paint.used_materials(), options);
+                return Ok(painted.colored_by_finest(materials));
+            }
+        };
+        if painted.paint.vertex_colors.is_empty() && painted.paint.face_colors.is_empty() {
+            let expected =
+                "\"comment TextureFile NAME\" in the header, and texture_u and texture_v, or texcoord and texnumber";
+            let remedy = "Export the mesh as GLB, which holds its textures.";
+            return Ok(painted.plain(Some(unsupported("mesh", problem, expected, remedy))));
+        }
+        Ok(painted.colored_by_faces())
+    }
 }
 
-fn read_faces(element: &Element, body: &mut Body<'_>, push: &mut dyn FnMut(&[u32]) -> Result<()>) -> Result<()> {
-    let is_indices = |name: &[u8]| name == b"vertex_indices" || name == b"vertex_index";
-    let Some(place) = element.properties.iter().position(|p| p.list_length.is_some() && is_indices(&p.name)) else {
-        return Err(corrupt("mesh", "faces without vertex_indices", "a list property vertex_indices"));
+/// The materials of textures; those of no part are left at the default.
+fn textures_of(files: &[String], used: &[usize], options: &MeshReadOptions<'_>) -> Result<Vec<Material>> {
+    let mut loader = TextureLoader::new(options.images);
+    let mut material = |(index, file): (usize, &String)| {
+        if !used.contains(&index) {
+            return Ok(Material::default());
+        }
+        let texture = loader.load(file, || external(file, options.resources).map(Cow::Owned))?;
+        Ok(Material { texture: Some(texture), ..Material::default() })
     };
-    let is_strip = element.name == b"tristrips";
-    let mut corners = Vec::new();
-    read_records(element, body, |property, values| {
-        if property != place {
-            return Ok(());
+    files.iter().enumerate().map(&mut material).collect()
+}
+
+/// The place of the list of the vertices of faces or strips.
+fn corners_of(element: &Element) -> Result<usize> {
+    CORNERS
+        .iter()
+        .find_map(|name| element.list(name))
+        .ok_or_else(|| corrupt("mesh", "faces without vertex_indices", "a list property vertex_indices"))
+}
+
+/// What −1 between strips arrives as.
+const SEPARATOR: u32 = u32::MAX;
+
+/// The numbers of vertices.
+fn read_corners(values: &[f64], is_strip: bool, corners: &mut Vec<u32>) -> Result<()> {
+    corners.clear();
+    for &value in values {
+        let separates = is_strip && value == -1.0;
+        let is_index = value >= 0.0 && value < f64::from(SEPARATOR) && value == value.trunc();
+        if !separates && !is_index {
+            return Err(Error::new(
+                ErrorCode::IndexOutOfRange,
+                "mesh",
+                format!("vertex index {value}"),
+                "whole numbers from 0",
+                "Export the mesh again.",
+            ));
         }
-        corners.clear();
-        for &value in values {
-            let separates = is_strip && value == -1.0;
-            let is_index = value >= 0.0 && value < f64::from(u32::MAX) && value == value.trunc();
-            if !separates && !is_index {
-                return Err(Error::new(
-                    ErrorCode::IndexOutOfRange,
-                    "mesh",
-                    format!("vertex index {value}"),
-                    "whole numbers from 0",
-                    "Export the mesh again.",
-                ));
-            }
-            corners.push(if separates { u32::MAX } else { value as u32 });
-        }
-        push(&corners)
-    })
+        corners.push(if separates { SEPARATOR } else { value as u32 });
+    }
+    Ok(())
 }
 
 /// Calls `visit` with the position of each property and its values (one, or the list), record by record.

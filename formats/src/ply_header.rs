@@ -82,6 +82,31 @@ pub(crate) struct Element {
 }
 
 impl Element {
+    /// The place of a property that is a single number.
+    pub fn scalar(&self, name: &[u8]) -> Option<usize> {
+        self.properties.iter().position(|property| property.name == name && property.list_length.is_none())
+    }
+
+    /// The same for several properties, if all are there.
+    pub fn scalars<const N: usize>(&self, names: &[&[u8]; N]) -> Option<[usize; N]> {
+        let mut places = [0; N];
+        for (place, name) in places.iter_mut().zip(names) {
+            *place = self.scalar(name)?;
+        }
+        Some(places)
+    }
+
+    /// The place of a property that is a list.
+    pub fn list(&self, name: &[u8]) -> Option<usize> {
+        self.properties.iter().position(|property| property.name == name && property.list_length.is_some())
+    }
+
+    /// The number of a record at a place, relative to the full intensity of its type.
+    pub fn fraction(&self, place: usize, record: &[f64]) -> f64 {
+        let number = record.get(place).copied().unwrap_or_default();
+        self.properties.get(place).map_or(0.0, |property| number / property.scalar.most())
+    }
+
     /// Minimum size of a record in bytes, used to check a count before allocation.
     pub fn min_bytes(&self, encoding: Encoding) -> usize {
         match encoding {
@@ -96,6 +121,8 @@ impl Element {
 pub(crate) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// The images of the textures, as `comment TextureFile` names them.
+    pub textures: Vec<String>,
 }
 
 impl Header {
@@ -106,6 +133,7 @@ impl Header {
         let mut rest = bytes;
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let mut textures = Vec::new();
         loop {
             let Some(length) = rest.iter().position(|&b| b == end) else {
                 return Err(corrupt("mesh", "no \"end_header\" line", "a PLY header that ends with \"end_header\""));
@@ -132,15 +160,24 @@ impl Header {
                     };
                     element.properties.push(property);
                 }
+                [b"comment", name, file @ ..] if !file.is_empty() && is_texture(name) => {
+                    textures.push(String::from_utf8_lossy(&file.join(&b' ')).replace('\\', "/"));
+                }
                 [] | [b"ply" | b"comment" | b"obj_info", ..] => {}
                 _ => return Err(corrupt("mesh", quoted(line), "a PLY header line")),
             }
         }
         match encoding {
-            Some(encoding) => Ok((Self { encoding, elements }, rest)),
+            Some(encoding) => Ok((Self { encoding, elements, textures }, rest)),
             None => Err(corrupt("mesh", "no \"format\" line", "a \"format\" line in the PLY header")),
         }
     }
+}
+
+/// Whether a comment of this name names a texture: `TextureFile`, in any spelling.
+fn is_texture(name: &[u8]) -> bool {
+    let letters: Vec<u8> = name.iter().filter(|byte| byte.is_ascii_alphabetic()).copied().collect();
+    letters.eq_ignore_ascii_case(b"TextureFile")
 }
 
 fn read_encoding(name: &[u8]) -> Result<Encoding> {

@@ -48,8 +48,8 @@ pub(crate) fn external(uri: &str, resources: Option<Resources<'_>>) -> Result<Ve
             ErrorCode::InvalidArgument,
             "options.resources",
             format!("no bytes for {uri:?}"),
-            "the bytes of every external file, by the URI in the mesh file",
-            "Pass them in resources, or pack a .gltf into one file: npx @gltf-transform/cli copy in.gltf out.glb.",
+            "the bytes of every external file, by the name in the mesh file",
+            "Pass them in resources, or put them beside the mesh in its folder, or pack a .gltf into one file: npx @gltf-transform/cli copy in.gltf out.glb.",
         )
     })
 }

@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::colored_mesh::ColoredMesh;
+use crate::colored_mesh::{ColoredMesh, Content};
 use crate::cursor::Cursor;
 use crate::guard::corrupt;
 use crate::mesh_builder::MeshBuilder;
+use crate::painted_mesh::PaintedMesh;
 use crate::text::{lines, number, quoted, unmarked, words};
 use sim3align_runtime::error::Result;
 
@@ -27,17 +28,19 @@ pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
 /// # Errors
 /// [`CorruptFile`](sim3align_runtime::error::ErrorCode::CorruptFile),
 /// [`FileTooLarge`](sim3align_runtime::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
-pub fn read_stl(bytes: &[u8]) -> Result<ColoredMesh> {
+pub fn read_stl(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let is_text = !has_binary_length(bytes)
         && unmarked(bytes).trim_ascii_start().starts_with(b"solid")
         && !bytes.iter().take(1024).any(|&b| b == 0);
-    if is_text { read_text(bytes) } else { read_binary(bytes) }
+    if is_text { read_text(bytes) } else { read_binary(bytes, content) }
 }
 
-fn read_binary(bytes: &[u8]) -> Result<ColoredMesh> {
+fn read_binary(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let mut cursor = Cursor::new("mesh", bytes);
-    cursor.take(HEADER_BYTES)?;
+    let palette = Palette::of(cursor.take(HEADER_BYTES)?);
     let count = cursor.u32_le()?;
+    // Nearly all write zeros.
+    let has_attributes = cursor.remaining().chunks_exact(TRIANGLE_BYTES).any(|triangle| triangle[48..] != [0; 2]);
     let mut welder = Welder::default();
     for _ in 0..count {
         let triangle: [u8; TRIANGLE_BYTES] = cursor.array()?;
@@ -46,9 +49,38 @@ fn read_binary(bytes: &[u8]) -> Result<ColoredMesh> {
             let [x, y, z] = [0, 4, 8].map(|i| f32::from_le_bytes([xyz[i], xyz[i + 1], xyz[i + 2], xyz[i + 3]]));
             *corner = DVec3::new(x.into(), y.into(), z.into());
         }
+        if (has_attributes || palette.object.is_some()) && content == Content::ShapeAndColors {
+            welder.builder.color_faces(palette.color(u16::from_le_bytes([triangle[48], triangle[49]])));
+        }
         welder.push(corners)?;
     }
-    welder.builder.finish().map(|painted| painted.plain(None))
+    welder.builder.finish().map(PaintedMesh::colored_by_faces)
+}
+
+/// How the two bytes after each triangle mean its colour: five bits a channel.
+struct Palette {
+    /// The colour of the object in the header, as Materialise Magics writes it; a set bit 15 stands for it, and red has the lowest bits.
+    /// Without it, as of VisCAM, SolidView and MeshLab, a set bit 15 marks a colour, and blue has the lowest bits.
+    object: Option<[f64; 3]>,
+}
+
+impl Palette {
+    fn of(header: &[u8]) -> Self {
+        let after =
+            |window: &[u8]| window.strip_prefix(b"COLOR=").map(|rgb| [0, 1, 2].map(|i| f64::from(rgb[i]) / 255.0));
+        Self { object: header.windows(9).find_map(after) }
+    }
+
+    fn color(&self, attribute: u16) -> [f64; 3] {
+        let channels = [0, 5, 10].map(|shift| f64::from(attribute >> shift & 31) / 31.0);
+        let is_marked = attribute >> 15 == 1;
+        match self.object {
+            Some(object) if is_marked => object,
+            Some(_) => channels,
+            None if is_marked => [channels[2], channels[1], channels[0]],
+            None => [1.0; 3],
+        }
+    }
 }
 
 fn read_text(bytes: &[u8]) -> Result<ColoredMesh> {

@@ -34,3 +34,11 @@ pub fn quoted(word: &[u8]) -> String {
     let head = word.get(..word.len().min(40)).unwrap_or_default();
     format!("\"{}\"", head.escape_ascii())
 }
+
+/// Whether a name is one of these, which are separated by spaces. One that ends with `*` stands for all that begin like it.
+pub(crate) fn is_listed(name: &[u8], names: &str) -> bool {
+    names.split_ascii_whitespace().map(str::as_bytes).any(|listed| match listed.split_last() {
+        Some((b'*', beginning)) => name.starts_with(beginning),
+        _ => name == listed,
+    })
+}

@@ -4,6 +4,7 @@ import { parseCameraPose } from "./conventions/camera-pose-file.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { requiredBytes } from "./input/bytes.js";
 import { refersToFiles } from "./input/formats.js";
+import { gltfText } from "./input/webp.js";
 import { formatsModule } from "./modules/readers.js";
 import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
@@ -128,8 +129,8 @@ export async function caseFrom(files: CaseFiles, settings: ReadCaseOptions, plac
 }
 
 /**
- * Reads a mesh file as an input. The extension determines the format; the files that a `.gltf` or an `.obj` refers to are
- * read from its folder.
+ * Reads a mesh file as an input. The extension determines the format; the files that a glTF, OBJ or PLY file refers to are read
+ * from its folder.
  * @param read returns the bytes of a file, by its path relative to the folder of the mesh
  * @internal
  */
@@ -144,25 +145,28 @@ export async function meshFile(
   const resources: Record<string, Uint8Array> = {};
   const readers = await formatsModule.load();
   const resourcesOf = (file: Uint8Array) => readers.call((module) => module.externalResources(file));
-  const { shape, colors } = resourcesOf(bytes);
-  for (const uri of shape) {
-    const path = pathBelow(uri);
-    if (path === undefined) throw outside(uri);
-    resources[uri] = await read(path);
-  }
   const readOptional = async (uri: string) => {
     const path = pathBelow(uri);
     const file = path === undefined ? undefined : await read(path).catch(unlessMissing);
     if (file !== undefined) resources[uri] = file;
     return file;
   };
+  const { shape, colors } = resourcesOf(bytes);
+  // With meshopt, some hold what decoders do not need.
+  const isFallback = gltfText(bytes).includes("_meshopt_");
+  for (const uri of shape) {
+    const path = pathBelow(uri);
+    if (path === undefined) throw outside(uri);
+    if (isFallback) await readOptional(uri);
+    else resources[uri] = await read(path);
+  }
   for (const uri of colors) {
     const file = await readOptional(uri);
     // The material libraries of an OBJ refer to textures.
-    if (file === undefined || format === "gltf") continue;
+    if (file === undefined || format !== "obj") continue;
     for (const texture of resourcesOf(file).colors) await readOptional(texture);
   }
-  return { bytes, format, resources };
+  return Object.keys(resources).length === 0 ? { bytes, format } : { bytes, format, resources };
 }
 
 /** A mesh without its textures is aligned by its shape, and the reader warns of what is missing. */
@@ -180,8 +184,8 @@ function pathBelow(uri: string): string | undefined {
 }
 
 function outside(uri: string): Sim3AlignError {
-  const expected = "a path in the folder of the .gltf, or below it";
-  const remedy = "Put the buffers next to the .gltf, or convert it to a single .glb.";
+  const expected = "a path in the folder of the mesh, or below it";
+  const remedy = "Put the buffers next to it, or convert it to a single .glb.";
   return failure("CORRUPT_FILE", "mesh", `a buffer at ${JSON.stringify(uri)}`, expected, remedy);
 }
 

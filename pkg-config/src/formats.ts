@@ -13,7 +13,7 @@ import { decodeDepth } from "./input/depth.js";
 import { decodeMesh } from "./input/mesh.js";
 import type { DracoDecoderModule, MeshoptDecoder } from "./input/mesh-decoders.js";
 import { decodeExif, decodePhoto } from "./input/photo.js";
-import { type DecodeImage, gltfText } from "./input/webp.js";
+import type { DecodeImage } from "./input/webp.js";
 import type { Formats } from "./modules/exports.js";
 import { fileReaders, formatsModule } from "./modules/readers.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
@@ -148,9 +148,12 @@ export async function readExif(file: EncodedBytes): Promise<Exif> {
  * @param options.resources the files that the mesh file refers to, by name: see {@link externalResources}
  * @param options.colors whether to read the colours, `true` by default
  * @param options.decodeImage decodes textures that are neither PNG, JPEG nor WebP, such as KTX2, to RGB pixels
- * @param options.meshoptDecoder decodes geometry compressed with meshopt: `MeshoptDecoder` of the npm package `meshoptimizer`
- * @param options.dracoDecoder decodes geometry compressed with Draco: `await createDecoderModule()` of the npm package `draco3d`
- * @throws {@link Sim3AlignError} for any other file, and `COMPRESSED_MESH` for compressed geometry without its decoder
+ * @param options.colorSpace what the vertex colours of a glTF are; by default, bytes are sRGB-encoded, and others linear unless a
+ * program wrote them that does not convert colours
+ * @param options.meshoptDecoder decodes geometry compressed with meshopt in place of the package's decoder: `MeshoptDecoder` of the
+ * npm package `meshoptimizer`
+ * @param options.dracoDecoder the same for Draco: `await createDecoderModule()` of the npm package `draco3d`
+ * @throws {@link Sim3AlignError} for any other file, and `COMPRESSED_MESH` for compressed geometry if its decoder cannot be loaded
  */
 export async function readMesh(
   file: EncodedBytes,
@@ -158,27 +161,23 @@ export async function readMesh(
     format?: MeshFormat | undefined;
     resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
     colors?: boolean | undefined;
+    colorSpace?: "srgb" | "linear" | undefined;
     decodeImage?: DecodeImage | undefined;
     meshoptDecoder?: MeshoptDecoder | undefined;
     dracoDecoder?: DracoDecoderModule | undefined;
   } = {},
 ): Promise<MeshFromFile> {
   const { meshoptDecoder, dracoDecoder, ...given } = optionsOf(options, [
-    ...(["format", "resources", "colors", "decodeImage", "meshoptDecoder", "dracoDecoder"] as const),
+    ...(["format", "resources", "colors", "colorSpace", "decodeImage", "meshoptDecoder", "dracoDecoder"] as const),
   ]);
   const bytes = await requiredBytes("file", file);
-  if (!(meshoptDecoder || dracoDecoder) || !/_meshopt_|_draco_/.test(gltfText(bytes))) {
-    return decodeMesh("file", bytes, given, fileReaders);
-  }
-  const { geometryDecoder } = await import("./input/compressed-gltf.js");
-  const decode = await geometryDecoder(meshoptDecoder, dracoDecoder);
-  return decodeMesh("file", bytes, given, fileReaders, undefined, decode);
+  return decodeMesh("file", bytes, given, fileReaders, undefined, { meshoptDecoder, dracoDecoder });
 }
 
 /**
- * The files that a `.gltf` or an `.obj` refers to, by the names in it, unchanged. The material libraries of an `.obj` refer
+ * The files that a glTF, OBJ or PLY file refers to, by the names in it, unchanged. The material libraries of an `.obj` refer
  * to textures: call it with their content, too.
- * @throws {@link Sim3AlignError} for a glTF that cannot be read
+ * @throws {@link Sim3AlignError} for a glTF or PLY that cannot be read
  */
 export async function externalResources(file: EncodedBytes): Promise<ExternalResources> {
   const bytes = await requiredBytes("file", file);

@@ -7,6 +7,16 @@ import { refuseForeign } from "./notices.mjs";
 import { compiledDir, packageDir } from "./paths.mjs";
 import { wasmFile, wasmModules } from "./wasm.mjs";
 
+/** Leaves the decoders of compressed geometry out: without them, the bundles are a fifth smaller. */
+const withoutDecoders = /** @type {import("esbuild").Plugin} */ ({
+  name: "without-decoders",
+  setup(build) {
+    build.onLoad({ filter: /own-decoders\.js$/ }, () => ({ contents: "export const ownDecoders = () => ({});" }));
+    const asItIs = "export const geometryDecoder = () => (...file) => file;";
+    build.onLoad({ filter: /compressed-gltf\.js$/ }, () => ({ contents: asItIs }));
+  },
+});
+
 /** Options of both bundles. A bundle has no files next to it, so that `import.meta.url` is of no use. */
 const common = /** @type {const} */ ({
   bundle: true,
@@ -23,7 +33,7 @@ const common = /** @type {const} */ ({
 export async function bundleInline() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
-  const worker = await build({ ...common, entryPoints: [join(compiledDir, "worker.js")] });
+  const worker = await build({ ...common, plugins: [withoutDecoders], entryPoints: [join(compiledDir, "worker.js")] });
   refuseForeign(worker.metafile);
   const inlined = new Map([
     ["core", embedded("core")],
@@ -38,6 +48,7 @@ export async function bundleInline() {
     outfile: join(packageDir, "inline.js"),
     format: "esm",
     plugins: [
+      withoutDecoders,
       {
         name: "inlined",
         setup(build) {

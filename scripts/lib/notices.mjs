@@ -2,6 +2,7 @@
 import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { join } from "node:path";
+import { decoderPackages } from "./decoders.mjs";
 import { at } from "./paths.mjs";
 import { run } from "./run.mjs";
 import { wasmTarget } from "./setup.mjs";
@@ -80,7 +81,7 @@ export const allowBundled = (metafile) => holdOnly(metafile, bundled);
 
 /** @returns {Part[]} */
 const bundledParts = () =>
-  bundled.map((name) => {
+  [...bundled, ...decoderPackages].map((name) => {
     const folder = at("node_modules", name);
     const { version, license } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
     return { name, version, licence: license, folder };
@@ -138,7 +139,7 @@ async function notice() {
   const head = `Third-party notices of sim3align
 
 The WebAssembly modules in wasm/ and inline/ hold code of the crates below, and of the standard library of Rust
-(MIT OR Apache-2.0; its text is LICENSE-APACHE). The scripts in element/ hold code of the npm packages ${bundled.join(", ")}. Where a crate can be had under several licences, that under which it is used
+(MIT OR Apache-2.0; its text is LICENSE-APACHE). The scripts in element/ hold code of the npm packages ${bundled.join(", ")}; wasm/draco.js, wasm/draco_bg.wasm and wasm/meshopt.js are those of ${decoderPackages.join(" and ")}. Where a crate can be had under several licences, that under which it is used
 is named. Written by "npm run update".
 `;
   const texts = [...owners].map(([text, titles]) => `${RULE}\n${titles.join(", ")}\n${RULE}\n\n${text}\n`);

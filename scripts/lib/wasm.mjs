@@ -4,6 +4,7 @@ import { homedir } from "node:os";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import { cached, digest, once } from "./cache.mjs";
+import { writeDecoders } from "./decoders.mjs";
 import { at, glueDir, repository } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
 import { bindgenProgram, npmPackages, rustToolchain, wasmBindgen, wasmBindgenVersion, wasmTarget } from "./setup.mjs";
@@ -66,6 +67,7 @@ const compiled = once(async () => {
 /** Builds the modules, and puts those that have changed with their glue beside the TypeScript. */
 export const buildWasm = once(async () => {
   await Promise.all([npmPackages(), wasmBindgen(), compiled()]);
+  writeDecoders();
   await Promise.all(wasmModules.map((module) => step(`${module.name} module`, (say) => writeModule(module, say))));
 });
 

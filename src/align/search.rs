@@ -27,6 +27,7 @@ use crate::precise::search::start::{self, SearchState, WarmStart};
 use crate::precise::verdict::color::{Judgment, agreement, judgment};
 use crate::precise::verdict::conclusion;
 use crate::precise::verdict::conclusion::Verdict;
+use crate::precise::verdict::lookalikes::ROLLS;
 use crate::precise::verdict::stretch::stretch;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{Alignment, PreciseDiagnostics, SearchCounts, Solution};
@@ -249,6 +250,9 @@ impl<'a> Search<'a> {
         }
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
         verdict.confidence.relief_deviation = observation.relief_deviation();
+        if mesh.lacks_colors() && observation.photo().is_some() {
+            verdict.turn_confidence = rounds.search.equivalence.chance(ROLLS);
+        }
 
         let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
         if let Some(metrics) = &mut metrics {

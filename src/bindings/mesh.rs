@@ -21,7 +21,7 @@ thread_local! {
     static LAST: RefCell<Option<Rc<PreparedMesh<'static>>>> = const { RefCell::new(None) };
 }
 
-/// `{ positions, indices?, colors? | samples? }`; with `id`, the mesh is cached under this number, and the arrays are only read if it is
+/// `{ positions, indices?, colors? | samples? | lacksColors? }`; with `id`, the mesh is cached under this number, and the arrays are only read if it is
 /// not cached yet. Without, it is cached until the next one, which is the same if its contents are.
 #[inline(never)]
 pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
@@ -45,18 +45,22 @@ pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     let indices = indices.map(|indices| to_u32s(&indices, "mesh.indices")).transpose()?;
     let triangles = Mesh::from_flat(&positions, indices.as_deref())?;
     let colors = colors(mesh, &triangles)?;
-    let Some(id) = id else { return Ok(as_before(triangles, colors)) };
-    let mesh = Rc::new(PreparedMesh::new(triangles).with_colors(colors));
+    let lacks_colors = get(mesh, "lacksColors").is_some_and(|lacks| lacks.is_truthy());
+    let Some(id) = id else { return Ok(as_before(triangles, colors, lacks_colors)) };
+    let mesh = Rc::new(PreparedMesh::new(triangles).with_colors(colors).lacking_colors(lacks_colors));
     KEPT.with_borrow_mut(|kept| kept.push((id, mesh.clone())));
     Ok(mesh)
 }
 
 /// The mesh of the last call, if it was the same, otherwise a new one.
-fn as_before(mesh: Mesh, colors: Option<SurfaceColors>) -> Rc<PreparedMesh<'static>> {
+fn as_before(mesh: Mesh, colors: Option<SurfaceColors>, lacks_colors: bool) -> Rc<PreparedMesh<'static>> {
     LAST.with_borrow_mut(|last| {
         // Two of them would take twice the memory.
-        last.take_if(|last| *last.whole() != mesh || last.all_colors() != colors.as_ref());
-        last.get_or_insert_with(|| Rc::new(PreparedMesh::new(mesh).with_colors(colors))).clone()
+        last.take_if(|last| {
+            *last.whole() != mesh || last.all_colors() != colors.as_ref() || last.lacks_colors() != lacks_colors
+        });
+        let new = || Rc::new(PreparedMesh::new(mesh).with_colors(colors).lacking_colors(lacks_colors));
+        last.get_or_insert_with(new).clone()
     })
 }
 

@@ -21,7 +21,8 @@ pub struct Alignment {
     pub confidence: f64,
     /// Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the one
     /// whose colours are those of the photo. `null` where no other turn is possible: the shape has no symmetry, its turns look
-    /// alike, or there are no colours to compare. Where no turn agrees with the photo, all are equally likely.
+    /// alike, or there are no colours to compare. Where no turn agrees with the photo, or the colours of the mesh could not be read,
+    /// all are equally likely.
     pub turn_confidence: Option<f64>,
     /// Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
     /// are one, unless their colours differ.

@@ -69,7 +69,7 @@ pub fn readers(e: &mut Entropy<'_>) {
     let options = DepthReadOptions { depth_scale, integer_depth_scale: None };
     let is_depth = |z: &f32| z.is_finite() && *z >= 0.0;
     let resource = |_: &str| Some(bytes.clone());
-    let mesh_options = MeshReadOptions { format: None, resources: Some(&resource), images: None };
+    let mesh_options = MeshReadOptions { format: None, resources: Some(&resource), ..MeshReadOptions::default() };
     if let Some(read) = answered(read_colored_mesh(&bytes, &mesh_options)) {
         let count = read.mesh.positions().len();
         assert!(read.mesh.triangles().as_flattened().iter().all(|&i| (i as usize) < count), "an index out of range");

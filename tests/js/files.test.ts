@@ -5,20 +5,24 @@ import { mkdtempSync, readFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import type { PinholeCamera } from "sim3align";
+import type { MeshFile, PinholeCamera } from "sim3align";
+import { placeSplats } from "sim3align/conventions";
 import {
   type DepthImage,
   type Exif,
   externalResources,
   focalFromExif,
   type ReadDepthOptions,
+  readCase,
   readDepth,
   readExif,
   readImage,
   readMask,
   readMesh,
 } from "sim3align/formats";
+import { glbFrom, meshoptGltf } from "../support/compressed.js";
 import { repository } from "../support/environment.js";
+import { rejectsWith } from "../support/errors.js";
 import { type ExifFields, jpegHead, pngWith, tiff } from "../support/exif.js";
 import { cocoRle, fixture, gltfJson, npy, obj, png } from "../support/files.js";
 import { mesh } from "../support/scene.js";
@@ -121,7 +125,57 @@ test("the files that a mesh refers to are named", async () => {
   assert.deepEqual(await externalResources(gltf), { shape: ["a%20b.bin"], colors: [] });
   const named = Buffer.concat([Buffer.from("mtllib my.mtl\nmtllib C:\\away.mtl\n"), obj(mesh)]);
   assert.deepEqual(await externalResources(named), { shape: [], colors: ["C:/away.mtl", "my.mtl"] });
+  const ply = Buffer.from("ply\nformat ascii 1.0\ncomment TextureFile my picture.png\nend_header\n");
+  assert.deepEqual(await externalResources(ply), { shape: [], colors: ["my picture.png"] });
   await assert.rejects(readMesh(Uint8Array.of(1, 2, 3)), { code: "UNSUPPORTED_FORMAT" });
+});
+
+test("meshes and splats in other formats are named, with a way to convert them", async () => {
+  const gaussians = JSON.stringify({ asset: { version: "2.0" }, extensionsUsed: ["KHR_gaussian_splatting"] });
+  const files: readonly (readonly [beginning: string, found: RegExp])[] = [
+    ['<?xml version="1.0"?>\n<COLLADA>', /COLLADA.*assimp export in\.dae/],
+    ["OFF\n3 1 0\n", /an OFF file.*trimesh/],
+    ["ISO-10303-21;\n", /a STEP file.*cascadio/],
+    ["#usda 1.0\n", /a USD file.*Blender/],
+    ["PK\x03\x04 model.usdc", /a USD file.*Blender/],
+    ["PK\x03\x04 3D/3dmodel.model", /a 3MF file.*trimesh/],
+    ["PK\x03\x04 meta.json means_l.webp", /as SOG.*splat-transform in\.sog out\.ply/],
+    ["PK\x03\x04 mesh.glb", /a ZIP archive.*Unpack/],
+    ["NGSP\x04", /as SPZ.*splat-transform in\.spz out\.ply/],
+    ["\x1f\x8b\x08", /gzip.*splat-transform in\.spz out\.ply/],
+    ["Kaydara FBX Binary", /FBX.*Blender/],
+    ["BLENDER-v500", /Blender file/],
+    ["<!DOCTYPE html>", /an HTML page.*response\.ok/],
+    [gaussians, /3D Gaussians in a glTF file/],
+  ];
+  const placed = { scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] } as const;
+  for (const [beginning, found] of files) {
+    const bytes = Buffer.from(beginning, "latin1");
+    await rejectsWith(() => readMesh(bytes), "UNSUPPORTED_FORMAT mesh", found);
+    await rejectsWith(() => placeSplats(bytes, placed), "UNSUPPORTED_FORMAT splats", found);
+  }
+  const compressed = Buffer.from("ply\nelement chunk 1\nelement vertex 1\nproperty uint packed_position\nend_header\n");
+  await rejectsWith(() => placeSplats(compressed, placed), "UNSUPPORTED_FORMAT splats", /in\.compressed\.ply out\.ply/);
+});
+
+test("a mesh in a folder is read with the files beside it: the texture of a PLY, buffers that a decoder replaces", async () => {
+  const rows = ["0 0 0 0 0", "1 0 0 1 0", "0 1 0 0 1"];
+  const header = ["ply", "format ascii 1.0", "comment TextureFile t.png", "element vertex 3"];
+  const properties = ["x", "y", "z", "texture_u", "texture_v"].map((name) => `property float ${name}`);
+  const faces = ["element face 1", "property list uchar int vertex_indices", "end_header"];
+  const ply = Buffer.from(`${[...header, ...properties, ...faces, ...rows, "3 0 1 2"].join("\n")}\n`);
+  const packed = meshoptGltf(mesh, "EXT_meshopt_compression", false);
+  Object.assign(packed.json.buffers[1] ?? {}, { uri: "mesh.fallback.bin" });
+  const beside = { "depth.npy": new Uint8Array(), "mask.png": new Uint8Array() };
+  const texture = png(Uint8Array.of(200, 30, 60), 1, 1, 3);
+  const textured = await readCase({ ...beside, "mesh.ply": ply, "t.png": texture });
+  const file = textured.input.mesh as MeshFile;
+  const read = await readMesh(file.bytes, { resources: file.resources });
+  assert.deepEqual([...(read.samples?.colors.subarray(0, 3) ?? [])], [200, 30, 60]);
+  assert.deepEqual(textured.unread, []);
+  const { input } = await readCase({ ...beside, "mesh.glb": glbFrom(packed) });
+  const { bytes } = input.mesh as MeshFile;
+  assert.deepEqual((await readMesh(bytes)).indices.length, mesh.indices.length);
 });
 
 const phone: [ExifFields, ExifFields] = [

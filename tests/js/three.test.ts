@@ -11,23 +11,31 @@ import {
   transformFromObject3D,
 } from "sim3align/three";
 import {
+  BatchedMesh,
+  Bone,
   BoxGeometry,
   BufferAttribute,
   BufferGeometry,
   Color,
   DataTexture,
   Group,
+  InstancedBufferGeometry,
   InstancedMesh,
   InterleavedBuffer,
   InterleavedBufferAttribute,
+  LOD,
   Matrix4,
   Mesh,
   MeshBasicMaterial,
+  MeshStandardMaterial,
   MirroredRepeatWrapping,
+  type Object3D,
   PerspectiveCamera,
   Quaternion,
   RepeatWrapping,
   Scene,
+  Skeleton,
+  SkinnedMesh,
   SRGBColorSpace,
   Texture,
   Vector3,
@@ -110,6 +118,67 @@ test("geometries: as they are, without indices, interleaved, normalised", () => 
   assert.deepEqual(of(new InterleavedBufferAttribute(numbers, 3, 1)), [0, 0, 0, 1, 0, 0, 0, 1, 0]);
   const quantised = Int16Array.of(0, 0, 0, 32767, 0, 0, 0, -32767, 0);
   assert.deepEqual(of(new BufferAttribute(quantised, 3, true)), [0, 0, 0, 1, 0, 0, 0, -1, 0]);
+});
+
+test("what three.js draws is read: morph targets, bones, levels, ranges and groups, but nothing that is hidden", async () => {
+  const cube = (height = 1) => new BoxGeometry(1, height, 1);
+  const count = cube().getAttribute("position").count;
+  const stretched = () => {
+    const geometry = cube();
+    geometry.morphAttributes.position = [cube(3).getAttribute("position") as BufferAttribute];
+    const found = new Mesh(geometry);
+    found.morphTargetInfluences = [0.5];
+    return found;
+  };
+  const skinned = () => {
+    const geometry = cube().setAttribute("skinIndex", new BufferAttribute(new Uint16Array(4 * count), 4));
+    const weights = Float32Array.from({ length: 4 * count }, (_, i) => (i % 4 === 0 ? 1 : 0));
+    geometry.setAttribute("skinWeight", new BufferAttribute(weights, 4));
+    const [bone, found] = [new Bone(), new SkinnedMesh(geometry)];
+    const root = new Group().add(bone, found);
+    found.bind(new Skeleton([bone]));
+    bone.scale.y = 2;
+    return root;
+  };
+  const hidden = (object: Object3D) => Object.assign(object, { visible: false });
+  const levels = () => {
+    const lod = new LOD().addLevel(new Mesh(cube(2))).addLevel(new Mesh(cube(9)), 5);
+    for (const { object } of lod.levels) object.visible = object === lod.levels[1]?.object;
+    return lod;
+  };
+  const ranged = (geometry: BufferGeometry) => {
+    // The sides at x = ±1/2, then those at y = ±1/2.
+    geometry.setDrawRange(0, 12);
+    return new Mesh(geometry);
+  };
+  const several = new Mesh(
+    cube(2),
+    [0, 1, 2, 3, 4, 5].map((i) => new MeshBasicMaterial({ visible: i < 2 })),
+  );
+  const cases: readonly [name: string, object: Object3D, height: number, triangles: number][] = [
+    ["morph targets", stretched(), 2, 12],
+    ["bones", skinned(), 2, 12],
+    ["hidden children", new Group().add(new Mesh(cube(2)), hidden(new Group().add(new Mesh(cube(9))))), 2, 12],
+    ["a hidden object that is passed", hidden(new Mesh(cube(2))), 2, 12],
+    ["levels", new Group().add(levels()), 2, 12],
+    ["a range", ranged(cube(2)), 2, 4],
+    ["groups", several, 2, 4],
+  ];
+  for (const [name, object, height, triangles] of cases) {
+    const { positions, indices } = meshInputFromThree(object);
+    const y = Array.from(indices, (corner) => positions[3 * corner + 1] as number);
+    assert.ok(Math.abs(Math.max(...y) - Math.min(...y) - height) < 1e-6, `${name}: ${Math.max(...y)}`);
+    assert.equal(indices.length / 3, triangles, name);
+  }
+  assert.match(meshInputFromThree(several).warnings?.join() ?? "", /several materials/);
+  const material = new MeshStandardMaterial({ color: 0, emissive: new Color(0.5, 0.25, 1) });
+  assert.deepEqual([...(meshInputFromThree(new Mesh(cube(), material)).colors?.slice(0, 3) ?? [])], [0.5, 0.25, 1]);
+  const unlike: readonly Object3D[] = [
+    new Mesh(new InstancedBufferGeometry().setAttribute("position", cube().getAttribute("position"))),
+    new Mesh(cube(), new MeshStandardMaterial({ displacementMap: new Texture() })),
+    new BatchedMesh(1, 24),
+  ];
+  for (const object of unlike) await rejectsWith(() => meshInputFromThree(object), "UNSUPPORTED_FORMAT source");
 });
 
 test("a pinhole camera in three.js sees every point at its pixel, in WebGL and WebGPU", () => {

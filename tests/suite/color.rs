@@ -122,7 +122,17 @@ fn without_photo_or_colours_the_answer_is_that_of_shape_to_the_bit() {
     let with_photo = seen.clone().with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.0), 0)).unwrap();
     let expected = solve(seen.clone(), &plain);
     assert_eq!(solve(seen, &printed_mesh()), expected);
-    assert_eq!(solve(with_photo, &plain), expected);
+    assert_eq!(solve(with_photo.clone(), &plain), expected);
+    // Colours that could not be read would tell its four turns apart.
+    let lacking = PreparedMesh::borrowed(&mesh).lacking_colors(true);
+    let options = AlignOptions { symmetry: Symmetry::Auto, ..quick() };
+    let turn_of = |seen: Observation, mesh: &PreparedMesh<'_>| {
+        let found = align_prepared(&seen, mesh, Request::new(options.clone()).unwrap(), &mut Silent).unwrap();
+        found.turn_confidence
+    };
+    assert_eq!(turn_of(with_photo.clone(), &lacking), Some(0.25));
+    assert_eq!(turn_of(with_photo, &plain), None);
+    assert_eq!(turn_of(observe(&mesh, &truth()), &lacking), None);
 }
 
 #[wasm_bindgen_test]

@@ -170,7 +170,10 @@ pub fn files_have_these_bits() {
     };
     let splats = read_splats(fixture!("splat.ply"), true);
     let mesh = |bytes: &[u8]| {
-        let read = read_colored_mesh(bytes, &MeshReadOptions { format: None, resources: Some(&beside), images: None });
+        let read = read_colored_mesh(
+            bytes,
+            &MeshReadOptions { format: None, resources: Some(&beside), ..MeshReadOptions::default() },
+        );
         of(read.map(|read| (read.mesh, read.colors.unwrap(), read.problem)))
     };
     check(&[

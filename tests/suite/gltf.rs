@@ -15,8 +15,10 @@ fn quad_bytes() -> Vec<u8> {
 
 /// A scene of these nodes, primitives (of mesh 0), accessors and views on [`quad_bytes`].
 fn scene_of(nodes: &str, primitives: &str, accessors: &str, views: &str, more: &str) -> Vec<u8> {
+    // Properties of the mesh may follow its primitives.
+    let (primitives, weights) = primitives.split_once(';').unwrap_or((primitives, ""));
     let json = format!(
-        r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],"meshes":[{{"primitives":[{primitives}]}}],
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],"meshes":[{{"primitives":[{primitives}]{weights}}}],
         "accessors":[{accessors}],"bufferViews":[{views}],"buffers":[{{"byteLength":60}}]{more}}}"#
     );
     glb(&json, &quad_bytes())
@@ -49,7 +51,7 @@ fn external_buffers_come_from_the_caller() {
         "gltf_buffer_1.bin" => Some(fixture!("mesh-external-gltf_buffer_1.bin").to_vec()),
         _ => None,
     };
-    let options = MeshReadOptions { format: None, resources: Some(&files), images: None };
+    let options = MeshReadOptions { format: None, resources: Some(&files), ..MeshReadOptions::default() };
     let mesh = read_mesh(gltf, &options).unwrap();
     assert_eq!(corners(&mesh), corners(&read(fixture!("mesh.glb")).unwrap()));
     let error = read(gltf).unwrap_err();
@@ -313,4 +315,25 @@ fn skins_have_the_pose_of_their_joints() {
     }
     let outside = json.replace(r#""nodes":[0,1,2]"#, r#""nodes":[0,1]"#);
     assert_eq!(read(glb(&outside, &bytes)).unwrap_err().code, ErrorCode::CorruptFile);
+}
+
+#[wasm_bindgen_test]
+fn morph_targets_have_their_default_weights_and_hidden_nodes_are_left_out() {
+    let primitive = r#"{"attributes":{"POSITION":0},"indices":2,"targets":[{"NORMAL":0},{"POSITION":0}]}"#;
+    // Vertices 2, 1 and 3 of the quad; the target adds their positions once more.
+    let largest = |nodes: &str, weights: &str| {
+        let mesh = read(scene_of(nodes, &format!("{primitive};{weights}"), ACCESSORS, VIEWS, "")).unwrap();
+        let largest = mesh.positions().iter().fold(0.0, |most: f32, p| most.max(p.max_element()));
+        (largest, mesh.triangles().len())
+    };
+    let of_mesh = r#","weights":[1,0.5]"#;
+    assert_eq!(largest(r#"{"mesh":0}"#, ""), (1.0, 1));
+    assert_eq!(largest(r#"{"mesh":0}"#, of_mesh), (1.5, 1));
+    // A node has weights of its own; the same mesh elsewhere keeps its own.
+    assert_eq!(largest(r#"{"mesh":0,"weights":[0,2]},{"mesh":0}"#, of_mesh), (3.0, 2));
+    let hidden = r#""extensions":{"KHR_node_visibility":{"visible":false}}"#;
+    assert_eq!(largest(&format!(r#"{{"mesh":0}},{{"children":[2],{hidden}}},{{"mesh":0}}"#), of_mesh), (1.5, 1));
+    let short = primitive.replace(r#""POSITION":0}]"#, r#""POSITION":2}]"#);
+    let refused = read(scene_of(r#"{"mesh":0}"#, &format!("{short};{of_mesh}"), ACCESSORS, VIEWS, ""));
+    assert_eq!(refused.unwrap_err().code, ErrorCode::CorruptFile);
 }

@@ -3,7 +3,7 @@
 use sim3align::error::Error;
 use sim3align::geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors};
 use sim3align_formats::colored_mesh::ColoredMesh;
-use sim3align_formats::mesh::{MeshReadOptions, read_colored_mesh, read_mesh};
+use sim3align_formats::mesh::{ColorSpace, MeshReadOptions, read_colored_mesh, read_mesh};
 
 use crate::fixtures::{MESHES, floats, glb, rgb_png};
 use crate::prelude::*;
@@ -46,6 +46,7 @@ struct Square<'a> {
     accessors: &'a str,
     chunks: &'a [&'a [u8]],
     material: &'a str,
+    generator: &'a str,
 }
 
 const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
@@ -60,11 +61,11 @@ impl Square<'_> {
             binary.extend(*chunk);
             binary.resize(binary.len().next_multiple_of(4), 0);
         }
-        let Self { attributes, accessors, material, .. } = self;
+        let Self { attributes, accessors, material, generator, .. } = self;
         let material_index = if material.is_empty() { "" } else { r#","material":0"# };
         glb(
             &format!(
-                r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[
+                r#"{{"asset":{{"version":"2.0","generator":"{generator}"}},"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[
                 {{"attributes":{{"POSITION":0{attributes}}},"indices":1{material_index}}}]}}],"accessors":[
                 {{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}},
                 {{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}}{accessors}],
@@ -128,6 +129,7 @@ fn a_texture_is_seen_where_its_coordinates_say() {
             accessors: r#",{"bufferView":2,"componentType":5126,"count":4,"type":"VEC2"}"#,
             chunks: &[&uv, &png],
             material: &material,
+            ..Square::default()
         };
         check(&colors(&square.glb()), 1, |p| block_at(of_point(p), modes));
     }
@@ -148,6 +150,7 @@ fn upright(png: &[u8], material: &str) -> Vec<u8> {
         accessors: r#",{"bufferView":2,"componentType":5126,"count":4,"type":"VEC2"}"#,
         chunks: &[&floats(&uv), png],
         material,
+        generator: "",
     }
     .glb()
 }
@@ -288,6 +291,144 @@ fn factors_and_vertex_colors_of_gltf_are_linear() {
         accessors: r#",{"bufferView":2,"componentType":5126,"count":4,"type":"VEC3"}"#,
         chunks: &[&floats(&[0.25, 0.5, 1.0].repeat(4))],
         material: factor,
+        generator: "",
     };
     check(&colors(&vertices.glb()), 0, |_| Some([137, 99, 0]));
+}
+
+/// The colours of a PLY of the square whose upper left triangle, (0, 1), has the first texture or colour.
+fn ply_of(header: &str, vertices: [&str; 4], faces: [&str; 2]) -> ColoredMesh {
+    let points = ["0 0 0", "1 0 0", "0 1 0", "1 1 0"];
+    let rows: String = points.iter().zip(vertices).map(|(point, more)| format!("{point} {more}\n")).collect();
+    let [vertex, face] = header.split_once('|').map(|(vertex, face)| [vertex, face]).unwrap();
+    let [comments, vertex] = vertex.split_once('!').map_or(["", vertex], |(comments, vertex)| [comments, vertex]);
+    let text = format!(
+        "ply\nformat ascii 1.0\n{comments}element vertex 4\nproperty float x\nproperty float y\nproperty float z\n{vertex}\
+        element face 2\nproperty list uchar int vertex_indices\n{face}end_header\n{rows}3 0 3 2 {}\n3 0 1 3 {}\n",
+        faces[0], faces[1]
+    );
+    let resources = |name: &str| match name {
+        "blocks.png" => Some(blocks_png()),
+        "one colour.png" => Some(rgb_png(&[[10, 200, 30]], [1, 1])),
+        _ => None,
+    };
+    let options = MeshReadOptions { resources: Some(&resources), ..MeshReadOptions::default() };
+    read_colored_mesh(text.as_bytes(), &options).unwrap()
+}
+
+#[wasm_bindgen_test]
+fn a_ply_has_the_colors_of_textures_or_of_vertices_or_of_faces() {
+    let image = |p: Vec3| block_at([f64::from(p.x), 1.0 - f64::from(p.y)], [10_497; 2]);
+    let colors = |read: ColoredMesh| {
+        assert_eq!((read.problem, read.unread), (None, Vec::new()));
+        read.colors.unwrap()
+    };
+    let corners = ["0 0", "1 0", "0 1", "1 1"];
+    for names in ["texture_u texture_v", "u v", "s t", "texture_s texture_t"] {
+        let properties: String = names.split(' ').map(|name| format!("property float {name}\n")).collect();
+        let header = format!("comment TextureFile blocks.png\n!{properties}|");
+        check(&colors(ply_of(&header, corners, [""; 2])), 1, image);
+    }
+    // MeshLab's: a texture of each face, and coordinates of its corners; -1 is none.
+    let both = "comment TextureFile blocks.png\ncomment texture_file one colour.png\n!|\
+        property list uchar float texcoord\nproperty int texnumber\n";
+    let mapped = |number: &str| [format!("6 0 0 1 1 0 1 {number}"), "6 0 0 1 0 1 1 0".into()];
+    for (number, above) in [("1", Some([10, 200, 30])), ("-1", Some([255; 3])), ("0", None)] {
+        let faces = mapped(number);
+        let is_above = |p: Vec3| above.filter(|_| p.y > p.x + 0.05);
+        let read = ply_of(both, [""; 4], [&faces[0], &faces[1]]);
+        check(&colors(read), 1, |p| if (p.y - p.x).abs() < 0.05 { None } else { is_above(p).or_else(|| image(p)) });
+    }
+    let rgb = "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\n";
+    let by_face = |p: Vec3| Some(if p.y > p.x { [200, 30, 60] } else { [0, 90, 255] });
+    let faces = ["200 30 60 255", "0 90 255 255"];
+    check(&colors(ply_of(&format!("|{rgb}"), [""; 4], faces)), 0, by_face);
+    // Vertices that all have one colour are not finer; others are.
+    let vertex =
+        rgb.replace("uchar red", "float diffuse_red").replace("uchar", "float").replace("float b", "float diffuse_b");
+    let vertex = vertex.replace("float green", "float diffuse_green");
+    check(&colors(ply_of(&format!("{vertex}|{rgb}"), ["255 255 255 255"; 4], faces)), 0, by_face);
+    let red = ["0 0 0 1", "255 0 0 1", "0 0 0 1", "255 0 0 1"];
+    check(&colors(ply_of(&format!("{vertex}|{rgb}"), red, faces)), 1, |p| Some([(255.0 * p.x).round() as u8, 0, 0]));
+    for (header, vertices, found) in [
+        ("property float u\nproperty float v\n|", corners, "texture coordinates without a texture"),
+        ("comment TextureFile a.png\n!|", [""; 4], "a texture without texture coordinates"),
+        ("comment TextureFile a.png\n!property float u\nproperty float v\n|", corners, "no bytes for \"a.png\""),
+        (
+            "comment TextureFile blocks.png\ncomment TextureFile b.png\n!property float u\nproperty float v\n|",
+            corners,
+            "several textures, and faces without texnumber",
+        ),
+    ] {
+        let read = ply_of(header, vertices, [""; 2]);
+        assert_eq!((read.colors, read.problem.map(|problem| problem.found.to_string())), (None, Some(found.into())));
+    }
+    let by_material = ply_of("|property int material_index\n", [""; 4], ["0", "1"]);
+    assert_eq!((by_material.problem.is_some(), by_material.unread.len()), (true, 1));
+}
+
+#[wasm_bindgen_test]
+fn colors_that_others_write_otherwise_are_read() {
+    // OBJ: 0 to 255; what is emitted over black, and what is ambient alone.
+    let materials = "newmtl part #1\nKd 0 0 0\nKe 0.2 0.4 0.6\nKa 1 1 1\nnewmtl part #2\nKa 0.8 0.2 0\n";
+    let by_part = |parts: [Rgb; 3]| move |p: Vec3| Some(parts[(p.x / 4.0) as usize]);
+    check(&obj_colors(materials, ""), 1, by_part([[51, 102, 153], [204, 51, 0], [255; 3]]));
+    check(&obj_colors(materials, " 102 51 204"), 0, by_part([[102, 51, 204]; 3]));
+    let textured = materials.replace("Ka 0.8", "map_Ka a #.png\nKa 0.8").replace("Ke", "map_Ke -clamp on a #.png\nKe");
+    check(&obj_colors(&textured, ""), 1, by_part([[10, 200, 30], [10, 200, 30], [255; 3]]));
+
+    // glTF: a texture that is emitted over a black base.
+    let emitted = TEXTURED.replace("\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}", "\"pbrMetallicRoughness\":{\"baseColorFactor\":[0,0,0,1]},\"emissiveFactor\":[1,1,1],\"emissiveTexture\":{\"index\":0}");
+    assert_ne!(emitted, TEXTURED);
+    check(&colors(&upright(&blocks_png(), &emitted)), 1, |p| {
+        block_at([f64::from(p.x), 1.0 - f64::from(p.y)], [10_497; 2])
+    });
+
+    // STL: five bits a channel, blue lowest; with a colour of the object in the header, red lowest.
+    let stl = |header: &[u8], attribute: u16| {
+        let mut bytes = header.to_vec();
+        bytes.resize(80, b' ');
+        bytes.extend(1_u32.to_le_bytes());
+        bytes.extend(floats(&[0.0; 3]));
+        bytes.extend(floats(CORNERS[..3].as_flattened()));
+        bytes.extend(attribute.to_le_bytes());
+        bytes
+    };
+    check(&colors(&stl(b"", 0x8000 | 31 << 10 | 3)), 1, |_| Some([255, 0, 25]));
+    check(&colors(&stl(b"x COLOR=\x0a\xc8\x1e\xff", 31 | 3 << 10)), 1, |_| Some([255, 0, 25]));
+    check(&colors(&stl(b"x COLOR=\x0a\xc8\x1e\xff", 0x8000)), 0, |_| Some([10, 200, 30]));
+    assert_eq!(read(&stl(b"", 77)).colors, None);
+}
+
+#[wasm_bindgen_test]
+fn vertex_colors_of_gltf_are_codes_if_their_writer_or_the_caller_says_so() {
+    let square = |kind: u32, chunk: &[u8], generator: &'static str| {
+        let accessors =
+            format!(r#",{{"bufferView":2,"componentType":{kind},"normalized":true,"count":4,"type":"VEC3"}}"#);
+        let chunks = [chunk];
+        let square = Square {
+            attributes: r#","COLOR_0":2"#,
+            accessors: &accessors,
+            chunks: &chunks,
+            generator,
+            ..Square::default()
+        };
+        square.glb()
+    };
+    let float = floats(&[0.25, 0.5, 1.0].repeat(4));
+    let bytes = [64, 128, 255].repeat(4);
+    let (linear, codes) = ([137, 188, 255], [64, 128, 255]);
+    for (kind, chunk, generator, space, expected) in [
+        (5126, &float, "Khronos glTF Blender I/O v5.2", None, linear),
+        (5126, &float, "", Some(ColorSpace::Srgb), codes),
+        (5126, &float, "Open3D", None, codes),
+        (5126, &float, "Open Asset Import Library (assimp v6.0)", None, codes),
+        (5126, &float, "Open3D", Some(ColorSpace::Linear), linear),
+        (5121, &bytes, "", None, codes),
+        (5121, &bytes, "gltfpack 1.3", Some(ColorSpace::Linear), linear),
+    ] {
+        let options = MeshReadOptions { color_space: space, ..MeshReadOptions::default() };
+        let read = read_colored_mesh(&square(kind, chunk, generator), &options).unwrap();
+        check(&read.colors.unwrap(), 1, |_| Some(expected));
+    }
 }

@@ -100,7 +100,11 @@ fn the_alignment_is_that_of_the_object_and_the_warning_says_what_is_left_out() {
     let alone = align(&observation, &object, &quick(), &mut Silent).unwrap();
     assert!(alone.warnings.is_empty(), "{:?}", alone.warnings);
     let floater = moved(&sphere(0.03, 6), [0.9, 0.2, 0.0]);
-    for (surplus, word) in [(&floater, " 1 far from all others ("), (&ground, " 1 below, a plate (")] {
+    // The floor of a scene, of which the object is a small part.
+    let floor = plate([16.0, 15.0, 0.02], low - 0.02);
+    for (surplus, word) in
+        [(&floater, " 1 far from all others ("), (&ground, " 1 below, a plate ("), (&floor, " 1 below, a plate (99.")]
+    {
         let mesh = joined(&object, surplus);
         let found = align(&observation, &mesh, &quick(), &mut Silent).unwrap();
         assert_eq!(found.camera_from_mesh, alone.camera_from_mesh, "{word}");

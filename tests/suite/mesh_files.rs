@@ -3,7 +3,7 @@
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh, read_mesh};
 use sim3align_formats::splats::read_splats;
 
-use crate::fixtures::{MESHES, area, corners, fixture, floats, read};
+use crate::fixtures::{MESHES, area, corners, fixture, floats, glb, read};
 use crate::prelude::*;
 
 #[wasm_bindgen_test]
@@ -278,4 +278,54 @@ fn splats_of_two_dimensions_and_packed_ones_are_those_of_three() {
         };
         assert!((mean(&read) - mean(&expected)).abs() < 2.0, "{name}: {} {}", mean(&read), mean(&expected));
     }
+}
+
+#[wasm_bindgen_test]
+fn what_a_reader_does_not_know_is_named_and_what_does_not_matter_is_not() {
+    let ply = |vertex: &str, face: &str, element: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nobj_info x\ncomment x\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+            property float {vertex}\nelement face 1\nproperty list uchar int vertex_indices\nproperty int {face}\n\
+            element {element} 1\nproperty float weight\nend_header\n0 0 0 1\n1 0 0 1\n0 1 0 1\n3 0 1 2 1\n1\n"
+        )
+    };
+    let obj =
+        |statement: &str| format!("o a\ng b\ns 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n{statement} 1 2\nf 1 2 3\n");
+    let gltf = |extension: &str| {
+        let data = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let json = r#"{"asset":{"version":"2.0"},"extensionsUsed":["EXTENSION"],"nodes":[{"mesh":0}],"meshes":[{"primitives":[
+            {"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+            "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36}]}"#;
+        glb(&json.replace("EXTENSION", extension), &data)
+    };
+    let known = [
+        ply("nx", "flags", "edge").into_bytes(),
+        ply("scalar_Curvature", "scalar_x", "camera").into_bytes(),
+        ply("confidence", "quality", "camera").into_bytes(),
+        obj("l").into_bytes(),
+        obj("p").into_bytes(),
+        gltf("KHR_materials_unlit"),
+        gltf("KHR_texture_transform"),
+        gltf("EXT_structural_metadata"),
+    ];
+    let unread = |bytes: &[u8]| read_colored_mesh(bytes, &MeshReadOptions::default()).unwrap().unread;
+    for bytes in &known {
+        assert_eq!(unread(bytes), Vec::<String>::new(), "{}", String::from_utf8_lossy(bytes));
+    }
+    for (bytes, name) in [
+        (ply("bend", "flags", "edge").into_bytes(), "\"vertex.bend\""),
+        (ply("nx", "material_index", "edge").into_bytes(), "\"face.material_index\""),
+        (ply("nx", "flags", "patch").into_bytes(), "\"patch.weight\""),
+        (obj("curv2").into_bytes(), "\"curv2\""),
+        (gltf("ACME_bent"), "\"ACME_bent\""),
+        (gltf("KHR_materials_new"), "\"KHR_materials_new\""),
+    ] {
+        let unread = unread(&bytes);
+        assert!(unread.len() == 1 && unread[0].contains(name), "{unread:?} without {name}");
+    }
+    let library = |_: &str| Some(b"newmtl a\nNs 3\nillum 2\nmap_Bump x.png\nwarp 1\n".to_vec());
+    let options = MeshReadOptions { resources: Some(&library), ..MeshReadOptions::default() };
+    let with_library = format!("mtllib a.mtl\n{}", obj("l"));
+    let unread = read_colored_mesh(with_library.as_bytes(), &options).unwrap().unread;
+    assert!(unread.len() == 1 && unread[0].contains("statements \"warp\""), "{unread:?}");
 }

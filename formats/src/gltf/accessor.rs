@@ -1,14 +1,12 @@
 //! Accessors: typed views of buffers, with all offsets checked.
 
-use ::gltf::json;
-use ::gltf::json::accessor::{ComponentType, Type};
-use ::gltf::json::validation::Checked;
 use glam::{DMat4, Vec3};
 
 use crate::color::srgb;
 use crate::gltf::buffers::Buffers;
-use crate::gltf::document::Document;
+use crate::gltf::document::{Accessor, Document, Sparse};
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, missing, too_large};
+use crate::mesh_format::ColorSpace;
 use crate::resources::ImageDecoder;
 use sim3align_geometry::surface_colors::Rgb;
 use sim3align_runtime::error::Result;
@@ -20,13 +18,54 @@ const MAX_ZEROS: usize = 1 << 20;
 /// Maximum number of elements read in total, which bounds the time for many primitives on one large accessor.
 const MAX_ELEMENTS_READ: usize = 1 << 28;
 
+/// Programs that write sRGB codes where floats are linear, by a part of their names in lower case: they do not convert what
+/// PLY, OBJ and scans have.
+const WRITERS_OF_CODES: [&str; 2] = ["open3d", "open asset import library"];
+
 /// Reads the accessors of a document.
 pub(super) struct AccessorReader<'a> {
     pub document: &'a Document,
     pub buffers: Buffers<'a>,
     /// Decodes textures that are neither PNG nor JPEG.
     pub images: Option<ImageDecoder<'a>>,
+    /// What the colours of vertices are, if the caller knows.
+    pub color_space: Option<ColorSpace>,
     pub elements_read: usize,
+}
+
+/// The types of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum ComponentType {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl ComponentType {
+    /// The type of this number in the specification.
+    fn of(number: u64) -> Option<Self> {
+        Some(match number {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    /// Bytes per number.
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
 }
 
 /// A number as stored, and its component type.
@@ -40,7 +79,7 @@ impl<'a> AccessorReader<'a> {
     /// A POSITION accessor: floats, or the integers of `KHR_mesh_quantization`.
     pub fn positions(&mut self, index: usize) -> Result<Vec<Vec3>> {
         let accessor = self.accessor(index)?;
-        let kind = component_type(accessor, Type::Vec3, index)?;
+        let kind = component_type(accessor, "VEC3", index)?;
         let component = Component { kind, normalized: accessor.normalized };
         let size = kind.size();
         self.read(accessor, MAX_VERTICES, 3 * size, Vec3::ZERO, |bytes| Vec3::from_array(component.vector(bytes)))
@@ -49,22 +88,30 @@ impl<'a> AccessorReader<'a> {
     /// A COLOR_n accessor, sRGB-encoded. Whole numbers count as normalised, as the specification demands. Alpha is ignored.
     ///
     /// By the specification, all are linear. Programs that write bytes, as generators and scanners do, mostly write the
-    /// sRGB codes that they have, and linear light in 8 bits would be too coarse: bytes count as sRGB.
+    /// sRGB codes that they have, and linear light in 8 bits would be too coarse: bytes count as sRGB. So do floats of
+    /// [`WRITERS_OF_CODES`].
     pub fn colors(&mut self, index: usize) -> Result<Vec<Rgb>> {
         let accessor = self.accessor(index)?;
-        let shape = if accessor.type_ == Checked::Valid(Type::Vec4) { Type::Vec4 } else { Type::Vec3 };
+        let (shape, channels) = if accessor.shape == "VEC4" { ("VEC4", 4) } else { ("VEC3", 3) };
         let kind = component_type(accessor, shape, index)?;
         let (component, size) = (Component { kind, normalized: true }, kind.size());
-        self.read(accessor, MAX_VERTICES, shape.multiplicity() * size, [0; 3], |bytes| match (kind, bytes) {
-            (ComponentType::U8, &[r, g, b, ..]) => [r, g, b],
-            _ => srgb(component.vector(bytes)),
+        let generator = self.document.asset.generator.to_ascii_lowercase();
+        let by_default = match kind {
+            ComponentType::U8 => true,
+            ComponentType::F32 => WRITERS_OF_CODES.iter().any(|name| generator.contains(name)),
+            _ => false,
+        };
+        let are_codes = self.color_space.map_or(by_default, |space| space == ColorSpace::Srgb);
+        self.read(accessor, MAX_VERTICES, channels * size, [0; 3], |bytes| {
+            let color = component.vector(bytes);
+            if are_codes { color.map(|x| (x * 255.0).round() as u8) } else { srgb(color) }
         })
     }
 
     /// An accessor of 4 × 4 matrices.
     pub fn matrices(&mut self, index: usize) -> Result<Vec<DMat4>> {
         let accessor = self.accessor(index)?;
-        let kind = component_type(accessor, Type::Mat4, index)?;
+        let kind = component_type(accessor, "MAT4", index)?;
         let component = Component { kind, normalized: false };
         let matrix = |bytes: &[u8]| DMat4::from_cols_array(&component.vector::<16>(bytes).map(f64::from));
         self.read(accessor, MAX_VERTICES, 16 * kind.size(), DMat4::ZERO, matrix)
@@ -88,7 +135,7 @@ impl<'a> AccessorReader<'a> {
 
     fn vectors_of_4(&mut self, index: usize, normalized: bool) -> Result<Vec<[f32; 4]>> {
         let accessor = self.accessor(index)?;
-        let kind = component_type(accessor, Type::Vec4, index)?;
+        let kind = component_type(accessor, "VEC4", index)?;
         let component = Component { kind, normalized };
         self.read(accessor, MAX_VERTICES, 4 * kind.size(), [0.0; 4], |bytes| component.vector(bytes))
     }
@@ -96,14 +143,14 @@ impl<'a> AccessorReader<'a> {
     /// A TEXCOORD_n accessor.
     pub fn coordinates(&mut self, index: usize) -> Result<Vec<[f32; 2]>> {
         let accessor = self.accessor(index)?;
-        let kind = component_type(accessor, Type::Vec2, index)?;
+        let kind = component_type(accessor, "VEC2", index)?;
         let (component, size) = (Component { kind, normalized: accessor.normalized }, kind.size());
         self.read(accessor, MAX_VERTICES, 2 * size, [0.0; 2], |bytes| component.vector(bytes))
     }
 
     /// The bytes of a buffer view.
     pub fn bytes_of_view(&mut self, index: usize) -> Result<&[u8]> {
-        let length = self.document.buffer_views.get(index).map_or(0, |view| view.byte_length.0);
+        let length = self.document.buffer_views.get(index).map_or(0, |view| view.byte_length);
         let whole = usize::try_from(length).unwrap_or(usize::MAX);
         self.run(index, 0, 1, whole).map(|mut run| run.next().unwrap_or_default())
     }
@@ -111,7 +158,7 @@ impl<'a> AccessorReader<'a> {
     /// An accessor of vertex indices.
     pub fn indices(&mut self, index: usize) -> Result<Vec<u32>> {
         let accessor = self.accessor(index)?;
-        let kind = component_type(accessor, Type::Scalar, index)?;
+        let kind = component_type(accessor, "SCALAR", index)?;
         if !matches!(kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
             let found = format!("indices of type {kind:?} in accessor {index}");
             return Err(corrupt("mesh", found, "unsigned whole numbers"));
@@ -119,7 +166,7 @@ impl<'a> AccessorReader<'a> {
         self.read(accessor, 3 * MAX_TRIANGLES, kind.size(), 0, |bytes| unsigned(kind, bytes))
     }
 
-    fn accessor(&self, index: usize) -> Result<&'a json::Accessor> {
+    fn accessor(&self, index: usize) -> Result<&'a Accessor> {
         let document: &'a Document = self.document;
         let accessors = &document.accessors;
         accessors.get(index).ok_or_else(|| missing("accessor", index, accessors.len()))
@@ -127,17 +174,17 @@ impl<'a> AccessorReader<'a> {
 
     fn read<T: Copy>(
         &mut self,
-        accessor: &json::Accessor,
+        accessor: &Accessor,
         limit: usize,
         element_bytes: usize,
         zero: T,
         parse: impl Fn(&[u8]) -> T,
     ) -> Result<Vec<T>> {
         let limit = if accessor.buffer_view.is_some() { limit } else { MAX_ZEROS };
-        let count = match usize::try_from(accessor.count.0) {
+        let count = match usize::try_from(accessor.count) {
             Ok(count) if count <= limit => count,
             _ => {
-                let found = format!("an accessor of {} elements", accessor.count.0);
+                let found = format!("an accessor of {} elements", accessor.count);
                 return Err(too_large("mesh", found, format!("at most {limit}")));
             }
         };
@@ -145,8 +192,7 @@ impl<'a> AccessorReader<'a> {
         let mut elements = match accessor.buffer_view {
             None => vec![zero; count],
             Some(view) => {
-                let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
-                let run = self.run(view.value(), offset, count, element_bytes)?;
+                let run = self.run(view, accessor.byte_offset, count, element_bytes)?;
                 run.map(&parse).collect()
             }
         };
@@ -159,23 +205,23 @@ impl<'a> AccessorReader<'a> {
     /// Applies the replacements of a sparse accessor.
     fn apply_sparse<T>(
         &mut self,
-        sparse: &json::accessor::sparse::Sparse,
+        sparse: &Sparse,
         elements: &mut [T],
         element_bytes: usize,
         parse: &impl Fn(&[u8]) -> T,
     ) -> Result<()> {
-        let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
+        let count = usize::try_from(sparse.count).unwrap_or(usize::MAX);
         if count > elements.len() {
-            let found = format!("{} sparse elements in an accessor of {}", sparse.count.0, elements.len());
+            let found = format!("{} sparse elements in an accessor of {}", sparse.count, elements.len());
             return Err(corrupt("mesh", found, "at most as many"));
         }
-        let Checked::Valid(json::accessor::IndexComponentType(kind)) = sparse.indices.component_type else {
+        let Some(kind) = ComponentType::of(sparse.indices.component_type) else {
             return Err(corrupt("mesh", "sparse indices of an unknown type", "5121, 5123 or 5125"));
         };
         self.spend(2 * count)?;
-        let (view, offset) = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0);
+        let (view, offset) = (sparse.indices.buffer_view, sparse.indices.byte_offset);
         let places: Vec<u32> = self.run(view, offset, count, kind.size())?.map(|bytes| unsigned(kind, bytes)).collect();
-        let (view, offset) = (sparse.values.buffer_view.value(), sparse.values.byte_offset.0);
+        let (view, offset) = (sparse.values.buffer_view, sparse.values.byte_offset);
         let values = self.run(view, offset, count, element_bytes)?;
         let length = elements.len();
         for (place, bytes) in places.into_iter().zip(values) {
@@ -202,11 +248,11 @@ impl<'a> AccessorReader<'a> {
         let Some(view) = document.buffer_views.get(view_index) else {
             return Err(missing("buffer view", view_index, document.buffer_views.len()));
         };
-        if !self.buffers.has_source(view.buffer.value()) {
+        if !self.buffers.has_source(view.buffer) {
             document.refuse_meshopt()?;
         }
-        let stride = view.byte_stride.map_or(element_bytes, |stride| stride.0);
-        let bytes = self.buffers.get(view.buffer.value())?;
+        let stride = view.byte_stride.unwrap_or(element_bytes);
+        let bytes = self.buffers.get(view.buffer)?;
         let part = |bytes: &'_ [u8], offset: u64, length: Option<u64>| -> Option<core::ops::Range<usize>> {
             let start = usize::try_from(offset).ok()?;
             let end = match length {
@@ -215,7 +261,7 @@ impl<'a> AccessorReader<'a> {
             };
             (start <= end && end <= bytes.len()).then_some(start..end)
         };
-        let in_view = part(bytes, view.byte_offset.map_or(0, |offset| offset.0), Some(view.byte_length.0))
+        let in_view = part(bytes, view.byte_offset, Some(view.byte_length))
             .and_then(|range| bytes.get(range))
             .and_then(|bytes| part(bytes, offset, None).and_then(|range| bytes.get(range)))
             .unwrap_or_default();
@@ -244,14 +290,14 @@ impl<'a> AccessorReader<'a> {
     }
 }
 
-fn component_type(accessor: &json::Accessor, shape: Type, index: usize) -> Result<ComponentType> {
-    let Checked::Valid(json::accessor::GenericComponentType(kind)) = accessor.component_type else {
+fn component_type(accessor: &Accessor, shape: &str, index: usize) -> Result<ComponentType> {
+    let Some(kind) = ComponentType::of(accessor.component_type) else {
         let found = format!("accessor {index} of an unknown component type");
         return Err(corrupt("mesh", found, "5120 to 5126"));
     };
-    if accessor.type_ != Checked::Valid(shape) {
-        let found = format!("accessor {index} of type {:?}", accessor.type_);
-        return Err(corrupt("mesh", found, format!("{shape:?}")));
+    if accessor.shape != shape {
+        let found = format!("accessor {index} of type {:?}", accessor.shape);
+        return Err(corrupt("mesh", found, shape.to_owned()));
     }
     Ok(kind)
 }

@@ -2,15 +2,14 @@
 
 use std::borrow::Cow;
 
-use ::gltf::json;
-
+use crate::gltf::document::Buffer;
 use crate::guard::{MAX_BUFFER_BYTES, corrupt, missing, too_large};
 use crate::resources::{Resources, at_uri};
 use sim3align_runtime::error::Result;
 
 /// The buffers, each loaded on first use; those of animations are never loaded.
 pub(super) struct Buffers<'a> {
-    declared: &'a [json::Buffer],
+    declared: &'a [Buffer],
     binary: Option<&'a [u8]>,
     resources: Option<Resources<'a>>,
     loaded: Vec<Option<Cow<'a, [u8]>>>,
@@ -18,7 +17,7 @@ pub(super) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    pub fn new(declared: &'a [json::Buffer], binary: Option<&'a [u8]>, resources: Option<Resources<'a>>) -> Self {
+    pub fn new(declared: &'a [Buffer], binary: Option<&'a [u8]>, resources: Option<Resources<'a>>) -> Self {
         Self { declared, binary, resources, loaded: vec![None; declared.len()], loaded_bytes: 0 }
     }
 
@@ -55,7 +54,7 @@ impl<'a> Buffers<'a> {
 }
 
 fn load<'a>(
-    declared: &'a json::Buffer,
+    declared: &'a Buffer,
     index: usize,
     binary: Option<&'a [u8]>,
     resources: Option<Resources<'a>>,
@@ -68,9 +67,9 @@ fn load<'a>(
         }
         (Some(uri), _) => at_uri(uri, resources, || format!("buffer {index}"))?,
     };
-    if (bytes.len() as u64) < declared.byte_length.0 {
+    if (bytes.len() as u64) < declared.byte_length {
         let found = format!("buffer {index} of {} bytes", bytes.len());
-        return Err(corrupt("mesh", found, format!("{} bytes, as its byteLength says", declared.byte_length.0)));
+        return Err(corrupt("mesh", found, format!("{} bytes, as its byteLength says", declared.byte_length)));
     }
     Ok(bytes)
 }

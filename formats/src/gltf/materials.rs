@@ -1,11 +1,11 @@
-//! The materials of a glTF scene: base colours and their textures.
+//! The materials of a glTF scene: base colours, or those of emitted light, and their textures.
 //!
 //! They are parsed apart from the geometry, and only for colours: a mesh with a broken material can still be read.
 
 use std::borrow::Cow;
 
-use ::gltf::json;
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::gltf::accessor::AccessorReader;
 use crate::guard::{corrupt, missing};
@@ -17,6 +17,9 @@ use sim3align_runtime::error::Result;
 
 const CLAMP_TO_EDGE: u32 = 33_071;
 const MIRRORED_REPEAT: u32 = 33_648;
+
+/// Factor below which a base colour is black.
+const BLACK: f32 = 0.002;
 
 /// The parts of a glTF file that define its colours.
 #[derive(Debug, Default, Deserialize)]
@@ -32,6 +35,8 @@ pub(super) struct Materials {
 #[serde(default, rename_all = "camelCase")]
 struct MaterialJson {
     pbr_metallic_roughness: Option<BaseColor>,
+    emissive_factor: Option<[f32; 3]>,
+    emissive_texture: Option<TextureInfo>,
     extensions: Option<MaterialExtensions>,
 }
 
@@ -127,21 +132,28 @@ struct Sampler {
 
 impl Materials {
     /// Parses the JSON of a glTF file.
-    pub fn parse(json: &[u8]) -> Result<Self> {
-        json::deserialize::from_slice(json)
+    pub fn parse(json: &Value) -> Result<Self> {
+        Self::deserialize(json)
             .map_err(|error| corrupt("mesh", format!("glTF materials that can't be read: {error}"), "glTF 2.0"))
     }
 
-    /// The base colour of a material.
-    fn base_color(&self, material: usize) -> Option<&BaseColor> {
+    /// The factor and the texture of a material's colour: of its base colour, or of the light that it emits if that is black, as of
+    /// materials without shading.
+    fn color(&self, material: usize) -> Option<([f32; 3], Option<&TextureInfo>)> {
         let material = self.materials.get(material)?;
         let extension = material.extensions.as_ref().and_then(|extensions| extensions.specular_glossiness.as_ref());
-        material.pbr_metallic_roughness.as_ref().or(extension)
+        let base = material.pbr_metallic_roughness.as_ref().or(extension);
+        let [r, g, b, _] = base.and_then(|base| base.base_color_factor).unwrap_or([1.0; 4]);
+        let emitted = material.emissive_factor.filter(|light| light.iter().any(|x| *x > 0.0));
+        match emitted.filter(|_| [r, g, b].iter().all(|x| *x < BLACK)) {
+            Some(light) => Some((light, material.emissive_texture.as_ref())),
+            None => Some(([r, g, b], base?.base_color_texture.as_ref())),
+        }
     }
 
     /// The texture of a material, if it has one.
     pub fn texture_of(&self, material: Option<usize>) -> Option<&TextureInfo> {
-        self.base_color(material?)?.base_color_texture.as_ref()
+        self.color(material?)?.1
     }
 
     /// The URIs of the external images of base colours, as written.
@@ -161,11 +173,9 @@ impl Materials {
             let Some(slot) = loaded.get_mut(index) else {
                 return Err(missing("material", index, self.materials.len()));
             };
-            let Some(base_color) = self.base_color(index) else { continue };
-            if let Some([r, g, b, _]) = base_color.base_color_factor {
-                slot.factor = [r, g, b];
-            }
-            let Some(info) = &base_color.base_color_texture else { continue };
+            let Some((factor, texture)) = self.color(index) else { continue };
+            slot.factor = factor;
+            let Some(info) = texture else { continue };
             let Some(texture) = self.textures.get(info.index) else {
                 return Err(missing("texture", info.index, self.textures.len()));
             };

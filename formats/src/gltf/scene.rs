@@ -1,13 +1,10 @@
 //! Flattens the node hierarchy.
 
-use ::gltf::json;
-use ::gltf::json::mesh::{Mode, Semantic};
-use ::gltf::json::validation::Checked;
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, Vec3};
 
 use crate::colored_mesh::ColoredMesh;
 use crate::gltf::accessor::AccessorReader;
-use crate::gltf::document::{Document, Node};
+use crate::gltf::document::{Document, Node, Primitive};
 use crate::gltf::instancing::unit;
 use crate::gltf::materials::Materials;
 use crate::gltf::skin::Skin;
@@ -15,6 +12,11 @@ use crate::guard::{corrupt, missing};
 use crate::mesh_builder::MeshBuilder;
 use crate::painted_mesh::PaintedMesh;
 use sim3align_runtime::error::{Error, ErrorCode, Result};
+
+/// The modes of primitives of triangles; those before are points and lines.
+const TRIANGLES: usize = 4;
+const TRIANGLE_STRIP: usize = 5;
+const TRIANGLE_FAN: usize = 6;
 
 /// All triangles of the scene, in the frame of the scene, with colours if there are `materials`.
 pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Result<Materials>>) -> Result<ColoredMesh> {
@@ -37,13 +39,16 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
         let (Some(mesh), Some(slot)) = (document.meshes.get(mesh_index), parts.get_mut(mesh_index)) else {
             return Err(missing("mesh", mesh_index, document.meshes.len()));
         };
+        let weights = if node.weights.is_empty() { &mesh.weights } else { &node.weights };
+        let is_shared = node.skin.is_none() && node.weights.is_empty();
         let skin = node.skin.map(|skin| Skin::read(skin, reader, &scene_from_node)).transpose()?;
-        let parts = match slot.take().filter(|_| skin.is_none()) {
+        let parts = match slot.take().filter(|_| is_shared) {
             Some(parts) => parts,
             None => {
                 let mut parts = Vec::new();
                 for primitive in &mesh.primitives {
-                    match read_primitive(reader, primitive, skin.as_ref(), materials.as_ref(), &mut problem)? {
+                    let deformation = Deformation { weights, skin: skin.as_ref() };
+                    match read_primitive(reader, primitive, &deformation, materials.as_ref(), &mut problem)? {
                         Some(part) => parts.push(part),
                         None => skipped += 1,
                     }
@@ -67,11 +72,12 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
                 builder.append(part, &copy)?;
             }
         }
-        if skin.is_none() {
+        if is_shared {
             *slot = Some(parts);
         }
     }
     if builder.vertex_count() == 0 {
+        document.refuse_gaussians()?;
         return Err(Error::new(
             ErrorCode::EmptyMesh,
             "mesh",
@@ -98,16 +104,16 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
         }
         None => painted.plain(problem),
     };
-    Ok(ColoredMesh { copies, ..read })
+    Ok(ColoredMesh { copies, unread: document.unread(), ..read })
 }
 
-/// The nodes of the scene, from the roots on, and scene_from_node of each; `None` for nodes outside the scene.
+/// The nodes of the scene that are shown, from the roots on, and scene_from_node of all; `None` for nodes outside the scene.
 fn placed(document: &Document) -> Result<(Vec<usize>, Vec<Option<DMat4>>)> {
-    let mut stack: Vec<(usize, DMat4)> = roots(document)?.into_iter().map(|node| (node, DMat4::IDENTITY)).collect();
+    let mut stack: Vec<_> = roots(document)?.into_iter().map(|node| (node, DMat4::IDENTITY, true)).collect();
     stack.reverse();
     let mut scene_from_node = vec![None; document.nodes.len()];
     let mut order = Vec::new();
-    while let Some((index, scene_from_parent)) = stack.pop() {
+    while let Some((index, scene_from_parent, is_shown)) = stack.pop() {
         let (Some(node), Some(place)) = (document.nodes.get(index), scene_from_node.get_mut(index)) else {
             return Err(missing("node", index, document.nodes.len()));
         };
@@ -116,8 +122,11 @@ fn placed(document: &Document) -> Result<(Vec<usize>, Vec<Option<DMat4>>)> {
             let found = format!("node {index} twice in the hierarchy");
             return Err(corrupt("mesh", found, "a tree: each node below one parent, and no cycle"));
         }
-        order.push(index);
-        stack.extend(node.children.iter().rev().map(|&child| (child, transform)));
+        let is_shown = is_shown && node.extensions.visibility.as_ref().is_none_or(|node| node.visible);
+        if is_shown {
+            order.push(index);
+        }
+        stack.extend(node.children.iter().rev().map(|&child| (child, transform, is_shown)));
     }
     Ok((order, scene_from_node))
 }
@@ -156,44 +165,64 @@ fn numbers<const N: usize>(stored: &[f32], default: [f64; N]) -> Result<[f64; N]
     numbers.map_err(|_| corrupt("mesh", format!("{} numbers in a transform", stored.len()), format!("{N}")))
 }
 
+/// What moves the vertices of a primitive: weights of its morph targets, then a skin.
+struct Deformation<'a> {
+    weights: &'a [f32],
+    skin: Option<&'a Skin>,
+}
+
+impl Deformation<'_> {
+    fn apply(&self, positions: &mut [Vec3], primitive: &Primitive, reader: &mut AccessorReader<'_>) -> Result<()> {
+        for (target, &weight) in primitive.targets.iter().zip(self.weights) {
+            let Some(&accessor) = target.get("POSITION").filter(|_| weight != 0.0) else { continue };
+            let offsets = reader.positions(accessor)?;
+            if offsets.len() != positions.len() {
+                let found = format!("a morph target of {} elements for {} vertices", offsets.len(), positions.len());
+                return Err(corrupt("mesh", found, "one per vertex"));
+            }
+            positions.iter_mut().zip(offsets).for_each(|(position, offset)| *position += weight * offset);
+        }
+        self.skin.map_or(Ok(()), |skin| skin.apply(positions, primitive, reader))
+    }
+}
+
 /// The triangles of a primitive in its mesh's frame, those of a skin in the scene's frame; `None` for points, lines and empty ones. `problem` is set if its
 /// colours can't be read.
 fn read_primitive(
     reader: &mut AccessorReader<'_>,
-    primitive: &json::mesh::Primitive,
-    skin: Option<&Skin>,
+    primitive: &Primitive,
+    deformation: &Deformation<'_>,
     materials: Option<&Materials>,
     problem: &mut Option<Error>,
 ) -> Result<Option<PaintedMesh>> {
-    let Checked::Valid(mode) = primitive.mode else {
+    let mode = primitive.mode.unwrap_or(TRIANGLES);
+    if mode > TRIANGLE_FAN {
         return Err(corrupt("mesh", "a primitive of an unknown mode", "0 to 6"));
-    };
-    if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+    }
+    if mode < TRIANGLES {
         return Ok(None);
     }
-    let Some(positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+    let Some(&positions) = primitive.attributes.get("POSITION") else {
         reader.document.refuse_draco()?;
         return Ok(None);
     };
-    for accessor in primitive.indices.iter().chain([positions]) {
-        let accessor = reader.document.accessors.get(accessor.value());
+    for accessor in primitive.indices.iter().chain([&positions]) {
+        let accessor = reader.document.accessors.get(*accessor);
         if accessor.is_some_and(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none()) {
             reader.document.refuse_draco()?;
         }
     }
-    let mut positions = reader.positions(positions.value())?;
-    if let Some(skin) = skin {
-        skin.apply(&mut positions, primitive, reader)?;
-    }
+    let mut positions = reader.positions(positions)?;
+    deformation.apply(&mut positions, primitive, reader)?;
     let corners = match primitive.indices {
-        Some(indices) => reader.indices(indices.value())?,
+        Some(indices) => reader.indices(indices)?,
         None => (0..positions.len() as u32).collect(),
     };
     let mut builder = MeshBuilder::with_positions(positions);
-    builder.use_material(primitive.material.map(|material| material.value()));
+    builder.use_material(primitive.material);
     match mode {
-        Mode::TriangleStrip => builder.push_strip(&corners)?,
-        Mode::TriangleFan => builder.push_fan(&corners)?,
+        TRIANGLE_STRIP => builder.push_strip(&corners)?,
+        TRIANGLE_FAN => builder.push_fan(&corners)?,
         _ => {
             let (triangles, rest) = corners.as_chunks::<3>();
             if !rest.is_empty() {
@@ -218,23 +247,22 @@ fn read_primitive(
 fn paint(
     builder: &mut MeshBuilder,
     reader: &mut AccessorReader<'_>,
-    primitive: &json::mesh::Primitive,
+    primitive: &Primitive,
     materials: &Materials,
 ) -> Result<()> {
-    let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
     let check = |name: &str, count: usize, builder: &MeshBuilder| {
         let vertices = builder.vertex_count();
         let found = || format!("{name} of {count} elements for {vertices} vertices");
         if count == vertices { Ok(()) } else { Err(corrupt("mesh", found(), "one per vertex")) }
     };
-    if let Some(accessor) = attribute(Semantic::Colors(0)) {
+    if let Some(&accessor) = primitive.attributes.get("COLOR_0") {
         let colors = reader.colors(accessor)?;
         check("COLOR_0", colors.len(), builder)?;
         builder.color_vertices(colors);
     }
-    if let Some(texture) = materials.texture_of(primitive.material.map(|material| material.value())) {
+    if let Some(texture) = materials.texture_of(primitive.material) {
         let set = texture.coordinate_set();
-        let Some(accessor) = attribute(Semantic::TexCoords(set)) else {
+        let Some(&accessor) = primitive.attributes.get(&format!("TEXCOORD_{set}")) else {
             return Err(corrupt("mesh", format!("a textured part without TEXCOORD_{set}"), "texture coordinates"));
         };
         let mut coordinates = reader.coordinates(accessor)?;

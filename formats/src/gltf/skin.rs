@@ -1,10 +1,9 @@
 //! Skins: vertices follow the joints of a skeleton, in the pose that the nodes have.
 
-use ::gltf::json::mesh::{Primitive, Semantic};
-use ::gltf::json::validation::Checked;
 use glam::{DMat4, DVec3, Vec3};
 
 use crate::gltf::accessor::AccessorReader;
+use crate::gltf::document::Primitive;
 use crate::guard::{corrupt, missing};
 use sim3align_runtime::error::Result;
 
@@ -38,9 +37,8 @@ impl Skin {
     pub fn apply(&self, positions: &mut [Vec3], primitive: &Primitive, reader: &mut AccessorReader<'_>) -> Result<()> {
         let mut sums = vec![(DVec3::ZERO, 0.0_f64); positions.len()];
         for set in 0.. {
-            let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|index| index.value());
-            let (Some(joints), Some(weights)) = (attribute(Semantic::Joints(set)), attribute(Semantic::Weights(set)))
-            else {
+            let attribute = |name: &str| primitive.attributes.get(&format!("{name}_{set}")).copied();
+            let (Some(joints), Some(weights)) = (attribute("JOINTS"), attribute("WEIGHTS")) else {
                 break;
             };
             let (joints, weights) = (reader.joints(joints)?, reader.weights(weights)?);

@@ -139,8 +139,11 @@ fn object(folder: &Path, frame: Option<&PathBuf>, class: &str) -> Result<CaseObj
     let (path, bytes) = required(folder, MESH_FILES)?;
     let resources = |uri: &str| read_beside(folder, uri);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let options =
-        MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources), images: None };
+    let options = MeshReadOptions {
+        format: Some(MeshFormat::from_name(extension)?),
+        resources: Some(&resources),
+        ..MeshReadOptions::default()
+    };
     let read = read_colored_mesh(&bytes, &options).map_err(in_file(&path))?;
     if let Some(problem) = &read.problem {
         eprintln!("\n{}: without colours: {problem}", path.display());

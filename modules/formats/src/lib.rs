@@ -7,7 +7,8 @@ use sim3align_formats::bindings::{
 use sim3align_formats::depth::read_depth_image;
 use sim3align_formats::mask::read_mask as mask_from_bytes;
 use sim3align_formats::mesh::{
-    MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes, read_shape,
+    ColorSpace, MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
+    read_shape,
 };
 use sim3align_formats::photo::{read_exif as exif_from_bytes, read_photo, read_stored_photo};
 use wasm_bindgen::prelude::*;
@@ -20,10 +21,12 @@ export type FileBytes = Uint8Array | ArrayBuffer;
 export interface ReadMeshOptions {
   /** The format; told from the content by default. */
   format?: "glb" | "gltf" | "obj" | "ply" | "stl";
-  /** The files that a `.gltf` or `.obj` refers to, by the names in it: see `externalResources`. */
+  /** The files that a glTF, OBJ or PLY file refers to, by the names in it: see `externalResources`. */
   resources?: Record<string, FileBytes>;
   /** Whether to read the colours; `true` by default. */
   colors?: boolean;
+  /** What the vertex colours of a glTF file are; by default, bytes are sRGB-encoded and others mostly linear. */
+  colorSpace?: "srgb" | "linear";
   /**
    * Decodes a texture in a format that is neither PNG nor JPEG, such as KTX2: sRGB-encoded RGB pixels, row by row from the top left;
    * `undefined` if it cannot.
@@ -141,7 +144,7 @@ pub fn read_mesh(
     #[wasm_bindgen(unchecked_optional_param_type = "ReadMeshOptions")] options: &JsValue,
 ) -> Result<JsValue, JsValue> {
     let read = || {
-        let options = Options::new(options, &["format", "resources", "colors", "decodeImage"])?;
+        let options = Options::new(options, &["format", "resources", "colors", "colorSpace", "decodeImage"])?;
         let resources = options.get("resources");
         let find = |uri: &str| to_bytes("", &Reflect::get(resources.as_ref()?, &uri.into()).ok()?).ok();
         let format = match options.get("format") {
@@ -151,7 +154,11 @@ pub fn read_mesh(
         let bytes = to_bytes("mesh", bytes)?;
         let decoder = options.get("decodeImage").and_then(|decoder| decoder.dyn_into::<Function>().ok());
         let decode = |bytes: &[u8]| decoder.as_ref().and_then(|decode| decoded_image(decode, bytes));
-        let with_resources = MeshReadOptions { format, resources: Some(&find), images: Some(&decode) };
+        let color_space = match options.get("colorSpace") {
+            None => None,
+            Some(space) => Some(ColorSpace::from_name(&string("options.colorSpace", &space)?)?),
+        };
+        let with_resources = MeshReadOptions { format, resources: Some(&find), images: Some(&decode), color_space };
         if options.get("colors").is_some_and(|colors| colors.is_falsy()) {
             return read_shape(&bytes, &with_resources);
         }

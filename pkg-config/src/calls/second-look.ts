@@ -1,11 +1,12 @@
 /**
- * A second look where the answer is in doubt: at what exporters and cameras often get wrong (a mirrored mesh or image, textures
- * upside down), and at depth that shows no object.
+ * A second look where the answer is in doubt: at what exporters and cameras often get wrong (a mirrored mesh or image, a
+ * scene around the object, textures upside down), and at depth that shows no object.
  */
 import type { Alignment, Warning } from "../generated/types.js";
 import type { CoreInput } from "../modules/core-input.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
 import type { JobContext } from "./context.js";
+import { largePart } from "./large-part.js";
 import { DOUBT } from "./notes.js";
 import { continuesPlane } from "./surrounding-plane.js";
 
@@ -63,6 +64,17 @@ export async function lookedAtAgain(
     const other = await searched(mirrorOf(shape), { initial: undefined });
     const score = found.diagnostics.score + BETTER_SHAPE;
     if (other !== undefined && other.confidence > DOUBT && other.diagnostics.score > score) warnings.push(mirrorImage);
+  }
+  const isWhole = warnings.every(({ code }) => code !== "MESH_PARTS_LEFT_OUT");
+  const large = isWhole && found.confidence < DOUBT ? largePart(shape) : null;
+  if (large !== null) {
+    const message = `A part of the mesh is ${large} times as large as the rest, as the floor or the walls of a scene are. If the mask does not show it, pass the object alone.`;
+    const known = warnings.findIndex(({ code }) => code === "MESH_DOUBTFUL");
+    const [doubtful] = known < 0 ? [] : warnings.splice(known, 1);
+    warnings.push({
+      code: "MESH_DOUBTFUL",
+      message: doubtful === undefined ? message : `${doubtful.message} ${message}`,
+    });
   }
   const agreement = agreementOf(found) ?? DOUBTFUL_COLORS;
   if (samples?.flippedColors !== undefined && agreement < DOUBTFUL_COLORS) {

@@ -1,6 +1,7 @@
 /** Placement of 3D Gaussian splats. */
 
 import { bytesOfFile } from "../input/bytes.js";
+import { foreignMesh } from "../input/foreign-meshes.js";
 import { isPly, isSplatFile, plyHeader, RECORD_BYTES, rotationIn } from "../input/splat-files.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import { failure } from "../values/error.js";
@@ -32,10 +33,15 @@ export function placeSplats(
   const { frame = "opencv" } = optionsOf(options, ["frame"]);
   const placement = inFrame("options.frame", similarityOf(transform), frame);
   const placed = Uint8Array.from(bytesOfFile("splats", splats, "the bytes of a PLY or .splat file"));
+  const other = isSplatFile(placed) ? undefined : foreignMesh(placed);
+  if (other !== undefined) throw unsupported(other.found, placeable, other.remedy);
   if (isPly(placed)) placePly(placed, gaussianLayout(placed), placement);
   else placeRecords(placed, placement);
   return placed;
 }
+
+/** The files that can be placed. */
+const placeable = `a PLY file of Gaussians, or a .splat file: ${RECORD_BYTES} bytes for each`;
 
 /** Offsets, in bytes, from the beginning of a Gaussian. */
 interface GaussianLayout {
@@ -150,9 +156,8 @@ function placePly(bytes: Uint8Array, layout: GaussianLayout, placement: Similari
 
 function placeRecords(bytes: Uint8Array, placement: Similarity): void {
   if (!isSplatFile(bytes)) {
-    const expected = `a PLY file of Gaussians, or a .splat file: ${RECORD_BYTES} bytes for each`;
     const remedy = "Pass the aligned file; exportGlb and exportPly are for meshes.";
-    throw unsupported(`${bytes.length} bytes that are neither`, expected, remedy);
+    throw unsupported(`${bytes.length} bytes that are neither`, placeable, remedy);
   }
   const view = new DataView(bytes.buffer);
   const turn = turnOf(placement);

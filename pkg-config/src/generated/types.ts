@@ -590,8 +590,8 @@ export type Alignment = Sim3 & {
   /**
    * Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the
    * one whose colours are those of the photo. `null` where no other turn is possible: the shape has no symmetry, its
-   * turns look alike, or there are no colours to compare. Where no turn agrees with the photo, all are equally
-   * likely.
+   * turns look alike, or there are no colours to compare. Where no turn agrees with the photo, or the colours of the
+   * mesh could not be read, all are equally likely.
    */
   turnConfidence: number | null;
   /**

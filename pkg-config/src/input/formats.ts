@@ -29,7 +29,7 @@ export type FileKind = keyof typeof fileFormats;
 export const meshResources: readonly string[] = ["bin", "mtl"];
 
 /** Whether a file may refer to other files, in its folder or below. */
-export const refersToFiles = (path: string): boolean => /\.(gltf|obj|mtl)$/i.test(path);
+export const refersToFiles = (path: string): boolean => /\.(glb|gltf|obj|mtl|ply)$/i.test(path);
 
 /** The extensions of a kind of file, in lower case, without dots. */
 export const extensionsOf = (kind: FileKind): readonly string[] =>

@@ -1,8 +1,14 @@
-/** Decoders of compressed geometry, which callers bring: the objects of their libraries fit as they are. */
+/** Decoders of compressed geometry. Callers may bring those of other versions: the objects of their libraries fit as they are. */
 import type { ReadMeshOptions } from "../wasm/formats.js";
 
 /** Rewrites a mesh file, and the options of its reader, without the compression of its geometry. */
 export type DecodeGeometry = (bytes: Uint8Array, options: ReadMeshOptions) => [Uint8Array, ReadMeshOptions];
+
+/** Decoders of compressed geometry. */
+export interface MeshDecoders {
+  meshoptDecoder?: MeshoptDecoder | undefined;
+  dracoDecoder?: DracoDecoderModule | undefined;
+}
 
 /** Decodes meshopt: the `MeshoptDecoder` of the npm package `meshoptimizer`, and of three.js. */
 export interface MeshoptDecoder {

@@ -1,8 +1,9 @@
 /** Meshes from arrays or mesh files. */
 
+import type { Formats } from "../modules/exports.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { MeshFile } from "../types/inputs.js";
-import { failure, invalidArgument } from "../values/error.js";
+import { failure, invalidArgument, Sim3AlignError } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
 import { oneOf, part, stringsIn, withoutUndefined, wrongKind } from "../values/validation.js";
@@ -10,9 +11,9 @@ import type { ColorSamples, MeshArrays, ReadMeshOptions } from "../wasm/formats.
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
 import { formatsText } from "./formats.js";
-import type { DecodeGeometry } from "./mesh-decoders.js";
+import type { DecodeGeometry, MeshDecoders } from "./mesh-decoders.js";
 import { holdsGaussians } from "./splat-files.js";
-import { type DecodeImage, imageDecoder } from "./webp.js";
+import { type DecodeImage, gltfText, imageDecoder } from "./webp.js";
 
 /** The readers of mesh files. */
 export type MeshReaders = Pick<FileReaders, "formats" | "splats" | "webp">;
@@ -22,7 +23,7 @@ export type MeshReaders = Pick<FileReaders, "formats" | "splats" | "webp">;
  * @param argument the name of the bytes, in errors
  * @param options of the formats module, which checks them
  * @param rename of the arguments in errors of the reader
- * @param decode changes what the reader gets
+ * @param own the caller's decoders of compressed geometry, in place of those of the package
  */
 export async function decodeMesh(
   argument: string,
@@ -30,7 +31,7 @@ export async function decodeMesh(
   options: object,
   readers: MeshReaders,
   rename?: (argument: string) => string,
-  decode: DecodeGeometry = (...file) => file,
+  own: MeshDecoders = {},
 ): Promise<MeshArrays> {
   const { format, colors } = options as { format?: unknown; colors?: unknown };
   if (holdsGaussians(bytes, format)) {
@@ -40,11 +41,32 @@ export async function decodeMesh(
   const { resources, decodeImage } = options as { resources?: unknown; decodeImage?: DecodeImage };
   const decoder = colors === false ? undefined : await imageDecoder(bytes, resources, decodeImage, readers);
   const read = { ...options, ...withoutUndefined({ decodeImage: decoder }) } as ReadMeshOptions;
-  return callReader(readers.formats, argument, bytes, (module) => module.readMesh(...decode(bytes, read)), rename);
+  const decode = await geometryDecoder(gltfText(bytes), own);
+  try {
+    const mesh = (module: Formats) => module.readMesh(...decode(bytes, read));
+    return await callReader(readers.formats, argument, bytes, mesh, rename);
+  } catch (error) {
+    if (!(error instanceof Sim3AlignError && error.code === "UNSUPPORTED_FORMAT")) throw error;
+    const { foreignMesh } = await import("./foreign-meshes.js");
+    const known = foreignMesh(bytes);
+    if (known === undefined) throw error;
+    throw failure(error.code, error.argument, known.found, error.expected, known.remedy);
+  }
+}
+
+/** Rewrites a glTF file, whose JSON this is, without the compression of its geometry. The decoders are loaded only for compressed files. */
+async function geometryDecoder(json: string, own: MeshDecoders): Promise<DecodeGeometry> {
+  if (!/_meshopt_|_draco_/.test(json)) return (...file) => file;
+  const [{ geometryDecoder }, { ownDecoders }] = await Promise.all([
+    import("./compressed-gltf.js"),
+    import("./own-decoders.js"),
+  ]);
+  const { meshoptDecoder, dracoDecoder } = { ...(await ownDecoders(json, own)), ...withoutUndefined(own) };
+  return geometryDecoder(meshoptDecoder, dracoDecoder);
 }
 
 const kinds = () =>
-  `{ positions, indices? }, or the bytes of a file: ${formatsText("mesh")} (also as { bytes, format?, resources? })`;
+  `{ positions, indices? }, or the bytes of a file: ${formatsText("mesh")} (also as { bytes, format?, resources?, colorSpace? })`;
 
 /** A mesh for the core, why it has no colours, and what its file holds besides. */
 export interface MeshAndWarnings {
@@ -65,8 +87,8 @@ export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: 
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes("mesh", file.bytes);
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds(), "Pass the mesh to align.");
-  const { format, resources } = file as Omit<MeshFile, "bytes">;
-  const options = { ...withoutUndefined({ format, resources }), colors: withColors };
+  const { format, resources, colorSpace } = file as Omit<MeshFile, "bytes">;
+  const options = { ...withoutUndefined({ format, resources, colorSpace }), colors: withColors };
   const read = await decodeMesh("mesh", bytes, options, readers, ofMesh);
   const { warnings, unread, origin, ...found } = read;
   // Poses are of the mesh that the caller passed: that of a file keeps its coordinates.
@@ -85,7 +107,8 @@ export async function readCoreMesh(
 ): Promise<MeshAndWarnings> {
   // A prepared mesh is cached with its colours: a later call may have a photo.
   const { mesh: arrays, ...notes } = await readMesh(mesh, readers, withColors || meshId !== undefined);
-  return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, ...notes };
+  const lacksColors = notes.warnings.length > 0 || undefined;
+  return { mesh: withoutUndefined({ ...arrays, id: meshId, lacksColors }) as CoreMesh, ...notes };
 }
 
 /** The options of the reader are properties of the mesh. */

@@ -7,7 +7,15 @@ import { withForeignObject } from "../values/foreign-objects.js";
 import { finiteNumbers, oneOf, optionsOf, whole } from "../values/validation.js";
 import { surfaceSamples } from "./surface-samples.js";
 import { type Texels, texelsOf } from "./texels.js";
-import { type AttributeLike, type GeometryLike, isObject, type MeshTree, type PlacedObject } from "./types.js";
+import {
+  type AttributeLike,
+  type Fields,
+  type GeometryLike,
+  isObject,
+  type MeshTree,
+  type PlacedObject,
+  type Range,
+} from "./types.js";
 
 /** The triangles so far, and the colours of the vertices: linear red, green and blue. */
 interface Arrays {
@@ -31,18 +39,31 @@ interface TexturedPart {
   texels: Texels;
 }
 
+/** A mesh of three.js as arrays. */
+export interface ThreeMesh extends MeshArrays {
+  positions: Float32Array;
+  indices: Uint32Array;
+  /** Why the colours cannot be read. */
+  warnings?: string[];
+}
+
+const unreadable =
+  "The mesh is read without its colours: it has several materials, or a texture that is not loaded, compressed, of another origin, or an image outside browsers. Pass the bytes of its file.";
+
 /** A 4×4 matrix, column-major. */
 type Matrix4 = readonly number[];
 
 const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
 /**
- * All triangles of a three.js geometry, or of an object and its descendants, as a mesh for `align`. The matrices of
- * descendants and instances are applied. Bones and morph targets are ignored: the mesh is in its bind pose.
+ * The triangles of a three.js geometry, or of an object and its descendants, as three.js draws them, as a mesh for `align`. The
+ * matrices of descendants and instances are applied, and so are bones, morph targets and the `drawRange` of geometries. What is
+ * not `visible` is left out, but for the object itself; of an `LOD`, the first level counts.
  *
- * Its colours are those of vertices times those of materials and of their `map`, for use with a photo. A mesh has none if
- * it has several materials, or a `map` that cannot be read: not loaded, compressed, of another origin, or an image outside
- * browsers (a `DataTexture` can be read anywhere). Pass the bytes of the file instead.
+ * Its colours are those of vertices times those of materials, instances and of their `map`, for use with a photo. A mesh has none
+ * if it has several materials, or a `map` that cannot be read: not loaded, compressed, of another origin, or an image outside
+ * browsers (a `DataTexture` can be read anywhere). Then `warnings` says so, of which `align` makes `COLORS_NOT_READ`. Pass the
+ * bytes of the file instead.
  *
  * @param source a `BufferGeometry`, or an `Object3D` such as a `Mesh`, a `Group` or a loaded scene
  * @param options `frame`: "object", the default, is the local frame of the object, before its position, quaternion and
@@ -52,34 +73,33 @@ const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
  *
  * @example
  * const mesh = meshInputFromThree(gltf.scene);
- * @throws {@link Sim3AlignError} `EMPTY_MESH` if there is no triangle
+ * @throws {@link Sim3AlignError} `EMPTY_MESH` if there is no triangle; `UNSUPPORTED_FORMAT` for what moves vertices in other ways: a
+ * `BatchedMesh`, an `InstancedBufferGeometry`, a `displacementMap`, and morph targets of instances
  */
 export function meshInputFromThree(
   source: GeometryLike | MeshTree,
   options: { frame?: "object" | "world" | undefined } = {},
-): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
+): ThreeMesh {
   return withForeignObject("source", "a BufferGeometry or an Object3D", () => meshOf(source, options));
 }
 
-function meshOf(
-  source: GeometryLike | MeshTree,
-  options: { frame?: "object" | "world" | undefined },
-): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
+function meshOf(source: GeometryLike | MeshTree, options: { frame?: "object" | "world" | undefined }): ThreeMesh {
   const { frame = "object" } = optionsOf(options, ["frame"]);
   oneOf("options.frame", frame, ["object", "world"]);
   const arrays: Arrays = { positions: [], indices: [], colors: [], isColored: false, isUnknown: false, textured: [] };
-  if (isGeometry(source)) append(arrays, source, identity, { vertexColors: true });
+  if (isGeometry(source)) append(arrays, source, identity, { material: { vertexColors: true } });
   else if (isTree(source)) appendTree(arrays, source, frame);
   else {
     const remedy = "Pass a geometry, a mesh, or a loaded scene.";
     throw failure("INVALID_ARGUMENT", "source", describe(source), "a BufferGeometry or an Object3D", remedy);
   }
   if (arrays.indices.length === 0) {
-    const remedy = "Pass an object that contains meshes.";
+    const remedy = "Pass an object that contains meshes which are drawn.";
     throw failure("EMPTY_MESH", "source", "no triangle", "a mesh with triangles", remedy);
   }
   const mesh = { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
-  if (!arrays.isColored || arrays.isUnknown) return mesh;
+  if (arrays.isUnknown) return { ...mesh, warnings: [unreadable] };
+  if (!arrays.isColored) return mesh;
   if (arrays.textured.length > 0) return { ...mesh, samples: texturedSamples(mesh, arrays) };
   return { ...mesh, colors: Float32Array.from(arrays.colors), colorSpace: "linear" };
 }
@@ -97,28 +117,85 @@ function countOf(argument: string, value: unknown): number {
 const isGeometry = (value: unknown): value is GeometryLike => isObject(value) && isObject(value.attributes);
 const isTree = (value: unknown): value is MeshTree => isObject(value) && typeof value.traverse === "function";
 
+type Found = PlacedObject & Fields;
+
 function appendTree(arrays: Arrays, tree: MeshTree, frame: "object" | "world") {
   tree.updateWorldMatrix(true, true);
   const base = frame === "world" ? identity : inverse(matrixOf(tree.matrixWorld.elements));
+  const hidden = new Set<unknown>();
   tree.traverse((object) => {
-    const found = object as PlacedObject & Record<string, unknown>;
-    if (found.isMesh !== true || !isGeometry(found.geometry)) return;
-    if (found.isBatchedMesh === true) {
-      const remedy = "Merge its geometries, or pass them individually.";
-      throw failure("UNSUPPORTED_FORMAT", "source", "a BatchedMesh", "meshes and instances", remedy);
-    }
-    const local = product(base, matrixOf(found.matrixWorld.elements));
-    if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local, found.material);
-    const { array } = found.instanceMatrix as { array: ArrayLike<number> };
-    for (let i = 0; i < countOf("source.count", found.count); i++) {
-      const instance = Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0);
-      append(arrays, found.geometry, product(local, instance), found.material);
-    }
+    const found = object as Found;
+    // Parents come first.
+    if (hidden.has(found.parent) || hidden.has(found)) return hidden.add(found);
+    if (found.visible === false && found !== (tree as unknown) && !isFirstLevel(found)) return hidden.add(found);
+    for (const { object } of levelsOf(found).slice(1)) hidden.add(object);
+    if (found.isMesh === true && isGeometry(found.geometry)) appendMesh(arrays, found, found.geometry, base);
+    return undefined;
   });
 }
 
+/** The levels of an `LOD`, the finest first. */
+const levelsOf = ({ isLOD, levels }: Fields): Fields[] => (isLOD === true && Array.isArray(levels) ? levels : []);
+
+/** Whether an object is the finest level of an `LOD`, whatever the distance of the last camera. */
+const isFirstLevel = (found: Found) => isObject(found.parent) && levelsOf(found.parent)[0]?.object === found;
+
+function appendMesh(arrays: Arrays, found: Found, geometry: GeometryLike, base: Matrix4) {
+  const isMorphed = Object.keys(geometry.morphAttributes ?? {}).includes("position");
+  const isDisplaced = isObject(found.material) && isObject(found.material.displacementMap);
+  const unsupported =
+    (found.isBatchedMesh === true && "a BatchedMesh") ||
+    (isObject(found.geometry) && found.geometry.isInstancedBufferGeometry === true && "an InstancedBufferGeometry") ||
+    (isDisplaced && "a material with a displacementMap") ||
+    (isMorphed && found.isInstancedMesh === true && "instances with morph targets");
+  if (unsupported !== false) {
+    const remedy = "Merge its geometries, or pass them individually, as they are drawn.";
+    throw failure("UNSUPPORTED_FORMAT", "source", unsupported, "meshes and instances", remedy);
+  }
+  if (found.isSkinnedMesh === true) updateBones(found);
+  const local = product(base, matrixOf(found.matrixWorld.elements));
+  const look = { material: found.material, vertexOf: found.isSkinnedMesh || isMorphed ? vertexOf(found) : undefined };
+  if (found.isInstancedMesh !== true) return append(arrays, geometry, local, look);
+  const { array } = found.instanceMatrix as { array: ArrayLike<number> };
+  const colors = found.instanceColor as AttributeLike | null | undefined;
+  for (let i = 0; i < countOf("source.count", found.count); i++) {
+    const instance = Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0);
+    const tint = colors ? ([colors.getX(i), colors.getY(i), colors.getZ(i)] as const) : undefined;
+    append(arrays, geometry, product(local, instance), { ...look, tint });
+  }
+}
+
+/** Brings what skins a mesh up to date, as rendering does: bones may be elsewhere in the scene. */
+function updateBones(found: Found) {
+  const { bones = [] } = (isObject(found.skeleton) ? found.skeleton : {}) as { bones?: PlacedObject[] };
+  for (const bone of bones) bone.updateWorldMatrix(true, false);
+  if (typeof found.updateMatrixWorld === "function") found.updateMatrixWorld(true);
+}
+
+/** The vertices of a mesh with morph targets and bones, in its local frame. */
+function vertexOf(found: Found): (index: number) => readonly [number, number, number] {
+  const { position, getVertexPosition } = found as { position?: unknown; getVertexPosition?: unknown };
+  if (typeof getVertexPosition !== "function" || !isObject(position) || typeof position.clone !== "function") {
+    const remedy = "Use three.js from r151 on, or pass the geometry in its pose.";
+    throw failure("UNSUPPORTED_FORMAT", "source", "a mesh with bones or morph targets", "getVertexPosition()", remedy);
+  }
+  const vertex = position.clone() as { x: number; y: number; z: number };
+  return (index) => {
+    getVertexPosition.call(found, index, vertex);
+    return [vertex.x, vertex.y, vertex.z];
+  };
+}
+
+/** How a geometry looks: its material, where its vertices are if not where its attribute says, and the colour of the instance. */
+interface Look {
+  material: unknown;
+  vertexOf?: ((index: number) => readonly [number, number, number]) | undefined;
+  tint?: readonly [number, number, number] | undefined;
+}
+
 /** Adds the triangles of a geometry, transformed. */
-function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4, material: unknown) {
+function append(arrays: Arrays, geometry: GeometryLike, m: Matrix4, { material, vertexOf, tint }: Look) {
+  const { attributes, index } = geometry;
   const position = attributes.position as AttributeLike | undefined;
   if (!position || typeof position.getX !== "function") return;
   const first = arrays.positions.length / 3;
@@ -126,20 +203,45 @@ function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4,
   const vertices = countOf("source.attributes.position.count", position.count);
   for (let i = 0; i < vertices; i++) {
     // The getters handle normalised and interleaved attributes.
-    const [x, y, z] = [position.getX(i), position.getY(i), position.getZ(i)];
+    const [x, y, z] = vertexOf?.(i) ?? [position.getX(i), position.getY(i), position.getZ(i)];
     arrays.positions.push(a * x + d * y + g * z + tx, b * x + e * y + h * z + ty, c * x + f * y + k * z + tz);
   }
-  appendColors(arrays, attributes.color as AttributeLike | undefined, position.count, material);
+  appendColors(arrays, attributes.color as AttributeLike | undefined, position.count, material, tint);
   const firstTriangle = arrays.indices.length / 3;
   const corner = (i: number) => first + (index === null ? i : index.getX(i));
   const count = index === null ? vertices : countOf("source.index.count", index.count);
   const isMirrored = determinant(linearOf(m)) < 0;
-  // Reflections invert the orientation of triangles: swap two corners.
-  for (let i = 0; i + 2 < count; i += 3) {
-    arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
+  for (const [start, end] of drawn(geometry, material, count)) {
+    // Reflections invert the orientation of triangles: swap two corners.
+    for (let i = start; i + 2 < end; i += 3) {
+      arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
+    }
   }
   const part = { firstTriangle, endTriangle: arrays.indices.length / 3, firstVertex: first };
   appendTexture(arrays, attributes, part, material);
+}
+
+/** The ranges of a geometry's corners that are drawn: within `drawRange` and, with several materials, those of the groups. */
+function drawn({ drawRange, groups }: GeometryLike, material: unknown, count: number): [start: number, end: number][] {
+  const isShown = (one: unknown) => !(isObject(one) && one.visible === false);
+  const within = (range: Range | undefined): [number, number] => [
+    Math.max(0, range?.start ?? 0),
+    Math.min(count, (range?.start ?? 0) + (range?.count ?? count)),
+  ];
+  const [first, end] = within(drawRange);
+  if (!Array.isArray(material)) return isShown(material) ? [[first, end]] : [];
+  const shown = (groups ?? []).filter(
+    ({ materialIndex = 0 }) => material[materialIndex] && isShown(material[materialIndex]),
+  );
+  return shown.map(within).map(([from, to]) => [Math.max(first, from), Math.min(end, to)]);
+}
+
+/** The colour and the texture that a material shows: those that it emits if it is black, as materials without shading are. */
+function shownBy(material: unknown): Fields {
+  if (!isObject(material)) return {};
+  const { color, emissive, emissiveMap } = material;
+  const isBlack = (one: unknown) => isObject(one) && one.r === 0 && one.g === 0 && one.b === 0;
+  return isBlack(color) && isObject(emissive) && !isBlack(emissive) ? { color: emissive, map: emissiveMap } : material;
 }
 
 /** Adds the texture of a material, if it has one. */
@@ -149,7 +251,7 @@ function appendTexture(
   part: Pick<TexturedPart, "firstTriangle" | "endTriangle" | "firstVertex">,
   material: unknown,
 ): void {
-  const map = isObject(material) ? material.map : undefined;
+  const { map } = shownBy(material);
   if (!isObject(map)) return;
   const coordinates = attributes[map.channel ? `uv${map.channel}` : "uv"] as AttributeLike | undefined;
   const texels = typeof coordinates?.getX === "function" ? texelsOf(map) : null;
@@ -185,11 +287,19 @@ function texturedSamples(
 }
 
 /** Adds the colours of vertices: their attribute, if the material shows it, times the colour of the material. */
-function appendColors(arrays: Arrays, attribute: AttributeLike | undefined, count: number, material: unknown): void {
-  const { color, vertexColors } = (isObject(material) ? material : {}) as Record<string, unknown>;
+function appendColors(
+  arrays: Arrays,
+  attribute: AttributeLike | undefined,
+  count: number,
+  material: unknown,
+  [red, green, blue]: readonly [number, number, number] = [1, 1, 1],
+): void {
+  const { color } = shownBy(material);
+  const vertexColors = isObject(material) && material.vertexColors;
   if (Array.isArray(material)) arrays.isUnknown = true;
   const isShown = vertexColors === true && typeof attribute?.getX === "function" && attribute.count === count;
-  const { r = 1, g = 1, b = 1 } = (isObject(color) ? color : {}) as { r?: number; g?: number; b?: number };
+  const own = (isObject(color) ? color : {}) as { r?: number; g?: number; b?: number };
+  const [r, g, b] = [red * (own.r ?? 1), green * (own.g ?? 1), blue * (own.b ?? 1)];
   if (isShown || r !== 1 || g !== 1 || b !== 1) arrays.isColored = true;
   for (let i = 0; i < count; i++) {
     const [x, y, z] = isShown ? [attribute.getX(i), attribute.getY(i), attribute.getZ(i)] : [1, 1, 1];

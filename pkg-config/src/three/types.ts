@@ -28,10 +28,19 @@ export interface AttributeLike {
   getZ(index: number): number;
 }
 
+/** A range of the corners of triangles. */
+export interface Range {
+  readonly start: number;
+  readonly count: number;
+}
+
 /** A `BufferGeometry`. */
 export interface GeometryLike {
   readonly attributes: { readonly [name: string]: unknown };
   readonly index: { readonly count: number; getX(index: number): number } | null;
+  readonly morphAttributes?: { readonly [name: string]: unknown };
+  readonly drawRange?: Range;
+  readonly groups?: readonly (Range & { readonly materialIndex?: number | undefined })[];
 }
 
 /** An `Object3D` whose meshes are read. */

@@ -142,8 +142,13 @@ export interface MeshFile {
   bytes: EncodedBytes;
   /** Detected from the content by default. */
   format?: MeshFormat | undefined;
-  /** The files that a `.gltf` or `.obj` refers to, by the names in it: buffers, textures and material libraries. */
+  /** The files that a glTF, OBJ or PLY file refers to, by the names in it: buffers, textures and material libraries. */
   resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
+  /**
+   * What the vertex colours of a glTF are. By default, bytes are sRGB-encoded, and others linear unless a program wrote them that
+   * does not convert colours.
+   */
+  colorSpace?: "srgb" | "linear" | undefined;
 }
 
 /**

@@ -12,6 +12,8 @@ export interface CoreMesh {
   colors?: Uint8Array;
   /** Colours at points of the surface, instead. */
   samples?: ColorSamples;
+  /** Whether there are colours that could not be read. */
+  lacksColors?: boolean;
   /** The point of the caller's file that is the origin here, if its coordinates are far from zero; see `origin.ts`. */
   fileOrigin?: readonly number[];
   /** How many copies of one mesh the file places. */

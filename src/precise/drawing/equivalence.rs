@@ -43,6 +43,13 @@ impl Equivalence {
         members.map(|turn| rotation * DQuat::from_array(turn.coords.into())).collect()
     }
 
+    /// The probability of any of so many rotations that are equivalent to one another, `rolls` of them about an axis of revolution;
+    /// `None` if a rotation has no equivalent.
+    pub fn chance(&self, rolls: usize) -> Option<f64> {
+        let count = self.0.members(rolls).len();
+        (count > 1).then(|| 1.0 / count as f64)
+    }
+
     /// The mean of a symmetric matrix in the frame of the mesh over all rotations that leave its shape as it is.
     pub fn mean(&self, matrix: &DMat3) -> DMat3 {
         if self.is_sphere() {

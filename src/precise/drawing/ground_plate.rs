@@ -27,6 +27,8 @@ const LARGER: f64 = 1.2;
 const HEIGHT: f64 = 0.1;
 /// Least share of the surface that is the object's.
 const OBJECT: f64 = 0.1;
+/// Ratio of the extents from which a part of its own is the floor of a scene, whatever the share and the height of the object.
+const FLOOR: f64 = 3.0;
 /// Directions along the plate in which extents are compared.
 const DIRECTIONS: usize = 4;
 /// Heights by which the thickness of a plate is measured.
@@ -152,7 +154,7 @@ impl Level {
         let part_of = || parts.into_iter().flat_map(|parts| mesh.triangles().iter().map(|t| parts.of_triangle(*t)));
         low.iter().zip(part_of()).for_each(|(low, part)| is_apart[part] &= low);
         let apart: Vec<bool> = part_of().map(|part| is_apart[part]).collect();
-        [apart, low].iter().find_map(|is_plate| {
+        [(&apart, true), (&low, false)].into_iter().find_map(|(is_plate, is_own_part)| {
             if is_plate.is_empty() {
                 return None;
             }
@@ -166,16 +168,18 @@ impl Level {
                 }
             }
             let share = plate / (plate + object);
-            if !(flat >= least && share <= 1.0 - OBJECT) {
+            if flat < least {
                 return None;
             }
-            let of_side = |side: bool, direction: DVec3| interval(faces, is_plate, side, direction);
-            let is_high = top - of_side(false, down)[0] >= HEIGHT * longest;
-            let is_larger = |direction: &DVec3| {
-                let [own, other] = [true, false].map(|side| of_side(side, *direction));
-                own[0] <= other[0] && other[1] <= own[1] && length(own) >= LARGER * length(other)
-            };
-            let is_ground = is_high && directions.iter().all(is_larger);
+            // How many times as long as the object it is, along all directions; 0 if the object reaches beyond it.
+            let mut ratio = f64::INFINITY;
+            for direction in &directions {
+                let [own, other] = [true, false].map(|side| interval(faces, is_plate, side, *direction));
+                let is_beyond = own[0] <= other[0] && other[1] <= own[1];
+                ratio = ratio.min(if is_beyond { length(own) / length(other) } else { 0.0 });
+            }
+            let is_high = top - interval(faces, is_plate, false, down)[0] >= HEIGHT * longest;
+            let is_ground = ratio >= LARGER && share <= 1.0 - OBJECT && is_high || ratio >= FLOOR && is_own_part;
             let removed_parts = RemovedParts { ground: share, ..RemovedParts::default() };
             is_ground.then(|| Trimmed::split(mesh, removed_parts, &|triangle| is_plate[triangle])).flatten()
         })

@@ -25,6 +25,8 @@ pub struct PreparedMesh<'a> {
     /// The colours of all of the mesh, and those of the rest; on first use.
     colors: Option<SurfaceColors>,
     trimmed_colors: OnceCell<SurfaceColors>,
+    /// Whether it has colours that could not be read.
+    lacks_colors: bool,
     is_checked: Cell<bool>,
     /// The symmetry of its surface, on first use.
     symmetry: OnceCell<Rc<SymmetryGroup>>,
@@ -63,12 +65,32 @@ impl<'a> PreparedMesh<'a> {
     fn with(whole: Cow<'a, Mesh>, trimmed: OnceCell<Option<Trimmed>>, plates: Option<OnceCell<Box<Plate>>>) -> Self {
         let (is_checked, pyramids, trimmed_colors) = (Cell::new(false), RefCell::default(), OnceCell::new());
         let symmetry = OnceCell::new();
-        Self { whole, trimmed, colors: None, trimmed_colors, is_checked, symmetry, pyramids, plates }
+        Self {
+            whole,
+            trimmed,
+            colors: None,
+            trimmed_colors,
+            lacks_colors: false,
+            is_checked,
+            symmetry,
+            pyramids,
+            plates,
+        }
     }
 
     /// The mesh with the colours of its surface, or without any.
     pub fn with_colors(self, colors: impl Into<Option<SurfaceColors>>) -> Self {
         Self { colors: colors.into(), ..self }
+    }
+
+    /// The mesh, and whether it has colours that could not be read.
+    pub fn lacking_colors(self, lacks_colors: bool) -> Self {
+        Self { lacks_colors, ..self }
+    }
+
+    /// Whether it has colours that could not be read: its turns may look different.
+    pub fn lacks_colors(&self) -> bool {
+        self.lacks_colors
     }
 
     /// The colours of the surface of the object, if they are known.
@@ -113,7 +135,7 @@ impl<'a> PreparedMesh<'a> {
             let whole = Cow::Owned(self.whole.as_ref().clone());
             let rest = PreparedMesh::with(whole, OnceCell::from(Some(Trimmed { removed_parts, ..trimmed })), None);
             // Without those of what is left out already.
-            Some(rest.with_colors(self.colors().cloned()))
+            Some(rest.with_colors(self.colors().cloned()).lacking_colors(self.lacks_colors))
         };
         let triangles = grids[FINE].triangles;
         let mut plates = self.plates.as_ref()?;

@@ -9,6 +9,7 @@ import { viewOf } from "../input/depth-view.js";
 import { photoFrom } from "../input/photo.js";
 import { readMesh } from "../input/reader.js";
 import { type ReadObject, sceneOf } from "../input/reading.js";
+import { shownGlb } from "../input/shown-glb.js";
 import { type Inputs, noInputs } from "../state/inputs.js";
 import type { Opened } from "./given-files.js";
 import type { GivenInput, GivenScene } from "./sim3-align.js";
@@ -63,8 +64,7 @@ async function meshOf(mesh: unknown): Promise<Pick<ReadObject, "mesh" | "glb">> 
   const isEncoded = mesh instanceof Uint8Array || mesh instanceof ArrayBuffer || mesh instanceof Blob;
   if (!isEncoded) return { mesh: mesh as MeshFromFile, glb: null };
   const bytes = await bytesOf(mesh);
-  const isGlb = new TextDecoder().decode(bytes.subarray(0, 4)) === "glTF";
-  return { mesh: await readMesh(bytes), glb: isGlb ? bytes : null };
+  return { mesh: await readMesh(bytes), glb: shownGlb(bytes) };
 }
 
 const bytesOf = async (source: EncodedBytes): Promise<Uint8Array> =>

@@ -8,6 +8,7 @@ import { once } from "../state/inputs.js";
 import { MAX_BYTES } from "./allowance.js";
 import { extension } from "./files.js";
 import { type ReadMask, readMask, readMesh } from "./reader.js";
+import { shownGlb } from "./shown-glb.js";
 
 const markedBy = once(async (file: NamedFile): Promise<ReadMask> => readMask(await file.bytes()));
 
@@ -31,7 +32,7 @@ export function atSize(mask: ReadMask, width: number, height: number, resize: bo
   });
 }
 
-/** A mesh, and its bytes if it is a GLB. */
+/** A mesh, and its bytes if it is a GLB that the 3D view can load. */
 export interface LoadedMesh {
   mesh: MeshFromFile;
   glb: Uint8Array | null;
@@ -50,7 +51,8 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
   }
   const bytes = await file.bytes();
   const ending = extension(file.path);
-  if (!refersToFiles(file.path)) return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
+  const glb = shownGlb(bytes);
+  if (!refersToFiles(file.path)) return { mesh: await readMesh(bytes), glb };
   const resources: Record<string, Uint8Array> = {};
   const addResources = async (file: Uint8Array) => {
     const { shape, colors } = await externalResources(file);
@@ -64,7 +66,7 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
     }
   };
   await addResources(bytes);
-  return { mesh: await readMesh(bytes, { format: ending as MeshFormat, resources }), glb: null };
+  return { mesh: await readMesh(bytes, { format: ending as MeshFormat, resources }), glb };
 }
 
 /** A name in a mesh file, which may be a URI. */
