@@ -64,7 +64,7 @@ const hasPython = spawnSync("python3", ["--version"]).status === 0;
 
 test("the Python of the guide aligns many cases", { skip: !hasPython && "no python3" }, () => {
   const guide = readFileSync(join(repository, "docs", "guides", "batches.md"), "utf8");
-  const [, program] = /^```python\n((?:(?!```)[^])*class Aligner[^]*?)^```$/m.exec(guide) ?? [];
+  const [, program] = /^```python\n((?:(?!```)[\s\S])*class Aligner[\s\S]*?)^```$/m.exec(guide) ?? [];
   const bin = join(folder, "bin");
   mkdirSync(bin, { recursive: true });
   writeFileSync(join(bin, "npx"), `#!/bin/sh\nshift\nexec "${process.execPath}" "${commandLine}" "$@"\n`);

@@ -68,7 +68,7 @@ function tokensOf(part: string): Token[] {
   const tokens = part.matchAll(/\[([!^]?)(.+?)\]|./gsu);
   return Array.from(tokens, ([character, not = "", characters]) => {
     if (character === "*") return null;
-    if (character === "?") return /[^]/u;
+    if (character === "?") return /./su;
     const [sign, list] = characters === undefined ? ["", character] : [not, characters];
     try {
       return new RegExp(`[${sign === "" ? "" : "^"}${list.replace(/[\\\]^[]/g, "\\$&")}]`, "u");

@@ -78,7 +78,7 @@ async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
   if (typeof folder === "string") return (await readCaseFolder(folder, settings)).input;
   const isFile = typeof camera === "string";
   const [readDepth, readMask, readImage, cameraFile] = await Promise.all([
-    ...[valueOf("depth", depth), valueOf("mask", mask), valueOf("image", image)],
+    ...[partOfRequest("depth", depth), partOfRequest("mask", mask), partOfRequest("image", image)],
     isFile ? read("camera", camera) : undefined,
   ]);
   const parts = { depth: readDepth, mask: readMask, image: readImage, mesh: await meshOf(mesh) };
@@ -86,7 +86,7 @@ async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
 }
 
 /** A file by its path, an inline array `{ base64, dtype, shape }`, or the bytes of a file, `{ base64 }`. */
-async function valueOf(argument: string, value: unknown): Promise<unknown> {
+async function partOfRequest(argument: string, value: unknown): Promise<unknown> {
   if (typeof value === "string") return read(argument, value);
   if (!isRecord(value) || typeof value.base64 !== "string") return value;
   const { base64, dtype, shape } = value;
@@ -103,10 +103,10 @@ async function valueOf(argument: string, value: unknown): Promise<unknown> {
 
 async function meshOf(mesh: unknown): Promise<unknown> {
   if (typeof mesh === "string") return readMeshFile(mesh);
-  if (!isRecord(mesh) || !isRecord(mesh.positions)) return valueOf("mesh", mesh);
+  if (!isRecord(mesh) || !isRecord(mesh.positions)) return partOfRequest("mesh", mesh);
   const [positions, indices] = [
-    await valueOf("mesh.positions", mesh.positions),
-    await valueOf("mesh.indices", mesh.indices),
+    await partOfRequest("mesh.positions", mesh.positions),
+    await partOfRequest("mesh.indices", mesh.indices),
   ];
   return withoutUndefined({ positions, indices });
 }
