@@ -33,6 +33,7 @@ pub mod photo;
 pub mod ply;
 mod ply_header;
 mod png;
+mod point_map;
 mod polygon;
 mod reducer;
 pub mod resources;

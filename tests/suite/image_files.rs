@@ -23,7 +23,7 @@ fn expected_mask() -> Vec<u8> {
 }
 
 fn depth(bytes: &[u8], depth_scale: Option<f64>) -> sim3align::error::Result<DepthMap> {
-    read_depth(bytes, &DepthReadOptions { depth_scale, integer_depth_scale: None })
+    read_depth(bytes, &DepthReadOptions { depth_scale, ..DepthReadOptions::default() })
 }
 
 #[wasm_bindgen_test]
@@ -55,8 +55,8 @@ fn depth_scales_apply_to_what_they_say() {
     let first = |bytes: &[u8], options: DepthReadOptions| {
         (f64::from(read_depth(bytes, &options).unwrap().data()[1]) * 1e6).round()
     };
-    let explicit = DepthReadOptions { depth_scale: Some(0.01), integer_depth_scale: Some(7.0) };
-    let of_camera = DepthReadOptions { depth_scale: None, integer_depth_scale: Some(0.0001) };
+    let explicit = DepthReadOptions { depth_scale: Some(0.01), integer_depth_scale: Some(7.0), is_packed: false };
+    let of_camera = DepthReadOptions { integer_depth_scale: Some(0.0001), ..DepthReadOptions::default() };
     let [png, integers, floats] = [fixture!("depth-16.png"), fixture!("depth-u2-hw1.npy"), fixture!("depth-f4.npy")];
     assert_eq!([first(png, explicit), first(floats, explicit)], [5_100_000.0, 5_100.0]);
     assert_eq!([png, integers, floats].map(|bytes| first(bytes, of_camera)), [51_000.0, 51_000.0, 510_000.0]);
