@@ -102,8 +102,14 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
     let (values, is_integer) = numbers(pixels);
     stored.is_integer = is_integer;
     if values.len() < count * channels {
-        let remedy = "Save it with the channels of a pixel beside one another (planar configuration 1).";
-        return Err(unsupported("depth", "a TIFF of three planes", "one plane", remedy));
+        let remedy =
+            "Save one image of three, or the points x, y, z of each pixel beside one another (planar configuration 1).";
+        return Err(unsupported(
+            "depth",
+            "a TIFF of three planes: images, or coordinates of points",
+            "one plane",
+            remedy,
+        ));
     }
     // The decoder inverts such samples, which other readers return as they are stored.
     let is_inverted = tag(&mut decoder, Tag::PhotometricInterpretation) == Some(0);

@@ -220,8 +220,8 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 }
 
 /**
- * Reads a case folder: a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM) called `depth`, a mask file (PNG, NPY, COCO RLE
- * or JPEG) called `mask`, a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT) called `mesh`, and optionally a camera file (JSON,
+ * Reads a case folder: a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM) called `depth`, a mask file (PNG, NPY, JSON or
+ * JPEG) called `mask`, a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT) called `mesh`, and optionally a camera file (JSON,
  * text or YAML: `camera`, `K`, `intrinsics`, …), a photo file (PNG, JPEG or WebP: `rgb`, `image`, …), and `gt.json`. The guide
  * on frames lists all names. Upper and lower case are the same. Intrinsics of the colour camera are passed over beside those of
  * the depth camera (`intrinsic_depth.txt`). What is not read is in `unread`.

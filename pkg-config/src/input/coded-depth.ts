@@ -3,12 +3,13 @@
 import type { Warning } from "../generated/types.js";
 import type { DepthCode, DepthImage } from "../types/inputs.js";
 import { failure, Sim3AlignError } from "../values/error.js";
+import type { StatedSize } from "./depth.js";
 
 /** Values that are looked at. */
 const SAMPLES = 1 << 16;
 
-/** Values of which fewer say nothing about a code. */
-const DISTINCT = 32;
+/** Values of which fewer say nothing about a code, and the most that are told apart. */
+const DISTINCT = [32, 1024] as const;
 
 /** What the readings of a depth map are, as they were stored. */
 interface Facts {
@@ -21,8 +22,7 @@ interface Facts {
   least: number;
   most: number;
   mean: number;
-  /** The shares of the largest value, and of multiples of 8 and of 16. */
-  saturated: number;
+  /** The share of multiples of 8, and that of multiples of 16 among the values that differ. */
   eights: number;
   sixteens: number;
 }
@@ -34,14 +34,11 @@ const signs: { readonly [K in DepthCode]?: (facts: Facts) => boolean } = {
     isWhole && isMillimetres && eights > 0.95 && sixteens < 0.8,
   // 11 to 23 m, if they were millimetres.
   "half-float": ({ isWhole, isAssumed, least, most }) => isWhole && isAssumed && least >= 0x2c00 && most <= 0x5c00,
-  lerobot: ({ isWhole, isAssumed, most, saturated }) => isWhole && isAssumed && most === 4095 && saturated > 0.01,
-  behavior: ({ isWhole, isAssumed, most, saturated }) => isWhole && isAssumed && most === 16383 && saturated > 0.01,
-  // A scene within one metre of the camera may have such values, too: a doubt only where the pose is one.
+  // Most maps in millimetres are such numbers, and planes tell; so they do of a scene within one metre of the camera.
+  lerobot: ({ isWhole, isAssumed, most }) => isWhole && isAssumed && most <= 4095,
+  behavior: ({ isWhole, isAssumed, most }) => isWhole && isAssumed && most <= 16383,
   "z-buffer": ({ isWhole, isAssumed, mean, most }) => !isWhole && isAssumed && mean >= 0.7 && most <= 1,
 };
-
-/** Codes that other depth may look like: the warning is for a pose in doubt. */
-const uncertain: readonly DepthCode[] = ["z-buffer"];
 
 /** A warning about a code, and whether it is only for a pose in doubt. */
 export interface CodeDoubt {
@@ -52,16 +49,24 @@ export interface CodeDoubt {
 /** The code that the values of a metric depth map look like. */
 export async function doubtOfCode(
   values: Float32Array | Uint16Array,
+  { width = 0, height = 0 }: StatedSize,
   unit: DepthImage["unit"],
 ): Promise<CodeDoubt | undefined> {
   const facts = factsOf(values, unit);
-  const name = facts && (Object.keys(signs) as DepthCode[]).find((code) => signs[code]?.(facts));
-  if (name === undefined) return undefined;
-  const { depthCodes } = await import("./depth-codes.js");
-  const { writers, formula, signs: betrayed, range } = depthCodes[name];
-  const needs = range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : "";
-  const message = `The values of the depth map look like a code of ${writers}, and no lengths: ${betrayed}. If they are (${formula}), pass depthCode "${name}"${needs}.`;
-  return { warning: { code: "DEPTH_LOOKS_CODED", message }, isUncertain: uncertain.includes(name) };
+  const names = (Object.keys(signs) as DepthCode[]).filter((code) => facts !== undefined && signs[code]?.(facts));
+  if (facts === undefined || names.length === 0) return undefined;
+  const { depthCodes, isCoded } = await import("./depth-codes.js");
+  const numbers =
+    values instanceof Uint16Array || unit.metres === 1 ? values : values.map((z) => z / (unit.metres ?? 1));
+  for (const name of names) {
+    const certainty = isCoded(name, numbers, { width, height }, facts);
+    if (certainty === false) continue;
+    const { writers, formula, signs: betrayed, range } = depthCodes[name];
+    const needs = range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : "";
+    const message = `The values of the depth map look like a code of ${writers}, and no lengths: ${betrayed}. If they are (${formula}), pass depthCode "${name}"${needs}.`;
+    return { warning: { code: "DEPTH_LOOKS_CODED", message }, isUncertain: certainty === undefined };
+  }
+  return undefined;
 }
 
 function factsOf(values: Float32Array | Uint16Array, { metres, isAssumed }: DepthImage["unit"]): Facts | undefined {
@@ -69,7 +74,7 @@ function factsOf(values: Float32Array | Uint16Array, { metres, isAssumed }: Dept
   const scale = metres === null || values instanceof Uint16Array ? 1 : metres;
   const step = Math.ceil(values.length / SAMPLES) | 1;
   const distinct = new Set<number>();
-  let [count, sum, least, most, saturated, eights, sixteens, wholes] = [0, 0, Number.POSITIVE_INFINITY, 0, 0, 0, 0, 0];
+  let [count, sum, least, most, eights, wholes] = [0, 0, Number.POSITIVE_INFINITY, 0, 0, 0];
   for (let i = 0; i < values.length; i += step) {
     const exact = (values[i] as number) / scale;
     // No reading, or no number.
@@ -77,17 +82,15 @@ function factsOf(values: Float32Array | Uint16Array, { metres, isAssumed }: Dept
     const value = Math.abs(exact - Math.round(exact)) < 0.01 && scale < 1 ? Math.round(exact) : exact;
     count += 1;
     sum += value;
-    if (value > most) [most, saturated] = [value, 0];
-    if (value === most) saturated += 1;
-    least = Math.min(least, value);
+    [least, most] = [Math.min(least, value), Math.max(most, value)];
     wholes += Number(Number.isInteger(value));
     eights += Number(value % 8 === 0);
-    sixteens += Number(value % 16 === 0);
-    if (distinct.size < DISTINCT) distinct.add(value);
+    if (distinct.size < DISTINCT[1]) distinct.add(value);
   }
-  if (distinct.size < DISTINCT) return undefined;
+  if (distinct.size < DISTINCT[0]) return undefined;
   const isMillimetres = metres !== null && Math.abs(metres - 0.001) < 1e-6;
-  const shares = { saturated: saturated / count, eights: eights / count, sixteens: sixteens / count };
+  const sixteens = [...distinct].filter((value) => value % 16 === 0).length / distinct.size;
+  const shares = { eights: eights / count, sixteens };
   return { isWhole: wholes === count, isAssumed, isMillimetres, least, most, mean: sum / count, ...shares };
 }
 
@@ -122,7 +125,8 @@ function packedCode(values: Float32Array, width: number): DepthCode | undefined 
   const step = Math.ceil(values.length / SAMPLES) | 1;
   for (let i = 1; i < values.length; i += step) {
     const [before, value] = [values[i - 1] as number, values[i] as number];
-    if (i % width === 0 || !(before > 0 && value > 0)) continue;
+    // Walls that are alike say nothing.
+    if (i % width === 0 || before === value || !(before > 0 && value > 0)) continue;
     count += 1;
     floats += Number(!Number.isInteger(value));
     for (const [k] of differences.entries())

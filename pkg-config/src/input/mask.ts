@@ -98,10 +98,12 @@ export function shapedMask(argument: string, mask: ReadMask, depth: ImageSize, r
   const { data, width = depth.width, height = depth.height } = mask;
   const ratio = (width * depth.height) / (height * depth.width);
   if (!(width * height === data.length && Math.abs(Math.log(ratio)) > SAME_SHAPE)) return mask;
-  if (resize === "nearest" && width === height) {
+  let isPadded = false;
+  if (width === height) {
     const scale = width / Math.max(depth.width, depth.height);
     const [columns, rows] = [depth.width, depth.height].map((side) => Math.round(side * scale)) as [number, number];
-    if (!data.some((pixel, i) => pixel !== 0 && (i % width >= columns || i >= rows * width))) {
+    isPadded = !data.some((pixel, i) => pixel !== 0 && (i % width >= columns || i >= rows * width));
+    if (isPadded && resize === "nearest") {
       const inside = data.filter((_, i) => i % width < columns && i < rows * width);
       const padded = `the upper left ${columns} × ${rows} of ${width} × ${height} pixels, a padded square`;
       return {
@@ -114,8 +116,9 @@ export function shapedMask(argument: string, mask: ReadMask, depth: ImageSize, r
     }
   }
   const found = `${width} × ${height} pixels for a depth map of ${depth.width} × ${depth.height}, of another shape`;
-  const remedy =
-    "It shows another field of view, and would be stretched: crop or pad it to that of the depth map, or warp it with both cameras.";
+  const remedy = isPadded
+    ? 'It may be the square to which SAM pads an image: with resizeMask: "nearest", its part with the image is read. Else crop or pad it to the view of the depth map.'
+    : "It shows another field of view, and would be stretched: crop or pad it to that of the depth map, or warp it with both cameras.";
   throw failure("SIZE_MISMATCH", argument, found, "a mask of the view of the depth map", remedy);
 }
 

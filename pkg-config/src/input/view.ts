@@ -61,7 +61,8 @@ export async function readView(input: Record<string, unknown>, readers: FileRead
   const depth = measured.rays === undefined || pinhole === undefined ? measured.core : measured.rays(pinhole);
   const view = { ...depth, width, height, image: photo.image, camera: pinhole, focalDeviation: lens.focalDeviation };
   const { imageReading } = photo;
-  const doubt = measured.readings === undefined ? undefined : await doubtOfCode(measured.readings, unit);
+  const doubt =
+    measured.readings === undefined ? undefined : await doubtOfCode(measured.readings, { width, height }, unit);
   const [doubts, warnings] = doubt?.isUncertain ? [[doubt.warning], []] : [[], doubt ? [doubt.warning] : []];
   const notes = {
     warnings: [...warnings, ...lens.warnings],
