@@ -7,6 +7,7 @@ use sim3align_geometry::similarity::Similarity;
 use super::columns::Columns;
 use super::mass::Mass;
 use super::part::{ConvexPart, convex_parts};
+use super::solid::Solid;
 
 /// A rigid body.
 #[derive(Debug, Clone)]
@@ -39,12 +40,19 @@ impl Body {
     /// The body of a mesh at a pose. A mesh without extent has no parts.
     pub fn new(mesh: &Mesh, world_from_mesh: &Similarity, most_parts: usize, density: f64) -> Self {
         let scale = world_from_mesh.scale;
+        let solid = Solid::of(mesh);
+        let volume = solid.as_ref().map(|solid| solid.volume);
         let parts: Vec<ConvexPart> =
-            convex_parts(mesh, most_parts).iter().map(|part| part.mapped(|p| scale * p)).collect();
+            convex_parts(mesh, volume, most_parts).iter().map(|part| part.mapped(|p| scale * p)).collect();
+        // The parts of a mesh that encloses a volume only approximate it.
+        let mass = match &solid {
+            Some(solid) => Mass::inside(solid.corners.iter().map(|corners| corners.map(|p| scale * p)), density),
+            None => Mass::of(&parts, density),
+        };
         let rotation = DMat3::from_cols_slice(world_from_mesh.rotation.matrix().as_slice());
         let translation = DVec3::from_slice(world_from_mesh.translation.as_slice());
         let pose = Pose { rotation: DQuat::from_mat3(&rotation).normalize(), translation };
-        Self { mass: Mass::of(&parts, density), parts, pose }
+        Self { mass, parts, pose }
     }
 
     /// The vertices of its parts at a pose.

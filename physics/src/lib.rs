@@ -11,3 +11,4 @@ pub mod mass;
 pub mod part;
 pub mod rest;
 pub mod scene;
+pub mod solid;

@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia of convex parts of one density.
+//! Mass, centre of mass and inertia of bodies of one density.
 
 use glam::{DMat3, DQuat, DVec3};
 use sim3align_geometry::symmetric_eigen::{SymmetricEigen, outer};
@@ -21,8 +21,13 @@ pub struct Mass {
 impl Mass {
     /// Of parts that do not overlap.
     pub fn of(parts: &[ConvexPart], density: f64) -> Self {
+        Self::inside(parts.iter().flat_map(ConvexPart::corners), density)
+    }
+
+    /// Of what triangles that face outward enclose.
+    pub fn inside(corners: impl Iterator<Item = [DVec3; 3]>, density: f64) -> Self {
         let (mut volume, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
-        for [a, b, c] in parts.iter().flat_map(ConvexPart::corners) {
+        for [a, b, c] in corners {
             // The tetrahedron of the triangle and the origin: the integrals of 1, x and x·xᵀ over it.
             let six = a.dot(b.cross(c));
             let sum = a + b + c;

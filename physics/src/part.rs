@@ -27,7 +27,7 @@ const TOUCHING: f64 = 0.02;
 /// Parts with less than this share of the volume of all are left out.
 const SLIVER: f64 = 1e-4;
 /// Thickness of the hull of a flat mesh, relative to its diagonal.
-const THICKNESS: f32 = 1e-3;
+const THICKNESS: f64 = 1e-3;
 
 /// A closed convex surface; triangles are counter-clockwise from outside.
 #[derive(Debug, Clone)]
@@ -46,9 +46,11 @@ impl ConvexPart {
         if size.is_nan() || size <= 0.0 {
             return None;
         }
-        let unit: Vec<Vector> = points.iter().map(|p| vector(((*p - center) / size).as_vec3())).collect();
+        // Hulls are the same in any proportions, and those of sheets are found in better ones.
+        let sides = (bounds.max - bounds.min).as_dvec3().max(DVec3::splat(1e-6 * size));
+        let unit: Vec<Vector> = points.iter().map(|p| vector(((*p - center) / sides).as_vec3())).collect();
         let (vertices, triangles) = try_convex_hull(&unit).ok()?;
-        let positions = vertices.iter().map(|v| center + size * DVec3::new(v.x.into(), v.y.into(), v.z.into()));
+        let positions = vertices.iter().map(|v| center + sides * DVec3::new(v.x.into(), v.y.into(), v.z.into()));
         Some(Self { positions: positions.collect(), triangles }).filter(|hull| hull.volume() > 1e-9 * size.powi(3))
     }
 
@@ -96,11 +98,14 @@ impl ConvexPart {
     }
 }
 
-/// At most `most` convex parts of a mesh, in its frame: one is its hull.
-pub fn convex_parts(mesh: &Mesh, most: usize) -> Vec<ConvexPart> {
+/// At most `most` convex parts of a mesh, in its frame: one is its hull. `volume` is that which the mesh encloses, if it does.
+pub fn convex_parts(mesh: &Mesh, volume: Option<f64>, most: usize) -> Vec<ConvexPart> {
     let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
-    let Some(hull) = ConvexPart::hull(&points).or_else(|| thickened(mesh)) else { return Vec::new() };
-    if most <= 1 {
+    // All of a flat mesh is one plate.
+    let Some(hull) = ConvexPart::hull(&points) else {
+        return thickened(&points, mesh.diagonal()).into_iter().collect();
+    };
+    if most <= 1 || volume.is_some_and(|volume| volume > CONVEX * hull.volume()) {
         return vec![hull];
     }
     let mut parts = decomposed(&decimate(mesh, TRIANGLES));
@@ -173,17 +178,17 @@ fn decomposed(mesh: &Mesh) -> Vec<ConvexPart> {
     let of = |(vertices, _): &(Vec<Vector>, Vec<[u32; 3]>)| {
         let points: Vec<DVec3> =
             vertices.iter().map(|v| (center + size * Vec3::new(v.x, v.y, v.z)).as_dvec3()).collect();
-        ConvexPart::hull(&points)
+        // Walls without thickness are thickened.
+        ConvexPart::hull(&points).or_else(|| thickened(&points, f64::from(size)))
     };
     hulls.iter().filter_map(of).collect()
 }
 
-/// The hull of a flat mesh, which is made thicker.
-fn thickened(mesh: &Mesh) -> Option<ConvexPart> {
-    let by = f64::from(Bounds::of(mesh.positions())?.diagonal() * THICKNESS);
-    let around =
-        |p: &Vec3| [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [p.as_dvec3() + by * axis, p.as_dvec3() - by * axis]);
-    let points: Vec<DVec3> = mesh.positions().iter().flat_map(|p| around(p).into_iter().flatten()).collect();
+/// The hull of points in a plane, which is made thicker by a share of `size`.
+fn thickened(points: &[DVec3], size: f64) -> Option<ConvexPart> {
+    let by = size * THICKNESS;
+    let around = |p: &DVec3| [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [*p + by * axis, *p - by * axis]);
+    let points: Vec<DVec3> = points.iter().flat_map(|p| around(p).into_iter().flatten()).collect();
     ConvexPart::hull(&points)
 }
 

@@ -1,5 +1,6 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { fileOf, isNoInput, namesOf, type Part, partOf } from "./case-names.js";
+import { parseCameraPose } from "./conventions/camera-pose-file.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { requiredBytes } from "./input/bytes.js";
 import { refersToFiles } from "./input/formats.js";
@@ -14,8 +15,6 @@ import type {
   ViewInput,
 } from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
-import { numbersIn, parsedJson, shown } from "./values/json.js";
-import { isRecord } from "./values/kinds.js";
 import { naturally } from "./values/order.js";
 import { record, withoutUndefined } from "./values/validation.js";
 
@@ -62,7 +61,7 @@ export async function frameFrom(files: CaseFiles, settings: ReadCaseOptions, pla
   const names = { depth: required("depth"), mask: find("mask"), ...reader.viewNames(), pose: find("pose") };
   const { input, truth } = await viewFrom(reader, names, settings);
   const pose = await optional(names.pose);
-  if (pose !== undefined) input.cameraToWorld = cameraPose(pose);
+  if (pose !== undefined) input.cameraToWorld = parseCameraPose("pose", pose);
   return { input, files: withoutUndefined(names) as FrameFiles["files"], unread: reader.unread(), truth };
 }
 
@@ -122,16 +121,6 @@ const LISTED = 10;
 /** Names in a sentence, the first ten of many. */
 export const listed = (names: readonly string[]): string =>
   names.length > LISTED ? `${names.slice(0, LISTED).join(", ")} and ${names.length - LISTED} more` : names.join(", ");
-
-/** The pose of a frame's camera: `camera_to_world`, 4×4 by rows, metres. */
-function cameraPose(bytes: Uint8Array): number[] {
-  const json = parsedJson("pose", bytes);
-  const rows = isRecord(json) ? numbersIn(json.camera_to_world, 16) : null;
-  if (rows !== null) return Array.from(rows, (_, i) => rows[4 * (i % 4) + Math.floor(i / 4)] as number);
-  const expected = '{ "camera_to_world": 4 × 4 numbers, row by row }';
-  const remedy = "The matrix maps points of the camera (x right, y down, z forward) to the world, in metres.";
-  throw failure("CORRUPT_FILE", "pose", isRecord(json) ? shown(json.camera_to_world) : shown(json), expected, remedy);
-}
 
 /**
  * Reads a case: depth map, mask, mesh, and optionally camera file, photo and `gt.json`, identified by name.

@@ -1,22 +1,11 @@
 /** Cases on disk (Node only). */
-import { readdir, readFile, stat } from "node:fs/promises";
+import { readdir, stat } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
-import {
-  type Case,
-  type CaseFiles,
-  caseFrom,
-  type FrameFiles,
-  fileNotFound,
-  filesOf,
-  frameFrom,
-  meshFile,
-  type ReadCaseOptions,
-} from "./case-files.js";
+import { type Case, type CaseFiles, caseFrom, meshFile, type ReadCaseOptions } from "./case-files.js";
 import { partOf } from "./case-names.js";
 import { refersToFiles } from "./input/formats.js";
+import { read, unreadable } from "./read-files.js";
 import type { AlignInput, CameraInput, MeshFile } from "./types/inputs.js";
-import { failure, Sim3AlignError } from "./values/error.js";
-import { naturally } from "./values/order.js";
 import { withoutUndefined } from "./values/validation.js";
 
 export type { ReadCaseOptions } from "./case-files.js";
@@ -49,7 +38,7 @@ export interface CasePaths {
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
  */
 export async function readCaseFolder(folder: string, settings: ReadCaseOptions = {}): Promise<CaseOnDisk> {
-  const files = filesIn("case", folder, await pathsIn(folder));
+  const files = await filesOfCase(folder);
   const { input, truth, ...found } = await caseFrom(files, settings, folder);
   return { name: basename(resolve(folder)), input, truth, found: { folder, ...found } };
 }
@@ -58,82 +47,21 @@ export async function readCaseFolder(folder: string, settings: ReadCaseOptions =
 export const filesIn = (argument: string, folder: string, paths: readonly string[]): CaseFiles =>
   Object.fromEntries(paths.map((path) => [path, () => read(argument, join(folder, path))]));
 
-/** A frame on disk. */
-export interface FrameOnDisk extends Pick<FrameFiles, "input" | "truth"> {
-  name: string;
-  found: FoundFiles;
-}
-
-/** A folder with frames of one object. */
-export interface FramesFolder {
-  mesh: MeshFile;
-  /** The names of the frames, in order. */
-  names: readonly string[];
-  /** Reads a frame. */
-  read(name: string): Promise<FrameOnDisk>;
-  /** The files beside the frames; without the camera, until a frame was read that has none. */
-  found(): FoundFiles;
-}
-
-/** The names of the `frame_*` folders of a case, in order; none for a case of one view. */
-export async function frameNames(folder: string): Promise<string[]> {
-  const entries = await readdir(folder, { withFileTypes: true }).catch(() => []);
-  const names = entries.filter((entry) => (entry.isDirectory() || entry.isSymbolicLink()) && isFrame(entry.name));
-  return names.map(({ name }) => name).sort(naturally);
-}
-
-const isFrame = (path: string) => path.startsWith("frame_");
-
-/**
- * Opens a case folder with `frame_*` folders. A camera beside these is that of the frames without one.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
- */
-export async function openFrames(folder: string, settings: ReadCaseOptions = {}): Promise<FramesFolder> {
-  const shared = filesOf(filesIn("case", folder, await pathsIn(folder)), settings, folder);
-  const meshName = shared.required("mesh");
-  const mesh = await meshFile(meshName, await shared.read(meshName), shared.beside);
-  let camera: string | undefined;
-  return {
-    ...{ mesh, names: await frameNames(folder) },
-    async read(name) {
-      const place = join(folder, name);
-      const paths = await filesBelow(place, "", 1);
-      const above = paths.some((path) => partOf(path) === "camera") ? undefined : shared.find("camera");
-      camera ??= above;
-      const beside = above === undefined ? {} : { [`../${above}`]: () => shared.read(above) };
-      const files = { ...filesIn("frame", place, paths), ...beside };
-      const { input, truth, ...found } = await frameFrom(files, settings, place);
-      return { name, input, truth, found: { folder: place, ...found } };
-    },
-    found: () => ({
-      folder,
-      files: withoutUndefined({ mesh: meshName, camera }) as FoundFiles["files"],
-      unread: shared.unread().filter((path) => !isFrame(path)),
-    }),
-  };
-}
-
-/** A frame as an input for `align` and `evaluate`; `undefined` without a mask. */
-export function inputOfFrame({ input }: Pick<FrameFiles, "input">, mesh: MeshFile): AlignInput | undefined {
-  const { cameraToWorld: _, ...view } = input;
-  return view.mask === undefined ? undefined : ({ ...view, mesh } as AlignInput);
-}
-
 /** Reads a mesh file, and the files next to it that it refers to. */
 export async function readMeshFile(path: string): Promise<MeshFile> {
   const beside = (uri: string) => read("mesh", join(dirname(path), uri));
   return meshFile(path, await read("mesh", path), beside);
 }
 
-/** Paths of the files in a case folder; includes subfolders only if the mesh may refer to them. */
-async function pathsIn(folder: string): Promise<string[]> {
+/** The files of a case folder; those in subfolders only if the mesh may refer to them. */
+export async function filesOfCase(folder: string): Promise<CaseFiles> {
   const names = await namesInFolder("case", folder, "a folder with depth, mask and mesh");
   const refers = names.some((name) => partOf(name) === "mesh" && refersToFiles(name));
-  return filesBelow(folder, "", refers ? LEVELS : 1);
+  return filesIn("case", folder, await filesBelow(folder, "", refers ? LEVELS : 1));
 }
 
 /** Depth of the folders that are searched for the files of a mesh. */
-const LEVELS = 8;
+export const LEVELS = 8;
 
 /** The paths of the files in a folder below `root`, down to so many levels; links are followed. */
 export async function filesBelow(root: string, folder: string, levels: number): Promise<string[]> {
@@ -179,28 +107,4 @@ export async function readCaseFiles(
   const named = withoutUndefined({ ...files, camera: cameraPath, image: withImage ? imagePath : undefined });
   const found = { folder: "", files: named as FoundFiles["files"], unread: [] };
   return { name, input: input as AlignInput, found, truth: null };
-}
-
-/** The largest file that Node reads at once, bytes. */
-const LARGEST = 2 ** 31 - 1;
-
-/** The bytes of a file. Pipes and devices, which may have no end, are not read. */
-export async function read(argument: string, path: string): Promise<Uint8Array> {
-  try {
-    const file = await stat(path);
-    if (!file.isFile()) throw fileNotFound(argument, `no ordinary file at ${path}`, "a readable file");
-    if (file.size > LARGEST) {
-      const remedy = "Crop the image to the object, or simplify the mesh.";
-      throw failure("FILE_TOO_LARGE", argument, `${file.size} bytes at ${path}`, `at most ${LARGEST}`, remedy);
-    }
-    return await readFile(path);
-  } catch (cause) {
-    throw cause instanceof Sim3AlignError ? cause : unreadable(argument, path, "a readable file", cause);
-  }
-}
-
-function unreadable(argument: string, path: string, expected: string, cause: unknown) {
-  const isMissing = cause instanceof Error && "code" in cause && cause.code === "ENOENT";
-  const reason = cause instanceof Error && "code" in cause && !isMissing ? ` (${cause.code})` : "";
-  return fileNotFound(argument, `nothing to read at ${path}${reason}`, expected, cause);
 }

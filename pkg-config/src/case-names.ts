@@ -17,11 +17,11 @@ export const caseNames = {
   },
   image: { stems: ["rgb", "image", "photo", "color", "colour"], extensions: extensionsOf("photo") },
   /** The true pose. */
-  truth: { stems: ["gt"], extensions: ["json"] },
+  truth: { stems: ["gt"], extensions: ["json", "txt"] },
   /** A first pose of an object of a scene: one candidate among those of the search. */
-  initial: { stems: ["initial"], extensions: ["json"] },
+  initial: { stems: ["initial"], extensions: ["json", "txt"] },
   /** The pose of the camera of a frame. */
-  pose: { stems: ["pose"], extensions: ["json"] },
+  pose: { stems: ["pose"], extensions: ["json", "txt"] },
 } satisfies Record<string, { stems: string[]; extensions: readonly string[] }>;
 
 /** A part of a case that is a file. */

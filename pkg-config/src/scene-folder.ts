@@ -6,10 +6,11 @@ import type { ReadCaseOptions } from "./case-files.js";
 import { type FoundFiles, filesBelow, filesIn, namesInFolder } from "./case-folder.js";
 import { fromBop } from "./conventions/bop.js";
 import type { KnownPose } from "./conventions/pose-file.js";
+import { readOncePerKey } from "./read-files.js";
 import { sam3dFrom } from "./scene/sam3d-files.js";
 import { type SceneCase, sceneFrom } from "./scene/scene-files.js";
 import type { SceneInput, SceneObjectInput } from "./types/scene.js";
-import { oncePerKey, withoutUndefined } from "./values/validation.js";
+import { withoutUndefined } from "./values/validation.js";
 
 /** A scene on disk. */
 export interface SceneOnDisk extends Pick<SceneCase, "input" | "truths"> {
@@ -67,7 +68,7 @@ async function readBop(folder: string, { models, imageId, sam3d: _, ...settings 
   const scene = await BopScene.open(folder);
   const id = scene.imageId(imageId);
   const modelFolder = models ?? (await bopModels(folder, modelPlaces));
-  const modelOf = oncePerKey((objectId: string) => readBopModel(modelFolder, objectId));
+  const modelOf = readOncePerKey((objectId: string) => readBopModel(modelFolder, objectId));
   const { resizeMask, image: withImage = true, ...view } = settings;
   const objects: SceneObjectInput[] = [];
   const truths: (KnownPose | null)[] = [];

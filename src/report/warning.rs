@@ -24,6 +24,9 @@ pub enum WarningCode {
     DepthLooksTooSmall,
     /// The surroundings of the object are nearer than it: near may be large in this depth map.
     DepthLooksInverted,
+    /// The depth in the mask continues the plane around it, and the pose is in doubt: the object may be transparent. `align` of the
+    /// package looks at it.
+    DepthLooksLikeBackground,
     /// The depth map spans exactly the range of a normalised one: its values are relative.
     DepthLooksNormalised,
     /// The values of the depth map are like those of a code, and no lengths. The package looks at them.

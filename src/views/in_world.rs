@@ -172,13 +172,14 @@ fn summary(
     let of_used = views.iter().zip(&roles).filter(|(_, role)| **role == ViewRole::Used);
     let is_sure = confidence.shape >= SURE;
     confidence.relief_deviation = of_used.map(|(view, _)| view.frame.relief_deviation).fold(f64::INFINITY, f64::min);
-    let confidence = confidence.overall();
+    let confidence = confidence.overall().min(share_of_used(&roles));
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
         let world_from_camera = cameras[k].world_from_camera();
         SummaryView {
             camera_from_mesh: world_from_camera.inverse().compose(&world_from_mesh),
-            confidence,
+            // The camera pose of a view that contradicts may be the cause, and the pose in it follows from that.
+            confidence: if role == ViewRole::Contradicting { 0.0 } else { confidence },
             role,
             world_from_camera,
             rotation_sd_deg: Some(0.0),
@@ -207,6 +208,14 @@ fn summary(
         renders: used.renders,
         effort: first.search.settings.effort,
     })
+}
+
+/// The probability that the views that agree are the right ones, as far as the camera poses tell: 1 for a majority, otherwise
+/// their share of all that have evidence.
+fn share_of_used(roles: &[ViewRole]) -> f64 {
+    let count = |role| roles.iter().filter(|other| **other == role).count() as f64;
+    let (used, contradicting) = (count(ViewRole::Used), count(ViewRole::Contradicting));
+    if used > contradicting { 1.0 } else { used / (used + contradicting) }
 }
 
 /// The verdict of colour on the best pose; `None` without colours.

@@ -5,7 +5,7 @@ import { cpSync, rmSync, symlinkSync, truncateSync, writeFileSync } from "node:f
 import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner, OPTIONS } from "sim3align";
-import { files, folder, pixels, results, run, succeeds, writeCase } from "../support/command-line.js";
+import { files, folder, pixels, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
 import { cocoRle, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { columnMajor, mesh, poseJson, truth, view } from "../support/scene.js";
@@ -79,7 +79,8 @@ test("--json has everything that align returns, and the proportions; --json - le
   const input = { depth: files["depth.npy"], mask: pixels, mesh: files["mesh.glb"], camera };
   const alignment = await aligner.align(input, { seed: 5, quality: "fast", proportions: "axes" });
   const { errors } = await aligner.evaluate(input, alignment, { truth });
-  const { errors: foundErrors, inputs, unread, ...found } = blob;
+  const { errors: foundErrors, inputs, unread, path, ...found } = blob;
+  assert.equal(path, "blob");
   const parts = { "depth.npy": "depth", "mask.png": "mask", "mesh.glb": "mesh" };
   for (const [name, part] of Object.entries({ ...parts, "camera.json": "camera", "gt.json": "truth" }))
     assert.equal(inputs[name].as, part);
@@ -210,12 +211,15 @@ test("evaluate scores the truth, a file, and what align wrote, and reports what 
   }
   // A case whose name is a field of transforms.
   cpSync(join(folder, "blob"), join(folder, "scale"), { recursive: true });
-  writeFileSync(join(folder, "named.json"), JSON.stringify({ scale: results("aligned.json").blob }));
+  writeFileSync(
+    join(folder, "named.json"),
+    JSON.stringify({ scale: { ...results("aligned.json").blob, path: "scale" } }),
+  );
   succeeds("evaluate scale --transform named.json");
+  refusesUsage({ "evaluate blob --transform missing.json": /--transform missing\.json: there is no such file/ });
   const failing: [args: string, code: string, message: RegExp][] = [
     ["nowhere", "FILE_NOT_FOUND", /nowhere/],
     ["others", "FILE_NOT_FOUND", /no true pose/],
-    ["blob --transform missing.json", "FILE_NOT_FOUND", /missing\.json/],
     ["blob --transform blob/mask.png", "CORRUPT_FILE", /JSON/],
     ["empty-mask --transform aligned.json", "INVALID_TRANSFORM", /the failure of empty-mask/],
     ["others --transform aligned.json", "INVALID_TRANSFORM", /blob, empty-mask/],

@@ -18,7 +18,8 @@ import {
   writeCase,
 } from "../support/command-line.js";
 import { commandLine } from "../support/environment.js";
-import { poseJson, truth } from "../support/scene.js";
+import { glb, maskPng } from "../support/files.js";
+import { mesh, poseJson, truth } from "../support/scene.js";
 
 const inFolder = (...path: string[]) => join(folder, ...path);
 const linesOf = (path: string) => read(path).trimEnd().split("\n");
@@ -109,9 +110,10 @@ test("--jsonl has a line for each case, the entry of --json; --csv its numbers",
   const json = results("whole.json");
   assert.deepEqual([Object.keys(json).sort(), casesOf("whole.jsonl").length], [all, all.length]);
   for (const line of casesOf("whole.jsonl")) {
-    const { case: name, path, content, ...entry } = JSON.parse(line);
-    assert.deepEqual([entry, path], [json[name], name]);
+    const { case: name, path, files, content, ...entry } = JSON.parse(line);
+    assert.deepEqual([{ path, ...entry }, path], [json[name], name]);
     assert.equal(typeof content, name.startsWith("x") ? "undefined" : "string");
+    assert.equal(files?.includes("depth.npy") ?? false, typeof content === "string");
   }
   const [head = [], ...rows] = linesOf("whole.csv").map((line) => line.split(","));
   assert.match(read("whole.csv"), /^case,error,confidence,.*\n(.*\n)*"x, ""y""",FILE_NOT_FOUND,/);
@@ -172,18 +174,80 @@ test("a case that has moved is resumed by its content", () => {
     ["m1", 41],
     ["m2", 42],
   ] as const) {
-    writeCase(`place/${name}`, { ...incomplete, "camera.json": { fovYDeg } });
+    writeCase(`place/${name}`, { ...files, "camera.json": { fovYDeg } });
   }
-  run("align place/m1 place/m2 --jsonl place/record.jsonl");
+  succeeds("align place/m1 place/m2 --quality fast --jsonl place/record.jsonl");
   renameSync(inFolder("place"), inFolder("elsewhere"));
   renameSync(inFolder("elsewhere", "m1"), inFolder("elsewhere", "renamed"));
-  const again = run("align elsewhere/renamed elsewhere/m2 --jsonl elsewhere/record.jsonl --resume --csv -");
+  const again = run(
+    "align elsewhere/renamed elsewhere/m2 --jsonl elsewhere/record.jsonl --resume --csv - --quality fast",
+  );
   assert.match(again.stderr, /resumed: 2 of 2/);
   assert.match(again.stdout, /^renamed,/m, "the name that it has now");
   // A copy beside the original is another case.
-  writeCase("elsewhere/copy", { ...incomplete, "camera.json": { fovYDeg: 42 } });
-  const copied = run("align elsewhere/copy elsewhere/m2 --jsonl elsewhere/record.jsonl --resume");
+  writeCase("elsewhere/copy", { ...files, "camera.json": { fovYDeg: 42 } });
+  const copied = run("align elsewhere/copy elsewhere/m2 --jsonl elsewhere/record.jsonl --resume --quality fast");
   assert.match(copied.stderr, /resumed: 1 of 2/);
+});
+
+test("cases that have changed since are done again, and the last line counts", () => {
+  writeCase("loop", files);
+  const flags = `${quick.join(" ")} --jsonl loop.jsonl --resume`;
+  succeeds(`align loop ${flags}`);
+  assert.match(succeeds(`align loop ${flags}`).stderr, /resumed: 1 of 1 cases are in loop\.jsonl\n/);
+  const doubled = { "mesh.glb": glb({ ...mesh, positions: mesh.positions.map((x) => 2 * x) }) };
+  const changes: Record<string, object> = {
+    "another mesh": doubled,
+    "a photo that was added": { ...doubled, "rgb.png": maskPng(new Uint8Array(160 * 120), 160, 120) },
+  };
+  for (const [what, changed] of Object.entries(changes)) {
+    writeCase("loop", { ...files, ...changed });
+    assert.match(succeeds(`align loop ${flags}`).stderr, /0 of 1 .*; 1 changed since, and done again/, what);
+    assert.match(succeeds(`align loop ${flags} --json loop.json`).stderr, /resumed: 1 of 1 cases are in loop\.jsonl\n/);
+  }
+  assert.ok(Math.abs(results("loop.json").loop.scale / truth.scale - 0.5) < 0.02);
+});
+
+test("check reads cases without aligning them", () => {
+  writeCase("sound", files);
+  writeCase("doubtful", { ...files, "mask.png": maskPng(new Uint8Array(160 * 120).fill(1), 160, 120) });
+  const { status, stdout } = run("check", "sound", "doubtful", "a", 'x, "y"', "--json", "checked.json");
+  assert.equal(status, 1);
+  assert.match(stdout, /^sound: can be aligned$/m);
+  assert.match(stdout, /^doubtful: .*MASK_COVERS_IMAGE/m);
+  assert.match(stdout, /failed x, "y": FILE_NOT_FOUND/);
+  const { doubtful, sound } = results("checked.json");
+  assert.deepEqual([sound.warnings, doubtful.inputs["mask.png"].as], [[], "mask"]);
+  assert.equal(run("check", "sound").status, 0);
+});
+
+test("a transform is that of the case by its path, not of another one by its name", () => {
+  for (const name of ["here/x", "there/x"]) writeCase(name, complete);
+  succeeds(`align here/x ${quick.join(" ")} --jsonl here.jsonl --json here.json`);
+  for (const file of ["here.jsonl", "here.json"]) {
+    succeeds(`evaluate here/x --transform ${file}`);
+    const refused = run("evaluate", "there/x", "--transform", file);
+    assert.equal(refused.status, 1);
+    assert.match(refused.stdout + refused.stderr, /INVALID_TRANSFORM.*here.x, which has the same name/);
+  }
+  renameSync(inFolder("here"), inFolder("moved"));
+  succeeds("evaluate moved/x --transform here.jsonl");
+});
+
+test("a record of files has a row for each set of files", () => {
+  writeCase("one", { ...files, "other.glb": glb({ ...mesh, positions: mesh.positions.map((x) => 2 * x) }) });
+  const align = (name: string) => {
+    const inputs = `--depth one/depth.npy --mask one/mask.png --camera one/camera.json --mesh one/${name}`;
+    const { stderr } = succeeds(`align ${inputs} ${quick.join(" ")} --jsonl one.jsonl --resume --json one.json`);
+    return { stderr, scale: Object.values(results("one.json")).map((entry) => (entry as { scale: number }).scale) };
+  };
+  const [first] = [align("mesh.glb")];
+  assert.doesNotMatch(align("other.glb").stderr, /1 of 1/);
+  const again = align("mesh.glb");
+  assert.match(again.stderr, /resumed: 1 of 1/);
+  assert.deepEqual(again.scale, first.scale);
+  assert.match(align("other.glb").stderr, /resumed: 1 of 1/);
+  assert.equal(casesOf("one.jsonl").length, 2);
 });
 
 test("a signal keeps what is done, says how to go on, and ends the program as the signal does", async () => {

@@ -4,7 +4,7 @@ import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { folder, read, results, run, succeeds, writeCase } from "../support/command-line.js";
-import { glb, obj, png, viewFiles } from "../support/files.js";
+import { type Files, glb, obj, png, viewFiles } from "../support/files.js";
 import { printedBox } from "../support/printed-box.js";
 import { frameAt, frameFiles, turnBetween } from "../support/rig.js";
 import { mesh, rotationRows, truth } from "../support/scene.js";
@@ -127,4 +127,26 @@ test("frames are in the order of their numbers; a camera beside them is that of 
   assert.equal("cameraSource" in frames.frame_10, false);
   assert.deepEqual([Object.keys(inputs), unread], [["mesh.glb", "camera.json"], ["notes.txt"]]);
   assert.match(stdout, /not read: notes\.txt\n/);
+});
+
+test("a folder in FoundationPose's layout is a video, and a case of its frames with masks", () => {
+  const columns = [0, 3].map((angle, k) => {
+    const { "depth.npy": depth, "mask.png": mask, "camera.json": camera } = frameFiles(frameAt(angle)) as Files;
+    const { fx, fy, cx, cy } = camera as Record<string, number>;
+    return {
+      ...{ [`depth/170${k}.npy`]: depth, "cam_K.txt": `${fx} 0 ${cx}\n0 ${fy} ${cy}\n0 0 1\n` },
+      ...(k === 0 ? { [`masks/170${k}.png`]: mask } : {}),
+    };
+  });
+  writeCase("foundation", { ...columns[0], ...columns[1], "mesh/any_name.obj": obj(mesh), "notes/a.txt": "" });
+  assert.match(succeeds("align foundation --json aligned.json").stdout, /not read: notes\//);
+  const { scale, rotation, translation, inputs } = results("aligned.json").foundation;
+  assert.ok(Math.abs(scale / truth.scale - 1) < 0.02 && turnBetween(rotation, truth.rotation) < 3);
+  assert.equal(inputs["mesh/any_name.obj"].as, "mesh");
+  assert.match(succeeds("track foundation").stdout, /1700 +tracking.*\n1701 +tracking/);
+
+  const rows = rotationRows(rotation).map((row, i) => [...row.map((x) => scale * x), translation[i]].join(" "));
+  writeFileSync(join(folder, "pose.txt"), `${rows.join("\n")}\n0 0 0 1\n`);
+  succeeds("evaluate foundation --transform pose.txt --json scores.json");
+  assert.ok(results("scores.json").foundation.frames["1700"].metrics.iou > 0.8);
 });

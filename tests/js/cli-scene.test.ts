@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { Quaternion, Vector3 } from "three";
 import { writeBop } from "../support/bop.js";
-import { folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
+import { files, folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
 import { png } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
 import { assertNear } from "../support/random.js";
@@ -101,4 +101,45 @@ test("upright objects of a scene stand in the files of simulators", async () => 
   }
   assert.match(read("scene.usda"), /upAxis = "Z"/);
   assert.match(read(join("urdf", "scene.json")), /thing_0/);
+});
+
+test("exported cameras are those of the result, whatever form the camera has", () => {
+  const { fx, fy, cx, cy } = camera;
+  const cameras: Record<string, object> = {
+    "four numbers": { fx, fy, cx, cy },
+    "in image sizes": { K: [fx / width, 0, (cx + 0.5) / width, 0, fy / height, (cy + 0.5) / height, 0, 0, 1] },
+    "a field of view": { fovYDeg: (2 * Math.atan(height / (2 * fy)) * 180) / Math.PI },
+  };
+  for (const [what, form] of Object.entries(cameras)) {
+    writeCase("seen", { ...tableFiles(), "camera.json": form });
+    succeeds("scene seen --quality fast --no-rest --scene-glb seen.glb --mjcf in-mujoco --urdf in-urdf");
+    const [, yfov] = /"yfov":([\d.]+)/.exec(read("seen.glb")) ?? [];
+    const [, resolution, focal = ""] =
+      /resolution="([^"]+)".*focalpixel="([^"]+)"/.exec(read(join("in-mujoco", "scene.xml"))) ?? [];
+    assertNear([Number(yfov)], [2 * Math.atan(height / (2 * fy))], what, 1e-6);
+    assert.equal(resolution, `${width} ${height}`);
+    assertNear(focal.split(" ").map(Number), [fx, fy], what, 1e-3);
+    const written = JSON.parse(read(join("in-urdf", "scene.json"))).camera;
+    assertNear([written.fy, written.cx, written.cy], [fy, cx, cy], what, 1e-3);
+  }
+});
+
+test("files that other programs wrote are not written over", () => {
+  writeCase("blob", files);
+  const flags: Record<string, string> = {
+    "--scene-glb": "own.glb",
+    "--mjcf": "own/scene.xml",
+    "--urdf": "own/load.py",
+    "--usd": "own.usda",
+    "--overlay": "own/blob.png",
+    "--glb": "own/blob.glb",
+  };
+  for (const [flag, file] of Object.entries(flags)) {
+    writeCase(".", { [file]: "a day's work" });
+    const [argument, command] = [file.split("/")[0], file.includes("blob") ? "align blob" : "scene table"];
+    const { status, stderr } = run(`${command} --quality fast ${flag} ${argument}`);
+    assert.ok(status === 1 || status === 2, `${flag}: ${status}`);
+    assert.match(stderr, /not written by/, flag);
+    assert.equal(read(file), "a day's work");
+  }
 });

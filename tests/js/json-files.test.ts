@@ -137,15 +137,21 @@ test("poses come as parts or as a matrix, as BOP's entry, or not at all", async 
     [1, 0, 0],
     [0, 0, 1],
   ];
+  const rows = [0, 1, 2, 3].map((row) => [0, 4, 8, 12].map((column) => matrix[column + row]));
   const pose = { scale: 2, translation: [1, 2, 3], symmetry: "none" };
   const forms = [
     { ...pose, rotation, available: true },
     { ...pose, rotation: rotation.flat() },
     { ...pose, rotation: [0, 0, Math.SQRT1_2, Math.SQRT1_2] },
-    ...[{ matrix }, matrix],
+    ...[{ matrix }, matrix, rows.flat(), rows, rows.slice(0, 3), { pose: rows }, [{ ...pose, rotation }]],
   ];
-  for (const form of forms) {
-    for (const file of [form, JSON.stringify(form), Buffer.from(JSON.stringify(form))]) {
+  const texts = [
+    rows.map((row) => row.join(" ")).join("\n"),
+    `[${rows.map((row) => `[${row.join(". ")}.]`).join("\n ")}]`,
+  ];
+  for (const form of [...forms, ...texts]) {
+    const json = typeof form === "string" ? form : JSON.stringify(form);
+    for (const file of [form, json, Buffer.from(json)]) {
       const found = await readPose(file);
       for (const [i, number] of [...(found?.transform.matrix ?? [])].entries()) {
         assert.ok(Math.abs(number - (matrix[i] ?? 0)) < 1e-12, JSON.stringify(form));
@@ -173,8 +179,7 @@ test("what is no pose is refused", async () => {
     [{ ...pose, rotation: withNumber(rotation, 8, -1) }, "INVALID_TRANSFORM pose.rotation"],
     [{ ...pose, translation: [0, 0] }, "INVALID_TRANSFORM pose.translation"],
     [{ matrix: [1, 2] }, "INVALID_TRANSFORM pose.matrix"],
-    // A row-major matrix.
-    [{ matrix: [1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] }, "INVALID_TRANSFORM pose"],
+    ["1 2 3", "CORRUPT_FILE pose"],
     ["{", "CORRUPT_FILE pose"],
   ];
   for (const [file, fault] of invalid) await rejectsWith(() => readPose(file as object), fault);

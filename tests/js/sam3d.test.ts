@@ -48,6 +48,14 @@ const layouts: Record<string, Files> = {
     ...{ "mask.png": mask, "mesh.glb": glb, "gaussian.ply": gaussians, "metadata.json": { ...layout, seed: 42 } },
   },
   "Gaussians, whose z is up": { "mug/mask.png": mask, "mug/splat.ply": gaussians, "mug/pose.json": layout },
+  "as sam3d_asset_extractor writes it, with copies in the camera's frame": {
+    ...{ "sam2_masks/photo_000.png": mask, "sam2_masks/vis_photo.png": mask, "sam3d/photo_000_mesh.glb": glb },
+    ...{
+      "sam3d/photo_000_pose.json": layout,
+      "sam3d/photo_000_pose_mesh.glb": "",
+      "decimated/photo_000_pose_mesh.ply": "",
+    },
+  },
   "another format of the mesh": {
     ...{ "mug/mask.png": mask, "mug/mug.obj": obj(standingMesh), "mug/pose.json": layout },
   },

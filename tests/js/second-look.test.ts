@@ -21,6 +21,18 @@ test("a mesh that is mirrored is named", async () => {
   }
 });
 
+test("depth that continues the plane around the mask is named", async () => {
+  // A table below the camera, with the object on it or seen through.
+  const table = (i: number) => 1 / (0.9 + 0.006 * Math.floor(i / input.width));
+  const { depth: seen } = input;
+  const depthOf = (isSeenThrough: boolean) =>
+    Float32Array.from(seen, (z, i) => (z > 0 && !isSeenThrough ? z : table(i) * (1 + 0.001 * Math.sin(i * i))));
+  for (const isSeenThrough of [false, true]) {
+    const found = await codes({ ...input, depth: depthOf(isSeenThrough) });
+    assert.equal(found.includes("DEPTH_LOOKS_LIKE_BACKGROUND"), isSeenThrough);
+  }
+});
+
 test("an abort at any time ends the call, also during the second look", async () => {
   const positions = mesh.positions.map((x, i) => (i % 3 === 0 ? -x : x));
   const ofMirrored = { ...input, mesh: { ...mesh, positions } };

@@ -149,11 +149,12 @@ test("every file, body, mesh and prim has a name of its own, which means nothing
 
 /** The results of the simulators after a second of physics. */
 interface Simulated {
-  mujoco: { bodies: Rested[]; cameras: { position: number[]; axes: number[]; fovYDeg: number }[]; planes: number };
+  mujoco: { bodies: Rested[]; cameras: { position: number[]; axes: number[]; window: number[] }[]; planes: number };
   pybullet: { bodies: Rested[]; ground: boolean };
   usd: {
     bodies: { name: string; fixed: boolean; parts: number; centerOfMass: number[] | null; position: number[] }[];
     complaints: string[];
+    windows: number[][];
     [fact: string]: unknown;
   };
 }
@@ -162,6 +163,7 @@ interface Rested {
   fixed: boolean;
   mass: number;
   parts: number;
+  position?: number[];
   movedM: number;
   turnedDeg: number;
 }
@@ -197,7 +199,8 @@ test("MuJoCo, PyBullet and USD load a scene; its bodies stay, and have the same 
       ...{ name, mesh: box(0.05, 0.05, 0.05), transform: over(-0.5 + 0.1 * i, 0.4, 0) },
     })),
   ];
-  const scene = await simulatorScene(objects, { support: below, camera: { fy: 600, width: 640, height: 480 } });
+  const camera = { fx: 610, fy: 600, cx: 300, cy: 250, width: 640, height: 480 };
+  const scene = await simulatorScene(objects, { support: below, camera });
   const { mujoco, pybullet, usd } = simulated(write("simple", scene));
   const own = scene.bodies.map(({ name, isFixed, parts }) => [name, isFixed, parts.length]);
   for (const bodies of [mujoco.bodies, pybullet.bodies]) {
@@ -208,13 +211,19 @@ test("MuJoCo, PyBullet and USD load a scene; its bodies stay, and have the same 
     }
   }
   assert.ok((scene.bodies[1]?.position[2] ?? 1) < 0.04, "it is not on the hull of the tray");
+  for (const [i, { position, name }] of pybullet.bodies.entries()) {
+    assertNear(position ?? [], scene.bodies[i]?.position ?? [], `the link of ${name}`, 1e-5);
+  }
   assert.deepEqual([mujoco.planes, pybullet.ground], [1, true]);
   // The camera is 1 m over the ground, and looks down: its own z is up.
-  const { position = [], axes = [], fovYDeg = 0 } = mujoco.cameras[0] ?? {};
-  const fov = (2 * Math.atan(240 / 600) * 180) / Math.PI;
-  assertNear([position[2] ?? 0, axes[8] ?? 0, fovYDeg / fov], [1, 1, 1], "camera", 1e-5);
-  const { complaints, upAxis, metresPerUnit, cameras, scenes } = usd;
-  assert.deepEqual([complaints, upAxis, metresPerUnit, cameras, scenes], [[], "Z", 1, 1, 1]);
+  const { position = [], axes = [], window = [] } = mujoco.cameras[0] ?? {};
+  assertNear([position[2] ?? 0, axes[8] ?? 0], [1, 1], "camera", 1e-5);
+  // Left, right, bottom and top of the image at a distance of 1; pixel centres are at whole numbers.
+  const sides = [-300.5 / 610, 339.5 / 610, -229.5 / 600, 250.5 / 600];
+  assertNear(window, sides, "view of MuJoCo", 1e-5);
+  assertNear(usd.windows[0] ?? [], sides, "view of USD", 1e-5);
+  const { complaints, upAxis, metresPerUnit, scenes } = usd;
+  assert.deepEqual([complaints, upAxis, metresPerUnit, scenes], [[], "Z", 1, 1]);
   for (const [i, { name, fixed, parts, position, centerOfMass }] of usd.bodies.entries()) {
     assert.deepEqual([name, fixed, parts], own[i]);
     assertNear(position, scene.bodies[i]?.position ?? [], "position", 1e-5);

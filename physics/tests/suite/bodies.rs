@@ -8,13 +8,7 @@ use sim3align_physics::part::{ConvexPart, convex_parts};
 use sim3align_physics::rest::levelled;
 use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::solids::{Draw, bracket, cuboid, is_near, moved, similarity, tray};
-
-/// How far a point is outside of a convex part, metres: 0 inside.
-fn outside(part: &ConvexPart, p: DVec3) -> f64 {
-    let beyond = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero().dot(p - a);
-    part.corners().map(beyond).fold(0.0, f64::max)
-}
+use crate::solids::{Draw, bracket, cuboid, is_near, moved, outside, similarity, tray};
 
 /// Every edge belongs to two triangles, once in each direction; Euler's formula; and no vertex is outside.
 fn assert_closed_and_convex(part: &ConvexPart, size: f64, what: &str) {
@@ -47,9 +41,9 @@ fn hulls_contain_their_points() {
 fn parts_cover_their_mesh_and_fill_no_more() {
     let (tray, tray_volume) = tray();
     for (name, mesh, volume, fewest) in [("bracket", bracket(), 0.003, 2), ("tray", tray, tray_volume, 5)] {
-        let parts = convex_parts(&mesh, 16);
+        let parts = convex_parts(&mesh, None, 16);
         assert!((fewest..=16).contains(&parts.len()), "{name}: {} parts", parts.len());
-        assert!((0..4).all(|most| (1..=most.max(1)).contains(&convex_parts(&mesh, most).len())), "{name}: fewer");
+        assert!((0..4).all(|most| (1..=most.max(1)).contains(&convex_parts(&mesh, None, most).len())), "{name}: fewer");
         for (k, part) in parts.iter().enumerate() {
             assert_closed_and_convex(part, mesh.diagonal(), &format!("{name}, part {k}"));
         }
@@ -78,7 +72,7 @@ fn boxes_have_the_mass_and_the_inertia_of_boxes() {
     for seed in 0..50 {
         let mut draw = Draw::new(seed);
         let (low, size) = (draw.vector(-0.3, 0.3).as_vec3(), draw.vector(0.02, 0.5).as_vec3());
-        let mass = Mass::of(&convex_parts(&cuboid(low, low + size), 1), DENSITY);
+        let mass = Mass::of(&convex_parts(&cuboid(low, low + size), None, 1), DENSITY);
         let [x, y, z] = size.as_dvec3().to_array();
         let kilograms = DENSITY * x * y * z;
         assert!(is_near(mass.mass, kilograms, 1e-5), "seed {seed}: {} and {kilograms} kg", mass.mass);

@@ -5,6 +5,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_physics::part::ConvexPart;
 
 /// A box from one corner to the opposite one, with outward faces.
 pub fn cuboid(low: Vec3, high: Vec3) -> Mesh {
@@ -94,4 +95,10 @@ pub fn moved(x: f64, y: f64, z: f64) -> Similarity {
 /// Whether numbers agree, relative to the second one.
 pub fn is_near(a: f64, b: f64, relative: f64) -> bool {
     (a - b).abs() <= relative * b.abs()
+}
+
+/// How far a point is outside of a convex part, metres: 0 inside.
+pub fn outside(part: &ConvexPart, p: DVec3) -> f64 {
+    let beyond = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a).normalize_or_zero().dot(p - a);
+    part.corners().map(beyond).fold(0.0, f64::max)
 }

@@ -2,14 +2,14 @@
 import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { fileNotFound } from "../case-files.js";
-import { namesInFolder, read, readMeshFile } from "../case-folder.js";
+import { namesInFolder, readMeshFile } from "../case-folder.js";
 import type { BopPose } from "../conventions/bop.js";
+import { read, readOncePerKey } from "../read-files.js";
 import type { MeshFile } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isNumber, parsedJson, shown } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { naturally } from "../values/order.js";
-import { oncePerKey } from "../values/validation.js";
 
 /** BOP's lengths are in millimetres. */
 export const METRES_PER_UNIT = 0.001;
@@ -190,7 +190,7 @@ export class BopDataset {
     this.name = basename(resolve(folder));
     this.split = split;
     this.#folder = folder;
-    this.scene = oncePerKey((sceneId) => BopScene.open(join(folder, paths.scene(split, sceneId))));
+    this.scene = readOncePerKey((sceneId) => BopScene.open(join(folder, paths.scene(split, sceneId))));
   }
 
   /** The folders that may be read. */

@@ -1,9 +1,9 @@
 /** The calls as data, so that the same code runs them on the calling thread or in a worker. */
 
-import type { CorrectedFrame } from "../generated/types.js";
+import type { CorrectedFrame, Warning } from "../generated/types.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
 import { resolveFrame, resolveInput, resolveViews, withMesh } from "../input/resolve.js";
-import type { CoreInput, CoreView } from "../modules/core-input.js";
+import type { CoreFrame, CoreInput, CoreView } from "../modules/core-input.js";
 import type {
   Calibrated,
   CalibrationObject,
@@ -130,7 +130,16 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const begin = (j: Joint) => j.beginCalibrateViews({ ...read, options }, first.listener);
       const calibrated = isKnown ? [] : await first.task("joint", read, begin);
       const views = read.views.map((view, k) => inCalibration(view, calibrated[k]));
-      const result = await then.search("alignViews", { ...read, views }, options);
+      const search = (views: readonly CoreFrame[], context: JobContext, options: object) =>
+        context.search("alignViews", { ...read, views: [...views] }, options);
+      const result = await search(views, then, options);
+      if (contradicts(result)) {
+        const { otherConvention } = await import("./camera-poses.js");
+        const agree = async (views: readonly CoreFrame[]) =>
+          !contradicts(await search(views, then.quiet(), { ...options, metrics: false }));
+        const remedy = await otherConvention(views, agree);
+        result.warnings = result.warnings.map((warning) => withRemedy(warning, remedy));
+      }
       const ofView = (view: ViewAlignment, k: number) =>
         withNotes(withCalibration(view, calibrated[k]), notes[k] as InputNotes);
       return { ...fromOrigin({ ...result, views: [] }, read.mesh.fileOrigin), views: result.views.map(ofView) };
@@ -259,6 +268,17 @@ async function aligned<T extends AlignResult>(
   const found = await align(inCalibration(read, calibrated), then, known);
   return withNotes(withCalibration(found, calibrated), notes);
 }
+
+/** Whether no majority of the views with camera poses agrees. */
+function contradicts({ world, views }: ViewsAlignment): boolean {
+  const count = (role: ViewAlignment["role"]) => views.filter((view) => view.role === role).length;
+  return world === "given" && count("contradicting") >= count("used");
+}
+
+const withRemedy = (warning: Warning, remedy: string | undefined): Warning =>
+  remedy === undefined || warning.code !== "VIEW_CONTRADICTS"
+    ? warning
+    : { ...warning, message: `${warning.message} They agree if the camera poses ${remedy}.` };
 
 const withCalibration = <T extends object>(result: T, calibrated: Calibrated | undefined): T =>
   calibrated === undefined ? result : { ...result, depthCalibration: calibrated.calibration };

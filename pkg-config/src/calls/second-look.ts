@@ -1,6 +1,11 @@
 /**
+<<<<<<< HEAD
  * A second look at what is often wrong where the answer is in doubt: the mesh mirrored, its textures upside down, as exporters
  * leave them; speckle of the depth.
+=======
+ * A second look where the answer is in doubt: at what exporters and cameras often get wrong (a mirrored mesh or image, textures
+ * upside down), and at depth that shows no object.
+>>>>>>> main
  */
 import type { Alignment, Warning } from "../generated/types.js";
 import type { CoreInput } from "../modules/core-input.js";
@@ -8,6 +13,7 @@ import { isTypedArray } from "../values/kinds.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
 import type { JobContext } from "./context.js";
 import { DOUBT } from "./notes.js";
+import { continuesPlane } from "./surrounding-plane.js";
 
 /**
  * How much better the score of the mirror image is, where this explains the doubt. Of 48 real objects, most of which are nearly
@@ -27,7 +33,13 @@ const BETTER_COLORS = 0.25;
 const mirrorImage: Warning = {
   code: "MESH_LOOKS_MIRRORED",
   message:
-    "The mirror image of the mesh fits the image far better: the mesh seems to be mirrored, as by an exporter that exchanges two axes. Negate one coordinate of all its vertices and turn its triangles round, or export it again.",
+    "The mirror image of the mesh fits the image far better: one of the two is mirrored. Front cameras, Kinect and some apps write mirrored images: if text in the photo is mirrored, flip depth, mask and photo from left to right, with cx = width − 1 − cx. Otherwise, the mesh is, as by an exporter that exchanges two axes: negate one coordinate of all its vertices and turn its triangles round, or export it again.",
+};
+
+const background: Warning = {
+  code: "DEPTH_LOOKS_LIKE_BACKGROUND",
+  message:
+    "The depth in the mask continues the plane around it: the sensor sees through the object, as with glass and other transparent things, or the mask shows nothing, or its object is as flat as the plane. Check the mask, or complete the depth of transparent objects before the call.",
 };
 
 const flippedTexture: Warning = {
@@ -90,6 +102,7 @@ export async function lookedAtAgain(
   const warnings = found.warnings.filter(({ code }) => !(isSpeckled && code === "MESH_DOUBTFUL"));
   if (isSpeckled) warnings.push(speckle(share));
   if (found.confidence < DOUBT) {
+    if (continuesPlane(input)) warnings.push(background);
     const other = await searched(mirrorOf(shape), { initial: undefined });
     const score = found.diagnostics.score + BETTER_SHAPE;
     if (other !== undefined && other.confidence > DOUBT && other.diagnostics.score > score) warnings.push(mirrorImage);

@@ -1,16 +1,9 @@
 /** `sim3align align`: reads cases, aligns them, and prints the results. */
 import { basename, extname, join } from "node:path";
-import {
-  type CaseOnDisk,
-  frameNames,
-  inputOfFrame,
-  openFrames,
-  type ReadCaseOptions,
-  readCaseFiles,
-  readCaseFolder,
-} from "../case-folder.js";
+import { type CaseOnDisk, type ReadCaseOptions, readCaseFiles, readCaseFolder } from "../case-folder.js";
 import { partOf } from "../case-names.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
+import { type FramesFolder, frameNames, inputOfFrame, openFrames } from "../frames-folder.js";
 import {
   type Aligner,
   type AlignInput,
@@ -104,7 +97,8 @@ function caseOfFiles(flags: Flags, args: readonly string[], settings: ReadCaseOp
   const name = basename(mesh).replace(/\.[^.]*$/, "");
   const read = () => readCaseFiles(name, { depth, mask, mesh, camera, image: named[0] }, settings);
   // Of the files, the mask is that of one object in one image.
-  return { name, path: absolutePath(mask), hasTruth: false, read };
+  const files = [depth, mask, mesh, ...(typeof camera === "string" ? [camera] : []), ...named].map(absolutePath);
+  return { name, path: absolutePath(mask), files, hasTruth: false, read };
 }
 
 /** Whether an argument names a photo; folders may be named like one. */
@@ -173,8 +167,8 @@ export interface CaseView extends Pick<CaseOnDisk, "input" | "truth">, Partial<P
 /** The view of a case, or those of its frames with a mask. */
 export async function viewsOf(folder: string, settings: ReadCaseOptions): Promise<CaseView[]> {
   if ((await frameNames(folder)).length === 0) return [await readCaseFolder(folder, settings)];
-  const { mesh, names, read } = await openFrames(folder, settings);
-  const frames = await Promise.all(names.map(read));
+  const { mesh, views, read } = await openFrames(folder, settings);
+  const frames = await Promise.all(views.map(read));
   return frames.flatMap(({ name, ...frame }) => {
     const input = inputOfFrame(frame, mesh);
     return input === undefined ? [] : [{ ...frame, frame: name, input }];
@@ -182,26 +176,46 @@ export async function viewsOf(folder: string, settings: ReadCaseOptions): Promis
 }
 
 async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun: CaseRun): Promise<Entry> {
-  const { name, folder } = task;
-  if (folder !== undefined && (await frameNames(folder)).length > 0)
-    return alignFrames(aligner, name, folder, flags, caseRun);
-  const { input, truth, found } = await task.read();
+  const { folder } = task;
+  if (folder === undefined || (await frameNames(folder)).length === 0) {
+    return alignView(aligner, task, await task.read(), flags, caseRun);
+  }
+  const opened = await openFrames(folder, caseSettings(flags));
+  const [only, ...others] = opened.views;
+  if (only === undefined || others.length > 0 || opened.names.length === 1) {
+    return alignFrames(aligner, task, opened, flags, caseRun);
+  }
+  const frame = await opened.read(only);
+  const { files, unread } = opened.found();
+  const found = { folder, files: { ...frame.found.files, ...files }, unread };
+  const input = inputOfFrame(frame, opened.mesh) as AlignInput;
+  return alignView(aligner, task, { ...frame, input, found }, flags, caseRun);
+}
+
+async function alignView(
+  aligner: Aligner,
+  task: CaseToDo,
+  { input, truth, found }: CaseView,
+  flags: Flags,
+  caseRun: CaseRun,
+): Promise<Entry> {
   caseRun.found = found;
-  const options = await alignOptions(flags, name);
+  const options = await alignOptions(flags, task);
   const settings = withoutUndefined({ ...options, onProgress: caseRun.onProgress });
   const alignment = await aligner.align<Preset, boolean>(input, settings);
   return withFiles(alignEntry(alignment, await errorsOf(aligner, input, alignment, truth)), found);
 }
 
 /** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
-async function alignFrames(aligner: Aligner, name: string, folder: string, flags: Flags, caseRun: CaseRun) {
-  const { mesh, names, read, found } = await openFrames(folder, caseSettings(flags));
+async function alignFrames(aligner: Aligner, task: CaseToDo, opened: FramesFolder, flags: Flags, caseRun: CaseRun) {
+  const { mesh, views: names, read, found } = opened;
   const frames = await Promise.all(names.map(read));
   caseRun.found = found();
   const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
   const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
-  const { preset, ...options } = await alignOptions(flags, name);
-  if (preset === "paper") throw new UsageError(`${name} has several frames, for which --preset paper has no method.`);
+  const { preset, ...options } = await alignOptions(flags, task);
+  if (preset === "paper")
+    throw new UsageError(`${task.name} has several frames, for which --preset paper has no method.`);
   const { onProgress } = caseRun;
   const alignment = await aligner.alignViews(
     { mesh, views },
@@ -228,12 +242,12 @@ export async function errorsOf(
 }
 
 /** The options set by `--options` and by flags. */
-async function alignOptions(flags: Flags, name: string): Promise<OptionsOf<Preset, boolean>> {
+async function alignOptions(flags: Flags, key: Pick<CaseKey, "name" | "path">): Promise<OptionsOf<Preset, boolean>> {
   const options: Record<string, unknown> = {
     ...flags.options,
     ...optionValues(flags, [...shared, ...precise, ...paper]),
     ...withoutUndefined({ preset: flags.preset }),
   };
-  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
+  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, key);
   return options as unknown as OptionsOf<Preset, boolean>;
 }

@@ -4,6 +4,7 @@ import { autoWorkers, MAX_WORKERS } from "../aligner/aligner-options.js";
 import { listed } from "../case-files.js";
 import type { FoundFiles } from "../case-folder.js";
 import { type Aligner, type AlignInput, createAligner, type Progress } from "../index.js";
+import { type Checksums, withChecksums } from "../read-files.js";
 import { type Entry, errorsIn, failureEntry, intakeLines, isFailure } from "./entry.js";
 import { UsageError } from "./files.js";
 import type { Flags } from "./flags.js";
@@ -162,11 +163,14 @@ class Batch<T extends CaseKey> {
   async #resume(): Promise<T[]> {
     const { job, flags, output } = this;
     const resumed = new Set<T>();
-    let recorded = 0;
-    for await (const { task, name, entry } of output.resumed(job.tasks)) {
+    let [recorded, changed] = [0, 0];
+    const isChanged = () => {
+      changed += 1;
+    };
+    for await (const { task, name, path, entry } of output.resumed(job.tasks, isChanged)) {
       recorded += 1;
       if (task !== undefined && !isFailure(entry) && job.isComplete?.() === false) continue;
-      output.add(name, entry);
+      output.add(name, entry, path);
       if (task === undefined) continue;
 
       resumed.add(task);
@@ -174,7 +178,15 @@ class Batch<T extends CaseKey> {
       const [error] = this.#count(name, entry);
       if (error !== undefined) this.#failedBefore.push(`${name} (${error})`);
     }
-    if (recorded > 0) note(`resumed: ${resumed.size} of ${job.tasks.length} cases are in ${flags.jsonl}`);
+    if (recorded + changed > 0) {
+      const fresh = job.tasks.length - resumed.size - changed;
+      const others = [
+        ...(changed > 0 ? [`${changed} changed since, and done again`] : []),
+        ...(fresh > 0 ? [`${fresh} new`] : []),
+      ];
+      const more = others.length === 0 ? "" : `; ${others.join("; ")}`;
+      note(`resumed: ${resumed.size} of ${job.tasks.length} cases are in ${flags.jsonl}${more}`);
+    }
     return job.tasks.filter((task) => !resumed.has(task));
   }
 
@@ -192,7 +204,7 @@ class Batch<T extends CaseKey> {
         if (line === undefined) early.push(...lines);
         else output.lines(lines);
       },
-      partial: (entry) => line && output.begin(task.name, entry),
+      partial: (entry) => line && output.begin(task.name, entry, task.path),
       make: async (files) => {
         if (!(await this.#make(task, files))) isComplete = false;
       },
@@ -202,20 +214,23 @@ class Batch<T extends CaseKey> {
         show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`);
 
     show("reading");
-    const work = job.run(aligner, task, caseRun).catch((error) => failureEntry(error, caseRun.found));
+    const read: Checksums = new Map();
+    const work = withChecksums(read, () => job.run(aligner, task, caseRun)).catch((error) =>
+      failureEntry(error, caseRun.found),
+    );
     const entry = await work.finally(() => line?.clear());
     // Before the record: a case that is there has all its files.
     if (!(await this.#draw(task, entry, false))) isComplete = false;
-    return () => this.#write(task, entry, isComplete, early);
+    return () => this.#write(task, entry, isComplete, early, read);
   }
 
   /** Writes the result of a case. `early` are lines that were printed before. */
-  #write(task: T, entry: Entry, isComplete: boolean, early: readonly string[]): void {
+  #write(task: T, entry: Entry, isComplete: boolean, early: readonly string[], read: Checksums): void {
     const { output } = this;
     const hasErrors = this.#count(task.name, entry).length > 0;
-    if (isComplete) output.record(task, entry);
+    if (isComplete) output.record(task, entry, read);
     else this.#incomplete += 1;
-    output.add(task.name, entry);
+    output.add(task.name, entry, task.path);
 
     for (const line of intakeLines(entry)) this.#intake.set(line, [...(this.#intake.get(line) ?? []), task.name]);
     const { rows = [], remarks = [] } = this.#linesOf(task, entry);

@@ -7,7 +7,7 @@ import type { KnownPose } from "../conventions/pose-file.js";
 import type { AlignInput } from "../index.js";
 import { readMesh } from "../input/mesh.js";
 import { fileReaders } from "../modules/readers.js";
-import { oncePerKey } from "../values/validation.js";
+import { readOncePerKey } from "../read-files.js";
 import { type CaseToDo, caseJob, precise, shared } from "./align.js";
 import type { Job } from "./batch.js";
 import { absolutePath, textOf, UsageError } from "./files.js";
@@ -104,7 +104,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
 
 /** The models in a folder by their ids, each read once: arrays in millimetres, and the warnings of the reader. */
 const bopModelsIn = (folder: string, withColors: boolean): ((objectId: number) => Promise<object>) =>
-  oncePerKey(async (objectId) => {
+  readOncePerKey(async (objectId) => {
     const file = await readBopModel(folder, objectId);
     const { mesh, warnings } = await readMesh(file, fileReaders, withColors);
     return { ...mesh, warnings };

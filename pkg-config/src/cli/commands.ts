@@ -1,14 +1,17 @@
 /** The table of commands. Parsing, help, and the lists of inputs and outputs of a run follow from it. */
 import { OPTIONS } from "../index.js";
 import { formatsText } from "../input/formats.js";
+import { Sim3AlignError } from "../values/error.js";
 import { alignJob, paper, precise, shared } from "./align.js";
 import { type Job, runBatch } from "./batch.js";
 import { bopJob, bopOptions, resultsFile } from "./bop.js";
+import { checkJob } from "./check.js";
 import { evaluateJob, evaluateOptions } from "./evaluate.js";
 import { isFile, isOrdinary, UsageError } from "./files.js";
 import {
   batchFlags,
   caseFlags,
+  checkInputs,
   checkNeeds,
   type Flag,
   type FlagList,
@@ -20,16 +23,19 @@ import {
   recordFlags,
   sceneFileFlags,
   settingsOf,
+  writes,
 } from "./flags.js";
-import { alignHelp, bopHelp, evaluateHelp, sceneHelp, trackHelp } from "./help.js";
+import { alignHelp, bopHelp, checkHelp, evaluateHelp, sceneHelp, serveHelp, trackHelp } from "./help.js";
 import { inFlags, optionFlags } from "./option-flags.js";
 import { makeFolder } from "./output-file.js";
 import { camera, jsonObject } from "./parse.js";
 import { pictureFiles } from "./pictures.js";
 import type { CaseKey } from "./record.js";
 import { lockOf } from "./record-lock.js";
-import { type OutputName, RunFiles } from "./run-files.js";
+import { isResults } from "./result-files.js";
+import { isExport, type OutputName, RunFiles } from "./run-files.js";
 import { sceneJob } from "./scene.js";
+import { serve } from "./serve.js";
 import { trackJob } from "./track.js";
 
 /** A command. */
@@ -38,19 +44,21 @@ export interface CommandRow {
   summary: string;
   description: string;
   /** The name and the meaning of its arguments. */
-  argument: readonly [name: string, meaning: string];
+  argument?: readonly [name: string, meaning: string];
   flags: FlagList;
   /** The text after the flags in the help. */
   help: string;
   /** Outputs that no flag names. */
   writes?(args: readonly string[], flags: Flags): OutputName[];
-  /** Finds the cases. */
-  prepare(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<CaseKey>>;
+  /** Runs a command that is no batch. */
+  run?(flags: Flags): Promise<boolean>;
+  /** Finds the cases of a batch. */
+  prepare?(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<CaseKey>>;
 }
 
 /** A function that finds the cases of a command. The type of the cases is its own matter. */
 type Prepare<T extends CaseKey> = (args: readonly string[], flags: Flags, files: RunFiles) => Promise<Job<T>>;
-const batch = <T extends CaseKey>(prepare: Prepare<T>) => prepare as unknown as CommandRow["prepare"];
+const batch = <T extends CaseKey>(prepare: Prepare<T>) => prepare as unknown as NonNullable<CommandRow["prepare"]>;
 
 const folders = (noun: string) => [`[${noun}...]`, `${noun} folders, or patterns such as '${noun}s/*'`] as const;
 
@@ -120,6 +128,19 @@ export const commands: readonly CommandRow[] = [
     prepare: batch(evaluateJob),
   },
   {
+    name: "check",
+    summary: "read cases without aligning them, and name what would fail or be doubted",
+    description: "Reads each case without aligning it, and names what would fail or be doubted.",
+    argument: folders("case"),
+    flags: [
+      ["--list <file>", `a file with the path of a case folder per line; "-" is stdin`, ofCase],
+      ["--json <file>", 'write what was read as JSON; "-" is stdout', { ...writes, isOwn: isResults }],
+      ...caseFlags,
+    ],
+    help: checkHelp,
+    prepare: batch(checkJob),
+  },
+  {
     name: "scene",
     summary: "align all objects of each scene, and what they stand on",
     description: "Aligns the objects of each scene together: one depth map, a mask and a mesh per object.",
@@ -141,6 +162,15 @@ export const commands: readonly CommandRow[] = [
     ],
     help: sceneHelp,
     prepare: batch(sceneJob),
+  },
+  {
+    name: "serve",
+    summary: "align what lines of JSON on standard input name, and write a line for each",
+    description:
+      "Aligns what lines of JSON on standard input name, and writes a line of JSON for each, until the input ends.",
+    flags: recordFlags("request").filter(([flag]) => flag.startsWith("--workers")),
+    help: serveHelp,
+    run: serve,
   },
   {
     name: "bop",
@@ -181,9 +211,11 @@ export const commands: readonly CommandRow[] = [
  * @throws {@link UsageError} before anything is written; {@link OutputError}
  */
 export async function runCommand(command: CommandRow, args: readonly string[], flags: Flags): Promise<boolean> {
-  const { name, flags: list } = command;
+  const { name, flags: list, prepare } = command;
   checkNeeds(list, flags);
-  const [argument] = command.argument;
+  checkInputs(list, flags);
+  if (prepare === undefined) return command.run?.(flags) ?? true;
+  const [argument = ""] = command.argument ?? [];
   const named = args.flatMap((path) => (isFile(path) ? [{ flag: argument, path }] : []));
   const read = filesOf(list, flags, "reads").map((file) => ({ ...file, isDeep: true }));
   const files = new RunFiles([...named, ...read]);
@@ -193,8 +225,12 @@ export async function runCommand(command: CommandRow, args: readonly string[], f
     ...(command.writes?.(args, flags) ?? []),
     ...(isOrdinary(jsonl) ? [lockOf(jsonl)] : []),
   ];
-  files.check(outputs);
-  const job = await command.prepare(args, flags, files);
+  // An input, which is not known yet, is named as such, rather than as a file of another program.
+  files.check(outputs.map(({ isOwn, ...output }) => (isOwn === isExport ? output : { ...output, isOwn })));
+  const job = await prepare(args, flags, files).catch((error) => {
+    // What the command line names is wrong, before any case.
+    throw error instanceof Sim3AlignError ? new UsageError(error.message, { cause: error }) : error;
+  });
   const inputs = [...new Set(job.folders)].map((path) => ({
     flag: argument,
     path,

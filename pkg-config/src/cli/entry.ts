@@ -2,7 +2,8 @@
 
 import { join } from "node:path";
 import { listed } from "../case-files.js";
-import type { FoundFiles, FrameOnDisk } from "../case-folder.js";
+import type { FoundFiles } from "../case-folder.js";
+import type { FrameOnDisk } from "../frames-folder.js";
 import type { AlignResult, PoseErrors, SceneResult, ViewsAlignment } from "../index.js";
 import { unitText } from "../input/depth-kinds.js";
 import type { InputInfo } from "../types/results.js";

@@ -29,14 +29,16 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
   return {
     tasks,
     folders: tasks.map(({ folder }) => folder),
-    async run(aligner, { name, folder }) {
+    async run(aligner, { name, path, folder }) {
       const frames = new Map<string, Entry>();
       for (const { frame, input, truth, found } of await viewsOf(folder, caseSettings(flags))) {
         const evaluate = async (): Promise<Entry> => {
           const target = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
           if (transform === "gt" && truth === null) throw noTruth(frame === undefined ? folder : `${folder}/${frame}`);
           const matrix =
-            transform === "gt" ? truth?.transform.matrix : await readTransform("transform", transform, name, frame);
+            transform === "gt"
+              ? truth?.transform.matrix
+              : await readTransform("transform", transform, { name, path }, frame);
           const evaluation = await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...options, ...target });
           return withFiles({ ...evaluation }, found);
         };

@@ -2,8 +2,8 @@
 
 import { join } from "node:path";
 import { toOrigin } from "../calls/origin.js";
-import { parseCameraFile } from "../camera/camera-file.js";
 import { correctDepth } from "../conventions/depth.js";
+import type { SceneCamera } from "../conventions/scene-frame.js";
 import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
 import { stretchMesh } from "../conventions/stretch.js";
 import { type UprightOptions, uprightMesh } from "../conventions/upright.js";
@@ -24,7 +24,7 @@ import type { CoreMesh } from "../values/prepared-mesh.js";
 import { withoutUndefined } from "../values/validation.js";
 import type { Flags } from "./flags.js";
 import { fixed } from "./row.js";
-import type { RunFiles } from "./run-files.js";
+import { isExport, type RunFiles } from "./run-files.js";
 
 /** An input in the lengths of a result. Results without a calibration leave the depth as it is. */
 export async function correctedInput(
@@ -106,19 +106,20 @@ export async function writeSceneFiles(
   files: RunFiles,
 ): Promise<string[]> {
   const { sceneGlb, mjcf, urdf, usd, density, parts, rest, upright } = flags;
-  const camera = cameraOf(scene.input, result);
+  const camera = await cameraOf(scene.input, result);
   if (sceneGlb !== undefined)
-    files.write({ flag: "--scene-glb", path: sceneGlb }, await glbOf(scene, result, camera, upright));
+    files.write({ flag: "--scene-glb", path: sceneGlb, isOwn: isExport }, await glbOf(scene, result, camera, upright));
   if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
   const { support } = result;
   const options = { support, ...withoutUndefined({ camera, density, maxParts: parts, rest }) };
   const simulated = await simulatorScene(await simulatorObjects(scene, result, upright), options);
   const writeAll = (flag: string, folder: string, texts: Record<string, string>) => {
-    for (const [name, text] of Object.entries(texts)) files.write({ flag, path: join(folder, name) }, text);
+    for (const [name, text] of Object.entries(texts))
+      files.write({ flag, path: join(folder, name), isOwn: isExport }, text);
   };
   if (mjcf !== undefined) writeAll("--mjcf", mjcf, toMjcf(simulated));
   if (urdf !== undefined) writeAll("--urdf", urdf, toUrdf(simulated));
-  if (usd !== undefined) files.write({ flag: "--usd", path: usd }, toUsd(simulated));
+  if (usd !== undefined) files.write({ flag: "--usd", path: usd, isOwn: isExport }, toUsd(simulated));
   return linesOf(simulated);
 }
 
@@ -163,17 +164,11 @@ const exportedAs = (
   up: "y" | "z",
 ): ExportedAs => ({ proportions, upright: isUpright ? { support, up } : undefined });
 
-interface ImageCamera {
-  fy: number;
-  width: number;
-  height: number;
-}
-
 /** The scene as one file. Only GLB files keep their materials. */
 async function glbOf(
   { input }: SceneOnDisk,
   { objects, support }: SceneResult,
-  camera: ImageCamera | undefined,
+  camera: SceneCamera | undefined,
   upright: boolean | undefined,
 ): Promise<Uint8Array> {
   const placed: SceneGlbObject[] = [];
@@ -186,16 +181,11 @@ async function glbOf(
   return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
 }
 
-function cameraOf(input: SceneInput, { depthCalibration }: SceneResult): ImageCamera | undefined {
-  const { cameraFile, imageId } = input as { cameraFile?: Uint8Array; imageId?: string };
-  const found = depthCalibration?.camera;
-  // The principal point of a camera that was not given is the centre.
-  if (cameraFile === undefined) return found && { fy: found.fy, width: 2 * found.cx + 1, height: 2 * found.cy + 1 };
-  try {
-    const { fy, cx, cy, width, height } = parseCameraFile(cameraFile, withoutUndefined({ imageId }));
-    // A file without size: the principal point is about the middle.
-    return { fy, width: width ?? 2 * cx + 1, height: height ?? 2 * cy + 1 };
-  } catch {
-    return undefined;
-  }
+/** The camera that the scene was aligned with, and the size of its depth map. */
+async function cameraOf(input: SceneInput, { depthCalibration }: SceneResult): Promise<SceneCamera | undefined> {
+  const { objects: _, labels: __, occluders: ___, support: ____, image: _____, ...view } = input;
+  const { core } = await resolveView(view, fileReaders);
+  const { fx, fy, cx, cy } = depthCalibration?.camera ?? core.camera ?? {};
+  if (fy === undefined) return undefined;
+  return { fx, fy, cx, cy, width: Number(core.width), height: Number(core.height) };
 }

@@ -6,10 +6,10 @@ import { depthCodeNames, depthKindNames } from "../input/formats.js";
 import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
 import type { DepthCode, DepthKind } from "../types/inputs.js";
 import { withoutUndefined } from "../values/validation.js";
-import { UsageError } from "./files.js";
+import { statOf, UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
 import { isCsv, isResults } from "./result-files.js";
-import type { NamedFile, OutputName } from "./run-files.js";
+import { isExport, type NamedFile, type OutputName } from "./run-files.js";
 
 /** Settings of a flag. */
 interface FlagSettings {
@@ -27,8 +27,8 @@ interface FlagSettings {
   holds?: OutputName["holds"];
   /** Whether it leaves results unchanged: names of cases, order and parallelism of the work. */
   isIndifferent?: boolean;
-  /** Another flag that it needs, and the name of that flag in the error. */
-  needs?: readonly [flag: string, what: string];
+  /** Other flags, one of which it needs, and the name of these in the error. */
+  needs?: { oneOf: readonly string[]; what: string };
   /** The argument of `--help` that shows it; other flags are then left out. */
   topic?: string;
 }
@@ -38,6 +38,8 @@ export type Flag = readonly [flag: string, meaning: string, facts?: FlagSettings
 
 export const reads = { use: "reads" } as const;
 export const writes = { use: "writes" } as const;
+/** Outputs that name the package, and that replace only each other. */
+const exports = { ...writes, isOwn: isExport } as const;
 /** A file of one case, which does not belong to the settings of a batch. */
 export const ofCase = { use: "reads", isIndifferent: true } as const;
 
@@ -86,7 +88,7 @@ export const recordFlags = (noun: string): Flag[] => [
   [
     "--resume",
     `go on: skip the ${noun}s in the file of --jsonl, and append to it`,
-    { needs: ["jsonl", "--jsonl FILE, the record of what is done"], isIndifferent: true },
+    { needs: { oneOf: ["jsonl"], what: "--jsonl FILE, the record of what is done" }, isIndifferent: true },
   ],
   [
     "--workers <n|auto>",
@@ -109,9 +111,15 @@ export const pictureFlags: readonly Flag[] = [
     "write a page with a table, pictures and a 3D view of each case",
     { ...writes, holds: ["index.html", "rows.js"] },
   ],
-  ["--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh", writes],
-  ["--glb <folder>", "write the posed mesh of each case as a GLB file", writes],
-  ["--upright", "give the meshes in exported files upright frames: up along the support, a tight box"],
+  ["--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh", exports],
+  ["--glb <folder>", "write the posed mesh of each case as a GLB file", exports],
+  [
+    "--upright",
+    "give the meshes in exported files upright frames: up along the support, a tight box",
+    {
+      needs: { oneOf: ["glb", "sceneGlb", "mjcf", "urdf", "usd"], what: "--glb, --scene-glb, --mjcf, --urdf or --usd" },
+    },
+  ],
 ];
 
 /** Options of reading a case. */
@@ -127,27 +135,33 @@ export const caseFlags: readonly Flag[] = [
   ["--mask-index <n>", "the place of the mask in a JSON file of several, from 0", { parse: number }],
 ];
 
+const ofSimulators = { needs: { oneOf: ["mjcf", "urdf", "usd"], what: "--mjcf, --urdf or --usd" } } as const;
+
 /** Files of a whole scene, of which there is one. */
 export const sceneFileFlags: readonly Flag[] = [
-  ["--scene-glb <file>", "write the scene as one GLB file", writes],
+  ["--scene-glb <file>", "write the scene as one GLB file", exports],
   [
     "--mjcf <folder>",
     "write the scene for MuJoCo: scene.xml and meshes",
-    { ...writes, holds: ["meshes", "scene.xml"] },
+    { ...exports, holds: ["meshes", "scene.xml"] },
   ],
   [
     "--urdf <folder>",
     "write the scene as URDF: a file per object, scene.json, load.py for PyBullet",
-    { ...writes, holds: ["meshes", "scene.json"] },
+    { ...exports, holds: ["meshes", "scene.json"] },
   ],
-  ["--usd <file>", "write the scene as USD with physics (.usda)", writes],
-  ["--density <kg/m³>", `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`, { parse: number }],
+  ["--usd <file>", "write the scene as USD with physics (.usda)", exports],
+  [
+    "--density <kg/m³>",
+    `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`,
+    { parse: number, ...ofSimulators },
+  ],
   [
     "--parts <n>",
     `most convex parts of an object for simulators; 1 is its hull (default ${SIMULATOR_DEFAULTS.maxParts})`,
-    { parse: number },
+    { parse: number, ...ofSimulators },
   ],
-  ["--no-rest", "keep all objects for simulators where they were found: they are not put at rest"],
+  ["--no-rest", "keep all objects for simulators where they were found: they are not put at rest", ofSimulators],
 ];
 
 /** The options of reading a case by the flags. */
@@ -195,11 +209,26 @@ export const filesOf = (list: FlagList, flags: Flags, use: "reads" | "writes"): 
     return [{ flag: nameOf(flag), path, isFolder: flag.includes("<folder>"), isOwn, holds }];
   });
 
+/** Whether a flag is on the command line. */
+function isSet(flag: string, flags: Flags): boolean {
+  const value = flags[valueName(flag)];
+  return flag.startsWith("--no-") ? value === false : value !== undefined && value !== false;
+}
+
+/** @throws {@link UsageError} for files of the whole command that do not exist; those of a case are reported for it */
+export function checkInputs(list: FlagList, flags: Flags): void {
+  for (const [flag, , { use, words, isIndifferent } = {}] of withoutTitles(list)) {
+    const path = flags[valueName(flag)];
+    if (use !== "reads" || isIndifferent || typeof path !== "string" || words?.includes(path)) continue;
+    if (statOf(path) === undefined) throw new UsageError(`${nameOf(flag)} ${path}: there is no such file or folder.`);
+  }
+}
+
 /** @throws {@link UsageError} for flags that need others */
 export function checkNeeds(list: FlagList, flags: Flags): void {
   for (const [flag, , { needs } = {}] of withoutTitles(list)) {
-    if (needs !== undefined && flags[valueName(flag)] !== undefined && flags[needs[0]] === undefined)
-      throw new UsageError(`${nameOf(flag)} needs ${needs[1]}.`);
+    if (needs !== undefined && isSet(flag, flags) && needs.oneOf.every((name) => flags[name] === undefined))
+      throw new UsageError(`${nameOf(flag)} needs ${needs.what}: without it, it does nothing.`);
   }
 }
 
@@ -211,8 +240,7 @@ export const settingsOf = (list: FlagList, flags: Flags, pathOf: (path: string) 
   Object.fromEntries(
     withoutTitles(list).flatMap(([flag, , { use, words, isIndifferent } = {}]) => {
       const value = flags[valueName(flag)];
-      const isSet = flag.startsWith("--no-") ? value === false : value !== undefined && value !== false;
-      if (!isSet || use === "writes" || isIndifferent) return [];
+      if (!isSet(flag, flags) || use === "writes" || isIndifferent) return [];
       const isPath = use === "reads" && typeof value === "string" && !words?.includes(value);
       return [[nameOf(flag).slice(2), isPath ? pathOf(value) : flag.startsWith("--no-") || value]];
     }),

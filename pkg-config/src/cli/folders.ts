@@ -21,7 +21,11 @@ export interface FolderKind {
   is(folder: string): boolean;
 }
 
-const hasMesh = (folder: string) => namesIn(folder).some((name) => partOf(name) === "mesh");
+const hasMesh = (folder: string) => {
+  const names = namesIn(folder);
+  // A mesh, or the folders of FoundationPose.
+  return names.some((name) => partOf(name) === "mesh") || (names.includes("mesh") && names.includes("depth"));
+};
 
 export const caseKind: FolderKind = { noun: "case", mark: "a mesh", is: hasMesh };
 export const videoKind: FolderKind = { noun: "video", mark: "a mesh", is: hasMesh };
@@ -93,7 +97,8 @@ function refuseParent({ noun, is }: FolderKind, folder: string): void {
 }
 
 /** Expands a pattern that the shell did not expand. What exists is no pattern. */
-function expanded({ mark, is }: FolderKind, arg: string): string[] {
+function expanded({ noun, mark, is }: FolderKind, arg: string): string[] {
+  if (arg === "") throw new UsageError(`An empty argument is no ${noun} folder; "." is the current one.`);
   const pattern = process.platform === "win32" ? arg.replaceAll("\\", "/") : arg;
   if (!isPattern(pattern) || existsSync(arg)) return [arg];
   const { folders, unread } = matchingFolders(pattern);

@@ -26,7 +26,9 @@ A case folder holds
   gt.json (optional)             {"scale", "rotation": 3×3 row-major, "translation": m, "symmetry"}: the true pose
 or a mesh and folders frame_*, each with a depth map, and optionally a camera and a photo as above, and
   a mask                         in at least one frame; in all of them without pose.json
-  pose.json                      {"camera_to_world": 4×4 row by row, m}: the camera's pose; in all frames or it is not used
+  pose.json or pose.txt          {"camera_to_world": 4×4 row by row, m}: the camera's pose; in all frames or it is not used
+or the folders of FoundationPose: depth/, and optionally rgb/, masks/ and poses/, with a file NAME.* per frame; mesh/ with one
+mesh; and a camera such as cam_K.txt. "align" then takes the frames that have a mask.
 A camera beside the frames is that of the frames without one. Frames are in the order of their numbers. Upper and lower case
 are the same. Files that are not read are named at the end.`;
 
@@ -46,9 +48,10 @@ ${Object.entries(depthKinds)
   entry has { "isMetric": false }; columns in metres are empty, and errors against gt.json are not measured.`;
 
 const transformFile = `
-A transform file is JSON with
+A transform file holds
   - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers, row-major, or as a quaternion x, y, z, w; or
-  - { "matrix" }, 16 numbers column by column; or
+  - the rows of a 4×4 matrix in metres, as text or in JSON; { "matrix" } also as 16 numbers column by column; or
+  - an entry of BOP's scene_gt.json; or
   - the output of "sim3align align --json", or a record of --jsonl, from which the entry of the case is read.`;
 
 const status = `
@@ -79,10 +82,12 @@ const columns = csvHeadings.join(", ").replace(/(.{80,100}), /g, "$1,\n  ");
 export const programHelp = `
 Examples
   sim3align align cases/mug                      align one case and show everything about it
+  sim3align check 'cases/**'                     read all cases, and name what would fail or be doubted
   sim3align align cases/* --json results.json    align several cases; print a table and write a JSON file
   sim3align scene scenes/desk --scene-glb desk.glb     align all objects of a scene; write it as one file
   sim3align track videos/mug                     track an object through the frames of a video
   sim3align evaluate cases/mug --transform results.json
+  sim3align serve < requests.jsonl                 align what lines of JSON name; the process stays, for Python, ROS and agents
   sim3align bop bop/lmo --split test               align the targets of a BOP dataset
 
 See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
@@ -140,6 +145,35 @@ Examples
   sim3align track videos/mug --json poses.json
   sim3align track 'videos/**' --jsonl videos.jsonl --resume --workers 4
   sim3align track videos/mug --known-extent 0.095 --known-extent-axis y
+${status}`;
+
+export const checkHelp = `${caseFolder}
+
+Output
+  A line per case, or per frame with a mask: that it can be aligned, its error, or a line for each doubt about depth, mask,
+  camera and mesh file that reading alone can tell. --json writes { "<case>": { warnings, inputs, unread } or { error } }.
+
+Examples
+  sim3align check cases/mug
+  sim3align check 'cases/**' --json checked.json
+  sim3align check --list cases.txt --depth-scale 0.0002
+${status}`;
+
+export const serveHelp = `
+Requests
+  A line of JSON each: { "id": …, "case": "cases/mug" }, or { "id": …, "depth", "mask", "mesh", "camera", "image" } with paths, or
+  with arrays as { "base64", "dtype": "float32" | "uint16" | "uint8" | "uint32", "shape": [height, width] }, or with the bytes of
+  a file as { "base64" }; a mesh in memory is { "positions", "indices" } of these. Further fields: "depthScale", "depthKind",
+  "imageId", "resizeMask", and "options" of align(). Paths are relative to the current folder.
+
+Output
+  { "id": …, "result": the result of align() of the API } or { "id": …, "error": { code, message, … } }, in the order in which they
+  are done; without an id, it is the number of the line, from 0. As many requests as there are workers are worked on at a time.
+
+Examples
+  echo '{"case": "cases/mug"}' | sim3align serve
+  sim3align serve --workers 4 < requests.jsonl > results.jsonl
+  cat requests.jsonl | sim3align serve | jq .result.confidence
 ${status}`;
 
 export const evaluateHelp = `${caseFolder}

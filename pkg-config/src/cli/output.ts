@@ -1,7 +1,8 @@
 /** The outputs of a batch: JSON, a record, comma-separated values, and text for people. */
+import type { Checksums } from "../read-files.js";
 import type { Entry } from "./entry.js";
 import type { Flags } from "./flags.js";
-import { type CaseKey, JsonlFile, type RecordHeader, type Resumed } from "./record.js";
+import { type CaseKey, JsonlFile, type RecordHeader, type Resumed, relativeTo } from "./record.js";
 import { CsvFile, type EntrySink, ResultsFile } from "./result-files.js";
 import type { RunFiles } from "./run-files.js";
 import { Style } from "./terminal.js";
@@ -12,7 +13,7 @@ export class Output {
   readonly #sinks: readonly EntrySink[];
   readonly #tables: NodeJS.WriteStream;
   /** The entry so far of a case that is not done. */
-  #begun: readonly [name: string, entry: Entry] | undefined;
+  #begun: Parameters<EntrySink["add"]> | undefined;
   /** Text style of the tables. */
   readonly style: Style;
   #isClosed = false;
@@ -27,7 +28,7 @@ export class Output {
   ) {
     this.#record = jsonl === undefined ? undefined : new JsonlFile(jsonl, resume, header);
     this.#sinks = [
-      ...(json === undefined ? [] : [new ResultsFile(files.open({ flag: "--json", path: json }))]),
+      ...(json === undefined ? [] : [new ResultsFile(files.open({ flag: "--json", path: json }), relativeTo(json))]),
       ...(csv === undefined ? [] : [new CsvFile(files.open({ flag: "--csv", path: csv }))]),
       ...sinks,
     ];
@@ -44,24 +45,27 @@ export class Output {
   }
 
   /** The entries of the record, before it is written, each with its case. */
-  resumed<T extends CaseKey>(tasks: readonly T[]): AsyncIterable<Resumed<T>> | readonly Resumed<T>[] {
-    return this.#record?.resumed(tasks) ?? [];
+  resumed<T extends CaseKey>(
+    tasks: readonly T[],
+    changed: (task: T) => void,
+  ): AsyncIterable<Resumed<T>> | readonly Resumed<T>[] {
+    return this.#record?.resumed(tasks, changed) ?? [];
   }
 
   /** Adds the entry of a case to the record. */
-  record(key: CaseKey, entry: Entry): void {
-    this.#record?.add(key, entry);
+  record(key: CaseKey, entry: Entry, read: Checksums): void {
+    this.#record?.add(key, entry, read);
   }
 
   /** Adds the entry of a case to the other files. */
-  add(name: string, entry: Entry): void {
+  add(name: string, entry: Entry, path?: string): void {
     this.#begun = undefined;
-    for (const sink of this.#sinks) sink.add(name, entry);
+    for (const sink of this.#sinks) sink.add(name, entry, path);
   }
 
   /** Keeps the entry so far of a case, which the files get if the batch ends before it. */
-  begin(name: string, entry: Entry): void {
-    this.#begun = [name, entry];
+  begin(...entry: Parameters<EntrySink["add"]>): void {
+    this.#begun = entry;
   }
 
   /** Writes what is not written yet, and closes the files. All are closed, before the first error is thrown. */

@@ -10,21 +10,33 @@ export const isPattern = (path: string): boolean => /[*?]|\[.+\]|\{.+\}/s.test(p
 /** The folders that match a pattern, sorted, and folders in which some may be that cannot be read. */
 export function matchingFolders(pattern: string): { folders: string[]; unread: string[] } {
   const unread = new Set<string>();
-  const folders = alternatives(pattern).flatMap((each) => {
+  const all = alternatives([pattern]);
+  if (all === undefined) throw new UsageError(`${pattern}: its braces stand for more than ${MOST} patterns.`);
+  const folders = all.flatMap((each) => {
     const root = each.startsWith("/") ? "/" : "";
     const parts = each.split("/").filter((part) => part !== "" && part !== ".");
-    return [...matches(root, parts, unread)];
+    // Several "**" in a row find the same folders as one, many times.
+    const once = parts.filter((part, i) => part !== "**" || parts[i - 1] !== "**");
+    return [...matches(root, once, unread)];
   });
   return { folders: [...new Set(folders)].sort(naturally), unread: [...unread] };
 }
 
-/** The patterns without braces that one with braces stands for. */
-function alternatives(pattern: string): string[] {
-  const [all, choices] = /\{([^{}]*)\}/s.exec(pattern) ?? [];
-  if (all === undefined || choices === undefined) return [pattern];
-  const at = pattern.indexOf(all);
-  const [before, after] = [pattern.slice(0, at), pattern.slice(at + all.length)];
-  return choices.split(",").flatMap((choice) => alternatives(before + choice + after));
+/** The most patterns that one with braces may stand for. */
+const MOST = 10_000;
+
+/** The patterns without braces that ones with braces stand for; `undefined` for too many. */
+function alternatives(patterns: readonly string[]): readonly string[] | undefined {
+  const opened = patterns.flatMap((pattern) => {
+    const [all, choices] = /\{([^{}]*)\}/s.exec(pattern) ?? [];
+    if (all === undefined || choices === undefined) return [pattern];
+    const at = pattern.indexOf(all);
+    const [before, after] = [pattern.slice(0, at), pattern.slice(at + all.length)];
+    return choices.split(",").map((choice) => before + choice + after);
+  });
+  if (opened.length > MOST) return undefined;
+  const isDone = opened.every((pattern, i) => pattern === patterns[i]);
+  return isDone && opened.length === patterns.length ? opened : alternatives(opened);
 }
 
 /** @param folder the folder that the first parts of the pattern have led to; "" is the current one */
@@ -40,26 +52,50 @@ function* matches(folder: string, [part, ...more]: readonly string[], unread: Se
       if (!name.startsWith(".")) yield* matches(join(folder, name), [part, ...more], unread);
     }
   } else {
-    const expression = expressionOf(part);
+    const tokens = tokensOf(part);
     for (const name of foldersIn(folder, unread)) {
-      if (expression.test(name)) yield* matches(join(folder, name), more, unread);
+      const isHidden = name.startsWith(".") && !part.startsWith(".");
+      if (!isHidden && fits(tokens, [...name])) yield* matches(join(folder, name), more, unread);
     }
   }
 }
 
-/** A name may hold any character, also a line break. Those that begin with a dot only match a pattern that does. */
-function expressionOf(part: string): RegExp {
-  const source = part.replaceAll(/\[([!^]?)(.+?)\]|./gs, (character, not: string, characters?: string) => {
-    if (character === "*") return "[^]*";
-    if (character === "?") return "[^]";
-    if (characters === undefined) return character.replace(/[\\^$.*+?()[\]{}|/]/, "\\$&");
-    return `[${not === "" ? "" : "^"}${characters.replace(/[\\\]^[]/g, "\\$&")}]`;
+/** What one character may be; `null` for any number of characters. */
+type Token = RegExp | null;
+
+/** The tokens of a part of a pattern. A name may hold any character, also a line break. */
+function tokensOf(part: string): Token[] {
+  const tokens = part.matchAll(/\[([!^]?)(.+?)\]|./gsu);
+  return Array.from(tokens, ([character, not = "", characters]) => {
+    if (character === "*") return null;
+    if (character === "?") return /[^]/u;
+    const [sign, list] = characters === undefined ? ["", character] : [not, characters];
+    try {
+      return new RegExp(`[${sign === "" ? "" : "^"}${list.replace(/[\\\]^[]/g, "\\$&")}]`, "u");
+    } catch {
+      throw new UsageError(`${part}: not a pattern. Write ranges in ascending order, such as [a-z].`);
+    }
   });
-  try {
-    return new RegExp(`^${part.startsWith(".") ? "" : "(?!\\.)"}${source}$`, "u");
-  } catch {
-    throw new UsageError(`${part}: not a pattern. Write ranges in ascending order, such as [a-z].`);
+}
+
+/** Whether characters fit tokens: after a mismatch, the last star takes one character more. */
+function fits(tokens: readonly Token[], characters: readonly string[]): boolean {
+  let [token, star, from] = [0, -1, 0];
+  let at = 0;
+  while (at < characters.length) {
+    const next = tokens[token];
+    if (next === null) {
+      [star, from] = [token, at];
+      token += 1;
+    } else if (next?.test(characters[at] as string)) {
+      token += 1;
+      at += 1;
+    } else if (star >= 0) {
+      from += 1;
+      [token, at] = [star + 1, from];
+    } else return false;
   }
+  return tokens.slice(token).every((rest) => rest === null);
 }
 
 /** The names of the folders in a folder; links are followed, but for those to a folder above, which have no end. */

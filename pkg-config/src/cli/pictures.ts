@@ -14,12 +14,15 @@ import type { Flags } from "./flags.js";
 import { OutputError } from "./output-file.js";
 import type { CaseKey } from "./record.js";
 import { fileName, ReportFolder } from "./report.js";
-import type { OutputName, RunFiles } from "./run-files.js";
+import { isExport, type OutputName, type RunFiles } from "./run-files.js";
 
 /** The picture and the posed mesh of a pose. */
 const filesOfPose = ({ overlay, glb }: Flags, name: string) => ({
-  overlay: overlay === undefined ? undefined : { flag: "--overlay", path: join(overlay, `${fileName(name)}.png`) },
-  glb: glb === undefined ? undefined : { flag: "--glb", path: join(glb, `${fileName(name)}.glb`) },
+  overlay:
+    overlay === undefined
+      ? undefined
+      : { flag: "--overlay", path: join(overlay, `${fileName(name)}.png`), isOwn: isExport },
+  glb: glb === undefined ? undefined : { flag: "--glb", path: join(glb, `${fileName(name)}.glb`), isOwn: isExport },
 });
 
 /** The pictures and posed meshes of cases with one pose. Those of frames and objects have names that are not known yet. */

@@ -1,13 +1,13 @@
 /** The record of a batch, from which it can be resumed: a line with its settings, and a line of JSON for each case. */
-import { createHash } from "node:crypto";
 import { appendFileSync, createReadStream, existsSync, readFileSync, truncateSync } from "node:fs";
-import { basename, dirname, join, relative, sep } from "node:path";
+import { dirname, join, relative, sep } from "node:path";
 import { createInterface } from "node:readline";
 import { isDeepStrictEqual } from "node:util";
-import { partOf } from "../case-names.js";
+import type { Checksums } from "../read-files.js";
 import { isRecord } from "../values/kinds.js";
-import type { Entry } from "./entry.js";
-import { absolutePath, bytesOf, isFile, isOrdinary, namesIn, partsOf, realPath, statOf, UsageError } from "./files.js";
+import { type Content, contentNow, contentOf, contentOfFailure, partFiles } from "./content.js";
+import { type Entry, isFailure } from "./entry.js";
+import { absolutePath, bytesOf, isOrdinary, realPath, statOf, UsageError } from "./files.js";
 import { OutputFile } from "./output-file.js";
 import { lockRecord, type RecordLock } from "./record-lock.js";
 
@@ -24,19 +24,22 @@ export interface CaseKey {
   path?: string | undefined;
   /** Its folder, if it is one: a case that has moved is recognised by the content. */
   folder?: string | undefined;
+  /** The absolute paths of its files, if it is no folder: with others, it is another case. */
+  files?: readonly string[] | undefined;
 }
 
 /** The entry of a case in a record. */
 interface RecordedEntry {
   name: string;
-  /** Its absolute path, and the checksum of its inputs. */
+  /** Its absolute path. */
   path?: string | undefined;
-  content?: string | undefined;
+  /** The files that it was computed from, and their checksum. */
+  content?: Content | undefined;
   entry: Entry;
 }
 
 /** An entry of the record of a batch, with the case of the batch and the name of that case. */
-export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" | "entry"> {
+export interface Resumed<T extends CaseKey> extends Pick<RecordedEntry, "name" | "path" | "entry"> {
   task: T | undefined;
 }
 
@@ -45,42 +48,25 @@ const keyOf = ({ path, name }: Pick<CaseKey, "path" | "name">) => path ?? name;
 /** The settings that the results of a record depend on beside the cases; `pathOf` returns the paths of files as the record has them. */
 export type RecordHeader = (pathOf: (path: string) => string) => { command: string; options: Record<string, unknown> };
 
-/** A checksum of the inputs in a folder: its files, those of its frames and of its objects. `undefined` without files. */
-function contentHash(folder: string): string | undefined {
-  // A true pose only measures errors.
-  const isInput = (path: string) => ![undefined, "truth"].includes(partOf(basename(path))) && isFile(path);
-  const hash = createHash("sha256");
-  let isEmpty = true;
-  for (const path of partsOf(folder).flatMap((part) => namesIn(part).map((name) => join(part, name)))) {
-    try {
-      if (!isInput(path)) continue;
-      const bytes = readFileSync(path);
-      hash.update(`${relative(folder, path).split(sep).join("/")} ${bytes.length}\n`).update(bytes);
-      isEmpty = false;
-    } catch {
-      // What cannot be read is reported for the case.
-    }
-  }
-  return isEmpty ? undefined : hash.digest("hex").slice(0, 32);
-}
-
 /** The first bytes of the lines of cases, and of the first line. */
 const STARTS = ['{"case":', '{"sim3align":'];
 const NEWLINE = 0x0a;
 
 /**
- * A line with `sim3align`, the version, `command` and `options`, and a line for each case: its entry, preceded by `case`, its name, `path`, its path relative to the record, and `content`, a
- * checksum of its inputs.
+ * A line with `sim3align`, the version, `command` and `options`, and a line for each case: its entry, preceded by `case`, its
+ * name, `path`, its path relative to the record, `files`, those that it was computed from, relative to the case or, of files, to the
+ * record, and `content`, their checksum. Of several lines of a case, the last one counts.
  */
 export class JsonlFile {
   /** The folder to which paths are relative; that of stdout is the current one. */
   readonly #folder: string;
+  readonly #relative: (path: string) => string;
   readonly #file: OutputFile;
   readonly #header: Readonly<Record<string, unknown>>;
   #isBegun = false;
   readonly #lock: RecordLock | undefined;
-  /** The keys of the cases in the file. */
-  readonly #keys = new Set<string>();
+  /** The keys of the cases that are done. */
+  readonly #done = new Set<string>();
 
   /**
    * @param isResumed whether the lines of the file are kept
@@ -93,7 +79,8 @@ export class JsonlFile {
   ) {
     const ordinary = isOrdinary(path);
     if (isResumed && !ordinary) throw new UsageError(`--resume needs a file: --jsonl ${path} is none.`);
-    this.#folder = path === "-" ? realPath(".") : dirname(realPath(path));
+    this.#folder = folderOf(path);
+    this.#relative = relativeTo(path);
     this.#header = { sim3align: version, ...header((file) => this.#relative(absolutePath(file))) };
     if (ordinary) this.#lock = lockRecord("--jsonl", path);
     if (ordinary && !isResumed && sizeOf(path) > 0) {
@@ -102,18 +89,16 @@ export class JsonlFile {
     this.#file = new OutputFile(path, true);
   }
 
-  #relative(path: string): string {
-    return relative(this.#folder, path).split(sep).join("/") || ".";
-  }
-
-  /** Adds a case that the file does not hold yet. */
-  add(task: CaseKey, entry: Entry): void {
-    const { name, path, folder } = task;
-    if (this.#keys.has(keyOf(task))) return;
+  /** Adds a case that the file does not hold yet, with the checksums of the files that it was computed from. */
+  add(task: CaseKey, entry: Entry, read: Checksums): void {
+    const { name, path } = task;
+    if (this.#done.has(keyOf(task))) return;
     this.#lock?.check();
-    const content = folder === undefined ? undefined : contentHash(folder);
     const recorded = path === undefined ? undefined : this.#relative(path);
-    const line = JSON.stringify({ case: name, path: recorded, content, ...entry });
+    const { folder } = task;
+    const failed = folder !== undefined && isFailure(entry) ? contentOfFailure(folder) : undefined;
+    const content = failed ?? contentOf(read, folder ?? this.#folder);
+    const line = JSON.stringify({ case: name, path: recorded, ...content, ...entry });
     this.#file.lines(this.#isBegun ? [line] : [JSON.stringify(this.#header), line]);
     this.#isBegun = true;
   }
@@ -124,14 +109,13 @@ export class JsonlFile {
   }
 
   /**
-   * The entries in the file, each case once. A last line that was not written to its end is removed.
+   * The entries in the file. A last line that was not written to its end is removed.
    * @throws {@link UsageError} for a file with other content, which stays as it is
    */
   async *#entries(): AsyncGenerator<RecordedEntry, void, undefined> {
     const size = sizeOf(this.path);
     if (size === 0) return;
     const isCutOff = bytesOf(this.path, size - 1, 1)[0] !== NEWLINE;
-    const seen = new Set<string>();
     let number = 0;
     // A character of Latin-1 is a byte: the last line may end within a longer one.
     const bytes = createReadStream(this.path, { encoding: "latin1", end: size - 1 });
@@ -151,10 +135,7 @@ export class JsonlFile {
       if (isTorn) appendFileSync(this.path, "\n");
       this.#isBegun = true;
       if (found?.sim3align !== undefined) continue;
-      const entry = this.#entry(found as Entry);
-      const key = keyOf(entry);
-      if (!seen.has(key)) yield entry;
-      seen.add(key);
+      yield this.#entry(found as Entry);
     }
   }
 
@@ -178,37 +159,64 @@ export class JsonlFile {
     throw new UsageError(`--jsonl ${this.path}: the record was made with other settings: ${list}. ${wayOut}`);
   }
 
-  /** The entries in the file, each with its case. The file is read twice, and not kept. */
-  async *resumed<T extends CaseKey>(tasks: readonly T[]): AsyncGenerator<Resumed<T>, void, undefined> {
+  /**
+   * The entries in the file, each with its case, but those of cases whose files have changed since. The file is read twice, and
+   * not kept.
+   * @param changed is called with the cases that have changed
+   */
+  async *resumed<T extends CaseKey>(
+    tasks: readonly T[],
+    changed: (task: T) => void,
+  ): AsyncGenerator<Resumed<T>, void, undefined> {
+    const { last, moved } = await this.#index(tasks);
     const byKey = new Map(tasks.map((task) => [keyOf(task), task]));
-    const moved = await this.#moved(byKey);
     const names = new Set(tasks.map(({ name }) => name));
+    let number = 0;
     for await (const recorded of this.#entries()) {
-      const key = keyOf(recorded);
-      const task = byKey.get(key) ?? moved.get(key);
-      const { name, entry } = recorded;
-      if (task !== undefined) this.#keys.add(keyOf(task));
+      number += 1;
+      const { name, entry, content } = recorded;
+      const key = rowKey(recorded, this.#folder);
+      if (last.get(key) !== number) continue;
+      const task = byKey.get(keyOf(recorded)) ?? moved.get(key);
+      if (task !== undefined && !isSame(task, content, this.#folder)) continue;
+      if (task !== undefined && hasChanged(task, content, entry, this.#folder)) {
+        changed(task);
+        continue;
+      }
+      if (task !== undefined) this.#done.add(keyOf(task));
       // Another batch may have called another case so.
-      yield { task, entry, name: task?.name ?? (names.has(name) ? key : name) };
+      const path = task?.path ?? recorded.path;
+      yield { task, path, entry, name: task?.name ?? (names.has(name) ? keyOf(recorded) : name) };
     }
   }
 
-  /** The cases that have moved, by the keys of their entries: nothing is at the recorded path, and the content is the same. */
-  async #moved<T extends CaseKey>(byKey: ReadonlyMap<string, T>): Promise<Map<string, T>> {
-    const left = new Map(byKey);
-    const lost = new Map<string, string[]>();
+  /**
+   * The last line of each row, and the cases that have moved, by the keys of their rows: nothing is at the recorded path, and
+   * the content is the same.
+   */
+  async #index<T extends CaseKey>(tasks: readonly T[]) {
+    const left = new Map(tasks.map((task) => [keyOf(task), task]));
+    const last = new Map<string, number>();
+    const lost = new Map<string, Content>();
+    let number = 0;
     for await (const recorded of this.#entries()) {
+      number += 1;
       const { path, content } = recorded;
-      if (left.delete(keyOf(recorded)) || path === undefined || content === undefined || existsSync(path)) continue;
-      lost.set(content, [...(lost.get(content) ?? []), keyOf(recorded)]);
+      const key = rowKey(recorded, this.#folder);
+      last.set(key, number);
+      if (!left.delete(keyOf(recorded)) && path !== undefined && content !== undefined && !existsSync(path)) {
+        lost.set(key, content);
+      }
     }
     const moved = new Map<string, T>();
     for (const task of lost.size === 0 ? [] : left.values()) {
-      const content = task.folder === undefined ? undefined : contentHash(task.folder);
-      const key = content === undefined ? undefined : lost.get(content)?.shift();
-      if (key !== undefined) moved.set(key, task);
+      const { folder } = task;
+      const found = [...lost].find(
+        ([key, own]) => folder !== undefined && !moved.has(key) && contentNow(folder, own.files) === own.content,
+      );
+      if (found !== undefined) moved.set(found[0], task);
     }
-    return moved;
+    return { last, moved };
   }
 
   #foreign(line: number): UsageError {
@@ -218,14 +226,34 @@ export class JsonlFile {
     );
   }
 
-  #entry({ case: name, path, content, ...entry }: Entry): RecordedEntry {
+  #entry({ case: name, path, files, content, ...entry }: Entry): RecordedEntry {
     return {
       name: String(name),
       path: typeof path === "string" ? join(this.#folder, path) : undefined,
-      content: typeof content === "string" ? content : undefined,
+      content: typeof content === "string" && Array.isArray(files) ? { content, files: files.map(String) } : undefined,
       entry,
     };
   }
+}
+
+/** The key of a row: cases of files are several of one path, that of the mask. */
+function rowKey(recorded: RecordedEntry, folder: string): string {
+  const { path, content } = recorded;
+  const isOfFiles = content?.files.some((file) => join(folder, file) === path) === true;
+  return isOfFiles ? content.files.join("\n") : keyOf(recorded);
+}
+
+/** Whether a row is of the files of a case; any row, if this is a folder. */
+function isSame({ files = [] }: CaseKey, content: Content | undefined, folder: string): boolean {
+  const recorded = content?.files.map((file) => join(folder, file));
+  return files.every((file) => recorded?.includes(file));
+}
+
+/** Whether the files of a case have changed since, or some were added. */
+function hasChanged({ folder }: CaseKey, content: Content | undefined, { unread }: Entry, record: string): boolean {
+  if (content !== undefined && contentNow(folder ?? record, content.files) !== content.content) return true;
+  const known = new Set([...(content?.files ?? []), ...(Array.isArray(unread) ? unread.map(String) : [])]);
+  return folder !== undefined && partFiles(folder).some((file) => !known.has(file));
 }
 
 /** The object in a line of bytes. */
@@ -236,6 +264,15 @@ function parsed(line: string): Entry | undefined {
   } catch {
     return undefined;
   }
+}
+
+/** The folder to which the paths in an output are relative; that of stdout is the current one. */
+const folderOf = (path: string) => (path === "-" ? realPath(".") : dirname(realPath(path)));
+
+/** Makes the paths of cases relative to the folder of an output. */
+export function relativeTo(output: string): (path: string) => string {
+  const folder = folderOf(output);
+  return (path) => relative(folder, path).split(sep).join("/") || ".";
 }
 
 const sizeOf = (path: string) => statOf(path)?.size ?? 0;

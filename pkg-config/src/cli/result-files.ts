@@ -6,7 +6,8 @@ import { isLength } from "./row.js";
 
 /** An output for the entries of cases. */
 export interface EntrySink {
-  add(name: string, entry: Entry): void;
+  /** @param path the absolute path of the case, if it has one */
+  add(name: string, entry: Entry, path?: string): void;
   /** Writes what is not written yet, and puts the file in its place. */
   end(): void;
   /** Leaves an earlier file as it is. */
@@ -21,10 +22,15 @@ export const isResults = (beginning: string) =>
 export class ResultsFile implements EntrySink {
   #separator = "{\n";
 
-  constructor(private readonly file: OutputFile) {}
+  /** @param relative the path that the file has of a case */
+  constructor(
+    private readonly file: OutputFile,
+    private readonly relative: (path: string) => string,
+  ) {}
 
-  add(name: string, entry: Entry): void {
-    const text = JSON.stringify(entry, null, 2).replaceAll("\n", "\n  ");
+  add(name: string, entry: Entry, path?: string): void {
+    const place = path === undefined ? {} : { path: this.relative(path) };
+    const text = JSON.stringify({ ...place, ...entry }, null, 2).replaceAll("\n", "\n  ");
     this.file.write(`${this.#separator}  ${JSON.stringify(name)}: ${text}`);
     this.#separator = ",\n";
   }

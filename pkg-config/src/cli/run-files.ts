@@ -38,6 +38,9 @@ export interface OutputName extends NamedFile {
   holds?: readonly string[] | undefined;
 }
 
+/** Whether a file begins like one that this package exports: pictures, meshes and scenes name it. */
+export const isExport = (beginning: string) => beginning.includes("sim3align");
+
 /** Depth of the folders that are searched for inputs. */
 const LEVELS = 5;
 
@@ -77,7 +80,7 @@ export class RunFiles {
       if (isFolder) {
         if (statOf(path)?.isDirectory() === false)
           throw new UsageError(`${flag} ${path}: the folder cannot be made: it is a file.`);
-        for (const name of holds) this.#claim({ flag, path: join(path, name) });
+        for (const name of holds) this.#claim({ flag, path: join(path, name), isOwn: output.isOwn });
         continue;
       }
       this.#claim(output);
@@ -134,10 +137,14 @@ export class RunFiles {
     };
     const part = partOf(basename(place)) && this.#scan().parts.get(dirname(place));
     if (part !== undefined) refuse(part);
-    if (isOwn !== undefined) {
-      const beginning = identity === undefined ? "" : bytesOf(place, 0, 4096).toString();
-      if (beginning === "" || isOwn(beginning)) return;
+    const checkOwn = () => {
+      const beginning = identity === undefined ? "" : bytesOf(place, 0, 4096).toString("latin1");
+      if (beginning === "" || isOwn === undefined || isOwn(beginning)) return;
       throw new UsageError(`${flag} ${path}: this file was not written by ${flag}. Remove it, or pass another name.`);
+    };
+    if (isOwn !== undefined && isOwn !== isExport) {
+      checkOwn();
+      return;
     }
     // The next run would read it.
     for (const folder of this.#whole) if (place.startsWith(`${folder}${sep}`)) refuse(folder);
@@ -145,6 +152,7 @@ export class RunFiles {
     const { files, models } = this.#scan();
     const input = files.get(identity) ?? models.find((model) => mentions(model, place));
     if (input !== undefined) refuse(input);
+    checkOwn();
   }
 
   /**

@@ -1,7 +1,7 @@
 /** `sim3align scene`: aligns the objects of scenes. */
 import { join } from "node:path";
-import { read } from "../case-folder.js";
 import { type Aligner, type AlignInput, OPTIONS, type SceneInput, type SceneOptions } from "../index.js";
+import { read } from "../read-files.js";
 import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
 import { parsedJson } from "../values/json.js";
 import { withoutUndefined } from "../values/validation.js";

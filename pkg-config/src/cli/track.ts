@@ -1,5 +1,6 @@
 /** `sim3align track`: tracks an object through the frames of videos. */
-import { type FoundFiles, frameNames, openFrames } from "../case-folder.js";
+import type { FoundFiles } from "../case-folder.js";
+import { frameNames, openFrames } from "../frames-folder.js";
 import { type Aligner, OPTIONS, type TrackedFrame, type TrackOptions } from "../index.js";
 import type { CaseRun, Job } from "./batch.js";
 import { depthRows } from "./details.js";
@@ -22,7 +23,8 @@ const columns = [
 export async function trackJob(args: readonly string[], flags: Flags): Promise<Job<FolderToDo>> {
   const tasks = await foldersToDo(videoKind, args, flags.list);
   for (const { folder } of tasks) {
-    if ((await frameNames(folder)).length === 0) throw new UsageError(`${folder} has no folder frame_*.`);
+    if ((await frameNames(folder)).length === 0)
+      throw new UsageError(`${folder} has no folder frame_*, and no depth/ with a file per frame.`);
   }
   const folders = tasks.map(({ folder }) => folder);
   return { tasks, folders, run: (aligner, video, caseRun) => trackVideo(aligner, video, flags, caseRun) };
@@ -30,13 +32,14 @@ export async function trackJob(args: readonly string[], flags: Flags): Promise<J
 
 async function trackVideo(
   aligner: Aligner,
-  { name, folder }: FolderToDo,
+  { name, path, folder }: FolderToDo,
   flags: Flags,
   caseRun: CaseRun,
 ): Promise<Entry> {
   const { mesh, names, read, found } = await openFrames(folder, caseSettings(flags));
   const options = optionValues(flags, OPTIONS.track);
-  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, name);
+  if (typeof options.initial === "string")
+    options.initial = await readTransform("initial", options.initial, { name, path });
   caseRun.found = found();
   const tracker = await aligner.track(mesh, options as TrackOptions);
   try {

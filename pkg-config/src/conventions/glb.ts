@@ -4,6 +4,7 @@ import { isContent } from "../input/bytes.js";
 import type { Sim3Like } from "../types/argument-types.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { failure } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
 import { oneOf, optionsOf } from "../values/validation.js";
 import { inFrame } from "./frames.js";
 import { readGlb, writeGlb } from "./glb-file.js";
@@ -60,8 +61,12 @@ export function underNode(glb: Uint8Array | ArrayBuffer, parent: Partial<GltfNod
   const nodes = objectsOf(json, "nodes");
   const scene = typeof json.scene === "number" ? json.scene : 0;
   const scenes = json.scenes === undefined ? [{}] : objectsOf(json, "scenes");
+  const { asset, ...content } = json;
+  const { generator, ...facts } = isRecord(asset) ? asset : {};
+  const programs = typeof generator === "string" ? `${generator}, placed by sim3align` : "sim3align";
   const placed = {
-    ...json,
+    asset: { ...facts, generator: programs },
+    ...content,
     scene,
     scenes: scenes.map((other, i) => (i === scene ? { ...other, nodes: [nodes.length] } : other)),
     nodes: [...nodes, withChildren(parent, shownNodes(json))],

@@ -19,12 +19,29 @@ export function sceneObjects<T extends { name?: string | undefined }>(
   });
 }
 
+/** The camera of an exported scene: its intrinsics, and the size of its image, in pixels. */
+export interface SceneCamera {
+  fy: number;
+  width: number;
+  height: number;
+  /** By default, that of square pixels. */
+  fx?: number | undefined;
+  /** By default, the centre of the image. */
+  cx?: number | undefined;
+  /** By default, the centre of the image. */
+  cy?: number | undefined;
+}
+
 /** The camera of a call, and its vertical field of view. */
-export function sceneCamera(camera: unknown): { fovYRad: number; width: number; height: number } {
+export function sceneCamera(camera: unknown): Record<keyof SceneCamera | "fovYRad", number> {
   const given = record("options.camera", camera, "{ fy, width, height }");
-  const number = (name: string) => positive(`options.camera.${name}`, given[name]);
+  const number = (name: string, byDefault?: number) => positive(`options.camera.${name}`, given[name] ?? byDefault);
   const [fy, width, height] = [number("fy"), number("width"), number("height")];
-  return { fovYRad: 2 * Math.atan(height / (2 * fy)), width, height };
+  const [cx, cy] = [given.cx ?? (width - 1) / 2, given.cy ?? (height - 1) / 2];
+  return {
+    ...{ fx: number("fx", fy), fy, cx: finite("options.camera.cx", cx), cy: finite("options.camera.cy", cy) },
+    ...{ fovYRad: 2 * Math.atan(height / (2 * fy)), width, height },
+  };
 }
 
 /** A direction of length 1. */

@@ -11,7 +11,7 @@ import { gltfNode } from "./gltf-node.js";
 import { meshOf } from "./mesh.js";
 import { Names } from "./names.js";
 import { meanOf, minus, norm, quaternionOf } from "./rotation.js";
-import { sceneCamera, sceneFromCamera, sceneObjects } from "./scene-frame.js";
+import { type SceneCamera, sceneCamera, sceneFromCamera, sceneObjects } from "./scene-frame.js";
 import { similarityOf } from "./similarity.js";
 
 /** An object of a scene to export. */
@@ -28,8 +28,8 @@ export interface SceneGlbObject {
 export interface SceneGlbOptions {
   /** The plane that the objects stand on, as `support` of the result: it becomes the ground, y = 0. */
   support?: { normal: ArrayLike<number>; d: number } | null | undefined;
-  /** The camera: its intrinsics, and the size of its image in pixels. */
-  camera?: { fy: number; width: number; height: number } | undefined;
+  /** The camera; its principal point does not count, because cameras of glTF have none. */
+  camera?: SceneCamera | undefined;
 }
 
 /** Half the side of the ground: this factor times the largest distance of an object from their mean, plus this many metres. */
@@ -81,8 +81,8 @@ function addGround(document: GltfDocument, reach: number): number {
 }
 
 function addCamera(document: GltfDocument, given: unknown): number {
-  const { fovYRad, width, height } = sceneCamera(given);
-  const perspective = { yfov: fovYRad, aspectRatio: width / height, znear: 0.01 };
+  const { fovYRad, fx, fy, width, height } = sceneCamera(given);
+  const perspective = { yfov: fovYRad, aspectRatio: (width * fy) / (height * fx), znear: 0.01 };
   // glTF cameras look along −z, with y up.
   const camera = document.push("cameras", { type: "perspective", perspective });
   return document.push("nodes", { name: "camera", camera, rotation: [1, 0, 0, 0] });

@@ -32,7 +32,11 @@ export async function pngOf({ data, width, height }: Picture): Promise<Uint8Arra
   header.writeUInt32BE(height, 4);
   header.set([8, channels === 4 ? 6 : 2], 8);
   const pixels = await compressed(filtered(data, channels, width, height), { level: 3 });
-  const chunks = [chunk("IHDR", header), chunk("IDAT", pixels), chunk("IEND", Buffer.alloc(0))];
+  const software = Buffer.from("Software\0sim3align", "latin1");
+  const chunks = [
+    ...[chunk("IHDR", header), chunk("tEXt", software)],
+    ...[chunk("IDAT", pixels), chunk("IEND", Buffer.alloc(0))],
+  ];
   return Buffer.concat([Buffer.from("\x89PNG\r\n\x1a\n", "latin1"), ...chunks]);
 }
 

@@ -18,18 +18,25 @@ const pointMaps = ["pointmap", "point_map", "moge", "points"].flatMap((name) => 
 /** Names of files with the depth of an image: depth itself, which is metric, comes first. */
 const viewNames: readonly string[] = [...namesOf("depth"), ...pointMaps];
 
+/** The point map that sam3d_asset_extractor writes for each object: all are of the same image. */
+const ofObject = /_pointmap_full\.npz$/i;
+
 /** Whether a path is that of a point map. */
-export const isPointMap = (path: string): boolean => pointMaps.includes(baseName(path).toLowerCase());
+export const isPointMap = (path: string): boolean =>
+  pointMaps.includes(baseName(path).toLowerCase()) || ofObject.test(path);
 
 /** Whether a name is that of a file with the depth of an image. */
-export const isView = (name: string): boolean => viewNames.includes(name.toLowerCase());
+export const isView = (name: string): boolean => viewNames.includes(name.toLowerCase()) || ofObject.test(name);
 
 /** Formats of the mesh of an object, in order of preference: only GLB has materials. */
 const meshFormats = ["glb", "obj", "stl", "ply", "splat"];
 
 /** Words in paths that tell the kind of a file, or nothing; the others name the object. */
 const kindWords =
-  /^(objects?|obj|masks?|mesh|meshes|models?|glbs?|ply|gaussians?|gs|splats?|poses?|layouts?|metadata|outputs?|results?|reconstruction|sam3d|gt|truth)$/i;
+  /^(objects?|obj|masks?|mesh|meshes|models?|glbs?|ply|gaussians?|gs|splats?|poses?|layouts?|metadata|outputs?|results?|reconstruction|sam[23]d?|gt|truth|pointmap|full)$/i;
+
+/** Files of sam3d_asset_extractor that repeat others: pictures of masks, meshes in the camera's frame, points as PLY. */
+const repeated = /(^|\/)vis_[^/]*$|_pose(_mesh[^/]*)?\.(ply|glb|obj)$|_pointmap_full\.ply$/i;
 
 /** The files of one object. */
 interface ObjectPaths {
@@ -74,7 +81,7 @@ export async function sam3dFrom(files: CaseFiles, settings: ReadCaseOptions, pla
 export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeScene> {
   const root = commonFolder(Object.keys(files));
   const objects = new Map<string, ObjectPaths>();
-  const ofObject = (path: string): ObjectPaths => {
+  const objectOf = (path: string): ObjectPaths => {
     const name = objectName(path.slice(root.length));
     const known = objects.get(name) ?? { masks: [], meshes: [], poses: [], truths: [] };
     objects.set(name, known);
@@ -99,7 +106,8 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
   };
   // Files nearer to the root first: those of the image.
   const level = (path: string) => path.split("/").length;
-  const paths = Object.keys(files).sort((a, b) => level(a) - level(b) || naturally(a, b));
+  const all = Object.keys(files).sort((a, b) => level(a) - level(b) || naturally(a, b));
+  const paths = all.filter((path) => !repeated.test(path));
   const nearest = (what: string, isOne: (name: string) => boolean) => {
     const found = paths.filter((path) => isOne(baseName(path).toLowerCase()));
     return only(
@@ -109,7 +117,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
     );
   };
   const named = viewNames.filter((name) => paths.some((path) => baseName(path).toLowerCase() === name));
-  const view = nearest("view", (name) => name === named[0]);
+  const view = nearest("view", (name) => name === named[0]) ?? paths.find((path) => ofObject.test(path));
   const image = nearest("photo", (name) => partOf(name) === "image" || /^input\.(png|jpg)$/.test(name));
   if (view === undefined) throw missing("sam3d", `no point map in ${place}`, "pointmap.npy, or depth.*");
   const isPoints = isPointMap(view);
@@ -119,7 +127,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
   take(`image.${image && extension(image)}`, image);
   for (const path of paths) {
     const ending = extension(path);
-    const own = ofObject(path);
+    const own = objectOf(path);
     if (meshFormats.includes(ending)) own.meshes.push(path);
     else if (ending === "json" && /^(gt|truth)\b/.test(baseName(path))) own.truths.push(path);
     else if (ending === "json" && isPose(parsedJson(path, await bytesOf(path)))) own.poses.push(path);
@@ -180,7 +188,7 @@ const baseName = (path: string) => path.slice(path.lastIndexOf("/") + 1);
 const extension = (path: string) => /\.([^./]+)$/.exec(path)?.[1]?.toLowerCase() ?? "";
 
 const isPose = (json: unknown): json is Record<"rotation" | "translation" | "scale", unknown> =>
-  isRecord(json) && ["rotation", "translation", "scale"].every((name) => name in json);
+  isRecord(json) && ["rotation", "translation", "scale"].every((name) => name in json) && !isRecord(json.rotation);
 
 /** Whether a file may be a mask. Of arrays and of JSON, only the name tells. */
 const isMask = (path: string, ending: string) =>

@@ -98,9 +98,16 @@ function surfaceOf(argument: string, value: unknown): { positions: ArrayLike<num
 function viewOf(value: unknown): ExportedScene["camera"] {
   const camera = record("scene.camera", value, `null, or the camera of ${SCENE}`);
   const number = (name: string) => positive(`scene.camera.${name}`, camera[name]);
-  const pose = poseOf("scene.camera", camera);
-  return { ...pose, fovYDeg: number("fovYDeg"), width: number("width"), height: number("height") };
+  const center = (name: string) => finite(`scene.camera.${name}`, camera[name]);
+  return {
+    ...poseOf("scene.camera", camera),
+    ...{ fovYDeg: number("fovYDeg"), width: number("width"), height: number("height") },
+    ...{ fx: number("fx"), fy: number("fy"), cx: center("cx"), cy: center("cy") },
+  };
 }
+
+/** What files that this package writes call themselves. */
+export const GENERATOR = "written by sim3align";
 
 /** A number with seven digits. */
 const short = (x: number) => String(Number(x.toPrecision(7)));
@@ -120,7 +127,7 @@ export function meshFiles(bodies: readonly ExportedBody[]): Record<string, strin
 
 /** A mesh as Wavefront OBJ. */
 function objOf({ positions, indices }: { positions: ArrayLike<number>; indices: ArrayLike<number> }): string {
-  const lines: string[] = [];
+  const lines = [`# ${GENERATOR}`];
   for (let i = 0; i + 2 < positions.length; i += 3) {
     lines.push(`v ${spaced([positions[i] as number, positions[i + 1] as number, positions[i + 2] as number])}`);
   }
@@ -143,6 +150,12 @@ export const viewRotation = ({ rotation: [x, y, z, w] }: ExportedScene["camera"]
   z,
   -y,
   -x,
+];
+
+/** How far the principal point of a camera is from the middle of its image, pixels: to the right, and down. */
+export const principalOffset = ({ cx, cy, width, height }: ExportedScene["camera"] & object): [number, number] => [
+  cx + 0.5 - width / 2,
+  cy + 0.5 - height / 2,
 ];
 
 /** The pairs of bodies of which one is partly inside the other, by name. */

@@ -1,6 +1,16 @@
 /** Scenes as MJCF, the format of MuJoCo. */
 import { wFirst } from "../conventions/rotation.js";
-import { type ExportedBody, exportedScene, meshFiles, overlappingPairs, spaced, viewRotation } from "./exported.js";
+import {
+  type ExportedBody,
+  type ExportedScene,
+  exportedScene,
+  GENERATOR,
+  meshFiles,
+  overlappingPairs,
+  principalOffset,
+  spaced,
+  viewRotation,
+} from "./exported.js";
 import type { SimulatorScene } from "./scene.js";
 
 /**
@@ -26,10 +36,7 @@ export function toMjcf(scene: SimulatorScene): Record<string, string> {
     world.push(`<geom name="ground" type="plane" size="2 2 0.05" material="ground"/>`);
   }
   if (camera !== null) {
-    const quaternion = wFirst(viewRotation(camera));
-    world.push(
-      `<camera name="camera" pos="${spaced(camera.position)}" quat="${spaced(quaternion)}" fovy="${spaced([camera.fovYDeg])}" resolution="${Math.round(camera.width)} ${Math.round(camera.height)}"/>`,
-    );
+    world.push(cameraLine(camera));
   }
   world.push(...bodies.flatMap(bodyLines));
   const excluded = overlappingPairs(bodies).map(([one, other]) => `<exclude body1="${one}" body2="${other}"/>`);
@@ -37,7 +44,8 @@ export function toMjcf(scene: SimulatorScene): Record<string, string> {
     const pose = spaced([...position, ...wFirst(rotation)]);
     return `<numeric name="${name}_found" size="7" data="${pose}"/>`;
   });
-  const text = `<mujoco model="scene">
+  const text = `<!-- ${GENERATOR} -->
+<mujoco model="scene">
   <compiler angle="radian" meshdir="meshes"/>
   <option integrator="implicitfast" cone="elliptic" impratio="10">
     <flag multiccd="enable"/>
@@ -56,6 +64,16 @@ ${section("worldbody", world)}
 ${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>
 `;
   return { ...meshFiles(bodies), "scene.xml": text };
+}
+
+/** The camera. MuJoCo derives the field of view from the focal lengths if it has the size of a sensor, here a metre high. */
+function cameraLine(camera: ExportedScene["camera"] & object): string {
+  const { position, width, height, fx, fy } = camera;
+  const pose = `pos="${spaced(position)}" quat="${spaced(wFirst(viewRotation(camera)))}"`;
+  const sensor = `resolution="${Math.round(width)} ${Math.round(height)}" sensorsize="${spaced([width / height, 1])}"`;
+  // Its offsets are to the left, and up.
+  const offset = principalOffset(camera).map((pixels) => 0 - pixels);
+  return `<camera name="camera" ${pose} ${sensor} focalpixel="${spaced([fx, fy])}" principalpixel="${spaced(offset)}"/>`;
 }
 
 function bodyLines(body: ExportedBody): string[] {

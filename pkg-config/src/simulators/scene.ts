@@ -2,7 +2,7 @@
 import { meshOf } from "../conventions/mesh.js";
 import { Names } from "../conventions/names.js";
 import { quaternionOf } from "../conventions/rotation.js";
-import { sceneCamera, sceneFromCamera, sceneObjects } from "../conventions/scene-frame.js";
+import { type SceneCamera, sceneCamera, sceneFromCamera, sceneObjects } from "../conventions/scene-frame.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
 import { WasmModule } from "../modules/module.js";
 import type { Sim3Like } from "../types/argument-types.js";
@@ -36,9 +36,9 @@ export interface SimulatorOptions {
    * found more exactly than planes. Others are kept.
    */
   support?: (Plane & { confidence?: number | undefined }) | null | undefined;
-  /** The camera: its intrinsics, and the size of its image in pixels. */
-  camera?: { fy: number; width: number; height: number } | undefined;
-  /** Mass per volume of the convex parts, kg/m³. Default {@link SIMULATOR_DEFAULTS}: household things are mostly hollow. */
+  /** The camera. */
+  camera?: SceneCamera | undefined;
+  /** Mass per volume that a mesh encloses, or of the convex parts of an open one, kg/m³. Default {@link SIMULATOR_DEFAULTS}: household things are mostly hollow. */
   density?: number | undefined;
   /** Most convex parts of a body; 1 is the convex hull. */
   maxParts?: number | undefined;
@@ -120,8 +120,8 @@ export interface SimulatorScene {
   hasGround: boolean;
   /** The height of the given support above the ground, metres: 0 unless it was moved to the objects. */
   supportHeightM: number;
-  /** World from camera (x right, y down, z forward), and its vertical field of view. */
-  camera: { position: Vector3; rotation: Quaternion; fovYDeg: number; width: number; height: number } | null;
+  /** World from camera (x right, y down, z forward), its vertical field of view, and its intrinsics in pixels. */
+  camera: (SimulatorPose & Required<Record<keyof SceneCamera | "fovYDeg", number>>) | null;
 }
 
 /** A pose as the physics module returns it. */
@@ -220,10 +220,10 @@ function settingsOf(given: Omit<SimulatorOptions, "support" | "camera">): object
 }
 
 function cameraOf(given: unknown, { translation, rotation }: Similarity, liftM: number): SimulatorScene["camera"] {
-  const { fovYRad, width, height } = sceneCamera(given);
+  const { fovYRad, ...intrinsics } = sceneCamera(given);
   const [x, y, z] = translation;
   const fovYDeg = (fovYRad * 180) / Math.PI;
-  return { position: [x, y, z + liftM], rotation: quaternionOf(rotation), fovYDeg, width, height };
+  return { position: [x, y, z + liftM], rotation: quaternionOf(rotation), fovYDeg, ...intrinsics };
 }
 
 /** The support of an object, for the module. */

@@ -4,6 +4,7 @@ import {
   type ExportedBody,
   type ExportedScene,
   exportedScene,
+  GENERATOR,
   inertiaOf,
   meshFiles,
   overlappingPairs,
@@ -12,7 +13,8 @@ import {
 import type { SimulatorScene } from "./scene.js";
 
 /** A program that loads the files into PyBullet. */
-const loader = `"""Loads the scene into PyBullet: \`python load.py\` shows it; load(client) returns the bodies by name."""
+const loader = `# ${GENERATOR}
+"""Loads the scene into PyBullet: \`python load.py\` shows it; load(client) returns the bodies by name."""
 import json
 import os
 
@@ -38,6 +40,13 @@ def load(client, folder=os.path.dirname(os.path.abspath(__file__))):
     return ids
 
 
+def pose(client, body):
+    """Position and quaternion of a body as in scene.json: PyBullet's own are of the frame of inertia."""
+    position, quaternion = pybullet.getBasePositionAndOrientation(body, physicsClientId=client)
+    inertial = pybullet.getDynamicsInfo(body, -1, physicsClientId=client)[3:5]
+    return pybullet.multiplyTransforms(position, quaternion, *pybullet.invertTransform(*inertial))
+
+
 if __name__ == "__main__":
     client = pybullet.connect(pybullet.GUI)
     load(client)
@@ -60,6 +69,7 @@ export function toUrdf(scene: SimulatorScene): Record<string, string> {
   }));
   const floor = { name: "ground", file: "ground.urdf", position: [0, 0, 0], quaternion: [0, 0, 0, 1], fixed: true };
   const list = {
+    generator: GENERATOR,
     gravity: [0, 0, -9.81],
     bodies: hasGround ? [floor, ...entries] : entries,
     withoutCollision: overlappingPairs(bodies),
@@ -69,8 +79,8 @@ export function toUrdf(scene: SimulatorScene): Record<string, string> {
   return files;
 }
 
-function viewOf({ position, rotation, fovYDeg, width, height }: ExportedScene["camera"] & object) {
-  return { position, quaternion: rotation, fovYDeg, width, height };
+function viewOf({ position, rotation, ...intrinsics }: ExportedScene["camera"] & object) {
+  return { position, quaternion: rotation, ...intrinsics };
 }
 
 const contact = `<contact><lateral_friction value="0.8"/><rolling_friction value="0.001"/><spinning_friction value="0.002"/></contact>`;
@@ -99,5 +109,5 @@ const ground = robot("ground", [
 ]);
 
 function robot(name: string, lines: readonly string[]): string {
-  return `<?xml version="1.0"?>\n<robot name="${name}">\n  <link name="${name}">\n${lines.map((line) => `    ${line}\n`).join("")}  </link>\n</robot>\n`;
+  return `<?xml version="1.0"?>\n<!-- ${GENERATOR} -->\n<robot name="${name}">\n  <link name="${name}">\n${lines.map((line) => `    ${line}\n`).join("")}  </link>\n</robot>\n`;
 }

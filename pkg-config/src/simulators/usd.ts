@@ -3,7 +3,7 @@ import { bounds } from "../conventions/mesh.js";
 import { wFirst } from "../conventions/rotation.js";
 import { lightOf } from "../input/colors.js";
 import type { Quaternion } from "../values/validation.js";
-import { type ExportedBody, exportedScene, spaced, viewRotation } from "./exported.js";
+import { type ExportedBody, exportedScene, GENERATOR, principalOffset, spaced, viewRotation } from "./exported.js";
 import type { SimulatorScene } from "./scene.js";
 
 const tuple = (numbers: ArrayLike<number>) => `(${spaced(numbers).replaceAll(" ", ", ")})`;
@@ -38,19 +38,32 @@ export function toUsd(scene: SimulatorScene): string {
 }`,
   ];
   if (hasGround) {
-    const positions = [...[-REACH, -REACH, 0], ...[REACH, -REACH, 0], ...[REACH, REACH, 0], ...[-REACH, REACH, 0]];
-    const square = { positions, indices: [0, 1, 2, 0, 2, 3] };
-    prims.push(mesh("ground", square, GREY, COLLIDER, [`uniform token physics:approximation = "none"`]));
+    // A plane without end; solvers refuse meshes that are one.
+    prims.push(`def Plane "ground" (
+    prepend apiSchemas = ["PhysicsCollisionAPI"]
+)
+{
+    uniform token axis = "Z"
+    double width = ${2 * REACH}
+    double length = ${2 * REACH}
+    uniform bool doubleSided = 1
+    color3f[] primvars:displayColor = [${tuple(GREY.map(lightOf))}]
+}`);
   }
   if (camera !== null) {
     // Apertures are in tenths of a unit.
     const vertical = 24;
-    const focal = vertical / 2 / Math.tan((camera.fovYDeg * Math.PI) / 360);
+    const { width, height, fx, fy } = camera;
+    const focal = (vertical * fy) / height;
+    const horizontal = (focal * width) / fx;
+    const [right, down] = principalOffset(camera);
     prims.push(`def Camera "camera"
 {
     float focalLength = ${spaced([focal])}
-    float horizontalAperture = ${spaced([(vertical * camera.width) / camera.height])}
+    float horizontalAperture = ${spaced([horizontal])}
+    float horizontalApertureOffset = ${spaced([(-right * horizontal) / width])}
     float verticalAperture = ${vertical}
+    float verticalApertureOffset = ${spaced([(down * vertical) / height])}
     float2 clippingRange = (0.01, 100)
 ${placement(camera.position, viewRotation(camera))}
 }`);
@@ -59,6 +72,7 @@ ${placement(camera.position, viewRotation(camera))}
   prims.push(...bodies.map((body) => bodyPrim(body, names)));
   return `#usda 1.0
 (
+    doc = "${GENERATOR}"
     defaultPrim = "World"
     kilogramsPerUnit = 1
     metersPerUnit = 1

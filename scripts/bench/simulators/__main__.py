@@ -76,12 +76,27 @@ def in_mujoco(path, seconds):
         {
             "position": data.cam_xpos[i].tolist(),
             "axes": data.cam_xmat[i].tolist(),
-            "fovYDeg": float(model.cam_fovy[i]),
+            "window": window_of(model, data, i),
         }
         for i in range(model.ncam)
     ]
     planes = int(np.sum(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE))
     return {"bodies": bodies, "cameras": cameras, "planes": planes}
+
+
+def window_of(model, data, camera):
+    """Left, right, bottom and top of what a camera sees at a distance of 1."""
+    import mujoco
+
+    scene = mujoco.MjvScene(model, 1000)
+    view = mujoco.MjvCamera()
+    view.type, view.fixedcamid = mujoco.mjtCamera.mjCAMERA_FIXED, camera
+    every = mujoco.mjtCatBit.mjCAT_ALL
+    mujoco.mjv_updateScene(model, data, mujoco.MjvOption(), mujoco.MjvPerturb(), view, every, scene)
+    seen = scene.camera[0]
+    center, half = seen.frustum_center, seen.frustum_width
+    sides = [center - half, center + half, seen.frustum_bottom, seen.frustum_top]
+    return [float(side / seen.frustum_near) for side in sides]
 
 
 def in_pybullet(folder, seconds):
@@ -95,6 +110,7 @@ def in_pybullet(folder, seconds):
         ids = module.load(client)
         state = lambda i: tuple(np.array(x) for x in pybullet.getBasePositionAndOrientation(i, physicsClientId=client))
         before = {name: state(i) for name, i in ids.items()}
+        loaded = {name: module.pose(client, i) for name, i in ids.items()}
         for _ in range(int(round(240 * seconds))):
             pybullet.stepSimulation(physicsClientId=client)
         bodies = []
@@ -107,6 +123,7 @@ def in_pybullet(folder, seconds):
                 {
                     "name": name,
                     "fixed": mass == 0,
+                    "position": list(loaded[name][0]),
                     "mass": mass,
                     "parts": len(pybullet.getCollisionShapeData(i, -1, physicsClientId=client)),
                     "movedM": float(np.linalg.norm(after[0] - before[name][0])),
@@ -142,11 +159,16 @@ def in_usd(path):
                 "position": list(cache.GetLocalToWorldTransform(prim).ExtractTranslation()),
             }
         )
+    windows = []
+    for prim in stage.Traverse():
+        if prim.IsA(UsdGeom.Camera):
+            window = UsdGeom.Camera(prim).GetCamera().frustum.window
+            windows.append([window.min[0], window.max[0], window.min[1], window.max[1]])
     return {
         "bodies": bodies,
         "upAxis": str(UsdGeom.GetStageUpAxis(stage)),
         "metresPerUnit": UsdGeom.GetStageMetersPerUnit(stage),
-        "cameras": sum(1 for p in stage.Traverse() if p.IsA(UsdGeom.Camera)),
+        "windows": windows,
         "scenes": sum(1 for p in stage.Traverse() if p.IsA(UsdPhysics.Scene)),
         "complaints": [complaint.GetMessage() for complaint in complaints],
     }
