@@ -1,11 +1,6 @@
 /**
-<<<<<<< HEAD
- * A second look at what is often wrong where the answer is in doubt: the mesh mirrored, its textures upside down, as exporters
- * leave them; speckle of the depth.
-=======
  * A second look where the answer is in doubt: at what exporters and cameras often get wrong (a mirrored mesh or image, textures
- * upside down), and at depth that shows no object.
->>>>>>> main
+ * upside down), and at depth that shows no object, or has speckle.
  */
 import type { Alignment, Warning } from "../generated/types.js";
 import type { CoreInput } from "../modules/core-input.js";
