@@ -2,8 +2,6 @@
 
 use glam::{DVec3, Vec3};
 use js_sys::{Array, ArrayBuffer, Float32Array, Function, Object, Reflect, Uint8Array, Uint32Array};
-use serde::Serialize;
-use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use crate::colored_mesh::ColoredMesh;
@@ -12,7 +10,7 @@ use crate::guard::{MAX_BUFFER_BYTES, too_large};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::image::Image;
 use sim3align_geometry::surface_colors::Rgb;
-use sim3align_runtime::error::{Error, ErrorCode, Result};
+use sim3align_runtime::error::{Error, ErrorCode, ErrorParts, Result};
 
 /// A plain object with these properties.
 pub fn object(properties: &[(&str, JsValue)]) -> JsValue {
@@ -117,9 +115,9 @@ impl<'a> Options<'a> {
     }
 }
 
-/// The options of a reader of depth: `{ depthScale, integerDepthScale, depthKind }`.
+/// The options of a reader of depth: `{ depthScale, integerDepthScale, depthKind, isPacked }`.
 pub fn depth_options(options: &JsValue) -> Result<(DepthReadOptions, DepthKind)> {
-    let options = Options::new(options, &["depthScale", "integerDepthScale", "depthKind"])?;
+    let options = Options::new(options, &["depthScale", "integerDepthScale", "depthKind", "isPacked"])?;
     let (depth_scale, integer_depth_scale) = (options.number("depthScale")?, options.number("integerDepthScale")?);
     let kind = match options.get("depthKind") {
         None => DepthKind::default(),
@@ -130,7 +128,8 @@ pub fn depth_options(options: &JsValue) -> Result<(DepthReadOptions, DepthKind)>
             Error::new(ErrorCode::InvalidOption, "options.depthKind", found, format!("one of {names}"), remedy)
         })?,
     };
-    Ok((DepthReadOptions { depth_scale, integer_depth_scale }, kind))
+    let is_packed = options.get("isPacked").is_some();
+    Ok((DepthReadOptions { depth_scale, integer_depth_scale, is_packed }, kind))
 }
 
 /// `{ data, width, height, unit, camera }`.
@@ -203,5 +202,8 @@ fn flat(points: &[Vec3]) -> Float32Array {
 /// A plain object `{ code, argument, found, expected, remedy }`, of which the TypeScript package makes its
 /// `Sim3AlignError`.
 pub fn to_js(error: &Error) -> JsValue {
-    error.serialize(&Serializer::json_compatible()).unwrap_or_else(Into::into)
+    let ErrorParts { code, argument, found, expected, remedy } = &**error;
+    let texts =
+        [("code", code.as_str()), ("argument", argument), ("found", found), ("expected", expected), ("remedy", remedy)];
+    object(&texts.map(|(name, text)| (name, text.into())))
 }

@@ -3,9 +3,9 @@
 use crate::depth_image::Stored;
 pub use crate::depth_image::{DEFAULT_DEPTH_SCALE, DepthImage, DepthReadOptions, DepthUnit};
 use crate::guard::{beginning, unsupported};
-use crate::npy::{self, Kind, NpyImage};
-use crate::png::{self, PngInfo};
-use crate::{exr, npz, pfm, tiff};
+use crate::npy::{self, Kind, NpyImage, NpyPoints};
+use crate::png::{self, PngInfo, PngPixels};
+use crate::{exr, npz, pfm, point_map, tiff};
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_geometry::image::DepthMap;
 use sim3align_runtime::error::Result;
@@ -21,20 +21,26 @@ enum Format {
     Tiff,
     /// Portable float map, one channel (`Pf`) or three (`PF`).
     Pfm,
+    /// NumPy's array, of depth or of points.
+    Npy,
 }
 
 /// The first bytes of each format.
-const SIGNATURES: [(&[u8], Format); 9] = [
+const SIGNATURES: [(&[u8], Format); 12] = [
     (b"PK\x03\x04", Format::Npz),
     // An archive without entries.
     (b"PK\x05\x06", Format::Npz),
     (b"\x76\x2f\x31\x01", Format::Exr),
     (b"II*\0", Format::Tiff),
     (b"MM\0*", Format::Tiff),
+    // BigTIFF.
+    (b"II+\0", Format::Tiff),
+    (b"MM\0+", Format::Tiff),
     (b"Pf\n", Format::Pfm),
     (b"PF\n", Format::Pfm),
     (b"Pf\r", Format::Pfm),
     (b"PF\r", Format::Pfm),
+    (npy::MAGIC, Format::Npy),
 ];
 
 impl Format {
@@ -80,9 +86,14 @@ fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
     let bits = usize::from(info.bit_depth);
     let stored = Stored { width: info.width, height: info.height, bits, is_integer: true };
     let article = if bits == 8 { "an" } else { "a" };
-    stored.check_bits(kind, || format!("{article} {bits}-bit PNG"))?;
+    if !options.is_packed {
+        stored.check_bits(kind, || format!("{article} {bits}-bit PNG"))?;
+    }
     let pixels = info.decode("depth", bytes)?;
     let channels = pixels.channels.max(1);
+    if options.is_packed && bits == 8 && channels > 2 && info.first_palette_colour.is_none() {
+        return stored.read(options, kind, &|i| packed(&pixels, i));
+    }
     // Some programs repeat the depth in three channels.
     let is_grey = |pixel: &[u16]| pixel.iter().take(pixels.colours()).all(|sample| Some(sample) == pixel.first());
     if info.first_palette_colour.is_some() || !pixels.samples.chunks_exact(channels).all(is_grey) {
@@ -93,8 +104,19 @@ fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
             "Pass the raw depth map, not a rendering of it.",
         ));
     }
-    let samples = pixels.samples.chunks_exact(channels);
-    stored.read(options, kind, samples.map(|pixel| pixel.first().map_or(0.0, |&z| f64::from(z))))
+    stored.read(options, kind, &|i| pixels.samples.get(i * channels).map_or(0.0, |&z| f64::from(z)))
+}
+
+/// Of a pixel: red + 256 · green + 65536 · blue; or, with an alpha below 255, the 32-bit float with the bytes blue, green, red
+/// and alpha.
+fn packed(pixels: &PngPixels, index: usize) -> f64 {
+    match pixels.samples.get(index * pixels.channels..) {
+        Some(&[r, g, b, a, ..]) if pixels.has_alpha() && a < 255 => {
+            f32::from_le_bytes([b, g, r, a].map(|x| x as u8)).into()
+        }
+        Some(&[r, g, b, ..]) => f64::from(r) + 256.0 * f64::from(g) + 65536.0 * f64::from(b),
+        _ => 0.0,
+    }
 }
 
 fn read_npy(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
@@ -103,17 +125,17 @@ fn read_npy(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result
     let is_integer = array.header().kind != Kind::Float;
     let stored = Stored { width: array.width, height: array.height, bits, is_integer };
     stored.check_bits(kind, || "an array of 8-bit elements".into())?;
-    stored.read(options, kind, array.values())
+    stored.read(options, kind, &|i| array.value(i))
 }
 
-/// Reads depth from an `.npz`, `.exr`, `.tiff` or `.pfm` file, with the camera in it.
+/// Reads depth from an `.npz`, `.exr`, `.tiff`, `.pfm` or `.npy` file, with the camera in it. Three values per pixel are a point
+/// map (H×W×3, in arrays also 3×H×W), whose camera is fitted.
 ///
-/// - `.npz`: an array with one of the usual names of depth (`depth`, `pred_depth`, …), the only two-dimensional array of
-///   floats, or the z of a point map; pixels that are false in `mask` or `valid` have no reading; intrinsics in pixels
+/// - `.npz`: an array with one of the usual names of depth (`depth`, `pred_depth`, …) or of a point map, or the only
+///   two-dimensional array of floats; pixels that are false in `mask` or `valid` have no reading; intrinsics in pixels
 ///   or, as MoGe writes them, in image sizes; a focal length in pixels or a field of view in degrees.
-/// - `.exr`: a channel that is named as depth, or the only one.
-/// - `.tiff`: one channel of floats, or of integers.
-/// - `.pfm`: one channel.
+/// - `.exr`: a channel that is named as depth, the only one, or X, Y and Z.
+/// - `.tiff`, `.pfm`: one channel of floats or of integers, or three.
 ///
 /// # Errors
 /// [`ErrorCode`](sim3align_runtime::error::ErrorCode)`::EightBitDepth`, `UnsupportedFormat`, `CorruptFile`,
@@ -124,6 +146,10 @@ pub fn read_depth_file(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind
         Some(Format::Exr) => exr::read_depth(bytes, options, kind),
         Some(Format::Tiff) => tiff::read_depth(bytes, options, kind),
         Some(Format::Pfm) => pfm::read_depth(bytes, options, kind),
+        Some(Format::Npy) => match NpyPoints::read(bytes)? {
+            None => read_npy(bytes, options, kind),
+            Some(map) => point_map::read(&map.stored(), options, kind, &|i| map.point(i)),
+        },
         None => Err(unsupported(
             "depth",
             beginning(bytes),

@@ -17,6 +17,8 @@ pub struct DepthReadOptions {
     /// Metres per unit of integer depth if `depth_scale` is `None`, for example from a camera file. If both are `None`,
     /// [`DEFAULT_DEPTH_SCALE`] applies. Floats are then in metres.
     pub integer_depth_scale: Option<f64>,
+    /// Whether an 8-bit PNG of three or four channels has the bytes of one number per pixel.
+    pub is_packed: bool,
 }
 
 /// A depth map from a file.
@@ -68,16 +70,17 @@ pub(crate) struct Stored {
 }
 
 impl Stored {
-    /// The depth map of these values, row-major, and its unit.
+    /// The depth map of these values by their index, row-major, and its unit.
+    #[inline(never)]
     pub fn read(
         &self,
         options: &DepthReadOptions,
         kind: DepthKind,
-        values: impl Iterator<Item = f64>,
+        value: &dyn Fn(usize) -> f64,
     ) -> Result<DepthImage> {
         let (scale, unit) = self.unit(options, kind)?;
-        let values = values.map(|z| (z * scale) as f32);
         let (width, height) = (self.width, self.height);
+        let values = (0..width * height).map(|i| (value(i) * scale) as f32);
         let values = match kind {
             DepthKind::Metric | DepthKind::ScaleInvariant => DepthMap::from_metres(width, height, values.collect())?,
             DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity => {
@@ -119,6 +122,7 @@ impl Stored {
     }
 
     /// Rejects values of 8 bits or less, except for the kinds whose values are often written so.
+    #[inline(never)]
     pub fn check_bits(&self, kind: DepthKind, found: impl FnOnce() -> String) -> Result<()> {
         let is_affine = matches!(kind, DepthKind::AffineInvariant | DepthKind::AffineInvariantDisparity);
         if self.bits > 8 || is_affine {

@@ -13,6 +13,7 @@ use exr::prelude::f16;
 
 use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{MAX_PIXELS, corrupt, pixel_count, too_large, unsupported};
+use crate::point_map;
 use sim3align_geometry::depth_kind::DepthKind;
 use sim3align_runtime::error::{Error, Result};
 
@@ -22,8 +23,8 @@ const DEPTH_NAMES: [&str; 2] = ["z", "depth"];
 /// Names of the only channel of an image, as OpenCV (`Y`) and Blender (`V`) write it; `R` where one of three was kept.
 const SINGLE_NAMES: [&str; 3] = ["y", "v", "r"];
 
-/// Names of the channels of a colour image.
-const COLOUR_NAMES: [&str; 3] = ["r", "g", "b"];
+/// Names of the coordinates of points, or of three equal channels of depth: OpenCV writes them as colours.
+const POINT_NAMES: [[&str; 3]; 2] = [["x", "y", "z"], ["r", "g", "b"]];
 
 /// Blender writes 1e10 where a ray hits nothing.
 const NOTHING: f64 = 9.9e9;
@@ -35,7 +36,8 @@ const MAX_CHANNELS: usize = 256;
 const MAX_BLOCK_BYTES: usize = 1 << 26;
 
 pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
-    let reader = Reader::read_from_buffered(io::Cursor::new(bytes), false).map_err(|error| broken(&error))?;
+    let reader = Reader::read_from_buffered(io::Cursor::new(bytes), false)
+        .map_err(|error| new_compression(bytes).unwrap_or_else(|| broken(&error)))?;
     let (layer, channels) = find(reader.headers())?;
     let Some(header) = reader.headers().get(layer) else { return Err(no_depth(reader.headers())) };
     let picture = Picture::of(header)?;
@@ -78,16 +80,17 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
             }
         }
     }
-    let mut values = images.pop().unwrap_or_default();
-    let is_equal = |image: &Vec<f32>| image.iter().zip(&values).all(|(a, b)| a.to_bits() == b.to_bits());
-    if !images.iter().all(is_equal) {
-        return Err(no_depth(&meta.headers));
+    for values in &mut images {
+        values.resize(picture.width * picture.height, f32::NAN);
     }
-    values.resize(picture.width * picture.height, f32::NAN);
     let bits = if sample == SampleType::F16 { 16 } else { 32 };
     let stored = Stored { width: picture.width, height: picture.height, bits, is_integer: sample == SampleType::U32 };
     let value = |z: f32| if f64::from(z) >= NOTHING { f64::NAN } else { f64::from(z) };
-    stored.read(options, kind, values.into_iter().map(value))
+    match images.as_slice() {
+        [x, y, z] => point_map::read(&stored, options, kind, &|i| [x, y, z].map(|values| value(values[i]))),
+        [values] => stored.read(options, kind, &|i| value(values[i])),
+        _ => Err(no_depth(&meta.headers)),
+    }
 }
 
 /// The display window, which the stored pixels may cover in part, or exceed.
@@ -161,7 +164,7 @@ impl Picture {
     }
 }
 
-/// The layer and the channel of depth; three channels of colour may hold it, too, if they are equal.
+/// The layer and the channel of depth, or the three channels of points, which may be named as colours.
 fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
     let names_of = |header: &Header| -> Vec<String> {
         header.channels.list.iter().map(|channel| channel.name.to_string().to_ascii_lowercase()).collect()
@@ -185,11 +188,19 @@ fn find(headers: &[Header]) -> Result<(usize, Vec<usize>)> {
     if let Some((layer, channel)) = places(&DEPTH_NAMES).into_iter().find(is_depth) {
         return Ok((layer, vec![channel]));
     }
-    match (layers.as_slice(), places(&SINGLE_NAMES).as_slice(), places(&COLOUR_NAMES).as_slice()) {
-        ([only], &[(layer, channel)], _) if only.len() == 1 => Ok((layer, vec![channel])),
-        ([only], _, &[(layer, a), (_, b), (_, c)]) if only.len() <= 4 => Ok((layer, vec![a, b, c])),
-        _ => Err(no_depth(headers)),
+    if let ([only], &[(layer, channel)]) = (layers.as_slice(), places(&SINGLE_NAMES).as_slice())
+        && only.len() == 1
+    {
+        return Ok((layer, vec![channel]));
     }
+    let of_points = POINT_NAMES.iter().find_map(|names| {
+        let found: Vec<(usize, usize)> = names.iter().flat_map(|name| places(&[name])).collect();
+        let &[(layer, x), (of_y, y), (of_z, z)] = found.as_slice() else { return None };
+        // A picture may have alpha, too.
+        let is_all = names[0] == "x" || (layers.len() == 1 && layers[layer].len() <= 4);
+        (layer == of_y && layer == of_z && is_all).then(|| (layer, vec![x, y, z]))
+    });
+    of_points.ok_or_else(|| no_depth(headers))
 }
 
 fn no_depth(headers: &[Header]) -> Error {
@@ -198,9 +209,22 @@ fn no_depth(headers: &[Header]) -> Error {
     unsupported(
         "depth",
         format!("an EXR with the channels {}", names.join(", ")),
-        "a channel Z or depth, Y, V or R alone, or three equal channels R, G and B",
-        "Save the depth alone: the EXR of a point map or of normals has three channels.",
+        "a channel Z or depth, Y, V or R alone, or the points X, Y and Z or R, G and B of a map",
+        "Save the depth alone, or the points x, y, z in the frame of the camera.",
     )
+}
+
+/// The names of the compressions from 10 on, which are newer than the library.
+const NEW_COMPRESSIONS: [&str; 4] = ["HTJ2K256", "HTJ2K32", "LJ2K", "ZSTD"];
+
+/// The error for a file whose header states a compression that is newer than the library.
+fn new_compression(bytes: &[u8]) -> Option<Error> {
+    const ATTRIBUTE: &[u8] = b"compression\0compression\0\x01\0\0\0";
+    let start = bytes.windows(ATTRIBUTE.len()).take(1 << 16).position(|window| window == ATTRIBUTE)?;
+    let number = usize::from(*bytes.get(start + ATTRIBUTE.len())?);
+    let name = NEW_COMPRESSIONS.get(number.checked_sub(10)?).copied().unwrap_or("unknown");
+    let found = format!("an EXR with {name} compression ({number}), which is newer than this reader");
+    Some(unsupported("depth", found, "ZIP, RLE, PIZ, PXR24 or no compression", "Save it with ZIP compression."))
 }
 
 fn broken(error: &exr::error::Error) -> Error {

@@ -13,19 +13,19 @@ const MAX_NORMALISED: [f64; 2] = [2.0, 20.0];
 pub(crate) struct FileCamera {
     /// Intrinsics, row-major: in pixels, with pixel centres at integers, or in image widths and heights.
     pub intrinsics: Option<[f64; 9]>,
-    /// In pixels.
-    pub focal_length: Option<f64>,
+    /// Horizontal and vertical, in pixels.
+    pub focal_lengths: Option<[f64; 2]>,
+    /// In pixels; by default, that of the image's centre.
+    pub principal_point: Option<[f64; 2]>,
     /// Horizontal and vertical, degrees.
     pub fields_of_view: [Option<f64>; 2],
 }
 
 impl FileCamera {
     /// The camera of an image of this size; `None` if the file has none.
-    ///
-    /// Without a principal point it is that of the image's centre.
     pub fn pinhole(&self, width: usize, height: usize) -> Result<Option<Pinhole>> {
         let size = [width as f64, height as f64];
-        let centre = size.map(|side| 0.5 * (side - 1.0));
+        let centre = self.principal_point.unwrap_or(size.map(|side| 0.5 * (side - 1.0)));
         let (focal, centre) = if let Some([fx, _, cx, _, fy, cy, ..]) = self.intrinsics {
             let [max_centre, max_focal] = MAX_NORMALISED;
             let is_normalised = cx.max(cy) < max_centre && fx.max(fy) < max_focal;
@@ -35,8 +35,8 @@ impl FileCamera {
             } else {
                 ([fx, fy], [cx, cy])
             }
-        } else if let Some(focal) = self.focal_length {
-            ([focal; 2], centre)
+        } else if let Some(focal) = self.focal_lengths {
+            (focal, centre)
         } else {
             let focal = |axis: usize| {
                 self.fields_of_view[axis].map(|degrees| {

@@ -34,6 +34,7 @@ pub mod ply;
 mod ply_header;
 mod ply_names;
 mod png;
+mod point_map;
 mod polygon;
 mod reducer;
 pub mod resources;

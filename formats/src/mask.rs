@@ -20,12 +20,13 @@ pub struct MaskImage {
 /// Reads a mask:
 ///
 /// - PNG of any bit depth, or JPEG. A pixel's value is its alpha, if alpha varies (a cut-out); otherwise its largest
-///   channel; in a palette image, the largest difference to the colour of index 0.
+///   channel; in a palette image, the largest difference to the colour of index 0. Regions of several colours are labels.
 /// - `.npy` array (H×W, H×W×1, 1×H×W) of booleans or numbers. NaN is not the object.
 ///
 /// The object is at the only value other than 0, if there is one. A mask with soft edges has its outline at half of the range:
 /// the object has half of the largest value or more, and probabilities (floats from 0 to 1) of 0.5 or more. In a map of labels,
-/// where values lie in flat regions, all of them above 0 are the object. With values below 0, which are logits, too.
+/// where values lie in flat regions, all of them above 0 are the object. Of floats below and above 0, which are logits, too; of
+/// none above 0, which are logarithms of probabilities, those of ½ or more.
 ///
 /// # Errors
 /// [`UnsupportedFormat`](sim3align_runtime::error::ErrorCode::UnsupportedFormat),
@@ -39,12 +40,12 @@ pub fn read_mask(bytes: &[u8]) -> Result<MaskImage> {
     if bytes.starts_with(jpeg::MAGIC) {
         let (image, _) = jpeg::read("mask", bytes, MAX_PIXELS)?;
         let level = |i: usize| image.data().get(i).and_then(|rgb| rgb.iter().max()).map_or(0.0, |&level| level.into());
-        return outlined(image.width(), image.height(), false, &level);
+        return outlined(image.width(), image.height(), &Values::of(&level, false));
     }
     if bytes.starts_with(npy::MAGIC) {
         let array = NpyImage::read("mask", bytes)?;
         let is_float = array.header().kind == Kind::Float;
-        return outlined(array.width, array.height, is_float, &|i| array.value(i));
+        return outlined(array.width, array.height, &Values::of(&|i| array.value(i), is_float));
     }
     Err(unsupported(
         "mask",
@@ -62,58 +63,124 @@ fn read_png(bytes: &[u8]) -> Result<MaskImage> {
     let first_alpha = pixels.samples.get(..channels).map(alpha);
     let is_cut_out = pixels.has_alpha() && pixels.samples.chunks_exact(channels).any(|p| Some(alpha(p)) != first_alpha);
     let background = info.first_palette_colour.unwrap_or_default().map(u16::from);
-    let level = |pixel: &[u16]| {
-        if is_cut_out {
-            return alpha(pixel);
-        }
+    // The difference to the background, as one number of three digits.
+    let color = |pixel: &[u16]| {
         let differences =
             pixel.iter().take(pixels.colours()).zip(background).map(|(sample, zero)| sample.abs_diff(zero));
-        differences.max().unwrap_or_default()
+        differences.fold((0, 0.0), |(most, key), sample| (most.max(sample), 65536.0 * key + f64::from(sample)))
     };
-    let level_of = |i: usize| pixels.samples.get(i * channels..).and_then(|rest| rest.get(..channels)).map_or(0, level);
-    outlined(info.width, info.height, false, &|i| level_of(i).into())
+    let pixel_at =
+        |i: usize| pixels.samples.get(i * channels..).and_then(|rest| rest.get(..channels)).unwrap_or_default();
+    let level = |i: usize| f64::from(if is_cut_out { alpha(pixel_at(i)) } else { color(pixel_at(i)).0 });
+    // Of a cut-out, the colours may be those of a photo.
+    let key = |i: usize| if is_cut_out && alpha(pixel_at(i)) == 0 { 0.0 } else { color(pixel_at(i)).1 };
+    outlined(info.width, info.height, &Values { value: &level, key: &key, is_float: false, is_cut_out })
 }
 
-/// The mask of these values by their index, row-major.
-fn outlined(width: usize, height: usize, is_float: bool, value: &dyn Fn(usize) -> f64) -> Result<MaskImage> {
+/// The values of a mask by their index, row-major.
+struct Values<'a> {
+    value: &'a dyn Fn(usize) -> f64,
+    /// Differs between labels that have the same value, such as colours.
+    key: &'a dyn Fn(usize) -> f64,
+    is_float: bool,
+    is_cut_out: bool,
+}
+
+impl<'a> Values<'a> {
+    /// Values of one channel.
+    fn of(value: &'a dyn Fn(usize) -> f64, is_float: bool) -> Self {
+        Self { value, key: value, is_float, is_cut_out: false }
+    }
+}
+
+/// Values above the logarithm of ½ are the object if they are logarithms of probabilities.
+const HALF_LOGARITHM: f64 = -core::f64::consts::LN_2;
+
+#[inline(never)]
+fn outlined(
+    width: usize,
+    height: usize,
+    &Values { value, key, is_float, is_cut_out }: &Values<'_>,
+) -> Result<MaskImage> {
     let count = width * height;
     let others = (0..count).map(value).filter(|&value| value != 0.0 && !value.is_nan());
     let (mut first, mut low, mut high, mut is_binary) = (None, 0.0_f64, 0.0_f64, true);
     for value in others {
         (low, high, is_binary) = (low.min(value), high.max(value), is_binary && value == *first.get_or_insert(value));
     }
+    // −1 may be true; −6 is no object.
+    is_binary &= !is_float || low >= 0.0;
     let first = first.unwrap_or(1.0);
-    let half = if is_float && high <= 1.0 { 0.5 } else { 0.5 * high };
-    let (lowest, kind) = if is_binary {
-        (first, "")
-    } else if low < 0.0 {
-        (f64::MIN_POSITIVE, ": logits")
-    } else if has_labels(width, count, high, value) {
+    let half = match (is_float, high) {
+        (true, 0.0) if low < 0.0 => HALF_LOGARITHM,
+        (true, ..=1.0) if low >= 0.0 => 0.5,
+        _ => 0.5 * high,
+    };
+    let (lowest, kind) = if (is_binary || !is_cut_out) && low >= 0.0 && has_labels(width, count, key) {
         (f64::MIN_POSITIVE, ": labels")
+    } else if is_binary {
+        (first, "")
+    } else if low < 0.0 && half != HALF_LOGARITHM {
+        (f64::MIN_POSITIVE, ": logits")
     } else {
         (half, "")
     };
     let range = format!("of {} to {}", number(low), number(high));
     let reading = match (is_binary, kind) {
-        (true, _) => format!("values of {}", number(first)),
+        (true, "") => format!("values of {}", number(first)),
         (_, "") => format!("values of {} or more, {range}", number(half)),
         _ => format!("values above 0, {range}{kind}"),
     };
-    let is_object = |value: f64| if is_binary { value == lowest } else { value >= lowest };
+    let is_object = |value: f64| if is_binary && kind.is_empty() { value == lowest } else { value >= lowest };
     let object = (0..count).map(|i| u8::from(is_object(value(i)))).collect();
     Ok(MaskImage { object: Image::new("mask", width, height, object)?, reading })
 }
 
+/// Levels of a mask with soft edges are more than these.
+const FEW: usize = 8;
+
 /// Whether the image is a map of labels: most values between 0 and the largest equal their neighbours above and to the left.
-/// Values of soft edges and network outputs rarely do.
-fn has_labels(width: usize, count: usize, high: f64, value: &dyn Fn(usize) -> f64) -> bool {
-    let (mut between, mut flat) = (0_usize, 0_usize);
-    for i in (width + 1)..count {
-        let level = value(i);
-        if level >= 0.05 * high && level <= 0.95 * high {
-            between += 1;
-            flat += usize::from(level == value(i - 1) && level == value(i - width));
+/// Values of soft edges and network outputs rarely do, unless the image was enlarged: then rows repeat, and along a row most
+/// are between their neighbours.
+#[inline(never)]
+fn has_labels(width: usize, count: usize, key: &dyn Fn(usize) -> f64) -> bool {
+    let (mut labels, mut high, mut is_few) = ([0.0; FEW], 0.0_f64, true);
+    for level in (0..count).map(key).filter(|level| *level > 0.0) {
+        high = high.max(level);
+        match labels.iter_mut().find(|label| **label == level || **label == 0.0) {
+            Some(label) => *label = level,
+            None => is_few = false,
         }
     }
-    2 * flat > between
+    if labels[1] == 0.0 {
+        return false;
+    }
+    let range = if is_few { [0.0, 1.0] } else { [0.05, 0.95] }.map(|share| share * high);
+    let is_between = |level: f64| level > range[0] && level < range[1];
+    let [mut between, mut flat, mut rows, mut repeated, mut steps, mut ordered] = [0_usize; 6];
+    for row in 1..count / width {
+        let mut runs = [0.0; 2];
+        let (mut is_full, mut is_like) = (false, true);
+        for i in row * width..(row + 1) * width {
+            let (level, above) = (key(i), key(i - width));
+            is_full |= level != 0.0;
+            is_like &= level == above;
+            if is_between(level) {
+                between += 1;
+                flat += usize::from(level == above && level == key(i - 1));
+            }
+            let [before, last] = runs;
+            if level != last {
+                steps += usize::from(is_between(last));
+                ordered += usize::from(is_between(last) && (before < last) == (last < level));
+                runs = [last, level];
+            }
+        }
+        rows += usize::from(is_full);
+        repeated += usize::from(is_full && is_like);
+    }
+    // Enlarged by four, three rows of four repeat the one before.
+    let is_enlarged = 5 * repeated > 3 * rows;
+    // Two values are no edge that was enlarged.
+    2 * flat > between && !(labels[2] > 0.0 && is_enlarged && 2 * ordered > steps)
 }

@@ -1,6 +1,7 @@
 //! NumPy `.npy` files, versions 1 to 3: arrays of numbers.
 
 use crate::cursor::Cursor;
+use crate::depth_image::Stored;
 use crate::guard::{corrupt, pixel_count, unsupported};
 use sim3align_runtime::error::Result;
 
@@ -118,12 +119,15 @@ impl<'a> NpyArray<'a> {
     }
 
     /// The elements in row-major order of an array of these two or three sides, whatever the order of the file.
-    pub fn values(&self, [rows, columns, channels]: [usize; 3]) -> impl Iterator<Item = f64> {
-        (0..rows * columns * channels).map(move |i| {
-            let (row, column, channel) = (i / (columns * channels), i / channels % columns, i % channels);
-            let fortran = row + rows * (column + columns * channel);
-            self.value(if self.header.fortran_order { fortran } else { i })
-        })
+    pub fn values(&self, sides @ [rows, columns, channels]: [usize; 3]) -> impl Iterator<Item = f64> {
+        (0..rows * columns * channels).map(move |i| self.at(i, sides))
+    }
+
+    /// The element with this index in row-major order of an array of these sides.
+    pub fn at(&self, i: usize, [rows, columns, channels]: [usize; 3]) -> f64 {
+        let (row, column, channel) = (i / (columns * channels), i / channels % columns, i % channels);
+        let fortran = row + rows * (column + columns * channel);
+        self.value(if self.header.fortran_order { fortran } else { i })
     }
 }
 
@@ -141,7 +145,7 @@ impl<'a> NpyImage<'a> {
         let header = NpyHeader::read(argument, &mut Cursor::new(argument, bytes))?;
         let &[height, width] = header.squeezed(2) else {
             let found = format!("an array of shape {:?}", header.shape);
-            let remedy = "Pass one image: array[0] of a batch, array[..., 0] of channels.";
+            let remedy = "Pass one image: array[0] of a batch, one channel of several.";
             return Err(unsupported(argument, found, "H × W, H × W × 1 or 1 × H × W", remedy));
         };
         pixel_count(argument, width, height)?;
@@ -162,11 +166,69 @@ impl<'a> NpyImage<'a> {
         };
         self.array.value(place)
     }
+}
 
-    /// The elements, row-major, for both storage orders of the file.
-    pub fn values(&self) -> impl Iterator<Item = f64> {
-        self.array.values([self.height, self.width, 1])
+/// A point map: H×W×3 or 3×H×W, also with further axes of length 1.
+#[derive(Debug)]
+pub(crate) struct NpyPoints<'a> {
+    array: NpyArray<'a>,
+    sides: [usize; 3],
+    /// Whether the coordinates of a point are beside one another.
+    is_interleaved: bool,
+}
+
+impl<'a> NpyPoints<'a> {
+    /// Reads a point map from a `.npy` file; `None` for an image of one channel.
+    pub fn read(bytes: &'a [u8]) -> Result<Option<Self>> {
+        let header = NpyHeader::read("depth", &mut Cursor::new("depth", bytes))?;
+        if let &[_, _] = header.squeezed(2) {
+            return Ok(None);
+        }
+        let Some((sides, is_interleaved)) = point_sides(header.squeezed(3)) else {
+            let found = format!("an array of shape {:?}", header.shape);
+            let remedy = "Pass one image of a batch, array[0].";
+            return Err(unsupported("depth", found, "H × W, or the points of H × W × 3 or 3 × H × W", remedy));
+        };
+        let [height, width] = image_sides(sides, is_interleaved);
+        pixel_count("depth", width, height)?;
+        NpyArray::read("depth", bytes).map(Self::of)
     }
+
+    /// The points of an array of one of these shapes; `None` for another.
+    pub fn of(array: NpyArray<'a>) -> Option<Self> {
+        let (sides, is_interleaved) = point_sides(array.header.squeezed(3))?;
+        Some(Self { array, sides, is_interleaved })
+    }
+
+    /// Its size and the type of its numbers.
+    pub fn stored(&self) -> Stored {
+        let [height, width] = image_sides(self.sides, self.is_interleaved);
+        let NpyHeader { size, kind, .. } = self.array.header;
+        Stored { width, height, bits: 8 * size, is_integer: kind != Kind::Float }
+    }
+
+    /// x, y and z of the pixel with this index, row-major.
+    pub fn point(&self, index: usize) -> [f64; 3] {
+        let [_, rows, columns] = self.sides;
+        [0, 1, 2].map(|axis| {
+            self.array
+                .at(if self.is_interleaved { 3 * index + axis } else { axis * rows * columns + index }, self.sides)
+        })
+    }
+}
+
+/// The sides of a point map, and whether the coordinates of a point are beside one another.
+pub(crate) fn point_sides(shape: &[usize]) -> Option<([usize; 3], bool)> {
+    match *shape {
+        [height, width, 3] => Some(([height, width, 3], true)),
+        [3, height, width] => Some(([3, height, width], false)),
+        _ => None,
+    }
+}
+
+/// Height and width of a point map of these sides.
+pub(crate) fn image_sides([a, b, c]: [usize; 3], is_interleaved: bool) -> [usize; 2] {
+    if is_interleaved { [a, b] } else { [b, c] }
 }
 
 /// The text of a value in the header, which is a Python dictionary of literals.

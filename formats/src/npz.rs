@@ -3,7 +3,9 @@
 //! Files of these programs (2026): Depth Pro saves `depth` in metres, and its network returns `focallength_px` beside
 //! it. MoGe returns `points` (H×W×3), `depth`, `mask`, and `intrinsics` in image sizes; invalid pixels are infinite.
 //! Depth Anything 3 saves `depth` (N×H×W), `conf`, `intrinsics` (N×3×3, pixels) and `extrinsics`. UniDepth returns `depth`
-//! (1×1×H×W), `points` (1×3×H×W) and `intrinsics` (pixels). Metric3D returns `pred_depth` (1×1×H×W).
+//! (1×1×H×W), `points` (1×3×H×W) and `intrinsics` (pixels). Metric3D returns `pred_depth` (1×1×H×W). DUSt3R and MASt3R have
+//! `pts3d` (H×W×3), `conf`, `focals` and `principal_points` (pixels); VGGT `depth`, `depth_conf`, `world_points`, `extrinsic`
+//! and `intrinsic`. The names below are all that are known: `unread` has the others.
 
 use std::io::{self, Read};
 
@@ -14,8 +16,10 @@ use crate::cursor::Cursor;
 use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::file_camera::FileCamera;
 use crate::guard::{corrupt, pixel_count, too_large, unsupported};
-use crate::npy::{Kind, NpyArray, NpyHeader};
+use crate::npy::{Kind, NpyArray, NpyHeader, NpyPoints, image_sides, point_sides};
+use crate::point_map;
 use sim3align_geometry::depth_kind::DepthKind;
+use sim3align_geometry::pinhole::Pinhole;
 use sim3align_runtime::error::{Error, ErrorCode, Result};
 
 /// Names of depth, in order of preference.
@@ -24,8 +28,9 @@ const DEPTH: [&str; 6] = ["depth", "depth_map", "depthmap", "pred_depth", "predi
 /// Names of inverse depth.
 const DISPARITY: [&str; 4] = ["disparity", "inverse_depth", "inv_depth", "disp"];
 
-/// Names of point maps.
-const POINTS: [&str; 5] = ["points", "point_map", "pointmap", "pts3d", "points3d"];
+/// Names of point maps in the frame of the camera.
+const POINTS: [&str; 10] =
+    ["points", "point_map", "pointmap", "pts3d", "points3d", "pts", "xyz", "xyz_map", "points_cam", "pts3d_cam"];
 
 /// Names of masks of the pixels that have depth.
 const MASKS: [&str; 3] = ["mask", "valid", "valid_mask"];
@@ -41,11 +46,55 @@ const INTRINSICS: [&str; 9] = [
     "camera_intrinsics",
     "intrinsics_matrix",
 ];
-const FOCAL_LENGTHS: [&str; 4] = ["focallength_px", "focal_length_px", "f_px", "focal"];
+/// In pixels: one number, or two for columns and rows.
+const FOCAL_LENGTHS: [&str; 9] = [
+    "focallength_px",
+    "focal_length_px",
+    "f_px",
+    "focal",
+    "focals",
+    "focal_length",
+    "focal_lengths",
+    "focallength",
+    "focal_px",
+];
+/// In pixels, beside focal lengths.
+const PRINCIPAL_POINTS: [&str; 4] = ["principal_point", "principal_points", "pp", "pps"];
 const FIELDS_OF_VIEW: [[&str; 1]; 2] = [["fov_x"], ["fov_y"]];
 
-/// Names of maps that are no depth.
-const OTHER_MAPS: [&str; 5] = ["conf", "confidence", "uncertainty", "error", "sky"];
+/// Names of maps that are no depth, and do not matter here.
+const OTHER_MAPS: [&str; 8] =
+    ["conf", "confidence", "uncertainty", "error", "sky", "depth_conf", "pts3d_conf", "world_points_conf"];
+
+/// Names of what else does not matter here: pictures, normals, poses of the camera, and times.
+const OTHERS: [&str; 26] = [
+    "normal",
+    "normals",
+    "rgb",
+    "image",
+    "images",
+    "img",
+    "color",
+    "colors",
+    "colour",
+    "world_points",
+    "extrinsic",
+    "extrinsics",
+    "pose",
+    "poses",
+    "camera_pose",
+    "camera_poses",
+    "cam2world",
+    "c2w",
+    "w2c",
+    "timestamp",
+    "timestamps",
+    "frame_id",
+    "height",
+    "width",
+    "image_size",
+    "gravity",
+];
 
 /// Maximum number of entries.
 const MAX_ENTRIES: usize = 1024;
@@ -59,10 +108,8 @@ const HEADER_BYTES: u64 = 4096;
 pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     let mut archive = Archive::open(bytes)?;
     let source = archive.source(kind)?;
-    let ([height, width], entry) = match &source {
-        Source::Map(entry, size) => (*size, entry),
-        Source::Points(entry, size, _) => (*size, entry),
-    };
+    let (Source::Map(entry, [height, width]) | Source::Points(entry, [height, width])) = &source;
+    let (height, width) = (*height, *width);
     pixel_count("depth", width, height)?;
     let stored = Stored { width, height, bits: 8 * entry.header.size, is_integer: entry.header.kind != Kind::Float };
     stored.check_bits(kind, || format!("an array `{}` of 8-bit elements", entry.name))?;
@@ -72,18 +119,21 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
     let data = archive.read(entry)?;
     let array = NpyArray::read("depth", &data)?;
     let keep = |(i, z)| if is_valid(i) { z } else { f64::NAN };
-    let image = match source {
-        Source::Map(..) => stored.read(options, kind, array.values([height, width, 1]).enumerate().map(keep)),
-        Source::Points(_, _, true) => {
-            let z = array.values([height, width, 3]).skip(2).step_by(3);
-            stored.read(options, kind, z.enumerate().map(keep))
+    let image = match (&source, NpyPoints::of(array)) {
+        (Source::Points(..), Some(map)) => {
+            point_map::read(&stored, options, kind, &|i| map.point(i).map(|x| keep((i, x))))?
         }
-        Source::Points(_, _, false) => {
-            let z = array.values([3, height, width]).skip(2 * height * width);
-            stored.read(options, kind, z.enumerate().map(keep))
+        _ => {
+            let array = NpyArray::read("depth", &data)?;
+            stored.read(options, kind, &|i| keep((i, array.at(i, [height, width, 1]))))?
         }
     };
-    image.map(|image| DepthImage { camera, ..image })
+    // Of points beside the depth, at least the camera.
+    let beside =
+        if camera.is_none() && image.camera.is_none() { archive.beside(entry, [height, width])? } else { None };
+    let camera = camera.or(image.camera).or(beside);
+    let unread = archive.unread(&entry.name);
+    Ok(DepthImage { camera, unread, ..image })
 }
 
 /// An array of an archive, of which the header has been read.
@@ -100,43 +150,81 @@ struct Entry {
 /// The array of the depth: an image, or the z of points, with its height and width.
 enum Source {
     Map(Entry, [usize; 2]),
-    /// Whether the coordinates of a point are beside one another.
-    Points(Entry, [usize; 2], bool),
+    Points(Entry, [usize; 2]),
 }
 
 struct Archive<'a> {
     zip: ZipArchive<io::Cursor<&'a [u8]>>,
     entries: Vec<Entry>,
+    /// The names of what is no array of numbers.
+    others: Vec<String>,
 }
 
 impl<'a> Archive<'a> {
-    /// Reads the headers of all arrays. Other arrays than those of numbers are left out.
+    /// Reads the headers of all arrays of numbers.
     fn open(bytes: &'a [u8]) -> Result<Self> {
         let mut zip = ZipArchive::new(io::Cursor::new(bytes)).map_err(|error| broken(&error))?;
         if zip.len() > MAX_ENTRIES {
             return Err(too_large("depth", format!("{} arrays", zip.len()), format!("at most {MAX_ENTRIES}")));
         }
-        let mut entries = Vec::new();
+        let (mut entries, mut others) = (Vec::new(), Vec::new());
         for index in 0..zip.len() {
             let file = zip.by_index(index).map_err(|error| broken(&error))?;
             let name = file.name().map_err(|error| broken(&error))?.to_ascii_lowercase();
-            let Some(name) = name.strip_suffix(".npy").map(str::to_owned) else { continue };
+            let Some(name) = name.strip_suffix(".npy").map(str::to_owned) else {
+                others.push(name);
+                continue;
+            };
             let mut head = Vec::new();
             file.take(HEADER_BYTES).read_to_end(&mut head).map_err(|error| cut(&name, &error))?;
             let mut cursor = Cursor::new("depth", &head);
             let header = match NpyHeader::read("depth", &mut cursor) {
                 Ok(header) => header,
-                // Text, objects and records are not for us.
-                Err(error) if error.code == ErrorCode::UnsupportedFormat => continue,
-                // Records of many fields.
-                Err(_) if head.len() as u64 == HEADER_BYTES => continue,
+                // Text, objects and records, some of many fields, are not for us.
+                Err(error) if error.code == ErrorCode::UnsupportedFormat || head.len() as u64 == HEADER_BYTES => {
+                    others.push(name);
+                    continue;
+                }
                 Err(error) => return Err(error),
             };
             let start = head.len() - cursor.remaining().len();
             let bytes = header.count().saturating_mul(header.size).saturating_add(start);
             entries.push(Entry { name, index, header, bytes });
         }
-        Ok(Self { zip, entries })
+        Ok(Self { zip, entries, others })
+    }
+
+    /// The arrays that are not known, but for the one that is read.
+    fn unread(&self, used: &str) -> Vec<String> {
+        let [fov_x, fov_y] = &FIELDS_OF_VIEW;
+        let known: [&[&str]; 11] = [
+            &DEPTH,
+            &DISPARITY,
+            &POINTS,
+            &MASKS,
+            &INTRINSICS,
+            &FOCAL_LENGTHS,
+            &PRINCIPAL_POINTS,
+            fov_x,
+            fov_y,
+            &OTHER_MAPS,
+            &OTHERS,
+        ];
+        let names = self.entries.iter().map(|entry| &entry.name).chain(&self.others);
+        let is_known = |name: &&String| *name == used || known.iter().any(|names| names.contains(&name.as_str()));
+        names.filter(|name| !is_known(name)).map(|name| format!("the array `{name}` of the depth file")).collect()
+    }
+
+    /// The camera of the points beside the depth of this size.
+    fn beside(&mut self, depth: &Entry, size: [usize; 2]) -> Result<Option<Pinhole>> {
+        let is_of_size = |entry: &Entry| {
+            entry.name != depth.name && matches!(points(entry.clone()), Ok(Source::Points(_, own)) if own == size)
+        };
+        let Some(entry) = self.find(&POINTS).filter(is_of_size) else { return Ok(None) };
+        let data = self.read(&entry)?;
+        let Some(map) = NpyPoints::of(NpyArray::read("depth", &data)?) else { return Ok(None) };
+        let image = point_map::read(&map.stored(), &DepthReadOptions::default(), DepthKind::Metric, &|i| map.point(i));
+        Ok(image.ok().and_then(|image| image.camera))
     }
 
     /// The array with the first of these names that there is.
@@ -180,6 +268,15 @@ impl<'a> Archive<'a> {
         let mut maps = self.entries.iter().filter(is_map);
         if let (Some(only), None) = (maps.next(), maps.next()) {
             return image(only.clone());
+        }
+        let is_points = |entry: &&Entry| {
+            entry.header.kind == Kind::Float
+                && !OTHERS.contains(&entry.name.as_str())
+                && points((*entry).clone()).is_ok()
+        };
+        let mut all_points = self.entries.iter().filter(is_points);
+        if let (Some(only), None, false) = (all_points.next(), all_points.next(), is_disparity) {
+            return points(only.clone());
         }
         if let Some(Entry { name, .. }) = disparity {
             return Err(unsupported(
@@ -240,16 +337,24 @@ impl<'a> Archive<'a> {
             }
             Some(entry) => return Err(several(&entry, "intrinsics of one image, 3 × 3")),
         };
-        let focal_length = self.number(&FOCAL_LENGTHS)?;
+        let focal_lengths = self.pair(&FOCAL_LENGTHS)?;
+        let principal_point = self.pair(&PRINCIPAL_POINTS)?;
         let [fov_x, fov_y] = FIELDS_OF_VIEW;
-        let fields_of_view = [self.number(&fov_x)?, self.number(&fov_y)?];
-        Ok(FileCamera { intrinsics, focal_length, fields_of_view })
+        let fields_of_view = [self.pair(&fov_x)?.map(|[x, _]| x), self.pair(&fov_y)?.map(|[y, _]| y)];
+        Ok(FileCamera { intrinsics, focal_lengths, principal_point, fields_of_view })
     }
 
-    fn number(&mut self, names: &[&str]) -> Result<Option<f64>> {
-        let Some(entry) = self.find(names).filter(|entry| entry.header.count() == 1) else { return Ok(None) };
+    /// Two numbers, or one twice.
+    fn pair(&mut self, names: &[&str]) -> Result<Option<[f64; 2]>> {
+        let Some(entry) = self.find(names) else { return Ok(None) };
+        let last = match entry.header.count() {
+            1 => 0,
+            2 => 1,
+            _ => return Err(several(&entry, "one or two numbers of one image")),
+        };
         let data = self.read(&entry)?;
-        Ok(Some(NpyArray::read("depth", &data)?.value(0)))
+        let values = NpyArray::read("depth", &data)?;
+        Ok(Some([values.value(0), values.value(last)]))
     }
 }
 
@@ -270,10 +375,9 @@ fn image(entry: Entry) -> Result<Source> {
 }
 
 fn points(entry: Entry) -> Result<Source> {
-    match *entry.header.squeezed(3) {
-        [height, width, 3] => Ok(Source::Points(entry, [height, width], true)),
-        [3, height, width] => Ok(Source::Points(entry, [height, width], false)),
-        _ => Err(several(&entry, "the points of one image, H × W × 3")),
+    match point_sides(entry.header.squeezed(3)) {
+        Some((sides, is_interleaved)) => Ok(Source::Points(entry, image_sides(sides, is_interleaved))),
+        None => Err(several(&entry, "the points of one image, H × W × 3")),
     }
 }
 

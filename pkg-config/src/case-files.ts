@@ -6,7 +6,15 @@ import { requiredBytes } from "./input/bytes.js";
 import { refersToFiles } from "./input/formats.js";
 import { gltfText } from "./input/webp.js";
 import { formatsModule } from "./modules/readers.js";
-import type { AlignInput, DepthKind, EncodedBytes, MeshFile, MeshFormat, ViewInput } from "./types/inputs.js";
+import type {
+  AlignInput,
+  DepthCoding,
+  DepthKind,
+  EncodedBytes,
+  MeshFile,
+  MeshFormat,
+  ViewInput,
+} from "./types/inputs.js";
 import { failure, Sim3AlignError } from "./values/error.js";
 import { naturally } from "./values/order.js";
 import { record, withoutUndefined } from "./values/validation.js";
@@ -15,12 +23,13 @@ import { record, withoutUndefined } from "./values/validation.js";
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
 
 /** How to read the files of a case or scene. */
-export type ReadCaseOptions = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask">> & {
-  /** What the values of the depth map are; `"metric"` by default. */
-  depthKind?: DepthKind | undefined;
-  /** Whether to read the photo; `true` by default. */
-  image?: boolean | undefined;
-};
+export type ReadCaseOptions = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask" | "maskIndex">> &
+  DepthCoding & {
+    /** What the values of the depth map are; `"metric"` by default. */
+    depthKind?: DepthKind | undefined;
+    /** Whether to read the photo; `true` by default. */
+    image?: boolean | undefined;
+  };
 
 /** A case whose files have been read, but not decoded. */
 export interface Case {

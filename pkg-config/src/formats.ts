@@ -8,8 +8,8 @@ import type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
-import { decodedRle, readRleFile } from "./input/coco-rle.js";
 import { decodeDepth } from "./input/depth.js";
+import { readJsonMask } from "./input/mask.js";
 import { decodeMesh } from "./input/mesh.js";
 import type { DracoDecoderModule, MeshoptDecoder } from "./input/mesh-decoders.js";
 import { decodeExif, decodePhoto } from "./input/photo.js";
@@ -23,6 +23,7 @@ import type {
   CocoRle,
   DepthImage,
   EncodedBytes,
+  MaskJson,
   MeshFormat,
   ReadDepthOptions,
 } from "./types/inputs.js";
@@ -77,7 +78,7 @@ export interface MeshFromFile {
 
 /** A mask from a file, row-major; 1 is the object. */
 export interface MaskFromFile extends PixelArray<Uint8Array> {
-  /** Which values of the file are the object: `"values of 127.5 or more, of 0 to 255"`; not of COCO RLE. */
+  /** Which values of the file are the object: `"values of 127.5 or more, of 0 to 255"`; of JSON, which of several masks. */
   reading?: string;
   /** What the file holds besides, and the reader does not know. */
   unread?: readonly string[];
@@ -99,25 +100,37 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
  * @param options.integerDepthScale the same for integers only: the `depthScale` of a camera file
  * @param options.depthKind what the values are, `"metric"` by default; PNGs and arrays of 8 bits are read for the
  * affine-invariant kinds only
+ * @param options.depthCode the code of the values, if they are no lengths, with `depthNear` and `depthFar` in metres
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = {}): Promise<DepthImage> {
-  const given = optionsOf(options, ["depthScale", "integerDepthScale", "depthKind"]);
+  const given = optionsOf(options, [
+    ...(["depthScale", "integerDepthScale", "depthKind", "depthCode", "depthNear", "depthFar"] as const),
+  ]);
   const bytes = await requiredBytes("file", file);
   return decodeDepth("file", bytes, given, fileReaders);
 }
 
 /**
- * Reads a mask file (PNG, NPY, COCO RLE or JPEG), or COCO RLE as an object. The outline of a mask with soft edges is at half of
- * its range, that of logits at 0; in a map of labels, all are the object.
+ * Reads a mask file (PNG, NPY, JSON or JPEG), or the content of a JSON file: COCO RLE, or a file of COCO, SAM, LabelMe, VGG
+ * Image Annotator, Supervisely or ISAT. The outline of a mask with soft edges is at half of its range, that of logits at 0; in
+ * a map of labels, all are the object.
+ * @param options.index the place of the mask in a JSON file of several, from 0
+ * @param options.width the width of the image, for polygons whose file does not state it, with `height`
  * @returns row-major; 1 is the object
  * @throws {@link Sim3AlignError} for any other file
  */
-export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskFromFile> {
-  if (isRecord(file)) return decodedRle("rle", file);
-  const bytes = await requiredBytes("file", file);
-  if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
-  return call(bytes, (readers) => readers.readMask(bytes));
+export async function readMask(
+  file: EncodedBytes | CocoRle | MaskJson,
+  options: { index?: number | undefined; width?: number | undefined; height?: number | undefined } = {},
+): Promise<MaskFromFile> {
+  const { index, width, height } = optionsOf(options, ["index", "width", "height"]);
+  const size = width === undefined || height === undefined ? undefined : { width, height };
+  const isJson = isRecord(file) || Array.isArray(file);
+  const bytes = isJson ? undefined : await requiredBytes("file", file);
+  if (bytes !== undefined && !beginsLikeJson(bytes)) return call(bytes, (readers) => readers.readMask(bytes));
+  const content = bytes ?? plainArgument("file", file as object);
+  return (await readJsonMask("mask", content, index, size, fileReaders.formats)) as MaskFromFile;
 }
 
 /**
@@ -208,8 +221,8 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 }
 
 /**
- * Reads a case folder: a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM) called `depth`, a mask file (PNG, NPY, COCO RLE
- * or JPEG) called `mask`, a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT) called `mesh`, and optionally a camera file (JSON,
+ * Reads a case folder: a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM) called `depth`, a mask file (PNG, NPY, JSON or
+ * JPEG) called `mask`, a mesh file (GLB, glTF, OBJ, PLY, STL or SPLAT) called `mesh`, and optionally a camera file (JSON,
  * text, YAML, XML, INI or NPY: `camera`, `K`, `intrinsics`, …), a photo file (PNG, JPEG or WebP: `rgb`, `image`, …), and `gt.json`. The guide
  * on frames lists all names. Upper and lower case are the same. Intrinsics of the colour camera are passed over beside those of
  * the depth camera (`intrinsic_depth.txt`). What is not read is in `unread`.
@@ -257,7 +270,10 @@ export async function readSam3d(files: CaseFiles, settings: ReadCaseOptions = {}
 }
 
 const caseOptions = (settings: ReadCaseOptions) =>
-  optionsOf(settings, ["depthScale", "imageId", "resizeMask", "depthKind", "image"]);
+  optionsOf(settings, [
+    ...(["depthScale", "imageId", "resizeMask", "maskIndex", "depthKind", "image"] as const),
+    ...(["depthCode", "depthNear", "depthFar"] as const),
+  ]);
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {
   const given = plainArgument(argument, file);

@@ -23,7 +23,7 @@ export const wasmModules = [
   { name: "joint", crate: "sim3align-joint", budget: 308_000 },
   { name: "registration", crate: "sim3align-registration", budget: 148_500 },
   { name: "formats", crate: "sim3align-module-formats", budget: 264_000 },
-  { name: "depth-files", crate: "sim3align-depth-files", budget: 242_000 },
+  { name: "depth-files", crate: "sim3align-depth-files", budget: 245_000 },
   { name: "splats", crate: "sim3align-splats", budget: 62_000 },
   { name: "webp", crate: "sim3align-webp", budget: 82_000 },
   { name: "physics", crate: "sim3align-module-physics", budget: 77_000 },

@@ -41,13 +41,13 @@ export function checkDocuments() {
 /** @throws if documents or comments lack a name of a file or a kind of depth, or name other formats or sizes than there are */
 export async function checkNames() {
   const { build } = await import("esbuild");
-  const tables = ["case-names", "input/formats", "input/depth-kinds", "camera/keys"].map(
+  const tables = ["case-names", "input/formats", "input/depth-kinds", "input/depth-codes", "camera/keys"].map(
     (name) => `export * from "./${name}.js";`,
   );
   const stdin = { contents: tables.join("\n"), resolveDir: at("pkg-config", "src") };
   const { outputFiles } = await build({ stdin, bundle: true, write: false, format: "esm" });
   const found = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0]?.text ?? "")}`);
-  const { caseNames, depthKinds, fileFormats, formatsText, keyTable } = found;
+  const { caseNames, depthCodes, depthKinds, fileFormats, formatsText, keyTable } = found;
 
   const read = (/** @type {string} */ path) => readFileSync(path, "utf8");
   const parts = Object.values(caseNames).flatMap(({ stems, extensions }) => [
@@ -56,7 +56,7 @@ export async function checkNames() {
   const guides = documents()
     .map(({ text }) => text)
     .join("\n");
-  const faults = [...new Set([...parts, ...Object.keys(depthKinds)])]
+  const faults = [...new Set([...parts, ...Object.keys(depthKinds), ...Object.keys(depthCodes)])]
     .filter((name) => !new RegExp(`[\`"]${name}[\`"]`).test(guides))
     .map((name) => `The guides have no ${name}`);
 

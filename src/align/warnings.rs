@@ -7,11 +7,12 @@ use crate::precise::drawing::removed_parts::RemovedParts;
 use crate::report::Preset;
 use crate::report::{ScoreTerms, Warning, WarningCode, is_collapsed};
 
-/// Median depth in metres above which the depth is probably in millimetres.
-const IMPLAUSIBLE_DEPTH_M: f32 = 100.0;
+/// Median depth of an object and its size, metres, above which the depth is probably in another unit, such as millimetres: also
+/// in one that is stated.
+const IMPLAUSIBLE_M: [f64; 2] = [20.0, 3.0];
 
-/// Median depth in metres below which the depth was probably converted from millimetres twice.
-const IMPLAUSIBLY_NEAR_M: f32 = 0.01;
+/// The same below, as of depth that was converted from millimetres twice.
+const TOO_SMALL_M: [f64; 2] = [0.05, 0.001];
 
 /// Share of the image beyond which a mask probably selects everything instead of an object.
 const WHOLE_IMAGE: f64 = 0.99;
@@ -60,9 +61,7 @@ struct Facts<'a> {
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let facts = Facts::of(observation);
     let mut warnings = Vec::new();
-    add(&mut warnings, WarningCode::DepthLooksLikeMillimetres, facts.about_millimetres());
-    add(&mut warnings, WarningCode::SizeDoubtful, facts.about_size());
-    add(&mut warnings, WarningCode::DepthLooksTooSmall, facts.about_small_depth());
+    warnings.extend(facts.about_lengths());
     add(&mut warnings, WarningCode::DepthLooksInverted, facts.about_inverted_depth());
     add(&mut warnings, WarningCode::DepthLooksNormalised, facts.about_normalised_depth());
     add(&mut warnings, WarningCode::MaskLooksInverted, facts.about_inverted_mask());
@@ -110,39 +109,30 @@ impl<'a> Facts<'a> {
         !self.covers_image() && self.border_pixels as f64 > WHOLE_BORDER * border as f64
     }
 
-    fn about_millimetres(&self) -> Option<String> {
-        let median = self.median_m.filter(|median| *median > IMPLAUSIBLE_DEPTH_M)?;
-        let message = format!(
-            "The object's median depth is {} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001.",
-            number(f64::from(median))
-        );
-        Some(message)
-    }
-
-    fn about_size(&self) -> Option<String> {
-        let is_metric = |median: &f32| (IMPLAUSIBLY_NEAR_M..IMPLAUSIBLE_DEPTH_M).contains(median);
-        let distance = f64::from(self.median_m.filter(is_metric)?);
+    /// The median depth of the object, and its size across the image, metres.
+    fn lengths(&self) -> Option<[f64; 2]> {
+        let distance = f64::from(self.median_m?);
         let pixels = self.observation.bounds().map(|[first, last]| (last - first) as f64);
         let camera = self.observation.camera();
-        let size = distance * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt();
-        if size < LARGE_M[usize::from(!self.are_whole)] && distance > NEAR_M {
-            return None;
-        }
-        let message = format!(
-            "With the assumed unit of the depth, the object is {} m large, {} m away. If it is not, pass depthScale, metres per unit: 0.01 for centimetres, 0.0002 for TUM RGB-D.",
-            number(size),
-            number(distance)
-        );
-        Some(message)
+        Some([distance, distance * ((pixels[0] / camera.fx).powi(2) + (pixels[1] / camera.fy).powi(2)).sqrt()])
     }
 
-    fn about_small_depth(&self) -> Option<String> {
-        let median = self.median_m.filter(|median| *median < IMPLAUSIBLY_NEAR_M)?;
+    fn about_lengths(&self) -> Option<Warning> {
+        let [distance, size] = self.lengths()?;
+        let (code, remedy) = if distance > IMPLAUSIBLE_M[0] || size > IMPLAUSIBLE_M[1] {
+            (WarningCode::DepthLooksLikeMillimetres, "0.001 for millimetres; floats in millimetres have it, too.")
+        } else if distance < TOO_SMALL_M[0] || size < TOO_SMALL_M[1] {
+            (WarningCode::DepthLooksTooSmall, "1 for metres.")
+        } else if size >= LARGE_M[usize::from(!self.are_whole)] || distance <= NEAR_M {
+            (WarningCode::SizeDoubtful, "0.01 for centimetres, 0.0002 for TUM RGB-D.")
+        } else {
+            return None;
+        };
+        let [size, distance] = [size, distance].map(number);
         let message = format!(
-            "The object's median depth is {} m. Integers are taken as millimetres: for integers in metres pass depthScale 1. Floats are in metres.",
-            number(f64::from(median))
+            "By the unit of the depth, the object is {size} m large, {distance} m away. If it is not, pass depthScale, metres per unit: {remedy}"
         );
-        Some(message)
+        Some(Warning { code, message })
     }
 
     fn about_inverted_depth(&self) -> Option<String> {

@@ -29,6 +29,10 @@ pub enum WarningCode {
     DepthLooksLikeBackground,
     /// The depth map spans exactly the range of a normalised one: its values are relative.
     DepthLooksNormalised,
+    /// The values of the depth map are like those of a code, and no lengths. The package looks at them.
+    DepthLooksCoded,
+    /// The depth in the mask has readings far from all their neighbours, and the pose is in doubt. `align` of the package looks at it.
+    DepthHasSpeckle,
     /// The mask covers the whole image: it is probably inverted, or no mask.
     MaskCoversImage,
     /// The mask covers most of the image's border: it is probably that of the background.

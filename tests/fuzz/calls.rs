@@ -66,7 +66,7 @@ fn assert_pose(pose: &Sim3) {
 pub fn readers(e: &mut Entropy<'_>) {
     let bytes = file(e);
     let depth_scale = e.pick(&[None, None, Some(0.001), Some(0.0), Some(f64::NAN), Some(1e300)]);
-    let options = DepthReadOptions { depth_scale, integer_depth_scale: None };
+    let options = DepthReadOptions { depth_scale, ..DepthReadOptions::default() };
     let is_depth = |z: &f32| z.is_finite() && *z >= 0.0;
     let resource = |_: &str| Some(bytes.clone());
     let mesh_options = MeshReadOptions { format: None, resources: Some(&resource), ..MeshReadOptions::default() };

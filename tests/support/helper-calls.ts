@@ -48,6 +48,7 @@ export const helperCalls: Readonly<Record<string, Readonly<Record<string, readon
   conventions: {
     applyToPoints: [pose, mesh.positions],
     compose: [pose, pose],
+    depthFromCode: [{ data: new Uint16Array(pixels).fill(800), ...size }, "lerobot", { depthFar: 10 }],
     correctDepth: [depth, { depthKind: "scale-invariant", scale: 2, shift: 0 }],
     cropInput: [{ depth, mask, camera }, box],
     exportGlb: [mesh, pose, { mode: "node", frame: "opengl", name: "mug" }],

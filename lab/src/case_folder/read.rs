@@ -102,7 +102,7 @@ fn last_name(path: &Path) -> String {
 fn frame(folder: &Path, owners: &[PathBuf]) -> Result<CaseFrame> {
     let (depth_path, depth_bytes) = required(folder, DEPTH_FILES)?;
     let camera: CameraFile = json(folder, CAMERA)?.ok_or_else(|| missing(folder, &[CAMERA], "no such file"))?;
-    let options = DepthReadOptions { depth_scale: None, integer_depth_scale: camera.depth_scale };
+    let options = DepthReadOptions { integer_depth_scale: camera.depth_scale, ..DepthReadOptions::default() };
     let depth = read_depth(&depth_bytes, &options).map_err(in_file(&depth_path))?;
     let size = [depth.width(), depth.height()];
     let stated = [camera.width.unwrap_or(size[0]), camera.height.unwrap_or(size[1])];

@@ -4,7 +4,10 @@ import type { InputNotes } from "../types/results.js";
 import { fromOrigin } from "./origin.js";
 
 /** The readings of the files of a view. */
-export const sourcesOf = ({ warnings: _, unread: __, colors: ___, origin: ____, ...sources }: InputNotes) => sources;
+export function sourcesOf(notes: InputNotes) {
+  const { warnings: _, doubts: __, unread: ___, colors: ____, origin: _____, ...sources } = notes;
+  return sources;
+}
 
 /** Confidence below which a pose is in doubt. */
 export const DOUBT = 0.5;
@@ -16,6 +19,18 @@ const labels: Warning = {
     "The mask has several labels, and all of them were read as one object. Pass a mask of the object's label alone, or the whole map as labels of alignScene.",
 };
 
+/** Warnings about lengths say where the unit of the depth comes from. */
+const withUnit =
+  ({ depthUnit }: InputNotes) =>
+  (warning: Warning): Warning => {
+    if (!["DEPTH_LOOKS_LIKE_MILLIMETRES", "DEPTH_LOOKS_TOO_SMALL", "SIZE_DOUBTFUL"].includes(warning.code))
+      return warning;
+    const { metres = null, source, isAssumed } = depthUnit ?? {};
+    if (metres === null) return warning;
+    const origin = `${isAssumed ? "is assumed" : "is stated"} (${source})`;
+    return { ...warning, message: `${warning.message} The unit, ${Number(metres.toPrecision(6))} m, ${origin}.` };
+  };
+
 /** A result with the notes on its files; their warnings before those of the core. */
 export function withNotes<T extends { warnings: Warning[]; confidence?: number | null }>(
   result: T,
@@ -25,7 +40,13 @@ export function withNotes<T extends { warnings: Warning[]; confidence?: number |
   const ofContent = notes.unread.map((message) => ({ code: "CONTENT_NOT_READ", message }) as const);
   // Of a unit that is stated, no size is doubtful.
   const ofCore = result.warnings.filter(({ code }) => code !== "SIZE_DOUBTFUL" || notes.depthUnit?.isAssumed === true);
-  const hasLabels = notes.maskReading?.endsWith(": labels") === true && (result.confidence ?? 0) < DOUBT;
-  const warnings = [...notes.warnings, ...(hasLabels ? [labels] : []), ...ofContent, ...ofColors, ...ofCore];
-  return { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };
+  const { confidence } = result;
+  const isDoubtful = (confidence ?? 0) < DOUBT;
+  const hasLabels = notes.maskReading?.endsWith(": labels") === true && isDoubtful;
+  const isInDoubt = isDoubtful && typeof confidence === "number";
+  const ofDoubt = [...(isInDoubt ? (notes.doubts ?? []) : []), ...(hasLabels ? [labels] : [])];
+  const warnings = [...notes.warnings, ...ofDoubt, ...ofContent, ...ofColors, ...ofCore.map(withUnit(notes))];
+  const found = { ...fromOrigin(result, notes.origin), ...sourcesOf(notes), warnings };
+  const isMisread = notes.warnings.some(({ code }) => code === "DEPTH_LOOKS_CODED");
+  return isMisread && !isDoubtful ? { ...found, confidence: DOUBT } : found;
 }

@@ -32,12 +32,12 @@ export async function correctedInput(
   calibration: DepthCalibration | undefined,
 ): Promise<AlignInput> {
   if (calibration === undefined) return input;
-  const { image, mask, mesh, resizeMask } = input;
+  const { image, mask, mesh, resizeMask, maskIndex } = input;
   // The photo is not needed to read the depth.
   const { core: view } = await resolveView({ ...input, image: undefined }, fileReaders);
   const depthMap = { data: view.depth as Float32Array, width: Number(view.width), height: Number(view.height) };
   const depth = correctDepth(depthMap, calibration);
-  return { depth, camera: calibration.camera, mask, mesh, image, resizeMask };
+  return { depth, camera: calibration.camera, mask, mesh, image, resizeMask, maskIndex };
 }
 
 /** A mesh for a file, with its transform. */

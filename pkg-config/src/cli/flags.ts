@@ -2,9 +2,9 @@
 import { type Command, Option } from "commander";
 import type { ReadCaseOptions } from "../case-folder.js";
 import type { CameraInput, Preset } from "../index.js";
-import { depthKindNames } from "../input/formats.js";
+import { depthCodeNames, depthKindNames } from "../input/formats.js";
 import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
-import type { DepthKind } from "../types/inputs.js";
+import type { DepthCode, DepthKind } from "../types/inputs.js";
 import { withoutUndefined } from "../values/validation.js";
 import { statOf, UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
@@ -60,7 +60,11 @@ export interface Flags extends Readonly<Record<string, unknown>>, Readonly<Parti
   readonly upright?: boolean;
   readonly depthScale?: number;
   readonly depthKind?: DepthKind;
+  readonly depthCode?: DepthCode;
+  readonly depthNear?: number;
+  readonly depthFar?: number;
   readonly resizeMask?: "nearest";
+  readonly maskIndex?: number;
   /** The photo, or whether to use that of a case folder. */
   readonly image?: string | boolean;
   readonly camera?: string | { value: CameraInput };
@@ -122,9 +126,13 @@ export const pictureFlags: readonly Flag[] = [
 export const caseFlags: readonly Flag[] = [
   ["--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", { parse: number }],
   ["--depth-kind <kind>", "what the values of the depth map are (default metric)", { choices: depthKindNames }],
+  ["--depth-code <name>", "the code of the depth map, if its values are no lengths", { choices: depthCodeNames }],
+  ["--depth-near <metres>", "the near plane of a code, or the depth of its lowest value", { parse: number }],
+  ["--depth-far <metres>", "the far plane of a code, or the depth of its highest value", { parse: number }],
   ["--image-id <id>", "image id in a BOP scene_camera.json"],
   ["--no-image", "do not read the photo: align by shape alone"],
   ["--resize-mask <how>", "resize the mask to the size of the depth map", { choices: ["nearest"] }],
+  ["--mask-index <n>", "the place of the mask in a JSON file of several, from 0", { parse: number }],
 ];
 
 const ofSimulators = { needs: { oneOf: ["mjcf", "urdf", "usd"], what: "--mjcf, --urdf or --usd" } } as const;
@@ -157,8 +165,11 @@ export const sceneFileFlags: readonly Flag[] = [
 ];
 
 /** The options of reading a case by the flags. */
-export const caseSettings = ({ depthScale, depthKind, imageId, resizeMask, image }: Flags): ReadCaseOptions =>
-  withoutUndefined({ depthScale, depthKind, imageId, resizeMask, image: image === false ? false : undefined });
+export const caseSettings = ({ image, ...flags }: Flags): ReadCaseOptions => {
+  const { depthScale, depthKind, depthCode, depthNear, depthFar, imageId, resizeMask, maskIndex } = flags;
+  const files = { imageId, resizeMask, maskIndex, image: image === false ? false : undefined };
+  return withoutUndefined({ depthScale, depthKind, depthCode, depthNear, depthFar, ...files });
+};
 
 /**
  * Adds flags to a command.

@@ -13,7 +13,7 @@ A case folder holds
                                  --depth-scale or the camera file says otherwise; 0 and NaN are "no reading";
                                  --depth-kind for what depth models guess without a unit
   ${named("mask")}
-                                 the object: half of the range or more; JSON is COCO RLE {"size": [h, w], "counts": …}
+                                 the object: half of the range or more; JSON of COCO, SAM, LabelMe, VIA, Supervisely, ISAT
   ${named("mesh")}
                                  the object in its own frame, in any unit
   ${named("camera")}

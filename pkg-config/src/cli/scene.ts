@@ -109,9 +109,9 @@ async function supportOf(flag: string | undefined): Promise<SceneInput["support"
 }
 
 /** The input of one object. */
-function inputOf(scene: SceneInput, { mask, mesh, resizeMask }: SceneInput["objects"][number]): AlignInput {
+function inputOf(scene: SceneInput, { mask, mesh, resizeMask, maskIndex }: SceneInput["objects"][number]): AlignInput {
   const { objects: _, labels: __, occluders: ___, support: ____, ...view } = scene;
-  return { ...view, mask, mesh, ...withoutUndefined({ resizeMask }) } as AlignInput;
+  return { ...view, mask, mesh, ...withoutUndefined({ resizeMask, maskIndex }) } as AlignInput;
 }
 
 const columns = [

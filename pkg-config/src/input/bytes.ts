@@ -65,13 +65,10 @@ export function beginsLikeImage(bytes: Uint8Array): boolean {
   return imageBeginnings.some((magic) => beginning.startsWith(magic));
 }
 
-/** Whether the bytes start like a JSON object, after an optional byte order mark. */
+/** Whether the bytes start like a JSON object, or an array of objects or arrays, after an optional byte order mark. */
 export function beginsLikeJson(bytes: Uint8Array): boolean {
   const beginning = String.fromCharCode(...bytes.subarray(0, 64));
-  return beginning
-    .replace(/^\xef\xbb\xbf/, "")
-    .trimStart()
-    .startsWith("{");
+  return /^(\xef\xbb\xbf)?\s*(\{|\[\s*[[{\]])/.test(beginning);
 }
 
 /** The bytes of a file that is passed to a conversion, not copied. */

@@ -1,9 +1,7 @@
 /** COCO's run-length encoding of masks: column-major runs, starting with background. */
 
 import type { CocoRle } from "../types/inputs.js";
-import { describe, failure, type Sim3AlignError } from "../values/error.js";
-import { type JsonFile, numbersIn, parsedJson } from "../values/json.js";
-import { isRecord } from "../values/kinds.js";
+import { describe, failure } from "../values/error.js";
 import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, type PixelArray, pixelsOf } from "../values/pixels.js";
 import { finiteNumbers, flattened, optionsOf, part, whole } from "../values/validation.js";
 
@@ -57,37 +55,13 @@ export function decodedRle(argument: string, rle: unknown): PixelArray<Uint8Arra
   return { data, width, height };
 }
 
-/** The mask in a JSON file: an encoding, or an annotation whose `segmentation` is one. */
-export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8Array> {
-  const json = parsedJson(argument, file);
-  const rle = isRecord(json) && isRecord(json.segmentation) ? json.segmentation : json;
-  if (isRecord(rle) && numbersIn(rle.size, 2) !== null && rle.counts !== undefined) return decodedRle(argument, rle);
-  if (isPolygons(isRecord(json) ? json.segmentation : json)) throw polygons(argument);
-  const expected = '{"size": [height, width], "counts": …}';
-  const remedy = "Encode the mask as COCO RLE, for example with pycocotools, or pass a PNG.";
-  throw failure("UNSUPPORTED_FORMAT", argument, "JSON without a run-length encoding", expected, remedy);
-}
-
 /** The validated run lengths of an array or a compressed string. */
 function runsOf(argument: string, counts: unknown): number[] {
   if (typeof counts === "string") return decompressed(argument, counts);
-  if (isPolygons(counts)) throw polygons(argument);
   const runs = flattened(counts);
   if (runs !== null) return runs as number[];
   const remedy = 'Pass `counts` as COCO\'s files hold it. Bytes of Python become a string by rle["counts"].decode().';
   throw failure("INVALID_ARGUMENT", argument, describe(counts), "a string, or an array of run lengths", remedy);
-}
-
-/** Whether a value is what COCO has instead of an encoding for most annotations: arrays of coordinates. */
-export function isPolygons(value: unknown): boolean {
-  return Array.isArray(value) && value.length > 0 && value.every((item) => Array.isArray(item) && item.length >= 6);
-}
-
-/** The error for polygons. */
-export function polygons(argument: string): Sim3AlignError {
-  const remedy =
-    "Convert them with pycocotools: mask.merge(mask.frPyObjects(segmentation, height, width)) is their encoding; its counts are bytes: .decode() them.";
-  return failure("UNSUPPORTED_FORMAT", argument, "polygons", "pixels, or COCO RLE: { size, counts }", remedy);
 }
 
 /** Checks a size before allocation, because the file may be malicious. */

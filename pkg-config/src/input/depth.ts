@@ -5,9 +5,10 @@ import type { FileReaders } from "../modules/readers.js";
 import type { DepthImage, DepthKind, ReadDepthOptions } from "../types/inputs.js";
 import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
-import { withoutUndefined, wrongKind } from "../values/validation.js";
+import { oneOf, positive, withoutUndefined, wrongKind } from "../values/validation.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
-import { formatsText, isAffineInvariant } from "./formats.js";
+import { explained, isColourPng } from "./coded-depth.js";
+import { depthCodeNames, formatsText, isAffineInvariant } from "./formats.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {
@@ -34,6 +35,9 @@ export interface ReadDepth extends SizedArray<DepthArray> {
 const depthForms = () =>
   `a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a file: ${formatsText("depth")}`;
 
+/** How a file is read: also the channels of a picture as the bytes of one number. */
+type FileReading = ReadDepthOptions & { isPacked?: true };
+
 /** The image size in the input, if given. */
 export interface StatedSize {
   width?: number | undefined;
@@ -47,9 +51,10 @@ export interface StatedSize {
 export async function readDepth(
   depth: unknown,
   size: StatedSize,
-  reading: ReadDepthOptions,
+  reading: FileReading,
   readers: FileReaders,
 ): Promise<ReadDepth> {
+  if (reading.depthCode !== undefined) return decoded(reading, (raw) => readDepth(depth, size, raw, readers));
   const ofArray = <T extends SizedArray<DepthArray>>(read: T) => ({ ...read, unit: unitOf(read.data, reading) });
   if (isDepthArray(depth)) return ofArray({ data: depth, ...required(size) });
   const mayHaveBytes = isAffineInvariant(reading.depthKind);
@@ -72,6 +77,21 @@ export async function readDepth(
   return file;
 }
 
+/** Reads the numbers of a code, and decodes them. */
+async function decoded<T extends { data: DepthArray; unit: DepthImage["unit"] }>(
+  { depthCode, depthNear, depthFar, depthScale = 1, depthKind }: ReadDepthOptions,
+  read: (raw: FileReading) => Promise<T>,
+): Promise<T & { data: Float32Array }> {
+  const name = oneOf("depthCode", depthCode, depthCodeNames, "INVALID_ARGUMENT");
+  const scale = positive("depthScale", depthScale);
+  const { decodedDepth } = await import("./depth-codes.js");
+  const codes = await read({ depthScale: 1, isPacked: true });
+  const data = decodedDepth(codes.data, name, { depthNear, depthFar }).map((metres) => metres * scale);
+  const unit = { metres: scale, source: `depthCode ${name}`, isAssumed: false };
+  const hasUnit = depthKind === undefined || depthKind === "metric" || depthKind === "ray-distance";
+  return { ...codes, data, unit: hasUnit ? unit : unknownUnit(depthKind) };
+}
+
 /** The unit of an array, in the words of the readers of files. */
 function unitOf(
   data: DepthArray,
@@ -90,28 +110,45 @@ function unitOf(
 export const unknownUnit = (depthKind: DepthKind) => ({ metres: null, source: depthKind, isAssumed: false });
 
 /** Signatures of the files of depth models: NPZ (also without an array), OpenEXR, TIFF and PFM. */
-const ofDepthModels = ["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "Pf\n", "PF\n", "Pf\r", "PF\r"];
+const ofDepthModels = [
+  ...["PK\x03\x04", "PK\x05\x06", "v/1\x01", "II*\0", "MM\0*", "II+\0", "MM\0+", "Pf\n", "PF\n", "Pf\r", "PF\r"],
+];
+
+/** Whether an array has more than two axes longer than 1: the same module reads point maps. */
+function hasPoints(bytes: Uint8Array): boolean {
+  if (bytes[0] !== 0x93 || bytes[1] !== 0x4e) return false;
+  const [, shape = ""] = /'shape':\s*\(([^)]*)\)/.exec(String.fromCharCode(...bytes.subarray(0, 512))) ?? [];
+  return shape.split(",").filter((side) => Number.parseInt(side, 10) > 1).length > 2;
+}
 
 /**
  * Reads a depth map of any supported format by the module for that format.
  * @param argument the name of the bytes, in errors
  * @param rename of the arguments in errors of the reader
  */
-export function decodeDepth(
+export async function decodeDepth(
   argument: string,
   bytes: Uint8Array,
-  reading: ReadDepthOptions,
+  reading: FileReading,
   readers: FileReaders,
   rename?: (argument: string) => string,
 ): Promise<DepthImage> {
+  if (reading.depthCode !== undefined)
+    return decoded(reading, (raw) => decodeDepth(argument, bytes, raw, readers, rename));
   // Distances along rays are read like other lengths; converting them needs the camera.
-  const { depthKind, ...scales } = reading;
-  const options = withoutUndefined({ ...scales, depthKind: depthKind === "ray-distance" ? undefined : depthKind });
+  const { depthKind, depthScale, integerDepthScale, isPacked } = reading;
+  const kind = depthKind === "ray-distance" ? undefined : depthKind;
+  const options = withoutUndefined({ depthScale, integerDepthScale, isPacked, depthKind: kind });
   const beginning = String.fromCharCode(...bytes.subarray(0, 4));
-  if (ofDepthModels.some((magic) => beginning.startsWith(magic))) {
+  if (ofDepthModels.some((magic) => beginning.startsWith(magic)) || hasPoints(bytes)) {
     return callReader(readers.depthFiles, argument, bytes, (module) => module.readDepthFile(bytes, options), rename);
   }
-  return callReader(readers.formats, argument, bytes, (module) => module.readDepth(bytes, options), rename);
+  const read = (packed: object = options) =>
+    callReader(readers.formats, argument, bytes, (module) => module.readDepth(bytes, packed), rename);
+  if (isPacked || !isColourPng(bytes)) return read();
+  return read().catch(async (error) => {
+    throw await explained(error, () => read({ depthScale: 1, isPacked: true }));
+  });
 }
 
 /** The values of a point map, in metres. */

@@ -3,7 +3,7 @@
  * files take them from here; `npm run update` writes them into the guides and the documentation of types. Readers load this
  * file: what only documents and user interfaces say is in `depth-kinds.ts`.
  */
-import type { DepthKind, MeshFormat } from "../types/inputs.js";
+import type { DepthCode, DepthKind, MeshFormat } from "../types/inputs.js";
 
 /** Formats by name, each with its extensions. */
 type FormatList = Readonly<Record<string, readonly string[]>>;
@@ -11,7 +11,7 @@ type FormatList = Readonly<Record<string, readonly string[]>>;
 /** The formats of each kind of file. */
 export const fileFormats = {
   depth: { NPY: ["npy"], "16-bit PNG": ["png"], NPZ: ["npz"], EXR: ["exr"], TIFF: ["tiff", "tif"], PFM: ["pfm"] },
-  mask: { PNG: ["png"], NPY: ["npy"], "COCO RLE": ["json"], JPEG: ["jpg", "jpeg"] },
+  mask: { PNG: ["png"], NPY: ["npy"], JSON: ["json"], JPEG: ["jpg", "jpeg"] },
   mesh: {
     ...{ GLB: ["glb"], glTF: ["gltf"], OBJ: ["obj"], PLY: ["ply"], STL: ["stl"], SPLAT: ["splat"] },
   } satisfies Record<string, MeshFormat[]>,
@@ -49,6 +49,11 @@ export const depthKindNames: readonly DepthKind[] = [
   "scale-invariant",
   "affine-invariant",
   "affine-invariant-disparity",
+];
+
+/** The codes of depth. */
+export const depthCodeNames: readonly DepthCode[] = [
+  ...(["sun-rgbd", "lerobot", "behavior", "half-float", "rlbench", "carla", "rgba-float", "z-buffer"] as const),
 ];
 
 /** Whether zero and negative values are readings, and 8-bit files are accepted. */

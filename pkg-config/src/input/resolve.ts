@@ -7,12 +7,12 @@ import type { InputNotes } from "../types/results.js";
 import { invalidArgument, renamed, Sim3AlignError } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { checkNames, part, withoutUndefined } from "../values/validation.js";
-import { readMask } from "./mask.js";
+import { readMask, shapedMask } from "./mask.js";
 import { type MeshAndWarnings, readCoreMesh } from "./mesh.js";
 import { coreSim3 } from "./sim3.js";
 import { type Resolved, readView, viewProperties } from "./view.js";
 
-const frameProperties = [...viewProperties, "mask", "resizeMask"];
+const frameProperties = [...viewProperties, "mask", "resizeMask", "maskIndex"];
 
 const spelling = "Check the spelling. Options belong in the second argument.";
 const oneMesh =
@@ -93,10 +93,11 @@ async function frameOf(
   isMasked: boolean,
 ): Promise<Resolved<CoreFrame>> {
   const { core: view, notes } = await readView(input, readers);
-  const { resizeMask } = input;
+  const { resizeMask, maskIndex } = input;
   const frame = { ...view, resizeMask };
   if (!isMasked) return { core: withoutUndefined(frame) as CoreFrame, notes };
-  const mask = await readMask(input.mask, Number(view.width) * Number(view.height), readers.formats);
+  const size = { width: Number(view.width), height: Number(view.height) };
+  const mask = shapedMask("mask", await readMask(input.mask, size, readers.formats, maskIndex), size, resizeMask);
   const masked = { ...frame, mask: mask.data, maskWidth: mask.width, maskHeight: mask.height };
   const maskNotes = withoutUndefined({ maskReading: mask.reading });
   const unread = [...notes.unread, ...(mask.unread ?? [])];

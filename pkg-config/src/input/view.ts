@@ -3,12 +3,13 @@
 import { depthOfRays, type Pinhole } from "../camera/pinhole.js";
 import type { CoreInput, CoreView } from "../modules/core-input.js";
 import type { FileReaders } from "../modules/readers.js";
-import type { DepthImage, DepthKind, ReadDepthOptions } from "../types/inputs.js";
+import type { DepthCoding, DepthImage, DepthKind, ReadDepthOptions } from "../types/inputs.js";
 import type { InputNotes } from "../types/results.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { oneOf, withoutUndefined } from "../values/validation.js";
 import { type Camera, cameraOf, type ResolvedCamera, unitOf } from "./camera.js";
+import { doubtOfCode } from "./coded-depth.js";
 import {
   checkSides,
   DEFAULT_SCALE,
@@ -27,11 +28,15 @@ export interface Resolved<T> {
   notes: InputNotes;
 }
 
+/** The properties of the code of a depth map. */
+const codingNames = ["depthCode", "depthNear", "depthFar"] as const;
+
 /** The properties of a view. */
 export const viewProperties: readonly string[] = [
   "depth",
   "depthScale",
   "depthKind",
+  ...codingNames,
   "pointMap",
   "width",
   "height",
@@ -56,9 +61,17 @@ export async function readView(input: Record<string, unknown>, readers: FileRead
   const depth = measured.rays === undefined || pinhole === undefined ? measured.core : measured.rays(pinhole);
   const view = { ...depth, width, height, image: photo.image, camera: pinhole, focalDeviation: lens.focalDeviation };
   const { imageReading } = photo;
-  const { unit: depthUnit, warnings } = unitOf(unit, camera);
-  const ofCamera = [...lens.warnings, ...warnings];
-  const notes = { warnings: ofCamera, unread: [...unread, ...(lens.unread ?? [])], colors: [], depthUnit };
+  const { unit: depthUnit, warnings: ofUnit } = unitOf(unit, camera);
+  const doubt =
+    measured.readings === undefined ? undefined : await doubtOfCode(measured.readings, { width, height }, depthUnit);
+  const [doubts, warnings] = doubt?.isUncertain ? [[doubt.warning], []] : [[], doubt ? [doubt.warning] : []];
+  const notes = {
+    warnings: [...warnings, ...lens.warnings, ...ofUnit],
+    unread: [...unread, ...(lens.unread ?? [])],
+    colors: [],
+    doubts,
+    depthUnit,
+  };
   return {
     core: withoutUndefined(view) as CoreView,
     notes: { ...notes, ...withoutUndefined({ cameraSource: lens.source, imageReading }) },
@@ -73,6 +86,8 @@ interface Measured extends Omit<SizedArray<unknown>, "data"> {
   camera: Pinhole | "fitted" | undefined;
   /** What the file holds besides, and its reader does not know. */
   unread?: readonly string[] | undefined;
+  /** The lengths of a depth map, which may be a code. */
+  readings?: Float32Array | Uint16Array | undefined;
   /** Converts distances along rays to depth. */
   rays?: (camera: Pinhole) => Measured["core"];
 }
@@ -87,9 +102,11 @@ async function readMeasured(
   if (pointMap === undefined) {
     const depthKind = oneOf("depthKind", input.depthKind ?? "metric", depthKindNames, "INVALID_ARGUMENT");
     const depthScale = input.depthScale as number | undefined;
-    return depthView(depth, size, { depthScale, integerDepthScale, depthKind }, readers);
+    const { depthCode, depthNear, depthFar } = input as DepthCoding;
+    const reading = { depthScale, integerDepthScale, depthKind, depthCode, depthNear, depthFar };
+    return depthView(depth, size, reading, readers);
   }
-  const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
+  const other = ["depth", "depthScale", ...codingNames].find((name) => input[name] !== undefined);
   if (other !== undefined) {
     const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
     throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
@@ -106,14 +123,15 @@ async function depthView(
 ): Promise<Measured> {
   const { depthScale, integerDepthScale, depthKind } = reading;
   const { data, ...read } = await readDepth(depth, size, reading, readers);
-  const isFile = data !== depth && !isRecord(depth);
+  const isFile = (data !== depth && !isRecord(depth)) || reading.depthCode !== undefined;
   const isFloat = isTypedArray(data, "Float32Array");
   // Integers of an unknown unit are read as they are.
   const isMetric = depthKind === "metric" || depthKind === "ray-distance";
   const integerScale = isMetric ? integerDepthScale : 1;
-  // The readers have already scaled the values of a file.
+  // The readers have already scaled the values of a file, and of a code.
   const scale = isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerScale));
-  const measured = { camera: undefined, ...read };
+  const readings = isMetric && reading.depthCode === undefined ? data : undefined;
+  const measured = { camera: undefined, readings, ...read };
   const core = { depth: data, depthScale: scale, depthKind: isMetric ? undefined : depthKind };
   if (depthKind !== "ray-distance") return { ...measured, core };
   const metres = scale ?? (isFloat ? 1 : DEFAULT_SCALE);

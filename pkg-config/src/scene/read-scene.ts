@@ -1,6 +1,6 @@
 /** Reads a scene: the view once, and a mask per object. */
 
-import { readMask } from "../input/mask.js";
+import { readMask, shapedMask } from "../input/mask.js";
 import { resolveView } from "../input/resolve.js";
 import type { CoreView } from "../modules/core-input.js";
 import type { FileReaders, LoadFormats } from "../modules/readers.js";
@@ -39,7 +39,7 @@ export interface ReadObject {
   known: KnownOfObject;
 }
 
-const objectProperties = ["name", "mask", "label", "resizeMask", "mesh"] as const;
+const objectProperties = ["name", "mask", "label", "resizeMask", "maskIndex", "mesh"] as const;
 const knownProperties: readonly string[] = [
   "scale",
   "knownExtentM",
@@ -100,14 +100,14 @@ async function readObject(argument: string, object: unknown, read: Reading): Pro
   const all = [...objectProperties, ...knownProperties];
   const remedy = "Check the spelling. Options for all objects belong in the second argument.";
   checkNames(`${argument}.`, properties, all, remedy);
-  const { name, mask, label, resizeMask, mesh, ...known } = properties as Partial<SceneObjectInput>;
+  const { name, mask, label, resizeMask, maskIndex, mesh, ...known } = properties as Partial<SceneObjectInput>;
   if (name !== undefined && typeof name !== "string") {
     throw invalidArgument(`${argument}.name`, name, "a string", "Pass the name of the object.");
   }
   const own =
     mask === undefined && label !== undefined
       ? { mask: labelled(`${argument}.label`, label, read) }
-      : await maskOf(`${argument}.mask`, mask, resizeMask, read);
+      : await maskOf(`${argument}.mask`, mask, resizeMask, read, maskIndex);
   return { name, ...own, mesh, known: withoutUndefined(known) as KnownOfObject };
 }
 
@@ -116,15 +116,14 @@ async function maskOf(
   mask: unknown,
   resize: unknown,
   read: Reading,
+  index?: unknown,
 ): Promise<Pick<ReadObject, "mask" | "maskReading">> {
   const [width, height] = read.size;
-  const {
-    data,
-    reading: maskReading,
-    ...own
-  } = await readMask(mask, width * height, read.formats).catch((error) => {
+  const size = { width, height };
+  const whole = await readMask(mask, size, read.formats, index).catch((error) => {
     throw error instanceof Sim3AlignError ? renamed(error, error.argument.replace(/^mask/, argument)) : error;
   });
+  const { data, reading: maskReading, ...own } = shapedMask(argument, whole, size, resize);
   const [from, rows] = [own.width ?? width, own.height ?? height];
   const pixels = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
   if (pixels.length !== from * rows) {

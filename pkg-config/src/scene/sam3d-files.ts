@@ -10,7 +10,6 @@ import { parsedJson } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { naturally } from "../values/order.js";
 import { flattened } from "../values/validation.js";
-import { viewOfPointMap } from "./point-map-file.js";
 import { type SceneCase, sceneFrom } from "./scene-files.js";
 
 /** Names of point maps, in order of preference. */
@@ -123,11 +122,7 @@ export async function sam3dScene(files: CaseFiles, place: string): Promise<MadeS
   if (view === undefined) throw missing("sam3d", `no point map in ${place}`, "pointmap.npy, or depth.*");
   const isPoints = isPointMap(view);
   const cameraFile = nearest("camera", (name) => partOf(name) === "camera");
-  if (isPoints && extension(view) === "npy") {
-    const { depth, camera } = viewOfPointMap(view, await bytesOf(view));
-    take("depth.npy", view, depth);
-    if (cameraFile === undefined) take("camera.json", view, camera);
-  } else take(`depth.${extension(view)}`, view);
+  take(`depth.${extension(view)}`, view);
   take(`camera.${cameraFile && extension(cameraFile)}`, cameraFile);
   take(`image.${image && extension(image)}`, image);
   for (const path of paths) {

@@ -24,7 +24,7 @@ export interface SceneCase {
  */
 export async function sceneFrom(
   files: CaseFiles,
-  { resizeMask, ...settings }: ReadCaseOptions,
+  { resizeMask, maskIndex, ...settings }: ReadCaseOptions,
   place = "the files",
 ): Promise<SceneCase> {
   const names = objectsIn(files);
@@ -47,7 +47,12 @@ export async function sceneFrom(
     const mesh = await meshFile(parts.mesh, await read(parts.mesh), own.beside);
     const [initial, truth] = [await optional(parts.initial), await optional(parts.truth)];
     const pose = initial && parsePoseFile(`${folder}${parts.initial}`, initial)?.transform;
-    objects.push({ name, mask, mesh, ...withoutUndefined({ resizeMask, initial: pose }) } as SceneObjectInput);
+    objects.push({
+      name,
+      mask,
+      mesh,
+      ...withoutUndefined({ resizeMask, maskIndex, initial: pose }),
+    } as SceneObjectInput);
     truths.push(truth === undefined ? null : parsePoseFile("truth", truth));
     for (const [part, file] of Object.entries(parts)) found[`${folder}${part}`] = file && `${folder}${file}`;
     unread.push(...own.unread().map((path) => `${folder}${path}`));

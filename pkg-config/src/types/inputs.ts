@@ -22,6 +22,35 @@ export type DepthKind =
   | "affine-invariant"
   | "affine-invariant-disparity";
 
+/**
+ * A code in which a program stores depth: numbers that are no multiples of a length. The guide on frames has their formulas.
+ *
+ * - `"sun-rgbd"`: bits of millimetres, rotated by three;
+ * - `"lerobot"`, `"behavior"`: 12 and 14 bits, logarithmic;
+ * - `"half-float"`: bits of 16-bit floats, of CO3D;
+ * - `"rlbench"`, `"carla"`: 24 bits in red, green and blue; `"rgba-float"`: 32-bit floats in four channels, of TartanAir;
+ * - `"z-buffer"`: of OpenGL, MuJoCo and PyBullet.
+ */
+export type DepthCode =
+  | "sun-rgbd"
+  | "lerobot"
+  | "behavior"
+  | "half-float"
+  | "rlbench"
+  | "carla"
+  | "rgba-float"
+  | "z-buffer";
+
+/** The code of a depth map, and its range. */
+export interface DepthCoding {
+  /** The code of the values; by default, they are lengths. Lengths of a code are multiplied by `depthScale`. */
+  depthCode?: DepthCode | undefined;
+  /** The distance in metres of the near plane, or of the lowest code: of `"rlbench"` and `"z-buffer"`; others have a default. */
+  depthNear?: number | undefined;
+  /** The same of the far plane, or of the highest code. */
+  depthFar?: number | undefined;
+}
+
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
 
@@ -32,7 +61,8 @@ export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
  * - `Float32Array`: metres (times `depthScale`, if given); with `width` and `height` in the input;
  * - `Uint16Array`: multiplied by `depthScale`; with `width` and `height` in the input;
  * - either of these as `{ data, width, height }`;
- * - the bytes of a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM); integers are multiplied by `depthScale`.
+ * - the bytes of a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM); integers are multiplied by `depthScale`. A file of
+ *   points (H × W × 3, or 3 × H × W) is read as their depth, with the camera that fits them.
  */
 export type DepthInput = Float32Array | Uint16Array | PixelArray<Float32Array | Uint16Array> | EncodedBytes;
 
@@ -47,8 +77,8 @@ export interface CocoRle {
  *
  * - `Uint8Array` of the depth map's size, one byte per pixel;
  * - `{ data, width, height }`, for a mask of another size (see the property `resizeMask`);
- * - the bytes of a mask file (PNG, NPY, COCO RLE or JPEG), detected by their signature;
- * - COCO RLE, as an object.
+ * - the bytes of a mask file (PNG, NPY, JSON or JPEG), detected by their signature;
+ * - COCO RLE, as an object; or what the JSON of COCO, SAM, LabelMe, VGG Image Annotator, Supervisely or ISAT holds.
  */
 export type MaskInput =
   | Uint8Array
@@ -56,7 +86,11 @@ export type MaskInput =
   | PixelArray<Uint8Array | Uint8ClampedArray>
   | ArrayBuffer
   | BlobLike
-  | CocoRle;
+  | CocoRle
+  | MaskJson;
+
+/** The content of a JSON file with masks: see {@link MaskInput}. */
+export type MaskJson = Readonly<Record<string, unknown>> | readonly object[];
 
 /** The size of the image that the intrinsics belong to, by default that of the depth map. Others are scaled to it. */
 interface CameraSize {
@@ -196,7 +230,7 @@ export type DepthView = {
     }
 ) &
   (
-    | ({
+    | (DepthCoding & {
         /**
          * Metres per unit of depth, above 0: 0.001 for millimetres. By default, floats are metres, and integers use the
          * scale of the camera file or, without one, are millimetres.
@@ -210,28 +244,31 @@ export type DepthView = {
         depthKind?: DepthKind | undefined;
         pointMap?: undefined;
       } & (
-        | {
-            /** The depth map, possibly as a bare array with its size beside it. */
-            depth: DepthInput;
-            /** Width in pixels. */
-            width: number;
-            /** Height in pixels. */
-            height: number;
-          }
-        | {
-            /** A depth map with its own size. */
-            depth: Exclude<DepthInput, Float32Array | Uint16Array>;
-            /** Width in pixels; must match. */
-            width?: number | undefined;
-            /** Height in pixels; must match. */
-            height?: number | undefined;
-          }
-      ))
+          | {
+              /** The depth map, possibly as a bare array with its size beside it. */
+              depth: DepthInput;
+              /** Width in pixels. */
+              width: number;
+              /** Height in pixels. */
+              height: number;
+            }
+          | {
+              /** A depth map with its own size. */
+              depth: Exclude<DepthInput, Float32Array | Uint16Array>;
+              /** Width in pixels; must match. */
+              width?: number | undefined;
+              /** Height in pixels; must match. */
+              height?: number | undefined;
+            }
+        ))
     | ({
         /** Whether the points are in metres, the default, or in an unknown unit. */
         depthKind?: "metric" | "scale-invariant" | undefined;
         depth?: undefined;
         depthScale?: undefined;
+        depthCode?: undefined;
+        depthNear?: undefined;
+        depthFar?: undefined;
       } & (
         | {
             /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
@@ -261,16 +298,26 @@ export type AlignInput = DepthView & {
   mask: MaskInput;
   /** The mesh to align. */
   mesh: MeshInput;
-  /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
+  /**
+   * How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error, and so is one of
+   * another shape. A square that SAM padded at the right or below is cropped first.
+   */
   resizeMask?: "nearest" | undefined;
+  /** The place of the mask in a JSON file of several, from 0. */
+  maskIndex?: number | undefined;
 };
 
 /** A frame: what a camera saw, and the mask of the object, if it is known. */
 export type FrameInput = DepthView & {
   /** The mask of the object, if it is known. */
   mask?: MaskInput | undefined;
-  /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
+  /**
+   * How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error, and so is one of
+   * another shape. A square that SAM padded at the right or below is cropped first.
+   */
   resizeMask?: "nearest" | undefined;
+  /** The place of the mask in a JSON file of several, from 0. */
+  maskIndex?: number | undefined;
 };
 
 /** One of several views of an object. */
@@ -291,7 +338,7 @@ export interface ViewsInput {
 }
 
 /** How the values of a depth map are read. */
-export interface ReadDepthOptions {
+export interface ReadDepthOptions extends DepthCoding {
   /** Metres per unit. */
   depthScale?: number | undefined;
   /** Metres per unit of integers, where there is no `depthScale`: that of a camera file. */
@@ -311,13 +358,14 @@ export interface DepthImage extends PixelArray<Float32Array> {
     metres: number | null;
     /**
      * Where the unit comes from: `"depthScale"`, `"camera file"` with the key that states it (`"camera file: factor_depth"`),
-     * `"point map"`, `"float values"`, `"16-bit integers"`; without metres, the kind of depth.
+     * `"depthCode lerobot"`, `"point map"`, `"float values"`, `"16-bit integers"`; without metres, the kind of depth. The axes of
+     * a point map in a file follow, if they are not OpenCV's.
      */
     source: string;
     /** Whether nothing states the unit. */
     isAssumed: boolean;
   };
-  /** The camera in the file, in pixels of the depth map: from its intrinsics, its focal length or its field of view. */
+  /** The camera in the file, in pixels of the depth map: from its intrinsics, focal length or field of view, or from its points. */
   camera?: PinholeCamera;
   /** What the file holds besides, and the reader does not know. */
   unread?: readonly string[];

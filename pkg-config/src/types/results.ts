@@ -87,6 +87,8 @@ export interface InputNotes extends Omit<InputInfo, "depthCalibration"> {
   origin?: readonly number[];
   /** Conditions that concern the view. */
   warnings: readonly Core.Warning[];
+  /** Conditions that matter if the pose is in doubt. */
+  doubts?: readonly Core.Warning[];
   /** What the files hold besides, and their readers do not know. */
   unread: readonly string[];
   /** Reasons why the colours of the mesh file are not read. */

@@ -29,6 +29,8 @@ export interface SceneObjectInput
   label?: number | undefined;
   /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
   resizeMask?: "nearest" | undefined;
+  /** The place of the mask in a JSON file of several, from 0. */
+  maskIndex?: number | undefined;
   /** The mesh to align. */
   mesh: MeshInput;
 }

@@ -1,0 +1,139 @@
+/** Whether the numbers of a depth map look like a code, and no lengths. */
+
+import type { Warning } from "../generated/types.js";
+import type { DepthCode, DepthImage } from "../types/inputs.js";
+import { failure, Sim3AlignError } from "../values/error.js";
+import type { StatedSize } from "./depth.js";
+
+/** Values that are looked at. */
+const SAMPLES = 1 << 16;
+
+/** Values of which fewer say nothing about a code, and the most that are told apart. */
+const DISTINCT = [32, 1024] as const;
+
+/** What the readings of a depth map are, as they were stored. */
+interface Facts {
+  /** Whether all are whole numbers. */
+  isWhole: boolean;
+  /** Whether nothing states the unit. */
+  isAssumed: boolean;
+  /** Whether a unit is a millimetre. */
+  isMillimetres: boolean;
+  least: number;
+  most: number;
+  mean: number;
+  /** The share of multiples of 8, and that of multiples of 16 among the values that differ. */
+  eights: number;
+  sixteens: number;
+}
+
+/** How the numbers betray each code. */
+const signs: { readonly [K in DepthCode]?: (facts: Facts) => boolean } = {
+  // Of sensors that round, half of the multiples of 8 are multiples of 16 as well; other units have other divisors.
+  "sun-rgbd": ({ isWhole, isMillimetres, eights, sixteens }) =>
+    isWhole && isMillimetres && eights > 0.95 && sixteens < 0.8,
+  // 11 to 23 m, if they were millimetres.
+  "half-float": ({ isWhole, isAssumed, least, most }) => isWhole && isAssumed && least >= 0x2c00 && most <= 0x5c00,
+  // Most maps in millimetres are such numbers, and planes tell; so they do of a scene within one metre of the camera.
+  lerobot: ({ isWhole, isAssumed, most }) => isWhole && isAssumed && most <= 4095,
+  behavior: ({ isWhole, isAssumed, most }) => isWhole && isAssumed && most <= 16383,
+  "z-buffer": ({ isWhole, isAssumed, mean, most }) => !isWhole && isAssumed && mean >= 0.7 && most <= 1,
+};
+
+/** A warning about a code, and whether it is only for a pose in doubt. */
+export interface CodeDoubt {
+  warning: Warning;
+  isUncertain: boolean;
+}
+
+/** The code that the values of a metric depth map look like. */
+export async function doubtOfCode(
+  values: Float32Array | Uint16Array,
+  { width = 0, height = 0 }: StatedSize,
+  unit: DepthImage["unit"],
+): Promise<CodeDoubt | undefined> {
+  const facts = factsOf(values, unit);
+  const names = (Object.keys(signs) as DepthCode[]).filter((code) => facts !== undefined && signs[code]?.(facts));
+  if (facts === undefined || names.length === 0) return undefined;
+  const { depthCodes, isCoded } = await import("./depth-codes.js");
+  const numbers =
+    values instanceof Uint16Array || unit.metres === 1 ? values : values.map((z) => z / (unit.metres ?? 1));
+  for (const name of names) {
+    const certainty = isCoded(name, numbers, { width, height }, facts);
+    if (certainty === false) continue;
+    const { writers, formula, signs: betrayed, range } = depthCodes[name];
+    const needs = range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : "";
+    const message = `The values of the depth map look like a code of ${writers}, and no lengths: ${betrayed}. If they are (${formula}), pass depthCode "${name}"${needs}.`;
+    return { warning: { code: "DEPTH_LOOKS_CODED", message }, isUncertain: certainty === undefined };
+  }
+  return undefined;
+}
+
+function factsOf(values: Float32Array | Uint16Array, { metres, isAssumed }: DepthImage["unit"]): Facts | undefined {
+  // The readers of files have multiplied them by the unit.
+  const scale = metres === null || values instanceof Uint16Array ? 1 : metres;
+  const step = Math.ceil(values.length / SAMPLES) | 1;
+  const distinct = new Set<number>();
+  let [count, sum, least, most, eights, wholes] = [0, 0, Number.POSITIVE_INFINITY, 0, 0, 0];
+  for (let i = 0; i < values.length; i += step) {
+    const exact = (values[i] as number) / scale;
+    // No reading, or no number.
+    if (!(exact > 0)) continue;
+    const value = Math.abs(exact - Math.round(exact)) < 0.01 && scale < 1 ? Math.round(exact) : exact;
+    count += 1;
+    sum += value;
+    [least, most] = [Math.min(least, value), Math.max(most, value)];
+    wholes += Number(Number.isInteger(value));
+    eights += Number(value % 8 === 0);
+    if (distinct.size < DISTINCT[1]) distinct.add(value);
+  }
+  if (distinct.size < DISTINCT[0]) return undefined;
+  const isMillimetres = metres !== null && Math.abs(metres - 0.001) < 1e-6;
+  const sixteens = [...distinct].filter((value) => value % 16 === 0).length / distinct.size;
+  const shares = { eights: eights / count, sixteens };
+  return { isWhole: wholes === count, isAssumed, isMillimetres, least, most, mean: sum / count, ...shares };
+}
+
+/** Differences of neighbours: the first byte of a number is smooth, the last one is not. Of pictures, all channels are as smooth. */
+const SMOOTH = 4;
+const ROUGH = 8;
+
+/** Whether a file is a PNG of 8 bits in red, green and blue, perhaps with alpha. */
+export const isColourPng = (bytes: Uint8Array): boolean =>
+  bytes[1] === 0x50 && bytes[24] === 8 && (bytes[25] === 2 || bytes[25] === 6);
+
+/**
+ * The error for an 8-bit picture, which says so if its channels are the bytes of one number.
+ * @param read the bytes of each pixel as one number, red the lowest, or the floats that they are
+ */
+export async function explained(error: unknown, read: () => Promise<DepthImage>): Promise<unknown> {
+  if (!(error instanceof Sim3AlignError) || error.code !== "EIGHT_BIT_DEPTH") return error;
+  const { data, width } = await read();
+  const name = packedCode(data, width);
+  if (name === undefined) return error;
+  const { depthCodes } = await import("./depth-codes.js");
+  const { writers, formula, range } = depthCodes[name];
+  const found = `an 8-bit PNG whose channels are the bytes of one number, as ${writers} write them (${formula})`;
+  const needs = range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : "";
+  const remedy = `Pass depthCode "${name}"${needs}.`;
+  return failure("EIGHT_BIT_DEPTH", error.argument, found, "one 16-bit channel, or a code", remedy, error);
+}
+
+function packedCode(values: Float32Array, width: number): DepthCode | undefined {
+  const differences = [0, 0, 0];
+  let [count, floats] = [0, 0];
+  const step = Math.ceil(values.length / SAMPLES) | 1;
+  for (let i = 1; i < values.length; i += step) {
+    const [before, value] = [values[i - 1] as number, values[i] as number];
+    // Walls that are alike say nothing.
+    if (i % width === 0 || before === value || !(before > 0 && value > 0)) continue;
+    count += 1;
+    floats += Number(!Number.isInteger(value));
+    for (const [k] of differences.entries())
+      differences[k] = (differences[k] as number) + Math.abs(((value >> (8 * k)) & 255) - ((before >> (8 * k)) & 255));
+  }
+  if (floats > count / 2) return "rgba-float";
+  const [red = 0, , blue = 0] = differences.map((sum) => sum / count);
+  if (red < SMOOTH && blue > ROUGH && blue > 4 * red) return "rlbench";
+  return blue < SMOOTH && red > ROUGH && red > 4 * blue ? "carla" : undefined;
+}
