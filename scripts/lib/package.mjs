@@ -34,6 +34,7 @@ const infoFile = join(packageDir, "build-info.json");
 const sources = () => [
   ...[skinDir, at("www"), at("scripts", "lib"), at("package-lock.json"), at("tsconfig.base.json")],
   ...documents.map((name) => at(name)),
+  ...guides.map((name) => at("docs", name)),
 ];
 
 /** Writes the package. @param {string} info see {@link buildInfo} */
@@ -68,6 +69,9 @@ export function packageVersion() {
 /** Files of the repository that the package carries. */
 const documents = ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICE];
 
+/** Documents below docs/ that it carries, without their pictures. */
+const guides = ["README.md", "guides", "benchmark.md", "how-it-works.md", "importing-results.md", "record.md"];
+
 function copyFiles() {
   mkdirSync(packageDir);
   for (const folder of [compiledDir, packageDir])
@@ -76,6 +80,7 @@ function copyFiles() {
     if (!existsSync(at(name))) throw new Error(`${name} is missing. Remedy: restore it; the package carries it.`);
     copyFileSync(at(name), join(packageDir, name));
   }
+  for (const name of guides) cpSync(at("docs", name), join(packageDir, "docs", name), { recursive: true });
   cpSync(join(skinDir, "sample"), join(packageDir, "sample"), { recursive: true });
   cpSync(glueDir, join(compiledDir, "wasm"), { recursive: true });
   // Its declarations are internal, and those of raw exports would be resolved for imports of the .wasm file.

@@ -20,7 +20,7 @@ function flagsOf(help: string): Map<string, string> {
   return new Map(Array.from(found, ([, flag = "", rest = ""]) => [flag, rest]));
 }
 
-const commandNames = ["", "align", "check", "scene", "track", "evaluate", "bop"];
+const commandNames = ["", "align", "check", "scene", "track", "evaluate", "serve", "bop"];
 const helps = new Map(commandNames.map((name) => [name, run(name, "--help").stdout]));
 const flags = new Map([...helps].map(([name, help]) => [name, flagsOf(help)]));
 // Flags of the baseline are in a text of their own.

@@ -79,6 +79,22 @@ test("the smallest box around a turned box is that box", () => {
   assert.equal(Math.min(...orientedBoundingBox(flat, still, { box: "minimal" }).sizeM), 0);
 });
 
+test("the smallest box of a turned sheet is that sheet, of a turned L that along its sides", () => {
+  forSeeds(60, (random, seed) => {
+    const turned = { ...random.pose(), scale: 1 };
+    const sheet = boxOf([0.21, 0.297, 0], { ...still, rotation: [0, 0, Math.sin(0.17), Math.cos(0.17)] });
+    assertNear(sorted(orientedBoundingBox(sheet, still, { box: "minimal" }).sizeM), [0, 0.21, 0.297], seed, 1e-6);
+    const arms = [boxOf([1, 0.2, 0.1], still), boxOf([0.2, 1, 0.1], { ...still, translation: [-0.4, 0.4, 0] })];
+    const positions = arms.flatMap((arm) => Array.from(arm.positions));
+    const indices = arms.flatMap((arm, k) => Array.from(arm.indices ?? [], (i) => i + 8 * k));
+    const bracket = {
+      positions: applyToPoints(turned, Float32Array.from(positions)),
+      indices: Uint32Array.from(indices),
+    };
+    assertNear(sorted(orientedBoundingBox(bracket, still, { box: "minimal" }).sizeM), [0.1, 1, 1], seed, 1e-4);
+  });
+});
+
 /** A mesh that stands along y and looks along z, 2 × 1 × 4 (width, height, length), with its base at the origin. */
 const car = boxOf([2, 1, 4], { ...still, translation: [0, 0.5, 0] });
 

@@ -11,7 +11,9 @@ const python = process.env.SIM3ALIGN_NOTEBOOKS ?? "";
 const skip = python === "" && "No Python with the packages of scripts/bench/notebooks/requirements.txt.";
 
 const guide = readFileSync(join(repository, "docs", "guides", "batches.md"), "utf8");
-const blocks = [...guide.matchAll(/^```python\n([\s\S]*?)^```$/gm)].map(([, block = ""]) => block);
+const blocks = [...guide.matchAll(/^```python\n([\s\S]*?)^```$/gm)]
+  .map(([, block = ""]) => block)
+  .filter((block) => !block.includes("class Aligner"));
 
 /** Runs a program of the environment in a folder. `npx sim3align` is the package under test. */
 function runIn(cwd: string, program: string, ...args: string[]): string {

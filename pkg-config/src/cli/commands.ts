@@ -25,7 +25,7 @@ import {
   settingsOf,
   writes,
 } from "./flags.js";
-import { alignHelp, bopHelp, checkHelp, evaluateHelp, sceneHelp, trackHelp } from "./help.js";
+import { alignHelp, bopHelp, checkHelp, evaluateHelp, sceneHelp, serveHelp, trackHelp } from "./help.js";
 import { inFlags, optionFlags } from "./option-flags.js";
 import { makeFolder } from "./output-file.js";
 import { camera, jsonObject } from "./parse.js";
@@ -35,6 +35,7 @@ import { lockOf } from "./record-lock.js";
 import { isResults } from "./result-files.js";
 import { isExport, type OutputName, RunFiles } from "./run-files.js";
 import { sceneJob } from "./scene.js";
+import { serve } from "./serve.js";
 import { trackJob } from "./track.js";
 
 /** A command. */
@@ -43,19 +44,21 @@ export interface CommandRow {
   summary: string;
   description: string;
   /** The name and the meaning of its arguments. */
-  argument: readonly [name: string, meaning: string];
+  argument?: readonly [name: string, meaning: string];
   flags: FlagList;
   /** The text after the flags in the help. */
   help: string;
   /** Outputs that no flag names. */
   writes?(args: readonly string[], flags: Flags): OutputName[];
-  /** Finds the cases. */
-  prepare(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<CaseKey>>;
+  /** Runs a command that is no batch. */
+  run?(flags: Flags): Promise<boolean>;
+  /** Finds the cases of a batch. */
+  prepare?(args: readonly string[], flags: Flags, files: RunFiles): Promise<Job<CaseKey>>;
 }
 
 /** A function that finds the cases of a command. The type of the cases is its own matter. */
 type Prepare<T extends CaseKey> = (args: readonly string[], flags: Flags, files: RunFiles) => Promise<Job<T>>;
-const batch = <T extends CaseKey>(prepare: Prepare<T>) => prepare as unknown as CommandRow["prepare"];
+const batch = <T extends CaseKey>(prepare: Prepare<T>) => prepare as unknown as NonNullable<CommandRow["prepare"]>;
 
 const folders = (noun: string) => [`[${noun}...]`, `${noun} folders, or patterns such as '${noun}s/*'`] as const;
 
@@ -161,6 +164,15 @@ export const commands: readonly CommandRow[] = [
     prepare: batch(sceneJob),
   },
   {
+    name: "serve",
+    summary: "align what lines of JSON on standard input name, and write a line for each",
+    description:
+      "Aligns what lines of JSON on standard input name, and writes a line of JSON for each, until the input ends.",
+    flags: recordFlags("request").filter(([flag]) => flag.startsWith("--workers")),
+    help: serveHelp,
+    run: serve,
+  },
+  {
     name: "bop",
     summary: "align the targets of a BOP dataset",
     description:
@@ -199,10 +211,11 @@ export const commands: readonly CommandRow[] = [
  * @throws {@link UsageError} before anything is written; {@link OutputError}
  */
 export async function runCommand(command: CommandRow, args: readonly string[], flags: Flags): Promise<boolean> {
-  const { name, flags: list } = command;
+  const { name, flags: list, prepare } = command;
   checkNeeds(list, flags);
   checkInputs(list, flags);
-  const [argument] = command.argument;
+  if (prepare === undefined) return command.run?.(flags) ?? true;
+  const [argument = ""] = command.argument ?? [];
   const named = args.flatMap((path) => (isFile(path) ? [{ flag: argument, path }] : []));
   const read = filesOf(list, flags, "reads").map((file) => ({ ...file, isDeep: true }));
   const files = new RunFiles([...named, ...read]);
@@ -214,7 +227,7 @@ export async function runCommand(command: CommandRow, args: readonly string[], f
   ];
   // An input, which is not known yet, is named as such, rather than as a file of another program.
   files.check(outputs.map(({ isOwn, ...output }) => (isOwn === isExport ? output : { ...output, isOwn })));
-  const job = await command.prepare(args, flags, files).catch((error) => {
+  const job = await prepare(args, flags, files).catch((error) => {
     // What the command line names is wrong, before any case.
     throw error instanceof Sim3AlignError ? new UsageError(error.message, { cause: error }) : error;
   });

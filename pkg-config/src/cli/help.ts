@@ -87,6 +87,7 @@ Examples
   sim3align scene scenes/desk --scene-glb desk.glb     align all objects of a scene; write it as one file
   sim3align track videos/mug                     track an object through the frames of a video
   sim3align evaluate cases/mug --transform results.json
+  sim3align serve < requests.jsonl                 align what lines of JSON name; the process stays, for Python, ROS and agents
   sim3align bop bop/lmo --split test               align the targets of a BOP dataset
 
 See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
@@ -156,6 +157,23 @@ Examples
   sim3align check cases/mug
   sim3align check 'cases/**' --json checked.json
   sim3align check --list cases.txt --depth-scale 0.0002
+${status}`;
+
+export const serveHelp = `
+Requests
+  A line of JSON each: { "id": …, "case": "cases/mug" }, or { "id": …, "depth", "mask", "mesh", "camera", "image" } with paths, or
+  with arrays as { "base64", "dtype": "float32" | "uint16" | "uint8" | "uint32", "shape": [height, width] }, or with the bytes of
+  a file as { "base64" }; a mesh in memory is { "positions", "indices" } of these. Further fields: "depthScale", "depthKind",
+  "imageId", "resizeMask", and "options" of align(). Paths are relative to the current folder.
+
+Output
+  { "id": …, "result": the result of align() of the API } or { "id": …, "error": { code, message, … } }, in the order in which they
+  are done; without an id, it is the number of the line, from 0. As many requests as there are workers are worked on at a time.
+
+Examples
+  echo '{"case": "cases/mug"}' | sim3align serve
+  sim3align serve --workers 4 < requests.jsonl > results.jsonl
+  cat requests.jsonl | sim3align serve | jq .result.confidence
 ${status}`;
 
 export const evaluateHelp = `${caseFolder}

@@ -19,13 +19,12 @@ const topics = commands.flatMap(({ flags }) => withoutTitles(flags).flatMap(([, 
 const topic = topics.find((one) => help >= 0 && one === process.argv[help + 1]);
 
 for (const row of commands) {
-  const command = new Command(row.name)
-    .summary(row.summary)
-    .description(row.description)
-    .argument(...row.argument);
+  const command = new Command(row.name).summary(row.summary).description(row.description);
+  if (row.argument !== undefined) command.argument(...row.argument);
   addFlags(command, row.flags, topic);
-  command.addHelpText("after", topic === undefined ? row.help : "").action(async (args: string | string[], flags) => {
-    if (!(await runCommand(row, [args].flat(), flags))) process.exitCode = 1;
+  command.addHelpText("after", topic === undefined ? row.help : "").action(async (...values) => {
+    const [args, flags] = row.argument === undefined ? [[], values[0]] : [[values[0]].flat(), values[1]];
+    if (!(await runCommand(row, args, flags))) process.exitCode = 1;
   });
   program.addCommand(command);
 }

@@ -3,7 +3,19 @@
 import type { Vector3 } from "../values/validation.js";
 import type { Mesh } from "./mesh.js";
 import { principalAxes } from "./principal-axes.js";
-import { column, dot, fromColumns, identity, type Matrix3, plus, scaled } from "./rotation.js";
+import {
+  column,
+  cross,
+  dot,
+  fromColumns,
+  identity,
+  type Matrix3,
+  minus,
+  norm,
+  plus,
+  scaled,
+  unit,
+} from "./rotation.js";
 
 type Point2 = readonly [number, number];
 
@@ -91,8 +103,14 @@ export function smallestRectangle(points: readonly Point2[], tighter = 1): { cos
   return best.sin === 0 ? own : best;
 }
 
-const volume = (points: readonly Vector3[], axes: readonly Vector3[]): number =>
-  axes.reduce((product, axis) => product * spread(points.map((point) => dot(axis, point))), 1);
+/** The least side of a box, relative to the longest: the boxes of a flat mesh have no volume, but an area. */
+const THIN = 1e-6;
+
+function volume(points: readonly Vector3[], axes: readonly Vector3[]): number {
+  const sides = axes.map((axis) => spread(points.map((point) => dot(axis, point))));
+  const thin = THIN * Math.max(...sides);
+  return sides.reduce((product, side) => product * Math.max(side, thin), 1);
+}
 
 type Axes = [Vector3, Vector3, Vector3];
 
@@ -140,11 +158,46 @@ function named(axes: Axes): Matrix3 {
   return ways.reduce((best, way) => (trace(way) > trace(best) ? way : best));
 }
 
+/** Cells per unit along the axes in which normals count as one. */
+const CELLS = 8;
+
+/** Axes along the normal of most of the surface, and along that of most of the rest. */
+function faceAxes({ positions, indices }: Mesh): Axes | undefined {
+  const count = indices?.length ?? positions.length / 3;
+  const sums = new Map<string, Vector3>();
+  for (let i = 0; i + 2 < count; i += 3) {
+    const [a, b, c] = [0, 1, 2].map((k): Vector3 => {
+      const at = 3 * (indices?.[i + k] ?? i + k);
+      return [positions[at] ?? 0, positions[at + 1] ?? 0, positions[at + 2] ?? 0];
+    }) as [Vector3, Vector3, Vector3];
+    const normal = cross(minus(b, a), minus(c, a));
+    const length = norm(normal);
+    if (!(length > 0)) continue;
+    // Opposite sides have one normal.
+    const first = normal.find((x) => Math.abs(x) > length / 4) ?? 1;
+    const side = scaled(normal, Math.sign(first));
+    const cell = side.map((x) => Math.round((CELLS * x) / length)).join();
+    sums.set(cell, plus(sums.get(cell) ?? [0, 0, 0], side));
+  }
+  const all = [...sums.values()];
+  const largest = (normals: readonly Vector3[]) =>
+    normals.reduce<Vector3>((best, normal) => (norm(normal) > norm(best) ? normal : best), [0, 0, 0]);
+  const x = largest(all);
+  if (norm(x) === 0) return undefined;
+  const across = (normal: Vector3) => minus(normal, scaled(x, dot(normal, x) / dot(x, x)));
+  const y = largest(all.map(across));
+  if (norm(y) < 1e-6 * norm(x)) return undefined;
+  const [first, second] = [unit(x), unit(y)];
+  return [first, second, cross(first, second)];
+}
+
 /** The axes of the smallest box found, as columns in the mesh frame. */
 export function smallestBoxAxes(mesh: Mesh): Matrix3 {
   const points = outermost(mesh);
-  const from = (start: Matrix3) => refined(points, [column(start, 0), column(start, 1), column(start, 2)]);
-  const [first, second] = [from(identity), from(principalAxes(mesh))];
-  // Keeps the axes of the mesh unless the others are better by more than rounding errors.
-  return named(second.volume < first.volume * (1 - 1e-9) ? second.axes : first.axes);
+  const columns = (start: Matrix3): Axes => [column(start, 0), column(start, 1), column(start, 2)];
+  const faces = faceAxes(mesh);
+  const starts = [columns(identity), columns(principalAxes(mesh)), ...(faces === undefined ? [] : [faces])];
+  const found = starts.map((start) => refined(points, start));
+  // Keeps the axes of the mesh unless others are better by more than rounding errors.
+  return named(found.reduce((best, next) => (next.volume < best.volume * (1 - 1e-9) ? next : best)).axes);
 }

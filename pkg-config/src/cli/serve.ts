@@ -1,0 +1,112 @@
+/** `sim3align serve`: aligns what lines of JSON on standard input name, and writes a line for each; the process stays warm. */
+import { availableParallelism } from "node:os";
+import { createInterface } from "node:readline";
+import { autoWorkers } from "../aligner/aligner-options.js";
+import { readCaseFolder, readMeshFile } from "../case-folder.js";
+import { type Aligner, type AlignInput, createAligner } from "../index.js";
+import { read } from "../read-files.js";
+import { invalidArgument } from "../values/error.js";
+import { isRecord } from "../values/kinds.js";
+import { checkNames, withoutUndefined } from "../values/validation.js";
+import { failureEntry } from "./entry.js";
+import type { Flags } from "./flags.js";
+
+/** The fields of a request, but for its id. */
+const fields = [
+  ...["case", "depth", "mask", "mesh", "camera", "image", "options"],
+  ...["depthScale", "depthKind", "imageId", "resizeMask", "width", "height"],
+];
+
+/** Types of the numbers of inline arrays. */
+const arrays = { float32: Float32Array, uint16: Uint16Array, uint8: Uint8Array, uint32: Uint32Array } as const;
+
+/** Requests that are read while others are worked on. */
+const READ_AHEAD = 2;
+
+/** Answers the requests on standard input until it ends. */
+export async function serve({ workers = "auto" }: Flags): Promise<boolean> {
+  const size = workers === "auto" ? autoWorkers(availableParallelism()) : workers;
+  const aligner = await createAligner({ workers: size });
+  const running = new Set<Promise<void>>();
+  try {
+    let number = 0;
+    for await (const line of createInterface({ input: process.stdin, crlfDelay: Infinity })) {
+      if (line.trim() === "") continue;
+      const answering: Promise<void> = answer(aligner, line, number++).then((text) => {
+        running.delete(answering);
+        process.stdout.write(`${text}\n`);
+      });
+      running.add(answering);
+      if (running.size >= size + READ_AHEAD) await Promise.race(running);
+    }
+    await Promise.all(running);
+  } finally {
+    aligner.dispose();
+  }
+  return true;
+}
+
+/** The line for a request: its id, or its number from 0, with the result of `align` or the error. */
+async function answer(aligner: Aligner, line: string, number: number): Promise<string> {
+  let id: unknown = number;
+  try {
+    const request: unknown = JSON.parse(line);
+    if (!isRecord(request)) throw invalidArgument("request", request, "an object in a line", "Write one line each.");
+    id = request.id ?? number;
+    const { id: _, options = {}, ...more } = request;
+    checkNames("request.", more, fields, "Options of align() belong in options.");
+    return JSON.stringify({ id, result: await aligner.align(await inputOf(more), options as object) });
+  } catch (error) {
+    const isSyntax = error instanceof SyntaxError;
+    const thrown = isSyntax ? invalidArgument("request", line.slice(0, 60), "JSON in one line", error.message) : error;
+    return JSON.stringify({ id, ...failureOf(thrown) });
+  }
+}
+
+/** The error, which of options is of this request only. */
+function failureOf(error: unknown): object {
+  try {
+    return { error: failureEntry(error).error };
+  } catch (usage) {
+    return { error: { code: "INVALID_OPTION", message: (usage as Error).message } };
+  }
+}
+
+/** The input of a request: a case folder, or files and arrays. */
+async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
+  const { case: folder, depth, mask, mesh, camera, image, ...settings } = request;
+  if (typeof folder === "string") return (await readCaseFolder(folder, settings)).input;
+  const isFile = typeof camera === "string";
+  const [readDepth, readMask, readImage, cameraFile] = await Promise.all([
+    ...[valueOf("depth", depth), valueOf("mask", mask), valueOf("image", image)],
+    isFile ? read("camera", camera) : undefined,
+  ]);
+  const parts = { depth: readDepth, mask: readMask, image: readImage, mesh: await meshOf(mesh) };
+  return withoutUndefined({ ...parts, cameraFile, camera: isFile ? undefined : camera, ...settings }) as AlignInput;
+}
+
+/** A file by its path, an inline array `{ base64, dtype, shape }`, or the bytes of a file, `{ base64 }`. */
+async function valueOf(argument: string, value: unknown): Promise<unknown> {
+  if (typeof value === "string") return read(argument, value);
+  if (!isRecord(value) || typeof value.base64 !== "string") return value;
+  const { base64, dtype, shape } = value;
+  const bytes = new Uint8Array(Buffer.from(base64, "base64"));
+  if (dtype === undefined) return bytes;
+  const Numbers = arrays[dtype as keyof typeof arrays];
+  if (Numbers === undefined || bytes.length % Numbers.BYTES_PER_ELEMENT !== 0) {
+    throw invalidArgument(`${argument}.dtype`, dtype, `one of ${Object.keys(arrays).join(", ")}`, "Convert the array.");
+  }
+  const data = new Numbers(bytes.buffer);
+  const [height, width] = Array.isArray(shape) ? shape : [];
+  return height === undefined || argument.startsWith("mesh") ? data : { data, width, height };
+}
+
+async function meshOf(mesh: unknown): Promise<unknown> {
+  if (typeof mesh === "string") return readMeshFile(mesh);
+  if (!isRecord(mesh) || !isRecord(mesh.positions)) return valueOf("mesh", mesh);
+  const [positions, indices] = [
+    await valueOf("mesh.positions", mesh.positions),
+    await valueOf("mesh.indices", mesh.indices),
+  ];
+  return withoutUndefined({ positions, indices });
+}

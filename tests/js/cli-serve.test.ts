@@ -1,0 +1,86 @@
+/** The process that stays: requests and answers, and the Python of the guide. */
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { chmodSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { delimiter, join } from "node:path";
+import { test } from "node:test";
+import { createAligner } from "sim3align";
+import { files, folder, writeCase } from "../support/command-line.js";
+import { commandLine, repository } from "../support/environment.js";
+import { withoutTimes } from "../support/results.js";
+import { mesh, view } from "../support/scene.js";
+
+writeCase("cases/blob", files);
+const { width, height, depth, mask, camera } = view;
+const options = { quality: "fast", seed: 3 } as const;
+const inline = (array: Float32Array | Uint8Array | Uint32Array, shape?: number[]) => ({
+  base64: Buffer.from(array.buffer, array.byteOffset, array.byteLength).toString("base64"),
+  dtype: array.constructor.name.replace("Array", "").toLowerCase(),
+  shape,
+});
+
+function served(lines: readonly (object | string)[]) {
+  const input = lines.map((line) => (typeof line === "string" ? line : JSON.stringify(line))).join("\n");
+  const { status, stdout } = spawnSync(process.execPath, [commandLine, "serve", "--workers", "2"], {
+    ...{ cwd: folder, input, encoding: "utf8", maxBuffer: 1 << 26 },
+  });
+  assert.equal(status, 0);
+  const answers = stdout
+    .trimEnd()
+    .split("\n")
+    .map((line) => JSON.parse(line));
+  return new Map(answers.map(({ id, ...answer }) => [id, answer]));
+}
+
+test("a folder, files and arrays have the result of align; each line has an answer", async () => {
+  const arrays = {
+    depth: inline(depth, [height, width]),
+    mask: inline(mask, [height, width]),
+    mesh: { positions: inline(mesh.positions), indices: inline(mesh.indices) },
+    camera,
+  };
+  const paths = { depth: "depth.npy", mask: "mask.png", mesh: "mesh.glb", camera: "camera.json" };
+  const inFolder = Object.fromEntries(Object.entries(paths).map(([part, name]) => [part, `cases/blob/${name}`]));
+  const answers = served([
+    { id: "folder", case: "cases/blob", options },
+    { id: "files", ...inFolder, options },
+    { id: "bytes", ...inFolder, mask: { base64: Buffer.from(files["mask.png"]).toString("base64") }, options },
+    { id: "arrays", ...arrays, options },
+    ...["", "no JSON", { case: "nowhere" }, { case: "cases/blob", quality: "fast" }],
+    { id: 7, case: "cases/blob", options: { quality: "none" } },
+  ]);
+  const aligner = await createAligner();
+  const expected = await aligner.align({ depth, width, height, mask, mesh, camera }, options);
+  for (const id of ["folder", "files", "bytes", "arrays"]) {
+    const { depthUnit: _, maskReading: __, ...found } = answers.get(id).result;
+    const { depthUnit: ___, ...own } = JSON.parse(JSON.stringify(expected));
+    assert.deepEqual(withoutTimes(found), withoutTimes(own), id);
+  }
+  const codes = [4, 5, 6, 7].map((id) => answers.get(id).error.code);
+  assert.deepEqual(codes, ["INVALID_ARGUMENT", "FILE_NOT_FOUND", "INVALID_ARGUMENT", "INVALID_OPTION"]);
+});
+
+const hasPython = spawnSync("python3", ["--version"]).status === 0;
+
+test("the Python of the guide aligns many cases", { skip: !hasPython && "no python3" }, () => {
+  const guide = readFileSync(join(repository, "docs", "guides", "batches.md"), "utf8");
+  const [, program] = /^```python\n((?:(?!```)[^])*class Aligner[^]*?)^```$/m.exec(guide) ?? [];
+  const bin = join(folder, "bin");
+  mkdirSync(bin, { recursive: true });
+  writeFileSync(join(bin, "npx"), `#!/bin/sh\nshift\nexec "${process.execPath}" "${commandLine}" "$@"\n`);
+  chmodSync(join(bin, "npx"), 0o755);
+  const use = `
+aligner = Aligner("--workers", "2")
+requests = ({"id": i, "case": "cases/blob", "options": {"quality": "fast"}} for i in range(40))
+answers = list(aligner.align_all(requests))
+print(len(answers), sorted(a["id"] for a in answers) == list(range(40)), len(set(a["result"]["scale"] for a in answers)))
+try:
+    aligner.align(case="nowhere")
+except ValueError as error:
+    print(error)
+aligner.close()
+`;
+  const env = { ...process.env, PATH: [bin, process.env.PATH].join(delimiter) };
+  const { stdout, stderr } = spawnSync("python3", ["-c", `${program}${use}`], { cwd: folder, env, encoding: "utf8" });
+  assert.match(stdout, /^40 True 1\ncase: found nothing to read at nowhere/, stderr);
+});
