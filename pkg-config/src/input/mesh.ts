@@ -1,6 +1,7 @@
 /** Meshes from arrays or mesh files. */
 
 import type { Formats } from "../modules/exports.js";
+import { WasmModule } from "../modules/module.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { MeshFile } from "../types/inputs.js";
 import { failure, invalidArgument, Sim3AlignError } from "../values/error.js";
@@ -61,7 +62,14 @@ async function geometryDecoder(json: string, own: MeshDecoders): Promise<DecodeG
     import("./compressed-gltf.js"),
     import("./own-decoders.js"),
   ]);
-  const { meshoptDecoder, dracoDecoder } = { ...(await ownDecoders(json, own)), ...withoutUndefined(own) };
+  const draco = () =>
+    new WasmModule(
+      "draco",
+      () => new URL("../wasm/draco_bg.wasm", import.meta.url),
+      () => undefined,
+    );
+  const decoders = await ownDecoders(json, own, () => draco().compile());
+  const { meshoptDecoder, dracoDecoder } = { ...decoders, ...withoutUndefined(own) };
   return geometryDecoder(meshoptDecoder, dracoDecoder);
 }
 
