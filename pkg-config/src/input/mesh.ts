@@ -90,7 +90,8 @@ export interface MeshAndWarnings {
 export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: boolean): Promise<MeshAndWarnings> {
   if (isRecord(mesh) && "positions" in mesh) {
     // `readMesh` of `sim3align/formats` adds warnings.
-    return { mesh: arrays(mesh, withColors), warnings: stringsIn(mesh.warnings), unread: stringsIn(mesh.unread) };
+    const warnings = stringsIn(mesh.warnings);
+    return { mesh: { ...arrays(mesh, withColors), ...lacking(warnings) }, warnings, unread: stringsIn(mesh.unread) };
   }
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes("mesh", file.bytes);
@@ -100,8 +101,10 @@ export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: 
   const read = await decodeMesh("mesh", bytes, options, readers, ofMesh);
   const { warnings, unread, origin, ...found } = read;
   // Poses are of the mesh that the caller passed: that of a file keeps its coordinates.
-  return { mesh: { ...found, ...withoutUndefined({ fileOrigin: origin }) }, warnings, unread };
+  return { mesh: { ...found, ...lacking(warnings), ...withoutUndefined({ fileOrigin: origin }) }, warnings, unread };
 }
+
+const lacking = (warnings: readonly string[]) => (warnings.length > 0 ? { lacksColors: true } : {});
 
 /**
  * The same for a call of the core.
@@ -115,8 +118,7 @@ export async function readCoreMesh(
 ): Promise<MeshAndWarnings> {
   // A prepared mesh is cached with its colours: a later call may have a photo.
   const { mesh: arrays, ...notes } = await readMesh(mesh, readers, withColors || meshId !== undefined);
-  const lacksColors = notes.warnings.length > 0 || undefined;
-  return { mesh: withoutUndefined({ ...arrays, id: meshId, lacksColors }) as CoreMesh, ...notes };
+  return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, ...notes };
 }
 
 /** The options of the reader are properties of the mesh. */
