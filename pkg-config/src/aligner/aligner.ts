@@ -313,10 +313,16 @@ export class Aligner {
   async prepareMesh(mesh: MeshInput, options: Pick<CallOptions, "signal"> = {}): Promise<PreparedMesh> {
     const id = nextMeshId();
     try {
-      const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), (core) => core, { meshId: id });
+      const { mesh: read, ...notes } = await this.#run(
+        "prepareMesh",
+        { mesh },
+        checkedOptions(options),
+        (core) => core,
+        { meshId: id },
+      );
       // Without workers, these are the caller's arrays.
-      checkAttached("mesh", given.mesh);
-      return new PreparedMesh({ id, mesh: { ...copied(given.mesh), warnings: given.warnings } }, this.#engine);
+      checkAttached("mesh", read);
+      return new PreparedMesh({ id, mesh: { ...copied(read), ...notes } }, this.#engine);
     } catch (error) {
       // Nothing refers to what the call has left there.
       this.#engine.dropMesh(id);

@@ -116,9 +116,9 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
   prepareMesh: {
     module: "core",
     async run({ data, meshId }, context) {
-      const { mesh, warnings } = await readMesh(data.mesh, context.modules, true);
+      const { mesh, ...notes } = await readMesh(data.mesh, context.modules, true);
       await context.call("core", { mesh }, (c) => c.prepareMesh({ ...mesh, ...withoutUndefined({ id: meshId }) }));
-      return { mesh, warnings };
+      return { mesh, ...notes };
     },
   },
   alignViews: {

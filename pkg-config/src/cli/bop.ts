@@ -102,12 +102,12 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
   return { cases, instances };
 }
 
-/** The models in a folder by their ids, each read once: arrays in millimetres, and the warnings of the reader. */
+/** The models in a folder by their ids, each read once: arrays in millimetres, with what the reader says. */
 const bopModelsIn = (folder: string, withColors: boolean): ((objectId: number) => Promise<object>) =>
   readOncePerKey(async (objectId) => {
     const file = await readBopModel(folder, objectId);
-    const { mesh, warnings } = await readMesh(file, fileReaders, withColors);
-    return { ...mesh, warnings };
+    const { mesh, ...notes } = await readMesh(file, fileReaders, withColors);
+    return { ...mesh, ...notes };
   });
 
 /** The detections with the highest scores, in their order; of equal scores, those that come first. */

@@ -1,6 +1,7 @@
 /** Meshes from arrays or mesh files. */
 
 import type { Formats } from "../modules/exports.js";
+import { WasmModule } from "../modules/module.js";
 import type { FileReaders } from "../modules/readers.js";
 import type { MeshFile } from "../types/inputs.js";
 import { failure, invalidArgument, Sim3AlignError } from "../values/error.js";
@@ -61,7 +62,14 @@ async function geometryDecoder(json: string, own: MeshDecoders): Promise<DecodeG
     import("./compressed-gltf.js"),
     import("./own-decoders.js"),
   ]);
-  const { meshoptDecoder, dracoDecoder } = { ...(await ownDecoders(json, own)), ...withoutUndefined(own) };
+  const draco = () =>
+    new WasmModule(
+      "draco",
+      () => new URL("../wasm/draco_bg.wasm", import.meta.url),
+      () => undefined,
+    );
+  const decoders = await ownDecoders(json, own, () => draco().compile());
+  const { meshoptDecoder, dracoDecoder } = { ...decoders, ...withoutUndefined(own) };
   return geometryDecoder(meshoptDecoder, dracoDecoder);
 }
 
@@ -82,7 +90,8 @@ export interface MeshAndWarnings {
 export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: boolean): Promise<MeshAndWarnings> {
   if (isRecord(mesh) && "positions" in mesh) {
     // `readMesh` of `sim3align/formats` adds warnings.
-    return { mesh: arrays(mesh, withColors), warnings: stringsIn(mesh.warnings), unread: stringsIn(mesh.unread) };
+    const warnings = stringsIn(mesh.warnings);
+    return { mesh: { ...arrays(mesh, withColors), ...lacking(warnings) }, warnings, unread: stringsIn(mesh.unread) };
   }
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes("mesh", file.bytes);
@@ -92,8 +101,10 @@ export async function readMesh(mesh: unknown, readers: MeshReaders, withColors: 
   const read = await decodeMesh("mesh", bytes, options, readers, ofMesh);
   const { warnings, unread, origin, ...found } = read;
   // Poses are of the mesh that the caller passed: that of a file keeps its coordinates.
-  return { mesh: { ...found, ...withoutUndefined({ fileOrigin: origin }) }, warnings, unread };
+  return { mesh: { ...found, ...lacking(warnings), ...withoutUndefined({ fileOrigin: origin }) }, warnings, unread };
 }
+
+const lacking = (warnings: readonly string[]) => (warnings.length > 0 ? { lacksColors: true } : {});
 
 /**
  * The same for a call of the core.
@@ -107,8 +118,7 @@ export async function readCoreMesh(
 ): Promise<MeshAndWarnings> {
   // A prepared mesh is cached with its colours: a later call may have a photo.
   const { mesh: arrays, ...notes } = await readMesh(mesh, readers, withColors || meshId !== undefined);
-  const lacksColors = notes.warnings.length > 0 || undefined;
-  return { mesh: withoutUndefined({ ...arrays, id: meshId, lacksColors }) as CoreMesh, ...notes };
+  return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, ...notes };
 }
 
 /** The options of the reader are properties of the mesh. */

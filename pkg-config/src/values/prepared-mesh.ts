@@ -25,8 +25,8 @@ export interface CoreMesh {
 /** A mesh, and the id under which each thread caches the data derived from it. */
 export interface KeptMesh {
   readonly id: number;
-  /** Its arrays, and the reasons why it has no colours. */
-  readonly mesh: CoreMesh & { warnings: readonly string[] };
+  /** Its arrays, the reasons why it has no colours, and what its file holds besides. */
+  readonly mesh: CoreMesh & { warnings: readonly string[]; unread?: readonly string[] | undefined };
 }
 
 /** Holds what threads derive from prepared meshes, by id. */
