@@ -130,7 +130,7 @@ test("bad cases are reported, the good ones aligned, and the exit status is that
   assert.deepEqual(Object.keys(many["no-mask"].error), properties);
   assert.match(many["no-mask"].error.message, /mask: .*no-mask.*mask\.png or mask\.npy or mask\.json/);
   assert.equal(many["empty-mask"].error.file, join("empty-mask", "mask.png"));
-  assert.match(many.outside.error.message, /in the folder of the \.gltf/);
+  assert.match(many.outside.error.message, /in the folder of the mesh/);
   for (const name of ["pipe", "device"]) assert.match(many[name].error.message, /no ordinary file at/);
   assert.equal("errors" in many.others, false, "no truth, no errors");
   const scales = [many.blob, many.others].map(({ diagnostics }) => diagnostics.initialScale);

@@ -82,7 +82,7 @@ test("an output of SAM 3D is a scene; a scale goes before its placements, and si
   await assertValid(bytes("o.glb"));
   const scale = poses[0]?.scale ?? 1;
   succeeds(`scene --sam3d sam3d --quality fast --scale ${1.01 * scale},${2 * scale} --json g.json`);
-  const unit = { metres: null, source: "scale-invariant", isAssumed: false };
+  const unit = { metres: null, source: "scale-invariant, a point map with x left, y up, z forward", isAssumed: false };
   assert.deepEqual(results("g.json").sam3d.depthUnit, unit);
   refusesUsage({ "scene --sam3d sam3d --usd w.usda": /--depth-kind metric/ });
 });
