@@ -338,7 +338,7 @@ fn doubtful_depth_and_masks_are_warned_of() {
         ("normalised, of a sensor that lacks readings", seen(&lacking), &[WarningCode::DepthLooksNormalised]),
         ("a sensor that lacks readings", seen(&|i, z| (1000.0 * lacking(i, z)).round() / 1000.0), &[]),
         ("a map that ends elsewhere", seen(&|i, z| 1.1 * normalised(i, z)), &[]),
-        ("centimetres", seen(&|_, z| 100.0 * z), &[WarningCode::SizeDoubtful]),
+        ("centimetres", seen(&|_, z| 100.0 * z), &[WarningCode::DepthLooksLikeMillimetres]),
         ("metres of something large", seen(&|_, z| LARGER * z), &[]),
         ("whole millimetres of it", seen(&|_, z| (1000.0 * LARGER * z).round() / 1000.0), &[WarningCode::SizeDoubtful]),
         ("millimetres", seen(&|_, z| 1000.0 * z), &[WarningCode::DepthLooksLikeMillimetres]),
