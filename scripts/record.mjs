@@ -142,7 +142,7 @@ const quickRecord = (results) =>
     }),
   );
 
-/** What is worse than in the committed record. @param {ReturnType<typeof quickRecord>} now @returns {string[]} */
+/** Regressions from the committed record. @param {ReturnType<typeof quickRecord>} now @returns {string[]} */
 function losses(now) {
   /** @type {typeof now} */
   const before = JSON.parse(readFileSync(quickFile, "utf8"));

@@ -70,7 +70,7 @@ struct Arguments {
     threads: Option<usize>,
 }
 
-/// What rows run over.
+/// The unit that a row of the table counts.
 enum Source {
     Generated(Set, usize),
     Folder(PathBuf, FolderKind),

@@ -1,6 +1,6 @@
 /** The keys of camera files: one table, from which they are read. */
 
-/** What a key says. */
+/** The meaning of a key. */
 export type Meaning =
   | ("fx" | "fy" | "cx" | "cy" | "focal" | "center" | "matrix" | "skew" | "focalUncertainty")
   | ("width" | "height" | "size" | "shape" | "region" | "binningX" | "binningY")
@@ -117,14 +117,14 @@ export function isOther(key: string, value: unknown): boolean {
   return [name, withoutCamera(name)].some((one) => otherKeys.test(one) && !(isNumber && otherLists.test(one)));
 }
 
-/** What a key that is not in the table says by the words in it. */
+/** The meaning of a key that is not in the table, by the words in it. */
 function likeness(name: string, value: unknown): Meaning | undefined {
   if (typeof value === "string") return /model|type|lens|projection/.test(name) ? "model" : undefined;
   if (typeof value !== "number") return /distort|^dist(?!an)|coeffs?$/.test(name) ? "distortion" : undefined;
   return /depth/.test(name) && /scale|factor|unit|divi|multipl/.test(name) ? "depthScale" : undefined;
 }
 
-/** What a key says, and of which of several cameras, if it says so. */
+/** The meaning of a key, and which of several cameras it is about, if it names one. */
 interface KeyMeaning {
   meaning: Meaning;
   camera?: string;
@@ -134,7 +134,7 @@ interface KeyMeaning {
 const known = new Map<string, KeyMeaning | undefined>();
 const MAX_KNOWN = 1000;
 
-/** What a key says; `undefined` for an unknown key. */
+/** The meaning of a key; `undefined` for an unknown one. */
 export function meaningOf(key: string, value: unknown): KeyMeaning | undefined {
   const place = `${Array.isArray(value) ? "list" : typeof value} ${key}`;
   if (known.has(place)) return known.get(place);
@@ -143,7 +143,7 @@ export function meaningOf(key: string, value: unknown): KeyMeaning | undefined {
   return meaning;
 }
 
-/** What a key says, as far as it is known, and of which of several cameras, if it says so. */
+/** The meaning of a key by the table, the names of cameras, and the words in it. */
 function lookedUp(key: string, value: unknown): KeyMeaning | undefined {
   // Our own is metres per unit; that of others may be anything.
   if (key === "depthScale") return { meaning: "metresPerUnit" };

@@ -1,4 +1,4 @@
-/** What a camera file states: its cameras, each with the facts that hold for it. */
+/** The cameras in a camera file, each with the facts that hold for it. */
 import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { isOther, type Meaning, meaningOf } from "./keys.js";

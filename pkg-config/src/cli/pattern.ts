@@ -60,7 +60,7 @@ function* matches(folder: string, [part, ...more]: readonly string[], unread: Se
   }
 }
 
-/** What one character may be; `null` for any number of characters. */
+/** The set of characters at a place of a pattern; `null` for any number of any characters. */
 type Token = RegExp | null;
 
 /** The tokens of a part of a pattern. A name may hold any character, also a line break. */

@@ -78,7 +78,7 @@ export async function readView(input: Record<string, unknown>, readers: FileRead
   };
 }
 
-/** What was measured: a depth map or a point map. */
+/** A depth map or a point map. */
 interface Measured extends Omit<SizedArray<unknown>, "data"> {
   core: { [K in "depth" | "depthScale" | "depthKind" | "pointMap"]?: CoreInput[K] | undefined };
   unit: DepthImage["unit"];

@@ -106,7 +106,7 @@ function viewOf(value: unknown): ExportedScene["camera"] {
   };
 }
 
-/** What files that this package writes call themselves. */
+/** The mark of files that this package writes. */
 export const GENERATOR = "written by sim3align";
 
 /** A number with seven digits. */
