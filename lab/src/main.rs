@@ -70,7 +70,7 @@ struct Arguments {
     threads: Option<usize>,
 }
 
-/// The unit that a row of the table counts.
+/// The source of the cases of a table.
 enum Source {
     Generated(Set, usize),
     Folder(PathBuf, FolderKind),
