@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import { render } from "preact";
 import type { Sim3, Sim3Like } from "sim3align";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import controls from "../../style/controls.css?inline";
 import own from "../../style/element.css?inline";
 import panels from "../../style/panels.css?inline";

@@ -1,6 +1,6 @@
 /** Keeps the 3D view in sync with the state of the page. */
 import { effect } from "@preact/signals";
-import { compose, invert, toSim3 } from "sim3align/conventions";
+import { compose, invert, toSim3 } from "sim3align/conventions/similarity";
 import { depthImage } from "../pictures/colours.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Pose, tightBoundsOf } from "../state/pose.js";
