@@ -57,6 +57,7 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
   constructor() {
     super();
     this.#root.adoptedStyleSheets = sheets();
+    this.#workspace.announce("No scene.");
   }
 
   connectedCallback(): void {
@@ -112,6 +113,7 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
     const call = ++this.#lastCall;
     // What is set from now on is for this scene, which takes time to read.
     this.#workspace.scene.value = null;
+    this.#workspace.announce("No scene.");
     if (given !== null) this.#open(given, () => call === this.#lastCall);
   }
 
