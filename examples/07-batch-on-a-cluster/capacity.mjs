@@ -2,7 +2,7 @@
 import { availableParallelism } from "node:os";
 import { parseArgs } from "node:util";
 import { Queue } from "bullmq";
-import { connect, queueName, report, resultsKey } from "./queue.mjs";
+import { connect, queueName, report, requestsKey, resultsKey } from "./queue.mjs";
 
 const { values } = parseArgs({
   options: {
@@ -22,10 +22,11 @@ const completed = await queue.getCompleted(0, 999);
 const done = completed.filter(({ returnvalue }) => returnvalue === "done");
 /** Bytes of Redis for a key and its value. */
 const bytesOf = async (key) => Number(await connection.call("MEMORY", "USAGE", key, "SAMPLES", "100"));
-// A result, the job, and its place in the list of those that are completed.
+// A result, a request, the job, and its place in the list of those that are completed.
 const jobBytes = await Promise.all(done.slice(0, 100).map(({ id = "" }) => bytesOf(queue.toKey(id))));
 const memory =
   (await bytesOf(resultsKey)) / (await connection.hlen(resultsKey)) +
+  (await bytesOf(requestsKey)) / (await connection.hlen(requestsKey)) +
   jobBytes.reduce((a, b) => a + b, 0) / jobBytes.length +
   (await bytesOf(queue.toKey("completed"))) / (await queue.getCompletedCount());
 await queue.close();

@@ -1,7 +1,7 @@
-// Waits until the queue is empty and writes a line of JSON for each result and each failure: node collect.mjs > results.jsonl
+// Waits until the queue is empty and writes a line of JSON for each folder: its result, or its failure: node collect.mjs > results.jsonl
 import { setTimeout as pause } from "node:timers/promises";
 import { Queue } from "bullmq";
-import { connect, queueName, report, resultsKey } from "./queue.mjs";
+import { connect, queueName, report, requestsKey, resultsKey } from "./queue.mjs";
 
 const connection = connect();
 const queue = new Queue(queueName, { connection });
@@ -15,21 +15,22 @@ for (;;) {
 }
 // Page by page: a million results are larger than a string can be.
 const seen = new Set();
-for await (const page of connection.hscanStream(resultsKey, { count: 500 })) {
+for await (const page of connection.hscanStream(requestsKey, { count: 500 })) {
   for (let i = 0; i < page.length; i += 2) {
+    const [request, id] = [page[i], page[i + 1]];
     // Redis may name an entry twice.
-    if (seen.has(page[i])) continue;
-    seen.add(page[i]);
-    console.log(JSON.stringify({ id: page[i], ...JSON.parse(page[i + 1]) }));
+    if (seen.has(request)) continue;
+    seen.add(request);
+    const [folder] = JSON.parse(request);
+    const result = await connection.hget(resultsKey, id);
+    console.log(JSON.stringify({ id, folder, ...(result === null ? await failureOf(id) : JSON.parse(result)) }));
   }
-}
-const PAGE = 500;
-for (let start = 0; ; start += PAGE) {
-  const failed = await queue.getFailed(start, start + PAGE - 1);
-  for (const { id, data, failedReason: error, attemptsMade: attempts } of failed) {
-    console.log(JSON.stringify({ id, folder: data.folder, error, attempts }));
-  }
-  if (failed.length < PAGE) break;
 }
 await queue.close();
 connection.disconnect();
+
+/** Why there is no result. A producer that was killed may have left a request without a job. @param {string} id */
+async function failureOf(id) {
+  const job = await queue.getJob(id);
+  return { error: job?.failedReason ?? "not in the queue: call producer.mjs again", attempts: job?.attemptsMade ?? 0 };
+}

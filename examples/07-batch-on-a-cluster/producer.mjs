@@ -4,7 +4,7 @@ import { resolve } from "node:path";
 import { createInterface } from "node:readline";
 import { parseArgs } from "node:util";
 import { Queue } from "bullmq";
-import { connect, inputsIn, jobIdOf, kindOf, queueName, report } from "./queue.mjs";
+import { connect, inputsIn, jobIdOf, kindOf, queueName, report, requestOf, requestsKey } from "./queue.mjs";
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -27,7 +27,9 @@ for await (const name of folders()) {
   const folder = resolve(name);
   const names = await inputsIn(folder);
   const jobId = await jobIdOf(folder, names, options);
-  // BullMQ does not add a job whose id already exists, whether it is waiting, completed or failed.
+  await connection.hset(requestsKey, requestOf(folder, options), jobId);
+  // BullMQ does not add a job whose id already exists, whether it is waiting, completed or failed: a failed one is removed.
+  if ((await queue.getJobState(jobId)) === "failed") await queue.remove(jobId);
   const retries = { attempts: 5, backoff: { type: "exponential", delay: 1000 } };
   await queue.add(kindOf(names), { folder, options }, { jobId, ...retries });
   console.log(jobId, folder);

@@ -8,6 +8,8 @@ import { Redis } from "ioredis";
 export const queueName = "sim3align";
 /** A hash in Redis: job id → result as JSON. It is independent of how long the queue keeps its jobs. */
 export const resultsKey = "sim3align:results";
+/** A hash in Redis: folder and options as JSON → the id of the last job for them. Folders with equal files share a job. */
+export const requestsKey = "sim3align:requests";
 
 const { version } = createRequire(import.meta.url)("sim3align/package.json");
 
@@ -39,14 +41,23 @@ export async function inputsIn(folder) {
     .sort(compare);
 }
 
-/** What a folder is: by the folders in it, a scene, a video or a single case.
+/**
+ * What a folder is: by the folders in it, a scene, a video (frame_* or FoundationPose's depth/) or a single case.
  * @param {string[]} names
  * @returns {"case" | "scene" | "video"}
  */
 export function kindOf(names) {
   if (names.some((name) => name.startsWith("objects/"))) return "scene";
-  return names.some((name) => name.startsWith("frame_")) ? "video" : "case";
+  if (names.some((name) => /^frame_[^/]*\//.test(name))) return "video";
+  const hasDepth = names.some((name) => /^depth\.[^/]+$/i.test(name));
+  return !hasDepth && names.some((name) => /^depths?\//i.test(name)) ? "video" : "case";
 }
+
+/** The entries of options, whatever their order. @param {object} options */
+const sorted = (options) => Object.entries(options).sort();
+
+/** A request: a field of `requestsKey`. @param {string} folder @param {object} options */
+export const requestOf = (folder, options) => JSON.stringify([folder, sorted(options)]);
 
 /**
  * The id depends on files, options and version only, so a folder that is queued twice is aligned once. Files are read
@@ -56,7 +67,7 @@ export function kindOf(names) {
  * @param {object} options
  */
 export async function jobIdOf(folder, names, options) {
-  const hash = createHash("sha256").update(JSON.stringify([version, Object.entries(options).sort()]));
+  const hash = createHash("sha256").update(JSON.stringify([version, sorted(options)]));
   for (const name of names) {
     const bytes = await readFile(`${folder}/${name}`);
     hash.update(`${name} ${bytes.length}\n`).update(bytes);

@@ -1,6 +1,7 @@
 // What a job does, by the kind of its folder. Files are passed as they are; the package decodes them in its workers.
 import { readFile } from "node:fs/promises";
-import { readCase, readScene } from "sim3align/formats";
+import { Sim3AlignError } from "sim3align";
+import { readCase, readFrames, readScene } from "sim3align/formats";
 
 /**
  * @typedef {import("sim3align").Aligner} Aligner
@@ -15,15 +16,11 @@ import { readCase, readScene } from "sim3align/formats";
  */
 const filesOf = ({ path, names }) => Object.fromEntries(names.map((name) => [name, () => readFile(`${path}/${name}`)]));
 
-/**
- * Reads the file of a part, whatever its format, if there is one: "mask" is mask.png.
- * @param {Folder} folder
- * @param {string} part
- */
-async function optional({ path, names }, part) {
-  const name = names.find((candidate) => candidate.startsWith(`${part}.`));
-  return name === undefined ? undefined : readFile(`${path}/${name}`);
-}
+/** Codes of errors of the environment, for which a retry may succeed. All other codes are errors of the input. */
+const retryable = new Set(["WORKER_FAILED", "NOT_INITIALISED", "INTERNAL"]);
+
+/** @param {unknown} error @returns {error is Sim3AlignError} whether the input is at fault, so that no retry can succeed */
+export const isOfInput = (error) => error instanceof Sim3AlignError && !retryable.has(error.code);
 
 /** @param {import("sim3align").Sim3 & { confidence: number }} pose */
 const poseOf = ({ matrix, scale, confidence }) => ({ matrix, scale, confidence });
@@ -61,28 +58,32 @@ export const perform = {
   },
 
   /**
-   * One object through all frames, of which only one is in memory. The first one has a mask.
+   * One object through all frames, of which only one is in memory. The first one has a mask. A frame that fails has its code.
    * @param {Aligner} aligner
    * @param {Folder} folder
    * @param {object} options of `track`
    */
   async video(aligner, folder, options) {
-    const mesh = await optional(folder, "mesh");
-    if (mesh === undefined) throw new Error(`no mesh in ${folder.path}`);
+    const { mesh, names, read } = await readFrames(filesOf(folder));
+    if (names.length === 0) return this.case(aligner, folder, options);
     const tracker = await aligner.track(mesh, options);
     try {
-      const frames = [];
-      const names = new Set(folder.names.flatMap((name) => /^(frame_[^/]+)\//.exec(name)?.[1] ?? []));
+      const [frames, errors] = [[], []];
+      let scale;
       for (const name of names) {
-        const [depth, cameraFile, mask, image] = await Promise.all(
-          ["depth", "camera", "mask", "rgb"].map((part) => optional(folder, `${name}/${part}`)),
-        );
-        if (depth === undefined) throw new Error(`no depth in ${folder.path}/${name}`);
-        const camera = cameraFile === undefined ? {} : { cameraFile };
-        const tracked = await tracker.next({ depth, ...camera, mask, image });
-        frames.push({ name, state: tracked.state, ...poseOf(tracked) });
+        try {
+          const { cameraToWorld: _, ...view } = (await read(name)).input;
+          const tracked = await tracker.next(view);
+          frames.push({ name, state: tracked.state, ...poseOf(tracked) });
+          scale = tracked.scale;
+        } catch (error) {
+          if (!isOfInput(error)) throw error;
+          frames.push({ name, error: error.code });
+          errors.push(error);
+        }
       }
-      return { scale: frames.at(-1)?.scale, frames };
+      if (errors.length === names.length) throw errors[0];
+      return { scale, frames };
     } finally {
       tracker.dispose();
     }

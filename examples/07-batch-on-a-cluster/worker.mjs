@@ -1,16 +1,14 @@
 // Processes the queue. Run any number of these, on any number of machines: node worker.mjs
 import { availableParallelism } from "node:os";
 import { UnrecoverableError, Worker } from "bullmq";
-import { createAligner, Sim3AlignError } from "sim3align";
+import { createAligner } from "sim3align";
 import { connect, inputsIn, jobIdOf, kindOf, queueName, report, resultsKey } from "./queue.mjs";
-import { perform } from "./work.mjs";
+import { isOfInput, perform } from "./work.mjs";
 
 const threads = Number(process.env.THREADS ?? availableParallelism());
 // After this time without renewal of its lock, a job is taken over by another worker. Alignments run in their own threads,
 // so this thread can renew the locks however long an alignment takes.
 const lockDuration = Number(process.env.LOCK_MS ?? 30_000);
-/** Codes of errors of the environment, for which a retry may succeed. All other codes are errors of the input. */
-const retryable = new Set(["WORKER_FAILED", "NOT_INITIALISED", "INTERNAL"]);
 
 const connection = connect();
 const aligner = await createAligner({ workers: threads });
@@ -27,11 +25,10 @@ const worker = new Worker(
     }
     const kind = kindOf(names);
     const result = await perform[kind](aligner, { path: folder, names }, options).catch((error) => {
-      const isFinal = error instanceof Sim3AlignError && !retryable.has(error.code);
-      throw isFinal ? new UnrecoverableError(`${error.code}: ${error.message}`) : error;
+      throw isOfInput(error) ? new UnrecoverableError(`${error.code}: ${error.message}`) : error;
     });
     // Keep the first result: if two workers did the same job, their results are bit-identical.
-    const isFirst = await connection.hsetnx(resultsKey, id, JSON.stringify({ kind, folder, ...result }));
+    const isFirst = await connection.hsetnx(resultsKey, id, JSON.stringify({ kind, ...result }));
     if (isFirst) console.log("stored", id);
     return "done";
   },

@@ -19,6 +19,9 @@ import { failure, Sim3AlignError } from "./values/error.js";
 import { naturally } from "./values/order.js";
 import { record, withoutUndefined } from "./values/validation.js";
 
+/** Depth of the folders that are searched for the files of a mesh. */
+export const LEVELS = 8;
+
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
 
@@ -41,6 +44,13 @@ export interface Case {
   unread: string[];
   /** The true pose; `null` if unknown. */
   truth: KnownPose | null;
+}
+
+/** The files of a folder: which each part is, and those that were not read. Names are relative to the folder. */
+export interface FoundFiles {
+  folder: string;
+  files: Readonly<Record<string, string>>;
+  unread: readonly string[];
 }
 
 /** Frames whose files have been read, but not decoded. */

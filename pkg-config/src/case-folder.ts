@@ -1,21 +1,22 @@
 /** Cases on disk (Node only). */
 import { readdir, stat } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
-import { type Case, type CaseFiles, caseFrom, meshFile, type ReadCaseOptions } from "./case-files.js";
+import {
+  type Case,
+  type CaseFiles,
+  caseFrom,
+  type FoundFiles,
+  LEVELS,
+  meshFile,
+  type ReadCaseOptions,
+} from "./case-files.js";
 import { partOf } from "./case-names.js";
 import { refersToFiles } from "./input/formats.js";
 import { read, unreadable } from "./read-files.js";
 import type { AlignInput, CameraInput, MeshFile } from "./types/inputs.js";
 import { withoutUndefined } from "./values/validation.js";
 
-export type { ReadCaseOptions } from "./case-files.js";
-
-/** The files of a folder: which each part is, and those that were not read. Names are relative to the folder. */
-export interface FoundFiles {
-  folder: string;
-  files: Readonly<Record<string, string>>;
-  unread: readonly string[];
-}
+export type { FoundFiles, ReadCaseOptions } from "./case-files.js";
 
 /** A case on disk. */
 export interface CaseOnDisk extends Pick<Case, "input" | "truth"> {
@@ -59,9 +60,6 @@ export async function filesOfCase(folder: string): Promise<CaseFiles> {
   const refers = names.some((name) => partOf(name) === "mesh" && refersToFiles(name));
   return filesIn("case", folder, await filesBelow(folder, "", refers ? LEVELS : 1));
 }
-
-/** Depth of the folders that are searched for the files of a mesh. */
-export const LEVELS = 8;
 
 /** The paths of the files in a folder below `root`, down to so many levels; links are followed. */
 export async function filesBelow(root: string, folder: string, levels: number): Promise<string[]> {

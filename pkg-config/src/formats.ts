@@ -7,6 +7,7 @@
 import type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
 import { type Case, type CaseFiles, caseFrom, ownFiles, type ReadCaseOptions } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
+import { type Frames, folderOf, framesIn } from "./frames.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import { decodeDepth } from "./input/depth.js";
 import { readJsonMask } from "./input/mask.js";
@@ -37,8 +38,9 @@ import type { ColorSamples, Exif, ExternalResources } from "./wasm/formats.js";
 
 export type { CameraFile, ReadCameraOptions } from "./camera/camera-file.js";
 export { type ExifFocal, focalFromExif } from "./camera/exif-focal.js";
-export type { Case, CaseFiles, ReadCaseOptions } from "./case-files.js";
+export type { Case, CaseFiles, FoundFiles, ReadCaseOptions } from "./case-files.js";
 export type { KnownPose } from "./conventions/pose-file.js";
+export type { Frame, Frames } from "./frames.js";
 export type {
   DracoAttribute,
   DracoBuffer,
@@ -249,6 +251,25 @@ export async function readCase(files: CaseFiles, settings: ReadCaseOptions = {})
  */
 export async function readScene(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<SceneCase> {
   return sceneFrom(ownFiles(files), caseOptions(settings));
+}
+
+/**
+ * Reads the mesh of a folder of frames, and each frame when it is needed: a folder with `mesh.*` and `frame_*` folders, each with
+ * the files of a case but the mesh; or one in the layout of FoundationPose, with a file per frame in `depth/`, `rgb/` and `masks/`, and
+ * `mesh/`. A camera beside these is that of the frames without one.
+ * @param files by path, relative to the folder
+ *
+ * @example
+ * const { mesh, names, read } = await readFrames(files);
+ * const tracker = await aligner.track(mesh);
+ * for (const name of names) {
+ *   const { cameraToWorld, ...view } = (await read(name)).input;
+ *   console.log(await tracker.next(view));
+ * }
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names, `INVALID_ARGUMENT` for several files of one part
+ */
+export async function readFrames(files: CaseFiles, settings: ReadCaseOptions = {}): Promise<Frames> {
+  return framesIn(folderOf(ownFiles(files)), caseOptions(settings));
 }
 
 /**

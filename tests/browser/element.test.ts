@@ -198,6 +198,7 @@ test("depth in integers is read as align() reads it, and what is set beside the 
   assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).pose?.scale), truth.scale);
   await page.evaluate(() => void Object.assign(document.querySelector("#a") as Element, { scene: null }));
   assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).results.length), 0);
+  assert.equal(await page.locator("#a #status").textContent(), "No scene.");
   await page.close();
 });
 
@@ -237,6 +238,48 @@ test("read-only, nothing can be changed, and tokens and parts style the element"
   await page.close();
 });
 
+test("what is missing or wrong in a scene in memory is an error with its code", async () => {
+  const { page } = await host(`<sim3-align id="a" manual></sim3-align>`);
+  const { mask, ...view } = seen;
+  for (const [objects, found] of [
+    [undefined, ["INVALID_ARGUMENT", /^objects: /]],
+    [[{ mask }], ["INVALID_ARGUMENT", /^mesh: /]],
+    [[{ mesh }], ["INVALID_ARGUMENT", /^objects\[0\]\.mask: /]],
+    [[{ mask: mask.slice(1), mesh }], ["WRONG_LENGTH", /^objects\[0\]\.mask: /]],
+  ] as const) {
+    const { code, message } = await page.evaluate(
+      (scene) => {
+        const element = document.querySelector("#a") as Element;
+        const failed = new Promise<Event>((resolve) => element.addEventListener("error", resolve, { once: true }));
+        Object.assign(element, { scene });
+        return failed.then((event) => (event as CustomEvent<{ code: string; message: string }>).detail);
+      },
+      { ...view, objects },
+    );
+    assert.equal(code, found[0], message);
+    assert.match(message, found[1]);
+  }
+  await page.close();
+});
+
+test("a start pose is no result: it has no size and, read-only, no mesh is shown", async () => {
+  const { page } = await host(`<sim3-align id="a" readonly></sim3-align><sim3-align id="b" manual></sim3-align>`);
+  for (const id of ["a", "b"]) {
+    await give(page, id);
+    const label = page.locator(`#${id} .space[data-state=ready] canvas`).first();
+    await label.waitFor(PATIENCE);
+    await page.locator(`#${id} .space canvas[aria-label$="no mesh placed yet"]`).first().waitFor(PATIENCE);
+  }
+  assert.match((await page.locator("#a [role=status]").textContent()) ?? "", /No pose is set/);
+  const imageOf = (id: string) =>
+    page.locator(`#${id} .image canvas`).evaluate((canvas) => (canvas as HTMLCanvasElement).toDataURL());
+  assert.notEqual(await imageOf("a"), await imageOf("b"), "the start pose is drawn where it can be changed");
+  await page.evaluate((pose) => void Object.assign(document.querySelector("#a") as Element, { pose }), truth);
+  await page.locator('#a .space canvas[aria-label$="placed meshes: blob"]').first().waitFor(PATIENCE);
+  assert.equal(await page.locator("#a [role=status]").textContent(), "");
+  await page.close();
+});
+
 test("src names a zip archive, a session or an index, and what cannot be opened is an error event", async () => {
   const { page } = await host(
     ["zip", "index", "bad", "gone"].map((id) => `<sim3-align id="${id}" manual></sim3-align>`).join(""),
@@ -255,8 +298,15 @@ test("src names a zip archive, a session or an index, and what cannot be opened 
   for (const [id, opened] of Object.entries({ zip: "mug", index: "cases" })) {
     assert.equal((await told<{ name: string }>(page, id, "ready")).name, opened);
   }
-  for (const [id, says] of Object.entries({ bad: /neither a zip archive nor an index/, gone: /HTTP 404/ })) {
+  for (const [id, says] of Object.entries({
+    bad: /neither a zip archive nor an index/,
+    gone: /http:.*\/cases\/gone\.zip could not be loaded: HTTP 404/,
+  })) {
     assert.match((await told<{ message: string }>(page, id, "error")).message, says);
+    // To its end, in a narrow element too.
+    const status = page.locator(`#${id} #status`);
+    assert.match((await status.textContent()) ?? "", says);
+    assert.ok(await status.evaluate((line) => line.scrollHeight <= line.clientHeight), id);
   }
   await page.close();
 });

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { type ChildProcess, execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
-import { renameSync } from "node:fs";
+import { mkdirSync, renameSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, test } from "node:test";
@@ -58,6 +58,7 @@ interface Line {
   confidence: number;
   error?: string;
   attempts: number;
+  frames?: { name: string; state: string }[];
 }
 
 /** Starts Redis, and returns the environment of the example's programs. */
@@ -96,7 +97,7 @@ test("07: all results are there once, though a worker is killed in the middle of
   const produce = (cases: string[]) => produced(["--options", JSON.stringify(OPTIONS), ...cases], env);
   const ids = await produce([...folders, atFault]);
   assert.equal(new Set(ids).size, CASES + 1);
-  // Asked for again, and from a copy of the same files: the same jobs.
+  // Asked for again, and from a copy of the same files: the same jobs, and a line of its own for the copy.
   const copy = writeCase(parent, "copy-of-case-0", { pose: otherPose(0) });
   assert.deepEqual(await produce([...folders.slice(0, 3), copy]), [...ids.slice(0, 3), ids[0]]);
 
@@ -120,7 +121,8 @@ test("07: all results are there once, though a worker is killed in the middle of
   renameSync(`${late}-away`, late);
 
   const { results, failures } = await collected(env);
-  assert.deepEqual(results.map(({ id }) => id).sort(), ids.slice(0, CASES).sort());
+  assert.deepEqual(results.map(({ folder }) => folder).sort(), [...folders, copy].sort());
+  assert.deepEqual(new Set(results.map(({ id }) => id)), new Set(ids.slice(0, CASES)));
   const stored = [...victim.said("stored"), ...survivor.said("stored")];
   assert.deepEqual(stored.sort(), ids.slice(0, CASES).sort(), "each result was stored once");
   assert.ok(survivor.said("active").includes(lost[0] ?? ""), "the survivor took over what was lost");
@@ -139,6 +141,23 @@ test("07: all results are there once, though a worker is killed in the middle of
     [[atFault, 1]],
   );
   assert.match(failures[0]?.error ?? "", /^EMPTY_MASK: /);
+
+  // The frames of a video come in the order of their numbers, and a failed job is done again where it is queued again.
+  const video = join(parent, "video");
+  mkdirSync(video);
+  for (const k of [1, 2, 10]) writeCase(video, `frame_${k}`);
+  renameSync(join(video, "frame_1", "mesh.obj"), join(video, "mesh.obj"));
+  for (const k of [2, 10]) rmSync(join(video, `frame_${k}`, "mesh.obj"));
+  const again = await produced([...["--options", JSON.stringify(OPTIONS)], atFault], env);
+  assert.deepEqual(again, ids.slice(CASES));
+  await produced([video], env);
+  const after = await collected(env);
+  const tracked = after.results.find(({ folder }) => folder === video);
+  assert.deepEqual(
+    tracked?.frames?.map(({ name, state }) => [name, state]),
+    [1, 2, 10].map((k) => [`frame_${k}`, "tracking"]),
+  );
+  assert.equal(survivor.said("active").filter((id) => id === again[0]).length, 2);
 
   const ended = once(survivor.child, "exit");
   survivor.child.kill("SIGTERM");

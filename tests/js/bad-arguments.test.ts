@@ -243,7 +243,7 @@ test("an option that no helper function has is refused by name", async () => {
     ...["exportGlb", "exportSceneGlb", "fromBop", "fromSam3d", "orientedBoundingBox"],
     ...["placeSplats", "toBop", "toCocoRle", "toCuboid", "toSam3d", "uprightMesh"],
     ...["simulatorScene", "applyToObject3D", "meshInputFromThree", "transformFromObject3D"],
-    ...["readCamera", "readCase", "readDepth", "readMesh", "readSam3d", "readScene"],
+    ...["readCamera", "readCase", "readDepth", "readFrames", "readMesh", "readSam3d", "readScene"],
   ];
   for (const name of withOptions) {
     const [entry = ""] = Object.entries(helperCalls).find(([, calls]) => name in calls) ?? [];

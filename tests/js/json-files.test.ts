@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createAligner } from "sim3align";
-import { type CaseFiles, readCase, readPose } from "sim3align/formats";
+import { type CaseFiles, readCase, readFrames, readPose } from "sim3align/formats";
 import { type Fault, rejectsWith } from "../support/errors.js";
 import { cocoRle, fixture, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -105,6 +105,34 @@ test("a case is read from files by their names, lazily where they are functions"
     const outside = { ...files, "mesh.gltf": json(gltfJson(mesh, {}, { uri })) };
     await rejectsWith(() => readCase(outside), "CORRUPT_FILE mesh", /below it/);
   }
+});
+
+test("frames are read in the order of their numbers, from folders and from the layout of FoundationPose", async () => {
+  const { "depth.npy": depthFile, "mask.json": maskFile, "gt.json": _, "camera.json": cameraFile, ...shape } = files;
+  const numbers = [10, 2, 1];
+  const folders = numbers.map((k) => [`frame_${k}/Depth.NPY`, depthFile]);
+  const columns = numbers.map((k) => [`depth/${k}.npy`, depthFile]);
+  const shapeBelow = Object.entries(shape).map(([name, file]) => [`mesh/${name.replace("mesh.", "mug.")}`, file]);
+  for (const [all, names, views, masked] of [
+    [{ ...shape, "frame_1/mask.json": maskFile, ...Object.fromEntries(folders) }, [1, 2, 10], [1, 2, 10], "frame_"],
+    [{ ...Object.fromEntries([...shapeBelow, ...columns]), "masks/1.json": maskFile }, [1, 2, 10], [1], ""],
+  ] as const) {
+    const found = await readFrames({ ...all, "K.json": cameraFile, "notes.txt": cameraFile } as CaseFiles);
+    assert.deepEqual(
+      found.names,
+      names.map((k) => `${masked}${k}`),
+    );
+    assert.deepEqual(
+      found.views,
+      views.map((k) => `${masked}${k}`),
+    );
+    assert.deepEqual(Object.keys((found.mesh as { resources: object }).resources), ["./sub/a%20b.bin"]);
+    const [first, last] = [await found.read(`${masked}1`), await found.read(`${masked}10`)];
+    assert.deepEqual(first.input, { depth: depthFile, mask: maskFile, cameraFile });
+    assert.deepEqual(last.input, { depth: depthFile, cameraFile });
+    assert.deepEqual(found.found().unread, ["notes.txt"]);
+  }
+  await rejectsWith(() => readFrames({ "frame_1/depth.npy": depthFile }), "FILE_NOT_FOUND mesh", /mesh\.glb/);
 });
 
 test("a case's photo, textures and settings go into its input; a camera may be missing", async () => {

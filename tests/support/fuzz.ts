@@ -1,7 +1,16 @@
 /** Random calls, some with odd arguments, without workers and with one: both settle, and with the same outcome. */
 import assert from "node:assert/strict";
 import { type Aligner, createAligner, OPTIONS, type OptionRow, Sim3AlignError } from "sim3align";
-import { readCamera, readCase, readDepth, readMask, readMesh, readPose, readSam3d } from "sim3align/formats";
+import {
+  readCamera,
+  readCase,
+  readDepth,
+  readFrames,
+  readMask,
+  readMesh,
+  readPose,
+  readSam3d,
+} from "sim3align/formats";
 import { cocoRle, glb, maskPng, npy, obj } from "./files.js";
 import { Random } from "./random.js";
 import { withoutTimes } from "./results.js";
@@ -87,7 +96,7 @@ function options(random: Random, method: keyof typeof OPTIONS): never {
 const frame = (random: Random) => mutated(random, { ...scene(random), mesh: undefined }) as never;
 const pose = (random: Random) => pick<unknown>(random, [truth, { matrix: columnMajor(truth) }, odd(random)]) as never;
 const cloud = (random: Random) => pick(random, [Float32Array.from(random.list(60, -1, 1)), odd(random)]) as never;
-const readers = [readDepth, readMask, readMesh, readCamera, readPose, readCase, readSam3d];
+const readers = [readDepth, readMask, readMesh, readCamera, readPose, readCase, readFrames, readSam3d];
 
 /** The calls; each draws its arguments from the generator. */
 const calls: readonly ((aligner: Aligner, random: Random) => unknown)[] = [

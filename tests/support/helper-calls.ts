@@ -87,6 +87,7 @@ export const helperCalls: Readonly<Record<string, Readonly<Record<string, readon
     readCase: [files, {}],
     readDepth: [files["depth.npy"], { depthScale: 1 }],
     readExif: [files["mask.png"]],
+    readFrames: [files, {}],
     readImage: [files["mask.png"]],
     readMask: [files["mask.png"]],
     readMesh: [files["mesh.glb"], { format: "glb", colors: true }],

@@ -57,7 +57,7 @@ before(async () => {
     entryPoints: [join(repository, "tests", "support", "view3d-harness.mjs")],
     ...{ bundle: true, format: "esm", outfile: join(folder, "harness.js"), logLevel: "error" },
     alias: {
-      "sim3align/conventions": join(repository, "pkg", "conventions.js"),
+      "sim3align/conventions": join(repository, "target", "compiled", "conventions"),
       "sim3align/three": join(repository, "pkg", "three.js"),
     },
   });

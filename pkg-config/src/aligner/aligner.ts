@@ -13,7 +13,6 @@ import { type LoadedModule, type Modules, modulesBy } from "../modules/module.js
 import { checkedModules, wasmModules } from "../modules/modules.js";
 import { WorkerPool } from "../pool/pool.js";
 import { workerFactory } from "../pool/port.js";
-import { alignScene } from "../scene/align-scene.js";
 import type { AlignInput, MeshInput, ViewsInput } from "../types/inputs.js";
 import type {
   AlignAllOptions,
@@ -186,7 +185,11 @@ export class Aligner {
     const settings = { options: rest, snap: checkedFlag("snap", snap) };
     return guarded(call, () => {
       checkSignals(signalsOf(call));
-      return this.#inTurn(call, () => alignScene(own, this.#modules, this.#engine, settings, call));
+      return this.#inTurn(call, async () => {
+        // Most calls align one object.
+        const { alignScene } = await import("../scene/align-scene.js");
+        return alignScene(own, this.#modules, this.#engine, settings, call);
+      });
     });
   }
 

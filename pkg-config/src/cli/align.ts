@@ -3,7 +3,8 @@ import { basename, extname, join } from "node:path";
 import { type CaseOnDisk, type ReadCaseOptions, readCaseFiles, readCaseFolder } from "../case-folder.js";
 import { partOf } from "../case-names.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
-import { type FramesFolder, frameNames, inputOfFrame, openFrames } from "../frames-folder.js";
+import type { Frames } from "../frames.js";
+import { frameNames, inputOfFrame, openFrames } from "../frames-folder.js";
 import {
   type Aligner,
   type AlignInput,
@@ -207,7 +208,7 @@ async function alignView(
 }
 
 /** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
-async function alignFrames(aligner: Aligner, task: CaseToDo, opened: FramesFolder, flags: Flags, caseRun: CaseRun) {
+async function alignFrames(aligner: Aligner, task: CaseToDo, opened: Frames, flags: Flags, caseRun: CaseRun) {
   const { mesh, views: names, read, found } = opened;
   const frames = await Promise.all(names.map(read));
   caseRun.found = found();

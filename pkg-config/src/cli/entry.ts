@@ -3,7 +3,7 @@
 import { join } from "node:path";
 import { listed } from "../case-files.js";
 import type { FoundFiles } from "../case-folder.js";
-import type { FrameOnDisk } from "../frames-folder.js";
+import type { Frame } from "../frames.js";
 import type { AlignResult, PoseErrors, SceneResult, ViewsAlignment } from "../index.js";
 import { unitText } from "../input/depth-kinds.js";
 import type { InputInfo } from "../types/results.js";
@@ -99,7 +99,7 @@ export type ViewsEntry = ReturnType<typeof viewsEntry>;
 /** The entry of several views: the result, with the names, errors and files of the frames. */
 export const viewsEntry = (
   alignment: ViewsAlignment,
-  frames: readonly Pick<FrameOnDisk, "name" | "found">[],
+  frames: readonly Pick<Frame, "name" | "found">[],
   errors: readonly (PoseErrors | null)[],
 ) => ({
   ...alignment,

@@ -7,7 +7,6 @@ import { failure, invalidArgument } from "../values/error.js";
 import { isRecord, isTypedArray } from "../values/kinds.js";
 import { oneOf, positive, withoutUndefined, wrongKind } from "../values/validation.js";
 import { callReader, fileBytes, isBytes } from "./bytes.js";
-import { explained, isColourPng } from "./coded-depth.js";
 import { depthCodeNames, formatsText, isAffineInvariant } from "./formats.js";
 
 /** A depth map or a point map for the core. */
@@ -147,9 +146,14 @@ export async function decodeDepth(
     callReader(readers.formats, argument, bytes, (module) => module.readDepth(bytes, packed), rename);
   if (isPacked || !isColourPng(bytes)) return read();
   return read().catch(async (error) => {
+    const { explained } = await import("./packed-depth.js");
     throw await explained(error, () => read({ depthScale: 1, isPacked: true }));
   });
 }
+
+/** Whether a file is a PNG of 8 bits in red, green and blue, perhaps with alpha. */
+const isColourPng = (bytes: Uint8Array): boolean =>
+  bytes[1] === 0x50 && bytes[24] === 8 && (bytes[25] === 2 || bytes[25] === 6);
 
 /** The values of a point map, in metres. */
 export function readPointMap(pointMap: unknown, size: StatedSize): SizedArray<Float32Array> {

@@ -1,5 +1,5 @@
 /** Cameras whose intrinsics were not given. */
-import { type ExifFocal, focalFrom } from "../camera/exif-focal.js";
+import type { ExifFocal } from "../camera/exif-focal.js";
 import type { Pinhole } from "../camera/pinhole.js";
 import type { Warning } from "../generated/types.js";
 import type { ImageSize } from "../values/pixels.js";
@@ -18,8 +18,19 @@ const unknownLens =
 export interface CameraHints {
   /** The camera in the depth file. */
   inDepth?: Pinhole | undefined;
-  /** The EXIF data of the photo, and its size. */
-  photo?: { exif: Exif; size: ImageSize } | undefined;
+  /** The focal length in the EXIF data of the photo, and its size. */
+  photo?: (ExifFocal & { size: ImageSize }) | undefined;
+}
+
+/** What the EXIF data of a photo of this size state. */
+export async function photoHint(
+  exif: Exif | undefined,
+  size: ImageSize | null | undefined,
+): Promise<CameraHints["photo"]> {
+  if (!exif || !size) return undefined;
+  const { focalFrom } = await import("../camera/exif-focal.js");
+  const focal = focalFrom(exif, size);
+  return focal && { ...focal, size };
 }
 
 /** A camera that was not given. */
@@ -36,11 +47,10 @@ export interface FoundCamera {
 export function foundCamera({ width, height }: ImageSize, { inDepth, photo }: CameraHints): FoundCamera {
   if (inDepth !== undefined) return { camera: inDepth, focalDeviation: undefined, source: "depth file", warnings: [] };
   const center = { cx: 0.5 * (width - 1), cy: 0.5 * (height - 1) };
-  const exif: ExifFocal | undefined = photo && focalFrom(photo.exif, photo.size);
-  if (photo !== undefined && exif !== undefined) {
-    const { size } = photo;
-    const [fx, fy] = [(exif.focalPx * width) / size.width, (exif.focalPx * height) / size.height];
-    return { camera: { fx, fy, ...center }, focalDeviation: exif.uncertainty, source: exif.source, warnings: [] };
+  if (photo !== undefined) {
+    const { focalPx, uncertainty: focalDeviation, source, size } = photo;
+    const [fx, fy] = [(focalPx * width) / size.width, (focalPx * height) / size.height];
+    return { camera: { fx, fy, ...center }, focalDeviation, source, warnings: [] };
   }
   const focal = UNKNOWN_LENS.focal * Math.max(width, height);
   return {

@@ -7,7 +7,6 @@ import { isKind, isRecord, isTypedArray } from "../values/kinds.js";
 import type { ImageSize } from "../values/pixels.js";
 import { wrongKind } from "../values/validation.js";
 import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isBytes } from "./bytes.js";
-import { decodedRle } from "./coco-rle.js";
 import type { SizedArray } from "./depth.js";
 import { formatsText } from "./formats.js";
 
@@ -59,7 +58,7 @@ export async function readMask(
   const pixels = size.width * size.height;
   if (isJson(mask)) return readJsonMask("mask", mask, index, size, formats);
   if (isRecord(mask)) {
-    if ("counts" in mask) return decodedRle("mask", mask);
+    if ("counts" in mask) return (await import("./coco-rle.js")).decodedRle("mask", mask);
     if ("data" in mask) {
       const { data, width, height } = mask as { data: unknown; width: number; height: number };
       if (!isBytes(data)) throw wrongKind("mask.data", data, "a Uint8Array", "Uint8Array");

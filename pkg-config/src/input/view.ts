@@ -20,6 +20,7 @@ import {
   unknownUnit,
 } from "./depth.js";
 import { depthKindNames, isAffineInvariant } from "./formats.js";
+import { photoHint } from "./lens.js";
 import { type ReadPhoto, readPhoto, readPhotoExif } from "./photo.js";
 
 /** An input for the core, and what its files say. */
@@ -157,5 +158,5 @@ async function resolveCamera(
   if (camera.isGiven) return camera.resolve(width, height);
   if (inDepth === "fitted") return { camera: undefined, warnings: [] };
   const exif = await readPhotoExif(input.image, readers);
-  return camera.resolve(width, height, { inDepth, photo: exif && image && { exif, size: image } });
+  return camera.resolve(width, height, { inDepth, photo: await photoHint(exif, image) });
 }

@@ -1,6 +1,6 @@
 /** Aligns objects, reports their progress, and shows the alternatives of a result. */
 import type { Progress, SceneObjectInput } from "sim3align";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import { inCalibration } from "../state/calibration.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
 import type { Pose, PoseSource } from "../state/pose.js";

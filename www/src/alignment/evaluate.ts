@@ -1,6 +1,6 @@
 /** Computes the metrics of the current poses. */
 import { effect } from "@preact/signals";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";

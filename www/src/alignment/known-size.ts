@@ -1,5 +1,5 @@
 /** Makes a length of an object known. */
-import { compose, toSim3 } from "sim3align/conventions";
+import { compose, toSim3 } from "sim3align/conventions/similarity";
 import type { Vector3 } from "sim3align/values/validation";
 import { inCalibration } from "../state/calibration.js";
 import type { AnyAlignment, ObjectModel, PreciseAlignment } from "../state/object-model.js";

@@ -1,7 +1,7 @@
 /** Shows and tracks the frames of a video. */
 import { batch, computed, signal } from "@preact/signals";
 import type { Tracker, ViewInput } from "sim3align";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import { readInputs, sceneOf } from "../input/reading.js";
 import { videoOf } from "../input/video-frames.js";
 import { inCalibration } from "../state/calibration.js";

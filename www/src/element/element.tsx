@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import { render } from "preact";
 import type { Sim3, Sim3Like } from "sim3align";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import controls from "../../style/controls.css?inline";
 import own from "../../style/element.css?inline";
 import panels from "../../style/panels.css?inline";
@@ -57,6 +57,7 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
   constructor() {
     super();
     this.#root.adoptedStyleSheets = sheets();
+    this.#workspace.announce("No scene.");
   }
 
   connectedCallback(): void {
@@ -112,6 +113,7 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
     const call = ++this.#lastCall;
     // What is set from now on is for this scene, which takes time to read.
     this.#workspace.scene.value = null;
+    this.#workspace.announce("No scene.");
     if (given !== null) this.#open(given, () => call === this.#lastCall);
   }
 

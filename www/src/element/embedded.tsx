@@ -3,12 +3,17 @@ import { HandPanel, OptionsPanel } from "../panels/lazy-panels.js";
 import { ObjectsPanel } from "../panels/objects-panel.js";
 import { ResultPanel } from "../panels/result-panel.js";
 import { RunBar } from "../panels/run-bar.js";
+import type { ObjectModel } from "../state/object-model.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { ImageView } from "../views/image-view.js";
 import { SpaceView } from "../views/space-view.js";
 
+/** What a read-only scene says that has no poses, and is not aligned. */
+const unplacedText = (objects: readonly ObjectModel[]) =>
+  objects.length === 0 || objects.some(({ isPlaced }) => isPlaced) ? "" : "No pose is set, so no mesh is shown.";
+
 export function Embedded() {
-  const { isReadonly, largeView, scene, space, status } = useWorkspace();
+  const { isReadonly, largeView, objects, scene, space, status } = useWorkspace();
   const canChange = !isReadonly.value;
   return (
     <div
@@ -19,7 +24,11 @@ export function Embedded() {
       <SpaceView />
       <ImageView />
       <div class="side" part="side">
-        {canChange ? <RunBar /> : <p role="status">{status.value.kind === "failed" ? status.value.text : ""}</p>}
+        {canChange ? (
+          <RunBar />
+        ) : (
+          <p role="status">{status.value.kind === "failed" ? status.value.text : unplacedText(objects.value)}</p>
+        )}
         <ObjectsPanel />
         <ResultPanel />
         {canChange && (

@@ -2,9 +2,12 @@
 import type { EncodedBytes } from "sim3align";
 import type { MeshFromFile } from "sim3align/formats";
 import { DEFAULT_SCALE } from "sim3align/input/depth";
+import { readMesh as meshFrom } from "sim3align/input/mesh";
 import type { CoreView } from "sim3align/modules/core-input";
 import { fileReaders } from "sim3align/modules/readers";
 import { readScene } from "sim3align/scene/read-scene";
+import { failure } from "sim3align/values/error";
+import { isRecord } from "sim3align/values/kinds";
 import { viewOf } from "../input/depth-view.js";
 import { photoFrom } from "../input/photo.js";
 import { readMesh } from "../input/reader.js";
@@ -30,7 +33,8 @@ async function fromMemory({ name = "Scene", image, ...given }: GivenScene): Prom
   const { camera, focalDeviation = 0, depthKind = "metric" } = view;
   const data = depthValues(view);
   if (camera === undefined || width * height !== data.length) {
-    throw new Error(`depth has ${data.length} values; expected width × height, ${width} × ${height}.`);
+    const found = `${data.length} values`;
+    throw failure("WRONG_LENGTH", "depth", found, `width × height, ${width} × ${height}`, "Pass one per pixel.");
   }
   const [photo, objects] = await Promise.all([
     image === undefined ? null : photoFrom(image, { width, height }),
@@ -50,7 +54,10 @@ async function fromMemory({ name = "Scene", image, ...given }: GivenScene): Prom
     ...{ depth: { data: depthM, width, height }, raw, depthUnit: notes.depthUnit ?? null, photo, objects },
     ...{ camera, cameraSource, warnings },
   });
-  if (scene === null) throw new Error("A scene has at least one object.");
+  if (scene === null) {
+    const expected = "a mask and a mesh per object";
+    throw failure("INVALID_ARGUMENT", "objects", "an object without one", expected, "Pass [{ mask, mesh }, …].");
+  }
   return { scene, inputs, session: null };
 }
 
@@ -62,7 +69,11 @@ function depthValues({ depth = new Float32Array(), depthScale }: CoreView): Floa
 
 async function meshOf(mesh: unknown): Promise<Pick<ReadObject, "mesh" | "glb">> {
   const isEncoded = mesh instanceof Uint8Array || mesh instanceof ArrayBuffer || mesh instanceof Blob;
-  if (!isEncoded) return { mesh: mesh as MeshFromFile, glb: null };
+  if (!isEncoded) {
+    // The reader of `align` names what is wrong.
+    const { mesh: read } = await meshFrom(mesh, fileReaders, true);
+    return { mesh: (isRecord(mesh) && "positions" in mesh ? mesh : read) as MeshFromFile, glb: null };
+  }
   const bytes = await bytesOf(mesh);
   return { mesh: await readMesh(bytes), glb: shownGlb(bytes) };
 }

@@ -2,6 +2,7 @@
 import type { DepthKind, MeshArrays, PixelArray } from "sim3align";
 import { type MeshFromFile, readExif, readPose } from "sim3align/formats";
 import { type Camera, cameraOf, unitOf } from "sim3align/input/camera";
+import { photoHint } from "sim3align/input/lens";
 import type { ImageSize } from "sim3align/values/pixels";
 import type { CameraSource, Field, Inputs, NamedFile } from "../state/inputs.js";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
@@ -136,7 +137,7 @@ export async function readInputs(
       ? null
       : await attempt("camera", cameraFile, async () => {
           const exif = source === null && photoFile !== null ? await exifOf(photoFile) : undefined;
-          const hints = { inDepth: read?.camera, photo: exif && photo ? { exif, size: photo } : undefined };
+          const hints = { inDepth: read?.camera, photo: await photoHint(exif, photo) };
           return resolved(stated, size, hints, source);
         });
   const view = read && viewOf(read, camera);

@@ -1,6 +1,6 @@
 /** Recognises the frames of a video among the scenes of a drop. */
 import type { Sim3 } from "sim3align";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import { type Inputs, noInputs, withId } from "../state/inputs.js";
 import type { Video } from "../state/video.js";
 import { titleOf } from "./names.js";

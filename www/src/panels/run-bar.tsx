@@ -5,7 +5,7 @@ import { useWorkspace } from "../ui/workspace.js";
 
 export function RunBar() {
   const workspace = useWorkspace();
-  const { fraction, isRunning, selected, status } = workspace;
+  const { fraction, isRunning, scene, selected, status } = workspace;
   const running = isRunning.value;
   const run = selected.value?.run.value;
   const stage = run?.state === "running" && run.stage !== null ? stageTitles[run.stage] : "";
@@ -28,7 +28,7 @@ export function RunBar() {
       <progress
         id="progress"
         max={100}
-        value={running ? percent : kind === "done" ? 100 : 0}
+        value={running ? percent : kind === "done" && scene.value !== null ? 100 : 0}
         data-running={running}
         aria-label="Progress of the alignment"
       />

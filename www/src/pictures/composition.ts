@@ -22,11 +22,11 @@ export interface DrawnObject {
   limitM: number;
 }
 
-/** Renders an object at a pose. */
-export function drawObject(scene: DrawnScene, object: ObjectModel, matrix: ArrayLike<number>): DrawnObject {
+/** Renders an object at a pose; without one, its mask alone. */
+export function drawObject(scene: DrawnScene, object: ObjectModel, matrix: ArrayLike<number> | null): DrawnObject {
   const { mesh, colour } = object;
   const mask = scene.maskOf(object);
-  const depth = renderDepth(mesh, matrix, scene);
+  const depth = matrix === null ? new Float32Array(mask.length) : renderDepth(mesh, matrix, scene);
   const box = boxAround(scene.maskBoxOf(object), boxOf(depth, scene.width));
   return { mask, colour, isSelected: false, depth, box, limitM: differenceLimit(object.visible.peek().sizeM) };
 }

@@ -1,6 +1,6 @@
 /** A session as plain data: the files of a scene, and what was done with its objects. */
 import type { DepthCalibration, DepthKind, Support } from "sim3align";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import { baseName } from "../input/files.js";
 import { inCalibration } from "../state/calibration.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, NamedFile, Role } from "../state/inputs.js";

@@ -1,7 +1,7 @@
 /** Results of scenes as plain data. */
 
 import type { Metrics, Sim3 } from "sim3align";
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import type { Inputs } from "../state/inputs.js";
 import type { ObjectModel, Verdict } from "../state/object-model.js";
 import { page } from "../state/page.js";

@@ -1,6 +1,6 @@
 /** Views whose depth or focal length are not fully known: what they are taken to be, before and after an alignment. */
 import type { DepthCalibration, DepthKind } from "sim3align";
-import { correctDepth } from "sim3align/conventions";
+import { correctDepth } from "sim3align/conventions/depth";
 import type { RawView, Scene } from "./scene.js";
 
 type Numbers = Pick<DepthCalibration, "depthKind" | "scale" | "shift">;

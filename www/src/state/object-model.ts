@@ -88,6 +88,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
   readonly alignment = computed<AnyAlignment | null>(() => this.pose.value.alignment ?? null);
   /** The current pose. */
   readonly pose: Signal<Pose>;
+  readonly #isPlaced = computed(() => this.pose.value.source !== "start");
   /** Metrics of the current pose; null while they are computed. */
   readonly metrics = signal<Metrics | null>(null);
   /** Errors of the current pose, if the true pose is known. */
@@ -134,7 +135,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
 
   /** Whether the object has a pose other than the start pose. */
   get isPlaced(): boolean {
-    return this.pose.value.source !== "start";
+    return this.#isPlaced.value;
   }
 
   /** The confidence in the present pose; null for one that no alignment has found. */

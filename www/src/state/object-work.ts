@@ -1,5 +1,5 @@
 /** What was done with objects, as plain data. */
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import type { AnyAlignment, ObjectModel, Verdict } from "./object-model.js";
 import type { PoseSource } from "./pose.js";
 

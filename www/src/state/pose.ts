@@ -1,6 +1,7 @@
 /** Poses of a mesh (camera from mesh, OpenCV camera frame, metres) and the bounding box that they transform. */
 import type { MeshArrays, Sim3 } from "sim3align";
-import { applyToPoints, compose, orientedBoundingBox, toSim3 } from "sim3align/conventions";
+import { orientedBoundingBox } from "sim3align/conventions/oriented-bounding-box";
+import { applyToPoints, compose, toSim3 } from "sim3align/conventions/similarity";
 import type { Vector3 } from "sim3align/values/validation";
 import { once } from "./inputs.js";
 import type { AnyAlignment } from "./object-model.js";

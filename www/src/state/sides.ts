@@ -1,6 +1,6 @@
 /** The sides of an object in the order in which people name them. */
 import type { Support } from "sim3align";
-import { applyToPoints } from "sim3align/conventions";
+import { applyToPoints } from "sim3align/conventions/similarity";
 import type { ObjectModel } from "./object-model.js";
 import { tightBoundsOf } from "./pose.js";
 

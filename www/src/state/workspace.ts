@@ -3,6 +3,7 @@ import { type ReadonlySignal, signal } from "@preact/signals";
 import type { SceneView } from "../view3d/scene-view.js";
 import { displayState } from "./display.js";
 import { historyState } from "./history.js";
+import type { ObjectModel } from "./object-model.js";
 import { openedState } from "./opened.js";
 import { optionsState } from "./options.js";
 import { runningState, statusState } from "./running.js";
@@ -21,6 +22,7 @@ export type Workspace = ReturnType<typeof createWorkspace>;
 
 export function createWorkspace({ theme }: Surroundings) {
   const [scene, display, status] = [sceneState(), displayState(), statusState()];
+  const isReadonly = signal(false);
   return {
     ...scene,
     ...display,
@@ -32,7 +34,9 @@ export function createWorkspace({ theme }: Surroundings) {
     ...videoState(),
     theme,
     /** Whether the scene is read-only. */
-    isReadonly: signal(false),
+    isReadonly,
+    /** Whether the mesh of an object is drawn: of a read-only scene, a start pose would look like a result. */
+    isMeshShown: ({ isPlaced, isShown }: ObjectModel) => isShown.value && (isPlaced || !isReadonly.value),
     space: signal<SpaceState>({ kind: "loading" }),
     /** Whether the first alignment has ended. The 3D view loads afterwards, so that it does not slow the alignment down. */
     isSettled: signal(false),

@@ -1,6 +1,6 @@
 /** Similarities in terms of three.js, and their interpolation. */
 
-import { toSim3 } from "sim3align/conventions";
+import { toSim3 } from "sim3align/conventions/similarity";
 import { Matrix4, Quaternion, Vector3 } from "./three.js";
 import type { Matrix } from "./types.js";
 

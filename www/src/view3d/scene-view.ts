@@ -338,16 +338,19 @@ export class SceneView {
   }
 
   private showSizes(): void {
-    const { dimensions, unit = null } = this.display;
+    const { dimensions, unit = null, unplaced = [] } = this.display;
     // Labels would cover the handles.
     const isShown = dimensions === true && this.gizmoMode === null;
-    this.sizes.update(this.models, this.selected, unit, (id) => isShown && !this.animations.isRunning(id));
+    const isMeasured = (id: string) => isShown && !unplaced.includes(id) && !this.animations.isRunning(id);
+    this.sizes.update(this.models, this.selected, unit, isMeasured);
   }
 
   /** A description for screen readers. */
   private label(): string {
     if (!this.cloud) return "3D view, empty";
-    const placed = this.objects.filter(({ id }) => this.models.get(id)?.pose).map(({ id, name }) => name ?? id);
+    const { hidden = [], unplaced = [] } = this.display;
+    const isPlaced = (id: string) => this.models.get(id)?.pose && ![...hidden, ...unplaced].includes(id);
+    const placed = this.objects.filter(({ id }) => isPlaced(id)).map(({ id, name }) => name ?? id);
     const from = this.viewpoint.isCamera ? "camera" : this.look === "camera" ? "orbit" : this.look;
     return description(from, this.cloud.points.pixels.length, placed);
   }

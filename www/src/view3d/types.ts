@@ -48,6 +48,8 @@ export interface Display {
   unit?: number | null | undefined;
   /** The ids of the objects that are not shown. */
   hidden?: readonly string[] | undefined;
+  /** The ids of the objects without a result: the size of a start pose is none. */
+  unplaced?: readonly string[] | undefined;
 }
 
 /** Viewpoints: the depth camera, a three-quarter view, from above, from the right. */

@@ -10,7 +10,7 @@ import type { Workspace } from "../state/workspace.js";
 
 /** The image of a workspace. */
 export const imageOf = once((workspace: Workspace) => {
-  const { layers, scene, selected } = workspace;
+  const { isMeshShown, layers, scene, selected } = workspace;
 
   /** Depends on the scene only, so that it is not computed again when display settings change. */
   const onObjects = computed(() => (scene.value === null ? wholeImage : zoomToObjects(scene.value)));
@@ -51,7 +51,10 @@ export const imageOf = once((workspace: Workspace) => {
     return whole.objects
       .filter(({ isShown }) => isShown.value)
       .map((object) =>
-        computed(() => ({ object, drawn: drawObject(view, object, object.pose.value.transform.matrix) })),
+        computed(() => {
+          const { matrix } = object.pose.value.transform;
+          return { object, drawn: drawObject(view, object, isMeshShown(object) ? matrix : null) };
+        }),
       );
   });
 

@@ -123,8 +123,9 @@ function Preview() {
   const image = imageOf(workspace).groundImage.value;
   const photo = firstPhoto(workspace.inputs.value.sample);
   if (image === null && photo !== null) return <img class="preview" src={photo} alt="" />;
+  const { text, kind } = workspace.status.value;
   return image === null ? (
-    <p class="view-note">Reading …</p>
+    <p class="view-note">{kind === "failed" ? text : kind === "working" ? "Reading …" : "No scene"}</p>
   ) : (
     <Picture image={image} label="The scene; the 3D view is loading" class="preview" />
   );

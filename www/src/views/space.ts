@@ -1,6 +1,6 @@
 /** Keeps the 3D view in sync with the state of the page. */
 import { effect } from "@preact/signals";
-import { compose, invert, toSim3 } from "sim3align/conventions";
+import { compose, invert, toSim3 } from "sim3align/conventions/similarity";
 import { depthImage } from "../pictures/colours.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Pose, tightBoundsOf } from "../state/pose.js";
@@ -86,7 +86,20 @@ const sceneInput = ({ layers }: Workspace, { depthM, width, height, camera, rgba
 });
 
 function subscribe(workspace: Workspace, view: SceneView, isDragging: () => boolean): () => void {
-  const { display3d, frameIndex, gizmo, gizmoSettings, scene, selected, support, theme, unit, video } = workspace;
+  const {
+    display3d,
+    frameIndex,
+    gizmo,
+    gizmoSettings,
+    isMeshShown,
+    scene,
+    selected,
+    showsBefore,
+    support,
+    theme,
+    unit,
+    video,
+  } = workspace;
   const stops: (() => void)[] = [];
   const follow = (apply: () => void) => stops.push(effect(apply));
   let stopPoses: (() => void)[] = [];
@@ -104,8 +117,11 @@ function subscribe(workspace: Workspace, view: SceneView, isDragging: () => bool
     }, console.error);
   });
   follow(() => {
-    const hidden = (scene.value?.objects ?? []).filter(({ isShown }) => !isShown.value).map(({ id }) => id);
-    view.setDisplay({ ...display3d.value, hidden, theme: theme.value, unit: unit.value });
+    const idsOf = (isOf: (object: ObjectModel) => boolean) =>
+      (scene.value?.objects ?? []).filter(isOf).map(({ id }) => id);
+    const hidden = idsOf((object) => !isMeshShown(object));
+    const unplaced = idsOf(({ isPlaced }) => showsBefore.value || !isPlaced);
+    view.setDisplay({ ...display3d.value, hidden, unplaced, theme: theme.value, unit: unit.value });
   });
   follow(() => {
     const cameras = video.value?.cameras ?? null;
