@@ -134,10 +134,10 @@ test("esbuild, in one piece, as one classic script", async () => {
 });
 
 test("what a bundler leaves out: who wants an error's class or a file reader gets no aligner", async () => {
-  const sizeOf = async (contents: string) => {
+  const sizeOf = async (contents: string, splitting = true) => {
     const { metafile } = await esbuild({
       stdin: { contents, resolveDir: installDir },
-      ...{ bundle: true, format: "esm", splitting: true, outdir: folder, write: false, minify: true, metafile: true },
+      ...{ bundle: true, format: "esm", splitting, outdir: folder, write: false, minify: true, metafile: true },
     });
     // With what it imports at once: a bundler moves there what it shares with files that are loaded later.
     const first = new Set(Object.keys(metafile.outputs).filter((path) => path.endsWith("stdin.js")));
@@ -149,10 +149,10 @@ test("what a bundler leaves out: who wants an error's class or a file reader get
       ? Number.POSITIVE_INFINITY
       : [...first].reduce((sum, path) => sum + (metafile.outputs[path]?.bytes ?? 0), 0);
   };
-  // With what the readers of camera files and the second look, which are loaded later, share with the rest.
-  assert.ok((await sizeOf('export { Sim3AlignError } from "sim3align";')) < 13_500);
+  // In one file: where it divides files, esbuild keeps what is loaded later, also of functions that nobody calls.
+  assert.ok((await sizeOf('export { Sim3AlignError } from "sim3align";', false)) < 1000);
   // Binary files are read by modules, which one the first bytes tell; those of JSON by script, each by its own.
-  assert.ok((await sizeOf('export { readDepth, readMesh } from "sim3align/formats";')) < 15_200);
-  assert.ok((await sizeOf('export { readCamera } from "sim3align/formats";')) < 8000);
-  assert.ok((await sizeOf('export { readMask } from "sim3align/formats";')) < 13_800);
+  assert.ok((await sizeOf('export { readDepth, readMesh } from "sim3align/formats";')) < 19_000);
+  assert.ok((await sizeOf('export { readCamera } from "sim3align/formats";')) < 9500);
+  assert.ok((await sizeOf('export { readMask } from "sim3align/formats";')) < 15_000);
 });
