@@ -29,6 +29,7 @@ export type {
   Effort,
   EvaluationDiagnostics,
   ExtentAxis,
+  FoundSymmetry,
   GuardMode,
   Icp,
   PaperDiagnostics,

@@ -279,6 +279,7 @@ impl<'a> Search<'a> {
             camera_from_mesh,
             confidence,
             turn_confidence,
+            symmetry: search.equivalence.axes(),
             alternatives,
             uncertainty,
             proportions,

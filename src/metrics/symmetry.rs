@@ -48,6 +48,8 @@ impl Symmetry {
 /// A group of rotations: a finite set, each composed with any rotation about `continuous`, if present.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SymmetryGroup {
+    /// The axes that generate it.
+    axes: Vec<SymmetryAxis>,
     discrete: Vec<UnitQuaternion<f64>>,
     continuous: Option<Unit<Vector3<f64>>>,
     /// All rotations: two different axes of revolution.
@@ -56,7 +58,7 @@ pub struct SymmetryGroup {
 
 impl Default for SymmetryGroup {
     fn default() -> Self {
-        Self { discrete: vec![UnitQuaternion::identity()], continuous: None, sphere: false }
+        Self { axes: Vec::new(), discrete: vec![UnitQuaternion::identity()], continuous: None, sphere: false }
     }
 }
 
@@ -64,6 +66,11 @@ impl SymmetryGroup {
     /// Whether no rotation but none is in it.
     pub fn is_trivial(&self) -> bool {
         self.discrete.len() == 1 && self.continuous.is_none() && !self.sphere
+    }
+
+    /// The axes that generate it.
+    pub fn axes(&self) -> &[SymmetryAxis] {
+        &self.axes
     }
 
     /// Its rotations, the identity first: of those about an axis of revolution, `rolls` evenly spaced ones. Of all rotations,
@@ -109,7 +116,7 @@ impl SymmetryGroup {
     }
 
     fn generated(axes: &[SymmetryAxis]) -> Result<Self> {
-        let mut group = Self::default();
+        let mut group = Self { axes: axes.to_vec(), ..Self::default() };
         let mut generators = Vec::new();
         for declared in axes {
             let axis = Unit::try_new(declared.axis, 1e-12).filter(|a| a.iter().all(|x| x.is_finite()));

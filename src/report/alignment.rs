@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::diagnostics::{PaperDiagnostics, PreciseDiagnostics};
-use super::pose::{Alternative, Sim3, Stretch, Uncertainty};
+use super::pose::{Alternative, FoundSymmetry, Sim3, Stretch, Uncertainty};
 use super::warning::Warning;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::Metrics;
@@ -24,6 +24,8 @@ pub struct Alignment {
     /// alike, or there are no colours to compare. Where no turn agrees with the photo, or the colours of the mesh could not be read,
     /// all are equally likely.
     pub turn_confidence: Option<f64>,
+    /// The symmetry of the shape by which poses counted as one: that of the option, or what was found on the mesh. Empty without one.
+    pub symmetry: Vec<FoundSymmetry>,
     /// Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
     /// are one, unless their colours differ.
     pub alternatives: Vec<Alternative>,

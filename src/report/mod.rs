@@ -12,6 +12,6 @@ pub use diagnostics::{
     ColorReport, ColorVerdict, Counts, Diagnostics, PaperDiagnostics, PreciseDiagnostics, ScoreTerms, SearchCounts,
     is_collapsed,
 };
-pub use pose::{Alternative, Sim3, Stretch, Uncertainty};
+pub use pose::{Alternative, FoundSymmetry, Sim3, Stretch, Uncertainty};
 pub use preset::{Effort, Preset};
 pub use warning::{Warning, WarningCode};

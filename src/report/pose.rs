@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::geometry::similarity::Similarity;
+use crate::metrics::symmetry::SymmetryAxis;
 
 /// A similarity y = s·R·x + t in the forms that applications use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -61,6 +62,25 @@ impl Stretch {
             matrix[12 + k] = translation[k];
         }
         self
+    }
+}
+
+/// An axis of a symmetry of the shape, in the form that the option `symmetry` takes.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct FoundSymmetry {
+    /// The axis in the mesh's frame, through the centroid of the surface.
+    pub axis: [f64; 3],
+    /// The number of equivalent positions in a full rotation; missing for a surface of revolution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub fold: Option<u32>,
+}
+
+impl From<&SymmetryAxis> for FoundSymmetry {
+    fn from(&SymmetryAxis { axis, fold }: &SymmetryAxis) -> Self {
+        Self { axis: axis.into(), fold }
     }
 }
 

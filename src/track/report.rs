@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::metrics::Metrics;
 use crate::options::choices;
-use crate::report::{ScoreTerms, Sim3};
+use crate::report::{FoundSymmetry, ScoreTerms, Sim3};
 
 choices! {
     /// The state of a tracker after a frame.
@@ -33,6 +33,8 @@ pub struct TrackedFrame {
     pub state: TrackState,
     /// Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost.
     pub confidence: f64,
+    /// The symmetry of the shape; see `Alignment.symmetry`.
+    pub symmetry: Vec<FoundSymmetry>,
     /// Standard deviation of the size, relative: 0.01 is one per cent. It includes errors that all frames share. 0 for a given
     /// scale.
     pub scale_sd: f64,

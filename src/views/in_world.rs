@@ -193,6 +193,7 @@ fn summary(
         world: WorldFrame::Given,
         confidence,
         is_sure,
+        symmetry: first.search.equivalence.axes(),
         alternatives: alternatives.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
         proportions: None,
         uncertainty: conditioning.map(|own| WorldUncertainty {

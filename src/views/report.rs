@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::metrics::Metrics;
 use crate::options::choices;
 use crate::progress::Timings;
-use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Sim3, Stretch, Warning};
+use crate::report::{Alternative, ColorReport, Effort, FoundSymmetry, ScoreTerms, Sim3, Stretch, Warning};
 
 choices! {
     /// The world of a result.
@@ -129,6 +129,8 @@ pub struct ViewsAlignment {
     /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
     /// of the diameter). Without given camera poses, that of the least certain view.
     pub confidence: f64,
+    /// The symmetry of the shape by which poses counted as one: that of the option, or what was found on the mesh. Empty without one.
+    pub symmetry: Vec<FoundSymmetry>,
     /// Other poses that explain all views nearly as well, world from mesh, best first. Empty without given camera poses.
     pub alternatives: Vec<Alternative>,
     /// How well the views together determine the pose; `null` where they do not.

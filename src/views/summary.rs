@@ -12,7 +12,7 @@ use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::scoring::score::Score;
 use crate::precise::verdict::color::agreement;
 use crate::progress::Stopwatch;
-use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Stretch, Warning, WarningCode};
+use crate::report::{Alternative, ColorReport, Effort, FoundSymmetry, ScoreTerms, Stretch, Warning, WarningCode};
 
 /// The poses found.
 pub struct Summary {
@@ -24,6 +24,8 @@ pub struct Summary {
     pub confidence: f64,
     /// Whether more effort would not change the verdict of shape.
     pub is_sure: bool,
+    /// The symmetry of the shape.
+    pub symmetry: Vec<FoundSymmetry>,
     /// See [`ViewsAlignment`].
     pub alternatives: Vec<Alternative>,
     /// See [`ViewsAlignment`].
@@ -134,6 +136,7 @@ impl Summary {
             world_from_mesh: (&self.world_from_mesh).into(),
             world: self.world,
             confidence: self.confidence,
+            symmetry: self.symmetry.clone(),
             alternatives: self.alternatives.clone(),
             uncertainty: self.uncertainty,
             proportions: self.proportions.clone(),

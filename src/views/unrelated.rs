@@ -132,6 +132,7 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
         world: WorldFrame::Camera,
         confidence,
         is_sure,
+        symmetry: search.equivalence.axes(),
         alternatives: Vec::new(),
         proportions: None,
         uncertainty,

@@ -37,6 +37,19 @@ test("a result has every promised part, in its range, and survives JSON", () => 
   assert.deepEqual(JSON.parse(JSON.stringify(reference)), reference);
 });
 
+test("the symmetry in a result is an option that gives the same result", async () => {
+  const aligner = await createAligner();
+  const found = await aligner.align(brick, quick);
+  assert.deepEqual(
+    found.symmetry.map(({ fold }) => fold),
+    [2, 2],
+  );
+  const { diagnostics: _, ...again } = await aligner.align(brick, { ...quick, symmetry: found.symmetry });
+  const { diagnostics: __, ...first } = found;
+  assert.deepEqual(again, first);
+  assert.deepEqual((await aligner.align(brick, { ...quick, symmetry: "none" })).symmetry, []);
+});
+
 test("alternatives are transforms in the same forms, best first", async () => {
   // A brick looks the same after half a turn, which no symmetry is declared to be.
   const { alternatives, matrix, diagnostics } = await aligner.align(brick, { ...quick, symmetry: "none" });

@@ -217,7 +217,7 @@ fn types() -> String {
         export type Timings = Partial<Record<Stage, number>> & { total: number };\n\n";
     add! { types:
         ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, SearchCounts,
-        Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, Stretch, EvaluationDiagnostics, Diagnostics,
+        Counts, ScoreTerms, ColorReport, Alternative, FoundSymmetry, Uncertainty, Stretch, EvaluationDiagnostics, Diagnostics,
         PaperDiagnostics, PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole,
         WorldUncertainty, CameraPose, ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame,
         TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration, CalibrationUncertainty,

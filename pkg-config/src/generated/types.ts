@@ -480,6 +480,14 @@ export type Alternative = Sim3 & {
   colorMargin?: number;
 };
 
+/** An axis of a symmetry of the shape, in the form that the option `symmetry` takes. */
+export type FoundSymmetry = {
+  /** The axis in the mesh's frame, through the centroid of the surface. */
+  axis: [number, number, number];
+  /** The number of equivalent positions in a full rotation; missing for a surface of revolution. */
+  fold?: number;
+};
+
 /**
  * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open
  * have large ones.
@@ -595,6 +603,11 @@ export type Alignment = Sim3 & {
    */
   turnConfidence: number | null;
   /**
+   * The symmetry of the shape by which poses counted as one: that of the option, or what was found on the mesh. Empty
+   * without one.
+   */
+  symmetry: Array<FoundSymmetry>;
+  /**
    * Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes
    * equal are one, unless their colours differ.
    */
@@ -694,6 +707,11 @@ export type ViewsAlignment = Sim3 & {
    */
   confidence: number;
   /**
+   * The symmetry of the shape by which poses counted as one: that of the option, or what was found on the mesh. Empty
+   * without one.
+   */
+  symmetry: Array<FoundSymmetry>;
+  /**
    * Other poses that explain all views nearly as well, world from mesh, best first. Empty without given camera poses.
    */
   alternatives: Array<Alternative>;
@@ -728,6 +746,8 @@ export type TrackedFrame = Sim3 & {
   state: TrackState;
   /** Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost. */
   confidence: number;
+  /** The symmetry of the shape; see `Alignment.symmetry`. */
+  symmetry: Array<FoundSymmetry>;
   /**
    * Standard deviation of the size, relative: 0.01 is one per cent. It includes errors that all frames share. 0 for a
    * given scale.

@@ -5,6 +5,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 
 use crate::geometry::rotations::angle_between;
 use crate::metrics::symmetry::SymmetryGroup;
+use crate::report::FoundSymmetry;
 
 /// Rolls about an axis of revolution that average a symmetric matrix.
 const ROLLS: usize = 4;
@@ -68,6 +69,11 @@ impl Equivalence {
     /// The axis, in the camera frame, about which the symmetry leaves the rotation of a pose free.
     pub fn free_axis(&self, rotation: DQuat) -> Option<DVec3> {
         self.0.axis_of_revolution().map(|axis| rotation * DVec3::from_array(axis.into_inner().into()))
+    }
+
+    /// The axes that generate the symmetry.
+    pub fn axes(&self) -> Vec<FoundSymmetry> {
+        self.0.axes().iter().map(FoundSymmetry::from).collect()
     }
 
     /// Whether the symmetry makes some poses one.
