@@ -155,10 +155,16 @@ interface PlaneSearch {
 const ofBuffers: PlaneSearch = { blocks: 6, lines: 32, misfit: 0.02 };
 
 /** Logarithmic codes differ little from depth times a factor, so that larger blocks are needed. */
-const ofLogarithms: PlaneSearch = { blocks: 3, lines: 64, misfit: 0.03 };
+const ofLogarithms: PlaneSearch = { blocks: 3, lines: 64, misfit: 0.06 };
 
-/** How much better planes are with a code: of 5 maps of each kind, the ratio's logarithm is above 0.0016; of 60 others, below 0.00005. */
-const BETTER = { buffer: 0.02, logarithm: 5e-4 } as const;
+/** How much better planes are in a z-buffer, as a logarithm. */
+const BETTER = 0.02;
+
+/**
+ * The bend of planes that are read as logarithmic codes, as a share of that of lengths: 0 of codes, 1 of lengths, up to here either
+ * way; and how many standard deviations it must be from 1. Of 450 maps in millimetres, two are below, both of warped planes.
+ */
+const UNBENT = { share: 0.3, deviations: 2.5 } as const;
 
 /** The least number of planes. */
 const PLANES = 3;
@@ -174,11 +180,11 @@ export function isCoded(
   { mean, most, least }: Record<"mean" | "most" | "least", number>,
 ): boolean | undefined {
   if (name === "z-buffer") {
-    const ratios = planeRatios(numbers, width, height, ofBuffers, Number, (code) => 1 / code);
-    const [buffers, depths] = [1, -1].map((sign) => ratios.filter((ratio) => sign * ratio > BETTER.buffer).length) as [
-      number,
-      number,
-    ];
+    const ratios = blocksOf(numbers, width, height, ofBuffers).flatMap((points) => {
+      const [a, b] = [planeOf(points).misfit, planeOf(withValues(points, (code) => 1 / code)).misfit];
+      return Math.min(a, b) < ofBuffers.misfit ? [Math.log(b / a)] : [];
+    });
+    const [buffers = 0, depths = 0] = [1, -1].map((sign) => ratios.filter((ratio) => sign * ratio > BETTER).length);
     if (depths > buffers) return false;
     const isAtEnd = mean >= AT_END.mean && most - least < AT_END.range;
     return depths === 0 && (buffers >= PLANES || isAtEnd) ? true : undefined;
@@ -186,46 +192,68 @@ export function isCoded(
   const { range, metres } = depthCodes[name];
   if (range === undefined) return true;
   const [near, far] = range ?? [0, 1];
-  const inverse = (code: number) => 1 / metres(code, near, far);
-  const ratios = planeRatios(numbers, width, height, ofLogarithms, inverse, (code) => 1 / code).sort((a, b) => a - b);
-  const [low = 0, middle = 0] = [ratios[Math.floor(ratios.length / 5)], ratios[ratios.length >> 1]];
-  return ratios.length >= PLANES && middle > BETTER.logarithm && low > -middle / 4;
+  return areUnbent(blocksOf(numbers, width, height, ofLogarithms), (code) => 1 / metres(code, near, far));
 }
 
-/** For each block of a plane, the logarithm of how much better it is in the first function of the numbers than in the second. */
-function planeRatios(
-  numbers: ArrayLike<number>,
-  width: number,
-  height: number,
-  { blocks, lines, misfit: most }: PlaneSearch,
-  first: (code: number) => number,
-  second: (code: number) => number,
-): number[] {
-  const [columns, rows] = [Math.floor(width / blocks), Math.floor(height / blocks)];
-  const [stepU, stepV] = [Math.ceil(columns / lines), Math.ceil(rows / lines)];
-  const ratios: number[] = [];
-  // Blocks overlap by half.
-  for (let top = 0; top + rows <= height && rows > 4; top += rows >> 1) {
-    for (let left = 0; left + columns <= width && columns > 4; left += columns >> 1) {
-      const points: Point[] = [];
-      for (let v = top; v < top + rows; v += stepV)
-        for (let u = left; u < left + columns; u += stepU) points.push([u, v, numbers[v * width + u] as number]);
-      if (points.some(([, , code]) => !(code > 0))) continue;
-      const [a, b] = [first, second].map((of) => misfit(points.map(([u, v, code]) => [u, v, of(code)]))) as [
-        number,
-        number,
-      ];
-      if (Math.min(a, b) < most) ratios.push(Math.log(b / a));
-    }
+/** Whether the planes among blocks are flat in a function of their values, and not in 1/value. */
+function areUnbent(blocks: readonly Point[][], inverse: (code: number) => number): boolean {
+  const bends: [share: number, weight: number][] = [];
+  for (const points of blocks) {
+    const found = planeOf(withValues(points, inverse));
+    if (!(found.misfit < ofLogarithms.misfit)) continue;
+    const lengths = planeOf(withValues(points, (code) => 1 / code));
+    // What a plane of lengths would be.
+    const bent = planeOf(points.map(([u, v], i) => [u, v, inverse(1 / (lengths.values[i] as number))]));
+    const [square, product] = [bent.rest, found.rest].map((rest) =>
+      rest.reduce((sum, x, i) => sum + x * (bent.rest[i] as number), 0),
+    ) as [number, number];
+    bends.push([product / square, square / found.variance]);
   }
-  return ratios;
+  const weight = bends.reduce((sum, [, w]) => sum + w, 0);
+  const mean = bends.reduce((sum, [share, w]) => sum + w * share, 0) / weight;
+  const scatter = bends.reduce((sum, [share, w]) => sum + (w * (share - mean)) ** 2, 0);
+  const deviation = Math.sqrt(Math.max(scatter, weight)) / weight;
+  return bends.length >= PLANES && Math.abs(mean) < UNBENT.share && 1 - mean > UNBENT.deviations * deviation;
 }
 
 /** A pixel and its value. */
 type Point = readonly [u: number, v: number, value: number];
 
-/** The root mean square distance of values on a grid from their plane, relative to its range. */
-function misfit(points: readonly Point[]): number {
+const withValues = (points: readonly Point[], of: (value: number) => number): Point[] =>
+  points.map(([u, v, value]) => [u, v, of(value)]);
+
+/** Points of the blocks of an image that have a reading everywhere; blocks overlap by half. */
+function blocksOf(
+  numbers: ArrayLike<number>,
+  width: number,
+  height: number,
+  { blocks, lines }: PlaneSearch,
+): Point[][] {
+  const [columns, rows] = [Math.floor(width / blocks), Math.floor(height / blocks)];
+  const [stepU, stepV] = [Math.ceil(columns / lines), Math.ceil(rows / lines)];
+  const found: Point[][] = [];
+  for (let top = 0; top + rows <= height && rows > 4; top += rows >> 1) {
+    for (let left = 0; left + columns <= width && columns > 4; left += columns >> 1) {
+      const points: Point[] = [];
+      for (let v = top; v < top + rows; v += stepV)
+        for (let u = left; u < left + columns; u += stepU) points.push([u, v, numbers[v * width + u] as number]);
+      if (points.every(([, , code]) => code > 0)) found.push(points);
+    }
+  }
+  return found;
+}
+
+/** A plane through values on a grid. */
+interface Plane {
+  values: number[];
+  /** What the values have beyond it, and their mean square. */
+  rest: number[];
+  variance: number;
+  /** The root mean square distance, relative to the range of the plane. */
+  misfit: number;
+}
+
+function planeOf(points: readonly Point[]): Plane {
   const mean = (axis: 0 | 1 | 2) => points.reduce((sum, point) => sum + point[axis], 0) / points.length;
   const [u0, v0, value0] = [mean(0), mean(1), mean(2)];
   let [uu, vv, uz, vz] = [0, 0, 0, 0];
@@ -236,11 +264,12 @@ function misfit(points: readonly Point[]): number {
     vz += (v - v0) * (value - value0);
   }
   const [a, b] = [uz / uu, vz / vv];
-  let [squares, least, most] = [0, Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-  for (const [u, v, value] of points) {
-    const plane = a * (u - u0) + b * (v - v0);
-    squares += (value - value0 - plane) ** 2;
-    [least, most] = [Math.min(least, plane), Math.max(most, plane)];
-  }
-  return Math.sqrt(squares / points.length) / (most - least);
+  const values = points.map(([u, v]) => value0 + a * (u - u0) + b * (v - v0));
+  const rest = points.map(([, , value], i) => value - (values[i] as number));
+  const variance = rest.reduce((sum, x) => sum + x * x, 0) / points.length;
+  const [least, most] = values.reduce(([low, high], x) => [Math.min(low, x), Math.max(high, x)], [
+    Number.POSITIVE_INFINITY,
+    Number.NEGATIVE_INFINITY,
+  ] as [number, number]);
+  return { values, rest, variance, misfit: Math.sqrt(variance) / (most - least) };
 }
