@@ -163,6 +163,10 @@ const texts: Record<string, readonly [text: string, depthScale?: number]> = {
     "cam:\n  H: 480\n  W: 640\n  fx: 600\n  fy: 610\n  cx: 319.5\n  cy: 239.5\n  png_depth_scale: 6553.5 # PNG\n",
     1 / 6553.5,
   ],
+  "MonoGS'": [
+    "Dataset:\n  pcd_downsample: 32\n  point_size: 0.05\n  Calibration:\n    fx: 600\n    fy: 610\n    cx: 319.5\n    cy: 239.5\n    width: 640\n    height: 480\n    depth_scale: 6553.5\nopt_params:\n  iterations: 30000\n",
+    1 / 6553.5,
+  ],
   "ZED's, the section of the image's size": [
     "[LEFT_CAM_HD]\nfx=900\nfy=900\ncx=640\ncy=360\n[LEFT_CAM_SVGA]\nfx=900\nfy=900\ncx=480\ncy=300\n[SMALL]\nfx=600\nfy=610\ncx=319.5\ncy=239.5\nwidth=640\nheight=480\n[STEREO]\nBaseline=120\n",
   ],

@@ -99,6 +99,14 @@ test("of several masks one has to be chosen; what is not known is named", async 
   await assert.rejects(readMask(several, { index: 2 }), { code: "INVALID_ARGUMENT" });
   await assert.rejects(readMask({ foo: 1 }), { code: "UNSUPPORTED_FORMAT" });
   await assert.rejects(readMask([box]), { code: "UNSUPPORTED_FORMAT" });
+  // The rows of a mask are no polygons.
+  await assert.rejects(
+    readMask([
+      [0, 1, 1, 0, 0, 0],
+      [0, 1, 1, 0, 0, 0],
+    ]),
+    { code: "UNSUPPORTED_FORMAT" },
+  );
   await assert.rejects(readMask([[0, 0, 900, 0, 900, 900]], { width, height }), { code: "SIZE_MISMATCH" });
   const more = labelme(
     [

@@ -88,7 +88,8 @@ const others = {
     inverselensdistortionlookuptable pixelsize dw dh typeid dt rows cols`,
   sensors: `*imu* *accel* *gyro* *magneto* *noise* *walk *housing* *battery* *usec *bpp *bytes* rgb bgr camerafisheye*
     fisheyepoly* fisheyemax* fisheyenominal* fisheyeoptical*`,
-  programs: `viewer* mframes* newwidth newheight orbextractor* system* loop* mapping tracking training dataset optimization
+  programs: `viewer* mframes* newwidth newheight orbextractor* system* loop* mapping tracking training optimization
+    pcddownsample* pointsize optparams modelparams pipelineparams
     objects object* exported* marching* rendering *mesh *confidence* centerdepth`,
 } as const;
 

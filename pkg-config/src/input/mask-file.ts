@@ -313,7 +313,11 @@ const isSegmentation = (value: unknown): boolean => isRle(value) || isPolygons(v
 
 /** Whether a value is what COCO has for most annotations: arrays of coordinates. */
 const isPolygons = (value: unknown): value is unknown[] =>
-  Array.isArray(value) && value.length > 0 && value.every((ring) => (ringOf(ring)?.length ?? 0) >= 6);
+  Array.isArray(value) &&
+  value.length > 0 &&
+  value.every((ring) => (ringOf(ring)?.length ?? 0) >= 6) &&
+  // The rows of a mask, which are no coordinates.
+  value.some((ring) => ringOf(ring)?.some((x) => x > 1));
 
 /** Whether a value is the corners of one polygon, [x, y] each. */
 const isCorners = (value: unknown): boolean =>
