@@ -5,7 +5,7 @@ import type { DepthCode, DepthImage } from "../types/inputs.js";
 import type { StatedSize } from "./depth.js";
 
 /** Values that are looked at. */
-export const SAMPLES = 1 << 16;
+const SAMPLES = 1 << 14;
 
 /** Values of which fewer say nothing about a code, and the most that are told apart. */
 const DISTINCT = [32, 1024] as const;
@@ -54,11 +54,13 @@ export async function doubtOfCode(
   const facts = factsOf(values, unit);
   const names = (Object.keys(signs) as DepthCode[]).filter((code) => facts !== undefined && signs[code]?.(facts));
   if (facts === undefined || names.length === 0) return undefined;
-  const { depthCodes, isCoded } = await import("./depth-codes.js");
-  const numbers =
-    values instanceof Uint16Array || unit.metres === 1 ? values : values.map((z) => z / (unit.metres ?? 1));
+  const { codeTest, depthCodes } = await import("./depth-codes.js");
+  const { metres } = unit;
+  const isStored = values instanceof Uint16Array || metres === 1 || metres === null;
+  const storedAt = (i: number) => (isStored ? (values[i] as number) : Math.round((values[i] as number) / metres));
+  const isCoded = codeTest(storedAt, { width, height }, facts);
   for (const name of names) {
-    const certainty = isCoded(name, numbers, { width, height }, facts);
+    const certainty = isCoded(name);
     if (certainty === false) continue;
     const { writers, formula, signs: betrayed, range } = depthCodes[name];
     const needs = range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : "";

@@ -172,41 +172,64 @@ const PLANES = 3;
 /** Least mean and largest range of values that are those of a z-buffer unless planes say otherwise: of near planes far before the scene. */
 const AT_END = { mean: 0.9, range: 0.1 } as const;
 
-/** Whether numbers that may be a code are one, by the planes that the map shows; `undefined` if these do not tell. */
-export function isCoded(
-  name: DepthCode,
-  numbers: ArrayLike<number>,
+/**
+ * A test whether numbers that may be a code are one, by the planes that the map shows; it returns `undefined` if these do not
+ * tell.
+ */
+export function codeTest(
+  numberAt: (pixel: number) => number,
   { width = 0, height = 0 }: { width?: number | undefined; height?: number | undefined },
   { mean, most, least }: Record<"mean" | "most" | "least", number>,
-): boolean | undefined {
-  if (name === "z-buffer") {
-    const ratios = blocksOf(numbers, width, height, ofBuffers).flatMap((points) => {
-      const [a, b] = [planeOf(points).misfit, planeOf(withValues(points, (code) => 1 / code)).misfit];
+): (name: DepthCode) => boolean | undefined {
+  let planes: readonly FlatBlock[] | undefined;
+  return (name) => {
+    const { range, metres } = depthCodes[name];
+    if (range === undefined) return true;
+    if (name !== "z-buffer") {
+      planes ??= flatBlocks(blocksOf(numberAt, width, height, ofLogarithms));
+      const [near, far] = range ?? [0, 1];
+      // Whole numbers of few values.
+      const inverses = Float64Array.from({ length: most + 1 }, (_, code) => 1 / metres(code, near, far));
+      return areUnbent(planes, (code) => inverses[code] ?? 1 / metres(code, near, far));
+    }
+    const ratios = blocksOf(numberAt, width, height, ofBuffers).flatMap((block) => {
+      const [a, b] = [planeOf(block).misfit, planeOf(mapped(block, (code) => 1 / code)).misfit];
       return Math.min(a, b) < ofBuffers.misfit ? [Math.log(b / a)] : [];
     });
     const [buffers = 0, depths = 0] = [1, -1].map((sign) => ratios.filter((ratio) => sign * ratio > BETTER).length);
     if (depths > buffers) return false;
     const isAtEnd = mean >= AT_END.mean && most - least < AT_END.range;
     return depths === 0 && (buffers >= PLANES || isAtEnd) ? true : undefined;
-  }
-  const { range, metres } = depthCodes[name];
-  if (range === undefined) return true;
-  const [near, far] = range ?? [0, 1];
-  return areUnbent(blocksOf(numbers, width, height, ofLogarithms), (code) => 1 / metres(code, near, far));
+  };
 }
 
+/** A block, and the plane through it if its values are lengths. */
+interface FlatBlock {
+  block: Block;
+  lengths: Plane;
+}
+
+/** The blocks that are about flat if their values are lengths: others are not flat in a code either. */
+const flatBlocks = (blocks: readonly Block[]): FlatBlock[] =>
+  blocks.flatMap((block) => {
+    const lengths = planeOf(mapped(block, (code) => 1 / code));
+    return lengths.misfit < 3 * ofLogarithms.misfit ? [{ block, lengths }] : [];
+  });
+
 /** Whether the planes among blocks are flat in a function of their values, and not in 1/value. */
-function areUnbent(blocks: readonly Point[][], inverse: (code: number) => number): boolean {
+function areUnbent(blocks: readonly FlatBlock[], inverse: (code: number) => number): boolean {
   const bends: [share: number, weight: number][] = [];
-  for (const points of blocks) {
-    const found = planeOf(withValues(points, inverse));
+  for (const { block, lengths } of blocks) {
+    const found = planeOf(mapped(block, inverse));
     if (!(found.misfit < ofLogarithms.misfit)) continue;
-    const lengths = planeOf(withValues(points, (code) => 1 / code));
     // What a plane of lengths would be.
-    const bent = planeOf(points.map(([u, v], i) => [u, v, inverse(1 / (lengths.values[i] as number))]));
-    const [square, product] = [bent.rest, found.rest].map((rest) =>
-      rest.reduce((sum, x, i) => sum + x * (bent.rest[i] as number), 0),
-    ) as [number, number];
+    const bent = planeOf(mapped({ ...block, values: lengths.values }, (value) => inverse(1 / value)));
+    let [square, product] = [0, 0];
+    for (let i = 0; i < bent.rest.length; i++) {
+      const x = bent.rest[i] as number;
+      square += x * x;
+      product += x * (found.rest[i] as number);
+    }
     bends.push([product / square, square / found.variance]);
   }
   const weight = bends.reduce((sum, [, w]) => sum + w, 0);
@@ -216,28 +239,38 @@ function areUnbent(blocks: readonly Point[][], inverse: (code: number) => number
   return bends.length >= PLANES && Math.abs(mean) < UNBENT.share && 1 - mean > UNBENT.deviations * deviation;
 }
 
-/** A pixel and its value. */
-type Point = readonly [u: number, v: number, value: number];
+/** Values on a grid, row by row. */
+interface Block {
+  values: Float64Array;
+  columns: number;
+}
 
-const withValues = (points: readonly Point[], of: (value: number) => number): Point[] =>
-  points.map(([u, v, value]) => [u, v, of(value)]);
+const mapped = ({ values, columns }: Block, of: (value: number) => number): Block => ({
+  values: values.map(of),
+  columns,
+});
 
-/** Points of the blocks of an image that have a reading everywhere; blocks overlap by half. */
+/** The blocks of an image that have a reading everywhere; they overlap by half. */
 function blocksOf(
-  numbers: ArrayLike<number>,
+  numberAt: (pixel: number) => number,
   width: number,
   height: number,
   { blocks, lines }: PlaneSearch,
-): Point[][] {
+): Block[] {
   const [columns, rows] = [Math.floor(width / blocks), Math.floor(height / blocks)];
   const [stepU, stepV] = [Math.ceil(columns / lines), Math.ceil(rows / lines)];
-  const found: Point[][] = [];
+  const [across, down] = [Math.ceil(columns / stepU), Math.ceil(rows / stepV)];
+  const found: Block[] = [];
   for (let top = 0; top + rows <= height && rows > 4; top += rows >> 1) {
     for (let left = 0; left + columns <= width && columns > 4; left += columns >> 1) {
-      const points: Point[] = [];
-      for (let v = top; v < top + rows; v += stepV)
-        for (let u = left; u < left + columns; u += stepU) points.push([u, v, numbers[v * width + u] as number]);
-      if (points.every(([, , code]) => code > 0)) found.push(points);
+      const values = new Float64Array(across * down);
+      let isWhole = true;
+      for (let i = 0; i < values.length && isWhole; i++) {
+        const [u, v] = [left + stepU * (i % across), top + stepV * Math.floor(i / across)];
+        values[i] = numberAt(v * width + u);
+        isWhole = (values[i] as number) > 0;
+      }
+      if (isWhole) found.push({ values, columns: across });
     }
   }
   return found;
@@ -245,31 +278,40 @@ function blocksOf(
 
 /** A plane through values on a grid. */
 interface Plane {
-  values: number[];
+  values: Float64Array;
   /** What the values have beyond it, and their mean square. */
-  rest: number[];
+  rest: Float64Array;
   variance: number;
   /** The root mean square distance, relative to the range of the plane. */
   misfit: number;
 }
 
-function planeOf(points: readonly Point[]): Plane {
-  const mean = (axis: 0 | 1 | 2) => points.reduce((sum, point) => sum + point[axis], 0) / points.length;
-  const [u0, v0, value0] = [mean(0), mean(1), mean(2)];
-  let [uu, vv, uz, vz] = [0, 0, 0, 0];
-  for (const [u, v, value] of points) {
-    uu += (u - u0) ** 2;
-    vv += (v - v0) ** 2;
-    uz += (u - u0) * (value - value0);
-    vz += (v - v0) * (value - value0);
+function planeOf({ values, columns }: Block): Plane {
+  const rows = values.length / columns;
+  const [u0, v0] = [(columns - 1) / 2, (rows - 1) / 2];
+  let [sum, uz, vz] = [0, 0, 0];
+  for (let i = 0, v = 0; v < rows; v++) {
+    for (let u = 0; u < columns; u++, i++) {
+      const value = values[i] as number;
+      sum += value;
+      uz += (u - u0) * value;
+      vz += (v - v0) * value;
+    }
   }
-  const [a, b] = [uz / uu, vz / vv];
-  const values = points.map(([u, v]) => value0 + a * (u - u0) + b * (v - v0));
-  const rest = points.map(([, , value], i) => value - (values[i] as number));
-  const variance = rest.reduce((sum, x) => sum + x * x, 0) / points.length;
-  const [least, most] = values.reduce(([low, high], x) => [Math.min(low, x), Math.max(high, x)], [
-    Number.POSITIVE_INFINITY,
-    Number.NEGATIVE_INFINITY,
-  ] as [number, number]);
-  return { values, rest, variance, misfit: Math.sqrt(variance) / (most - least) };
+  // The sums of squares of a grid.
+  const [a, b] = [(12 * uz) / (rows * columns * (columns ** 2 - 1)), (12 * vz) / (columns * rows * (rows ** 2 - 1))];
+  const mean = sum / values.length;
+  const [plane, rest] = [new Float64Array(values.length), new Float64Array(values.length)];
+  let squares = 0;
+  for (let i = 0, v = 0; v < rows; v++) {
+    for (let u = 0; u < columns; u++, i++) {
+      const [on, value] = [mean + a * (u - u0) + b * (v - v0), values[i] as number];
+      plane[i] = on;
+      rest[i] = value - on;
+      squares += (value - on) ** 2;
+    }
+  }
+  const variance = squares / values.length;
+  const range = Math.abs(a) * (columns - 1) + Math.abs(b) * (rows - 1);
+  return { values: plane, rest, variance, misfit: Math.sqrt(variance) / range };
 }

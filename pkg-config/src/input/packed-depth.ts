@@ -2,8 +2,10 @@
 
 import type { DepthCode, DepthImage } from "../types/inputs.js";
 import { failure, Sim3AlignError } from "../values/error.js";
-import { SAMPLES } from "./coded-depth.js";
 import { depthCodes } from "./depth-codes.js";
+
+/** Pixels that are looked at. */
+const SAMPLES = 1 << 16;
 
 /** Differences of neighbours: the first byte of a number is smooth, the last one is not. Of pictures, all channels are as smooth. */
 const SMOOTH = 4;
