@@ -68,7 +68,11 @@ export const perform = {
     if (names.length === 0) return this.case(aligner, folder, options);
     const tracker = await aligner.track(mesh, options);
     try {
-      const [frames, errors] = [[], []];
+      /** @type {object[]} */
+      const frames = [];
+      /** @type {Error[]} */
+      const errors = [];
+      /** @type {number | undefined} */
       let scale;
       for (const name of names) {
         try {
