@@ -1,4 +1,4 @@
-#!/bin/sh
+#!/usr/bin/env bash
 # MuJoCo: a camera's principalpixel moves the principal point to the left, and since 3.6.0 up instead of down.
 #
 # One would expect: principalpixel="20 30", an offset of the principal point from the centre of the image in pixels, puts it
@@ -15,12 +15,12 @@
 # is then rendered twice that far beside it: 3 cm per metre for 10 pixels and a focal length of 600. Offsets of OpenCV's
 # intrinsics for MuJoCo from 3.6.0 on are (width / 2 - (cx + 0.5), height / 2 - (cy + 0.5)); before, the second one has the
 # opposite sign.
-set -eu
+set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 check() {
   python3 -m venv "$folder/$1"
-  "$folder/$1/bin/pip" install --quiet "mujoco==$1"
+  "$folder/$1/bin/pip" install --quiet "$1"
   "$folder/$1/bin/python" - "$2" <<'PYTHON'
 import sys
 
@@ -47,6 +47,6 @@ print(f"mujoco {mujoco.__version__}: principalpixel (20, 30) of {width} x {heigh
 assert abs(across - 300) < 0.1 and abs(down - float(sys.argv[1])) < 0.1, "the behaviour has changed"
 PYTHON
 }
-check 3.5.0 270
-check 3.6.0 210
-check 4.0.0 210
+check mujoco==3.5.0 270
+check mujoco==3.6.0 210
+check mujoco==4.0.0 210

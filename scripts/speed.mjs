@@ -27,7 +27,7 @@ async function timesOf(runs, call) {
 
 /** The stages of an alignment of case folders. @param {readonly string[]} folders @param {Options} options */
 async function stages(folders, { runs, quality }) {
-  const { readCaseFolder } = await compiledModule("frames-folder.js");
+  const { readCaseFolder } = await compiledModule("case-folder.js");
   const aligner = await createAligner();
   for (const folder of folders.length > 0 ? folders : [sampleDir]) {
     const { name, input } = await readCaseFolder(folder);

@@ -42,7 +42,7 @@ export async function inputsIn(folder) {
 }
 
 /**
- * What a folder is: by the folders in it, a scene, a video (frame_* or FoundationPose's depth/) or a single case.
+ * The kind of a folder by the folders in it: a scene, a video (frame_* or FoundationPose's depth/) or a single case.
  * @param {string[]} names
  * @returns {"case" | "scene" | "video"}
  */

@@ -18,7 +18,7 @@ pub struct ColoredMesh {
     pub copies: usize,
     /// The offset subtracted from the coordinates of the file if 32 bits are too coarse for these; otherwise zero.
     pub origin: DVec3,
-    /// What the file holds besides, and the reader does not know.
+    /// Content of the file that its reader does not know.
     pub unread: Vec<String>,
     /// Why the colours can't be read; the mesh can be used without them.
     pub problem: Option<Error>,

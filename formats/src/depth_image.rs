@@ -31,7 +31,7 @@ pub struct DepthImage {
     pub camera: Option<Pinhole>,
     /// The unit of the values in the file.
     pub unit: DepthUnit,
-    /// What the file holds besides, and the reader does not know.
+    /// Content of the file that its reader does not know.
     pub unread: Vec<String>,
 }
 

@@ -70,6 +70,11 @@ impl Unknown {
         }
     }
 
+    /// Whether any of them is such a name.
+    pub fn any(&self, is_such: impl Fn(&str) -> bool) -> bool {
+        self.0.iter().any(|name| is_such(name))
+    }
+
     /// The sentence about them, if there are any; `what` they are.
     pub fn named(&self, what: &str) -> Vec<String> {
         let sentence =

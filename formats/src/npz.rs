@@ -119,13 +119,11 @@ pub(crate) fn read_depth(bytes: &[u8], options: &DepthReadOptions, kind: DepthKi
     let data = archive.read(entry)?;
     let array = NpyArray::read("depth", &data)?;
     let keep = |(i, z)| if is_valid(i) { z } else { f64::NAN };
-    let image = match (&source, NpyPoints::of(array)) {
-        (Source::Points(..), Some(map)) => {
+    let image = match &source {
+        Source::Map(..) => stored.read(options, kind, &|i| keep((i, array.at(i, [height, width, 1]))))?,
+        Source::Points(..) => {
+            let map = NpyPoints::of(array).ok_or_else(|| no_points(entry))?;
             point_map::read(&stored, options, kind, &|i| map.point(i).map(|x| keep((i, x))))?
-        }
-        _ => {
-            let array = NpyArray::read("depth", &data)?;
-            stored.read(options, kind, &|i| keep((i, array.at(i, [height, width, 1]))))?
         }
     };
     // Of points beside the depth, at least the camera.
@@ -377,8 +375,12 @@ fn image(entry: Entry) -> Result<Source> {
 fn points(entry: Entry) -> Result<Source> {
     match point_sides(entry.header.squeezed(3)) {
         Some((sides, is_interleaved)) => Ok(Source::Points(entry, image_sides(sides, is_interleaved))),
-        None => Err(several(&entry, "the points of one image, H × W × 3")),
+        None => Err(no_points(&entry)),
     }
+}
+
+fn no_points(entry: &Entry) -> Error {
+    several(entry, "the points of one image, H × W × 3")
 }
 
 fn several(entry: &Entry, expected: &'static str) -> Error {

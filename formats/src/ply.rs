@@ -37,18 +37,19 @@ pub(crate) fn read_ply(bytes: &[u8], options: &MeshReadOptions<'_>, content: Con
             _ => read_records(element, &mut body, |_, _| Ok(()))?,
         }
     }
-    let unread = ply_names::unread(&header);
+    let unknown = ply_names::unknown(&header);
     let has_colors = mesh.has_colors;
     let mut read = mesh.finish(&header.textures, options)?;
-    if has_colors && read.colors.is_none() && unread.iter().any(|names| ply_names::concern_colors(names)) {
-        read.problem = read.problem.or_else(|| Some(uncolored("colours in properties that are not known")));
+    if has_colors && read.colors.is_none() && unknown.any(ply_names::concerns_colors) {
+        let expected = "red, green and blue, or \"comment TextureFile NAME\" in the header with texture_u and texture_v, or texcoord and texnumber";
+        let problem = || uncolored("colours in properties that are not known", expected);
+        read.problem = read.problem.or_else(|| Some(problem()));
     }
-    Ok(ColoredMesh { unread, ..read })
+    Ok(ColoredMesh { unread: unknown.named("the PLY properties"), ..read })
 }
 
 /// The error for colours that cannot be read.
-fn uncolored(found: &'static str) -> Error {
-    let expected = "red, green and blue, or \"comment TextureFile NAME\" in the header with texture_u and texture_v, or texcoord and texnumber";
+fn uncolored(found: &'static str, expected: &'static str) -> Error {
     unsupported("mesh", found, expected, "Export the mesh as GLB, which holds its textures.")
 }
 
@@ -165,8 +166,7 @@ impl PlyMesh {
         if painted.paint.vertex_colors.is_empty() && painted.paint.face_colors.is_empty() {
             let expected =
                 "\"comment TextureFile NAME\" in the header, and texture_u and texture_v, or texcoord and texnumber";
-            let remedy = "Export the mesh as GLB, which holds its textures.";
-            return Ok(painted.plain(Some(unsupported("mesh", problem, expected, remedy))));
+            return Ok(painted.plain(Some(uncolored(problem, expected))));
         }
         Ok(painted.colored_by_faces())
     }

@@ -43,18 +43,18 @@ fn is_known(element: &[u8], name: &[u8]) -> bool {
     }
 }
 
-/// What a mesh in a PLY file holds besides, for people.
-pub(crate) fn unread(header: &Header) -> Vec<String> {
+/// The properties of a PLY file that are not known.
+pub(crate) fn unknown(header: &Header) -> Unknown {
     let mut unknown = Unknown::default();
     for element in header.elements.iter().filter(|element| element.count > 0) {
         for property in element.properties.iter().filter(|property| !is_known(&element.name, &property.name)) {
             unknown.insert(&[&*element.name, &*property.name].join(&b'.'));
         }
     }
-    unknown.named("the PLY properties")
+    unknown
 }
 
-/// Whether unknown names are those of colours.
-pub(crate) fn concern_colors(names: &str) -> bool {
-    ["color", "colour", "rgb", "red", "material", "texture", "texcoord"].iter().any(|part| names.contains(part))
+/// Whether an unknown name is that of colours.
+pub(crate) fn concerns_colors(name: &str) -> bool {
+    ["color", "colour", "rgb", "red", "material", "texture", "texcoord"].iter().any(|part| name.contains(part))
 }

@@ -134,6 +134,19 @@ impl Mesh {
         };
         self.triangles.iter().map(volume).sum()
     }
+
+    /// Whether triangles pass each edge as often in one direction as in the other. A ray that meets such a surface meets as many
+    /// fronts as backs. Vertices of one `place` are one; `hash` is that of an edge between two places.
+    pub fn is_closed<P: PartialOrd + Copy>(&self, place: impl Fn(u32) -> P, hash: impl Fn(P, P) -> u64) -> bool {
+        // Sums of hashes are equal if the edges are, and otherwise by a chance of 2⁻⁶⁴.
+        let mut sum = 0_u64;
+        for &[a, b, c] in &self.triangles {
+            for (from, to) in [(a, b), (b, c), (c, a)].map(|(from, to)| (place(from), place(to))) {
+                sum = if from < to { sum.wrapping_add(hash(from, to)) } else { sum.wrapping_sub(hash(to, from)) };
+            }
+        }
+        sum == 0
+    }
 }
 
 /// The vertices that are corners of triangles.

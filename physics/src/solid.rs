@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::random::mixed;
 
 /// Rays along each side of the grid that looks for a mesh inside of itself.
 const RAYS: usize = 64;
@@ -26,12 +27,9 @@ impl Solid {
         if !is_closed(mesh) {
             return None;
         }
-        let positions = mesh.positions();
-        let center = positions.first()?.as_dvec3();
-        let corner = |i: u32| positions[i as usize].as_dvec3();
-        let mut corners: Vec<[DVec3; 3]> = mesh.triangles().iter().map(|t| t.map(corner)).collect();
-        let volume =
-            corners.iter().map(|t| t.map(|p| p - center)).map(|[a, b, c]| a.dot(b.cross(c)) / 6.0).sum::<f64>();
+        let mut corners: Vec<[DVec3; 3]> =
+            mesh.triangles().iter().map(|t| mesh.corners(*t).map(|p| p.as_dvec3())).collect();
+        let volume = mesh.signed_volume6() / 6.0;
         if volume.abs() <= LEAST * mesh.diagonal().powi(3) {
             return None;
         }
@@ -42,30 +40,13 @@ impl Solid {
     }
 }
 
-/// Whether triangles pass each edge as often in one direction as in the other. Edges are those between positions: the seams of
-/// textures double vertices.
+/// Whether the surface of a mesh is closed. Its edges are those between positions: the seams of textures double vertices.
 fn is_closed(mesh: &Mesh) -> bool {
-    let positions = mesh.positions();
-    let bits = |i: u32| positions[i as usize].to_array().map(|x| (x + 0.0).to_bits());
-    // Sums of hashes are equal if the edges are, and otherwise by a chance of 2⁻⁶⁴.
-    let mut sum = 0_u64;
-    for &[a, b, c] in mesh.triangles() {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            let (from, to) = (bits(from), bits(to));
-            let both = if from < to { [from, to] } else { [to, from] };
-            let hash = both.as_flattened().iter().fold(0, |hash, word| mixed(hash ^ u64::from(*word)));
-            sum = if from < to { sum.wrapping_add(hash) } else { sum.wrapping_sub(hash) };
-        }
-    }
-    sum == 0
-}
-
-/// The finaliser of SplitMix64.
-fn mixed(word: u64) -> u64 {
-    let word = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    word ^ (word >> 31)
+    let bits = |vertex: u32| mesh.positions()[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
+    let edge = |from: [u32; 3], to: [u32; 3]| {
+        [from, to].as_flattened().iter().fold(0, |hash, word| mixed(hash ^ u64::from(*word)))
+    };
+    mesh.is_closed(bits, edge)
 }
 
 /// Whether parallel rays enter a surface once before they leave it. They run along the shortest side of its box.

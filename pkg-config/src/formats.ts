@@ -72,7 +72,7 @@ export interface MeshFromFile {
   samples?: ColorSamples;
   /** How many copies of one mesh a glTF file places, if it has no other mesh; all of them are read as one object. */
   copies?: number;
-  /** What the file holds besides, and the reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[];
   /** Why the colours cannot be read; empty if they can, or if there are none. */
   warnings: string[];
@@ -82,7 +82,7 @@ export interface MeshFromFile {
 export interface MaskFromFile extends PixelArray<Uint8Array> {
   /** Which values of the file are the object: `"values of 127.5 or more, of 0 to 255"`; of JSON, which of several masks. */
   reading?: string;
-  /** What the file holds besides, and the reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[];
 }
 

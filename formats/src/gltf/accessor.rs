@@ -28,7 +28,7 @@ pub(super) struct AccessorReader<'a> {
     pub buffers: Buffers<'a>,
     /// Decodes textures that are neither PNG nor JPEG.
     pub images: Option<ImageDecoder<'a>>,
-    /// What the colours of vertices are, if the caller knows.
+    /// The colour space of vertex colours, if the caller knows it.
     pub color_space: Option<ColorSpace>,
     pub elements_read: usize,
 }

@@ -97,7 +97,7 @@ pub(super) struct Sparse {
     pub values: SparsePart,
 }
 
-/// Where the indices or the values of such elements are; values have the type of their accessor.
+/// The place of the indices or the values of such elements; values have the type of their accessor.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub(super) struct SparsePart {
@@ -179,7 +179,7 @@ pub(super) struct NodeExtensions {
     pub visibility: Option<Visibility>,
 }
 
-/// Whether a node and those below it are shown.
+/// The visibility of a node and its descendants.
 #[derive(Deserialize)]
 pub(super) struct Visibility {
     #[serde(default = "shown")]

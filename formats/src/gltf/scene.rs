@@ -165,7 +165,7 @@ fn numbers<const N: usize>(stored: &[f32], default: [f64; N]) -> Result<[f64; N]
     numbers.map_err(|_| corrupt("mesh", format!("{} numbers in a transform", stored.len()), format!("{N}")))
 }
 
-/// What moves the vertices of a primitive: weights of its morph targets, then a skin.
+/// The deformation of a primitive: weights of its morph targets, then a skin.
 struct Deformation<'a> {
     weights: &'a [f32],
     skin: Option<&'a Skin>,

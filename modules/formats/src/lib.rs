@@ -49,7 +49,7 @@ export interface MeshArrays {
   indices: Uint32Array;
   /** The colours of the surface, if the file has any. */
   samples?: ColorSamples;
-  /** What the file holds besides, and the reader does not know; missing if there is nothing. */
+  /** Content of the file that its reader does not know; missing if there is nothing. */
   unread?: string[];
   /** Why the colours of the file can't be read. */
   warnings: string[];
@@ -102,7 +102,7 @@ export interface DepthImage {
   unit: { metres: number | null; source: string; isAssumed: boolean };
   /** The camera in the file, in pixels. */
   camera?: { fx: number; fy: number; cx: number; cy: number };
-  /** What the file holds besides, and the reader does not know; missing if there is nothing. */
+  /** Content of the file that its reader does not know; missing if there is nothing. */
   unread?: string[];
 }
 

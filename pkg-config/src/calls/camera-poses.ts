@@ -1,4 +1,5 @@
 /** Conventions of camera poses: those in which contradicting views would agree. */
+import { openGlAxes } from "../conventions/frames.js";
 import { composed, inverted, moved, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
 import type { CoreFrame } from "../modules/core-input.js";
 import type { Vector3 } from "../values/validation.js";
@@ -11,8 +12,6 @@ interface Convention {
   /** The pose of the camera (OpenCV) in the world, in metres. */
   read(pose: Similarity): Similarity;
 }
-
-const openGlAxes: Similarity = { scale: 1, rotation: [1, 0, 0, 0, -1, 0, 0, 0, -1], translation: [0, 0, 0] };
 
 const axes: Convention[] = [
   {

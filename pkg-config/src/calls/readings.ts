@@ -1,6 +1,6 @@
 /** The readings of a view, in and around its mask. */
+import { metresPerUnit } from "../input/depth.js";
 import type { CoreFrame } from "../modules/core-input.js";
-import { isTypedArray } from "../values/kinds.js";
 import type { Vector3 } from "../values/validation.js";
 
 /** A pixel with a reading. */
@@ -56,7 +56,7 @@ export function readingsAround(view: CoreFrame, margin: number): Reading[] {
 /** The middle of the readings in the mask and their extent, in the frame of the camera; `undefined` without any. */
 export function objectSeen(view: CoreFrame): { middle: Vector3; extent: number } | undefined {
   const { camera, pointMap, depthScale } = view;
-  const unit = typeof depthScale === "number" ? depthScale : isTypedArray(view.depth, "Uint16Array") ? 0.001 : 1;
+  const unit = metresPerUnit(view.depth, depthScale);
   const points = readingsAround(view, 0)
     .filter(({ isMasked }) => isMasked)
     .map(({ u, v, z }): Vector3 => {

@@ -92,19 +92,20 @@ export async function lookedAtAgain(
       .search("align", core, { ...options, ...more, metrics: false })
       .catch(() => undefined);
   };
-  const share = found.confidence < DOUBT ? speckled(input) : 0;
+  const isInDoubt = found.confidence < DOUBT;
+  const share = isInDoubt ? speckled(input) : 0;
   const isSpeckled = share > SPECKLED;
   // The mesh is not in doubt for what the depth explains.
   const warnings = found.warnings.filter(({ code }) => !(isSpeckled && code === "MESH_DOUBTFUL"));
   if (isSpeckled) warnings.push(speckle(share));
-  if (found.confidence < DOUBT) {
+  if (isInDoubt) {
     if (continuesPlane(input)) warnings.push(background);
     const other = await searched(mirrorOf(shape), { initial: undefined });
     const score = found.diagnostics.score + BETTER_SHAPE;
     if (other !== undefined && other.confidence > DOUBT && other.diagnostics.score > score) warnings.push(mirrorImage);
   }
   const isWhole = warnings.every(({ code }) => code !== "MESH_PARTS_LEFT_OUT");
-  const large = isWhole && found.confidence < DOUBT ? largePart(shape) : null;
+  const large = isWhole && isInDoubt ? largePart(shape) : null;
   if (large !== null) {
     const message = `A part of the mesh is ${large} times as large as the rest, as the floor or the walls of a scene are. If the mask does not show it, pass the object alone.`;
     const known = warnings.findIndex(({ code }) => code === "MESH_DOUBTFUL");

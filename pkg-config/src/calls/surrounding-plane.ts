@@ -26,21 +26,19 @@ export function continuesPlane(input: CoreInput): boolean {
   if (Math.min(around.length, inside.length) < FEW) return false;
 
   let nearest = around;
-  let plane: Plane | undefined;
+  let behind = (_: Reading) => 0;
   for (let round = 0; round < ROUNDS; round++) {
-    plane = fitted(nearest);
+    const plane = fitted(nearest);
     if (plane === undefined) return false;
-    const of = plane;
-    const sorted = [...around].sort((a, b) => Math.abs(distance(of, a)) - Math.abs(distance(of, b)));
+    behind = (reading) => distance(plane, reading);
+    const sorted = [...around].sort((a, b) => Math.abs(behind(a)) - Math.abs(behind(b)));
     nearest = sorted.slice(0, Math.ceil(ON_PLANE.around * around.length));
   }
-  if (plane === undefined) return false;
-  const of = plane;
-  const typical = Math.abs(distance(of, nearest[Math.floor(nearest.length / 2)] as Reading));
+  const typical = Math.abs(behind(nearest[Math.floor(nearest.length / 2)] as Reading));
   const near = Math.max(NEAR.least, NEAR.deviations * typical);
   const share = (side: readonly Reading[]) =>
-    side.filter((reading) => Math.abs(distance(of, reading)) < near).length / side.length;
-  const raised = inside.reduce((sum, reading) => sum - clamped(distance(of, reading), near), 0) / inside.length;
+    side.filter((reading) => Math.abs(behind(reading)) < near).length / side.length;
+  const raised = inside.reduce((sum, reading) => sum - clamped(behind(reading), near), 0) / inside.length;
   return near < NEAR.most && share(around) >= ON_PLANE.around && share(inside) >= ON_PLANE.inside && raised < RAISED;
 }
 

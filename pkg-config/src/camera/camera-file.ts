@@ -26,7 +26,7 @@ export interface CameraFile extends PinholeCamera {
   warnings: string[];
   /** Reasons why the intrinsics may belong to another image, or the depth scale mean another unit; absent without any. */
   doubts?: readonly string[];
-  /** What the file holds besides, and the reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[];
 }
 
@@ -221,7 +221,7 @@ function commonUnit(places: readonly CameraPlace[], names: CameraFileNames): Sta
   return units.every((unit) => unit?.metres === units[0]?.metres) ? units[0] : undefined;
 }
 
-/** What a camera states besides, as a sentence. */
+/** The sentence about numbers of a camera whose meaning is not known, and about gravity. */
 function unreadOf({ facts }: CameraPlace, file: string): string | undefined {
   const up = facts.find(({ meaning }) => meaning === "up");
   const other = facts.filter(({ meaning }) => meaning === undefined).slice(0, MAX_LOOKED_UP);

@@ -128,8 +128,8 @@ function ofPython(text: string): unknown {
   }
 }
 
-/** The coefficients of COLMAP's models come behind these parameters. */
-const oneFocal = /^(SIMPLE_|RADIAL)|^DIVISION$/;
+/** COLMAP's models with one focal length. */
+const oneFocal = /^(SIMPLE_|RADIAL)/;
 
 /** `CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS` a line; the centre of COLMAP's first pixel is at 0.5. */
 function colmap(text: string): Content | undefined {
@@ -139,8 +139,7 @@ function colmap(text: string): Content | undefined {
     const [width, height, ...parameters] = rest.map(Number);
     if (!/^\d+$/.test(id) || !/^[A-Z][A-Z_]+$/.test(model) || !parameters.every(isNumber) || parameters.length < 3)
       return undefined;
-    const [fx, fy, cx, cy, ...D] =
-      oneFocal.test(model) && model !== "DIVISION" ? [parameters[0], ...parameters] : parameters;
+    const [fx, fy, cx, cy, ...D] = oneFocal.test(model) ? [parameters[0], ...parameters] : parameters;
     return [id, { camera_model: model, width, height, fx, fy, cx: Number(cx) - 0.5, cy: Number(cy) - 0.5, D }] as const;
   });
   return cameras.length > 0 && cameras.every((camera) => camera !== undefined)

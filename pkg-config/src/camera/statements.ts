@@ -34,7 +34,7 @@ interface Node {
 const MAX_LEVELS = 8;
 
 /** Whether nine, twelve or sixteen numbers are a matrix of intrinsics, by rows or by columns. */
-export function looksLikeMatrix(numbers: readonly number[]): boolean {
+function looksLikeMatrix(numbers: readonly number[]): boolean {
   const side = { 9: 3, 12: 4, 16: 4 }[numbers.length];
   if (side === undefined) return false;
   const at = (row: number, column: number) => numbers[side * row + column] as number;

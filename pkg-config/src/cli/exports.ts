@@ -106,6 +106,7 @@ export async function writeSceneFiles(
   files: RunFiles,
 ): Promise<string[]> {
   const { sceneGlb, mjcf, urdf, usd, density, parts, rest, upright } = flags;
+  if ([sceneGlb, mjcf, urdf, usd].every((path) => path === undefined)) return [];
   const camera = await cameraOf(scene.input, result);
   if (sceneGlb !== undefined)
     files.write({ flag: "--scene-glb", path: sceneGlb, isOwn: isExport }, await glbOf(scene, result, camera, upright));

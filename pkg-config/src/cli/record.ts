@@ -209,12 +209,10 @@ export class JsonlFile {
       }
     }
     const moved = new Map<string, T>();
-    for (const task of lost.size === 0 ? [] : left.values()) {
-      const { folder } = task;
-      const found = [...lost].find(
-        ([key, own]) => folder !== undefined && !moved.has(key) && contentNow(folder, own.files) === own.content,
-      );
-      if (found !== undefined) moved.set(found[0], task);
+    const rows = new LostRows(lost);
+    for (const task of left.values()) {
+      const key = task.folder === undefined ? undefined : rows.take(task.folder);
+      if (key !== undefined) moved.set(key, task);
     }
     return { last, moved };
   }
@@ -233,6 +231,29 @@ export class JsonlFile {
       content: typeof content === "string" && Array.isArray(files) ? { content, files: files.map(String) } : undefined,
       entry,
     };
+  }
+}
+
+/** Rows with nothing at their paths, by their files and the checksum of these: the files of a folder are read once for each list. */
+class LostRows {
+  readonly #lists = new Map<string, { files: readonly string[]; keys: Map<string, string[]> }>();
+
+  constructor(rows: ReadonlyMap<string, Content>) {
+    for (const [key, { files, content }] of rows) {
+      const list = files.join("\n");
+      const { keys } = this.#lists.get(list) ?? { keys: new Map<string, string[]>() };
+      this.#lists.set(list, { files, keys });
+      keys.set(content, [...(keys.get(content) ?? []), key]);
+    }
+  }
+
+  /** Removes the first row with the content of a folder, and returns its key. */
+  take(folder: string): string | undefined {
+    for (const { files, keys } of this.#lists.values()) {
+      const key = keys.get(contentNow(folder, files) ?? "")?.shift();
+      if (key !== undefined) return key;
+    }
+    return undefined;
   }
 }
 

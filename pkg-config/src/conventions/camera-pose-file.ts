@@ -2,7 +2,7 @@
 import { failure } from "../values/error.js";
 import { type JsonFile, shown } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
-import { turnTo } from "./frames.js";
+import { openGlAxes } from "./frames.js";
 import { columnMajor, poseJson } from "./pose-file.js";
 import { composed, inverted, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 
@@ -19,7 +19,7 @@ const conventions: readonly { names: readonly string[]; read: (pose: Similarity)
   // nerfstudio, instant-ngp and Blender: the axes of OpenGL.
   {
     names: ["transform_matrix"],
-    read: (pose) => composed(pose, { scale: 1, rotation: turnTo("frame", "opengl"), translation: [0, 0, 0] }),
+    read: (pose) => composed(pose, openGlAxes),
   },
 ];
 

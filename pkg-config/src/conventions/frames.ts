@@ -32,6 +32,9 @@ const rotationOnly = (rotation: Matrix3): Similarity => ({ scale: 1, rotation, t
 /** The rotation from the OpenCV camera frame to the frame. */
 export const turnTo = (argument: string, frame: CameraFrame) => turns[oneOf(argument, frame, cameraFrames)];
 
+/** The axes of OpenGL: camera from OpenGL's camera, which is its own inverse. */
+export const openGlAxes: Similarity = rotationOnly(turns.opengl);
+
 /** Converts a similarity to the other frame. */
 export const inFrame = (argument: string, similarity: Similarity, frame: CameraFrame): Similarity =>
   composed(rotationOnly(turnTo(argument, frame)), similarity);

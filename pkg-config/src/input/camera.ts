@@ -32,7 +32,7 @@ export interface ResolvedCamera {
   /** The source of the intrinsics, if they were not given. */
   source?: string;
   warnings: readonly Warning[];
-  /** What the file holds besides, and its reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[];
 }
 
@@ -42,7 +42,7 @@ const warningsOf = (code: Warning["code"], messages: readonly string[]): Warning
 const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
 const fileRemedy = "Pass the content of a camera file as cameraFile.";
 
-/** `readCamera` adds what it found besides to the intrinsics of a camera file. */
+/** `readCamera` adds others to the intrinsics of a camera file. */
 const cameraProperties = [
   ...["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "focalUncertainty"],
   ...["depthScale", "warnings", "doubts", "unread"],

@@ -54,7 +54,7 @@ export async function doubtOfCode(
   const facts = factsOf(values, unit);
   const names = (Object.keys(signs) as DepthCode[]).filter((code) => facts !== undefined && signs[code]?.(facts));
   if (facts === undefined || names.length === 0) return undefined;
-  const { codeTest, depthCodes } = await import("./depth-codes.js");
+  const { codeTest, depthCodes, passingCode } = await import("./depth-codes.js");
   const { metres } = unit;
   const isStored = values instanceof Uint16Array || metres === 1 || metres === null;
   const storedAt = (i: number) => (isStored ? (values[i] as number) : Math.round((values[i] as number) / metres));
@@ -62,9 +62,8 @@ export async function doubtOfCode(
   for (const name of names) {
     const certainty = isCoded(name);
     if (certainty === false) continue;
-    const { writers, formula, signs: betrayed, range } = depthCodes[name];
-    const needs = range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : "";
-    const message = `The values of the depth map look like a code of ${writers}, and no lengths: ${betrayed}. If they are (${formula}), pass depthCode "${name}"${needs}.`;
+    const { writers, formula, signs: betrayed } = depthCodes[name];
+    const message = `The values of the depth map look like a code of ${writers}, and no lengths: ${betrayed}. If they are (${formula}), ${passingCode(name)}`;
     return { warning: { code: "DEPTH_LOOKS_CODED", message }, isUncertain: certainty === undefined };
   }
   return undefined;

@@ -105,6 +105,10 @@ export const depthCodes: { readonly [K in DepthCode]: Code } = {
   },
 };
 
+/** What to pass for a code, for people. */
+export const passingCode = (name: DepthCode): string =>
+  `pass depthCode "${name}"${depthCodes[name].range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : ""}.`;
+
 /** The value of a 16-bit float with these bits. */
 function halfFloat(bits: number): number {
   const [exponent, fraction] = [(bits >> 10) & 31, (bits & 1023) / 1024];

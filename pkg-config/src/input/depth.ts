@@ -27,7 +27,7 @@ export interface ReadDepth extends SizedArray<DepthArray> {
   camera?: Pinhole;
   /** The unit of the values. */
   unit: DepthImage["unit"];
-  /** What the file holds besides, and its reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[];
 }
 
@@ -90,6 +90,10 @@ async function decoded<T extends { data: DepthArray; unit: DepthImage["unit"] }>
   const hasUnit = depthKind === undefined || depthKind === "metric" || depthKind === "ray-distance";
   return { ...codes, data, unit: hasUnit ? unit : unknownUnit(depthKind) };
 }
+
+/** Metres per unit of the depth of a view: of floats without a scale, 1. */
+export const metresPerUnit = (depth: unknown, scale: unknown): number =>
+  typeof scale === "number" ? scale : isTypedArray(depth, "Float32Array") ? 1 : DEFAULT_SCALE;
 
 /** The unit of an array, in the words of the readers of files. */
 function unitOf(

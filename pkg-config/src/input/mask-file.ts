@@ -217,8 +217,8 @@ export async function maskInJson(
   size: ImageSize | undefined,
   formats: LoadFormats,
 ): Promise<ReadMask> {
-  const layout = layouts.find(({ find }) => find(json) !== undefined);
-  if (layout === undefined) {
+  const [found] = layoutsOf(json);
+  if (found === undefined) {
     const keys = isRecord(json)
       ? `JSON with the keys ${Object.keys(json).slice(0, 8).join(", ")}`
       : "JSON of another layout";
@@ -227,7 +227,8 @@ export async function maskInJson(
     throw failure("UNSUPPORTED_FORMAT", argument, keys, expected, remedy);
   }
   const file = isRecord(json) ? json : {};
-  const records = (layout.find(json) ?? []).filter(isRecord);
+  const { layout, list } = found;
+  const records = list.filter(isRecord);
   const all = records.map((record) => layout.entry(record, file));
   const entries = all.filter((entry) => entry !== undefined);
   const entry = chosen(argument, entries, index);
@@ -243,6 +244,14 @@ export async function maskInJson(
   const mask = await pixelsOf(argument, entry, size, formats);
   const reading = entries.length > 1 ? `entry ${index} of ${entries.length}: ${entry.name}` : undefined;
   return { ...mask, ...(reading === undefined ? {} : { reading }), unread };
+}
+
+/** The layouts of JSON, each with the records of the masks. */
+function* layoutsOf(json: unknown) {
+  for (const layout of layouts) {
+    const list = layout.find(json);
+    if (list !== undefined) yield { layout, list };
+  }
 }
 
 /** Names in an error. */

@@ -17,7 +17,7 @@ const kinds = () =>
 export interface ReadMask extends SizedArray<Bytes> {
   /** The values of its file that are the object, for people. */
   reading?: string;
-  /** What the file holds besides, and its reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[];
 }
 

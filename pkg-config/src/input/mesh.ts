@@ -55,6 +55,13 @@ export async function decodeMesh(
   }
 }
 
+/** The decoder of Draco, which is compiled once; its own script makes instances. */
+const draco = /* @__PURE__ */ new WasmModule(
+  "draco",
+  () => new URL("../wasm/draco_bg.wasm", import.meta.url),
+  () => undefined,
+);
+
 /** Rewrites a glTF file, whose JSON this is, without the compression of its geometry. The decoders are loaded only for compressed files. */
 async function geometryDecoder(json: string, own: MeshDecoders): Promise<DecodeGeometry> {
   if (!/_meshopt_|_draco_/.test(json)) return (...file) => file;
@@ -62,13 +69,7 @@ async function geometryDecoder(json: string, own: MeshDecoders): Promise<DecodeG
     import("./compressed-gltf.js"),
     import("./own-decoders.js"),
   ]);
-  const draco = () =>
-    new WasmModule(
-      "draco",
-      () => new URL("../wasm/draco_bg.wasm", import.meta.url),
-      () => undefined,
-    );
-  const decoders = await ownDecoders(json, own, () => draco().compile());
+  const decoders = await ownDecoders(json, own, () => draco.compile());
   const { meshoptDecoder, dracoDecoder } = { ...decoders, ...withoutUndefined(own) };
   return geometryDecoder(meshoptDecoder, dracoDecoder);
 }
@@ -76,7 +77,7 @@ async function geometryDecoder(json: string, own: MeshDecoders): Promise<DecodeG
 const kinds = () =>
   `{ positions, indices? }, or the bytes of a file: ${formatsText("mesh")} (also as { bytes, format?, resources?, colorSpace? })`;
 
-/** A mesh for the core, why it has no colours, and what its file holds besides. */
+/** A mesh for the core, why it has no colours, and the content of its file that was not read. */
 export interface MeshAndWarnings {
   mesh: CoreMesh;
   warnings: readonly string[];

@@ -2,7 +2,7 @@
 
 import type { DepthCode, DepthImage } from "../types/inputs.js";
 import { failure, Sim3AlignError } from "../values/error.js";
-import { depthCodes } from "./depth-codes.js";
+import { depthCodes, passingCode } from "./depth-codes.js";
 
 /** Pixels that are looked at. */
 const SAMPLES = 1 << 16;
@@ -20,10 +20,9 @@ export async function explained(error: unknown, read: () => Promise<DepthImage>)
   const { data, width } = await read();
   const name = packedCode(data, width);
   if (name === undefined) return error;
-  const { writers, formula, range } = depthCodes[name];
+  const { writers, formula } = depthCodes[name];
   const found = `an 8-bit PNG whose channels are the bytes of one number, as ${writers} write them (${formula})`;
-  const needs = range === null ? " with depthNear and depthFar, the near and far planes of the camera in metres" : "";
-  const remedy = `Pass depthCode "${name}"${needs}.`;
+  const remedy = passingCode(name).replace("pass", "Pass");
   return failure("EIGHT_BIT_DEPTH", error.argument, found, "one 16-bit channel, or a code", remedy, error);
 }
 

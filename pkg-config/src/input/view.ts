@@ -12,7 +12,7 @@ import { type Camera, cameraOf, type ResolvedCamera, unitOf } from "./camera.js"
 import { doubtOfCode } from "./coded-depth.js";
 import {
   checkSides,
-  DEFAULT_SCALE,
+  metresPerUnit,
   readDepth,
   readPointMap,
   type SizedArray,
@@ -85,7 +85,7 @@ interface Measured extends Omit<SizedArray<unknown>, "data"> {
   unit: DepthImage["unit"];
   /** The camera in the file of the depth; `"fitted"` for a point map, to which the core fits one. */
   camera: Pinhole | "fitted" | undefined;
-  /** What the file holds besides, and its reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[] | undefined;
   /** The lengths of a depth map, which may be a code. */
   readings?: Float32Array | Uint16Array | undefined;
@@ -135,7 +135,7 @@ async function depthView(
   const measured = { camera: undefined, readings, ...read };
   const core = { depth: data, depthScale: scale, depthKind: isMetric ? undefined : depthKind };
   if (depthKind !== "ray-distance") return { ...measured, core };
-  const metres = scale ?? (isFloat ? 1 : DEFAULT_SCALE);
+  const metres = metresPerUnit(data, scale);
   const rays = (camera: Pinhole) => ({ depth: depthOfRays(data, read.width as number, camera, metres) });
   return { ...measured, core, rays };
 }

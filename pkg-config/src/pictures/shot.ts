@@ -3,13 +3,13 @@
 import { toOrigin } from "../calls/origin.js";
 import type { Pinhole } from "../camera/pinhole.js";
 import { resizedMask } from "../conventions/resize.js";
+import { metresPerUnit } from "../input/depth.js";
 import { readPhoto } from "../input/photo.js";
 import { resolveInput } from "../input/resolve.js";
 import type { Photo } from "../modules/core-input.js";
 import { coreModule } from "../modules/modules.js";
 import { fileReaders } from "../modules/readers.js";
 import type { AlignInput } from "../types/inputs.js";
-import { isTypedArray } from "../values/kinds.js";
 import type { MaskPixels } from "../values/pixels.js";
 import { type CoreMesh, nextMeshId } from "../values/prepared-mesh.js";
 import type { View } from "./view.js";
@@ -41,7 +41,7 @@ export class Shot {
     const size = { width: Number(core.width), height: Number(core.height) };
     const { image } = hasCamera ? await readPhoto(photo, size, fileReaders) : core;
     const { width, height } = size;
-    const scale = Number(core.depthScale ?? (isTypedArray(depth, "Uint16Array") ? 0.001 : 1));
+    const scale = metresPerUnit(depth, core.depthScale);
     const metres = new Float32Array(depth.length);
     for (let i = 0; i < depth.length; i++) {
       const z = depth[i] as number;

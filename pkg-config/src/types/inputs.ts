@@ -367,6 +367,6 @@ export interface DepthImage extends PixelArray<Float32Array> {
   };
   /** The camera in the file, in pixels of the depth map: from its intrinsics, focal length or field of view, or from its points. */
   camera?: PinholeCamera;
-  /** What the file holds besides, and the reader does not know. */
+  /** Content of the file that its reader does not know. */
   unread?: readonly string[];
 }

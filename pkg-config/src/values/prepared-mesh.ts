@@ -25,7 +25,7 @@ export interface CoreMesh {
 /** A mesh, and the id under which each thread caches the data derived from it. */
 export interface KeptMesh {
   readonly id: number;
-  /** Its arrays, the reasons why it has no colours, and what its file holds besides. */
+  /** Its arrays, the reasons why it has no colours, and the content of its file that was not read. */
   readonly mesh: CoreMesh & { warnings: readonly string[]; unread?: readonly string[] | undefined };
 }
 

@@ -22,7 +22,9 @@ const FOLDED: f64 = 0.005;
 
 /// Lets the models of a mesh draw one side of its triangles, if no other is seen: not of a sheet or a bowl without thickness.
 pub fn draw_one_side(mesh: &Mesh, models: &mut [Model; GRIDS]) {
-    if !is_closed(mesh) {
+    // The image of the fronts of a closed surface covers the same cells. Clusters of vertices keep it closed.
+    let edge = |from: u32, to: u32| mixed(u64::from(from) << 32 | u64::from(to));
+    if !mesh.is_closed(|vertex| vertex, edge) {
         return;
     }
     let sign = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
@@ -50,18 +52,4 @@ fn images(model: &Model) -> Vec<f32> {
         canvas.inverse_depth.clone()
     };
     (0..VIEWS).flat_map(view).collect()
-}
-
-/// Whether triangles pass each edge as often in one direction as in the other. A ray that meets such a surface meets as many fronts
-/// as backs: the image of its fronts covers the same cells. Clusters of vertices keep the property.
-fn is_closed(mesh: &Mesh) -> bool {
-    // Sums of hashes are equal if the edges are, and otherwise by a chance of 2⁻⁶⁴.
-    let mut sum = 0_u64;
-    for &[a, b, c] in mesh.triangles() {
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            let hash = mixed(u64::from(from.min(to)) << 32 | u64::from(from.max(to)));
-            sum = if from < to { sum.wrapping_add(hash) } else { sum.wrapping_sub(hash) };
-        }
-    }
-    sum == 0
 }

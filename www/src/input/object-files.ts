@@ -7,8 +7,7 @@ import type { MaskSource, MeshSource, NamedFile } from "../state/inputs.js";
 import { once } from "../state/inputs.js";
 import { MAX_BYTES } from "./allowance.js";
 import { extension } from "./files.js";
-import { type ReadMask, readMask, readMesh } from "./reader.js";
-import { shownGlb } from "./shown-glb.js";
+import { type ReadMask, readMask, readMesh, shownGlb } from "./reader.js";
 
 const markedBy = once(async (file: NamedFile): Promise<ReadMask> => readMask(await file.bytes()));
 

@@ -1,6 +1,7 @@
 /** The readers of files. Small files are read at once; large ones in a worker, so that no frame has to wait for them. */
 import { Sim3AlignError } from "sim3align";
 import * as formats from "sim3align/formats";
+import { gltfText } from "sim3align/input/webp";
 import { startedFromAnywhere } from "sim3align/pool/port";
 import type { ReaderAnswer, ReaderCall, Readers } from "./reader-worker.js";
 
@@ -83,3 +84,10 @@ const reader = <K extends keyof Readers>(name: K, atOnce: Readers[K]): Readers[K
 export const readDepth = reader("readDepth", formats.readDepth);
 export const readMask = reader("readMask", formats.readMask);
 export const readMesh = reader("readMesh", formats.readMesh);
+
+/** A mesh file if it is a binary glTF that the 3D view can load as it is: it holds its buffers and images, and is not compressed. */
+export function shownGlb(bytes: Uint8Array): Uint8Array | null {
+  const json = gltfText(bytes);
+  const isBinary = json !== "" && bytes[0] === 0x67;
+  return isBinary && !/_meshopt_|_draco_|"uri"\s*:\s*"(?!data:)/.test(json) ? bytes : null;
+}

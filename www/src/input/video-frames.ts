@@ -1,5 +1,6 @@
 /** Recognises the frames of a video among the scenes of a drop. */
 import type { Sim3 } from "sim3align";
+import { parseCameraPose } from "sim3align/conventions/camera-pose-file";
 import { toSim3 } from "sim3align/conventions/similarity";
 import { type Inputs, noInputs, withId } from "../state/inputs.js";
 import type { Video } from "../state/video.js";
@@ -45,16 +46,12 @@ export async function videoOf(frames: readonly Inputs[]): Promise<Video> {
   return { frames, cameras: known.length === frames.length ? known : null };
 }
 
-/** The pose of a frame's camera: `camera_to_world`, four rows of four, in `pose.json`. */
+/** The pose of a frame's camera; `null` without one that can be read. */
 async function cameraOf({ files }: Inputs): Promise<Sim3 | null> {
   const file = files.find(({ role }) => role === "pose")?.file;
   if (file === undefined) return null;
   try {
-    const { camera_to_world } = JSON.parse(new TextDecoder().decode(await file.bytes())) as {
-      camera_to_world: unknown;
-    };
-    const rows = [camera_to_world].flat(3).map(Number);
-    return toSim3(rows.map((_, i) => rows[4 * (i % 4) + Math.floor(i / 4)] as number));
+    return toSim3(parseCameraPose("pose", await file.bytes()));
   } catch {
     return null;
   }
