@@ -40,8 +40,7 @@ fn hulls_contain_their_points() {
 #[wasm_bindgen_test]
 fn parts_cover_their_mesh_and_fill_no_more() {
     let (tray, tray_volume) = tray();
-    assert!((2..=3).contains(&convex_parts(&tray, None, 3).len()));
-    assert_eq!([0, 1].map(|most| convex_parts(&tray, None, most).len()), [1, 1]);
+    assert!((0..4).all(|most| (1..=most.max(1)).contains(&convex_parts(&tray, None, most).len())), "fewer");
     for (name, mesh, volume, fewest) in [("bracket", bracket(), 0.003, 2), ("tray", tray, tray_volume, 5)] {
         let parts = convex_parts(&mesh, None, 16);
         assert!((fewest..=16).contains(&parts.len()), "{name}: {} parts", parts.len());
