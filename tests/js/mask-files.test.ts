@@ -1,7 +1,6 @@
 /** Masks in JSON: every layout gives the pixels of its polygon or run lengths, or names what it holds. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { deflateSync } from "node:zlib";
 import { createAligner } from "sim3align";
 import { readMask } from "sim3align/formats";
 import { codesOf } from "../support/errors.js";
@@ -28,8 +27,6 @@ const labelme = (shapes: object[], more = {}) => ({
 });
 const polygon = { label: "mug", points: corners, shape_type: "polygon", group_id: null };
 const png64 = Buffer.from(png(new Uint8Array(18 * 15).fill(1), 18, 15)).toString("base64");
-
-const zlib64 = deflateSync(Buffer.from(png64, "base64")).toString("base64");
 
 const layouts: [what: string, json: object, index?: number][] = [
   ["COCO RLE", rle],
@@ -80,14 +77,6 @@ const layouts: [what: string, json: object, index?: number][] = [
     },
   ],
   [
-    "Supervisely, a bitmap",
-    {
-      size: { height, width },
-      objects: [{ classTitle: "mug", shape: "bitmap", bitmap: { origin: [8, 5], data: zlib64 } }],
-    },
-  ],
-  ["Datumaro", { items: [{ id: "a", annotations: [{ id: 1, type: "mask", rle }] }] }],
-  [
     "Datumaro, a polygon",
     { items: [{ image: { size: [height, width] }, annotations: [{ type: "polygon", points: box }] }] },
   ],
@@ -99,7 +88,7 @@ test("masks of every layout are the same mask", async () => {
     for (const file of [json, Buffer.from(JSON.stringify(json))]) {
       const read = await readMask(file as object[], { index, width, height });
       const off = read.data.filter((pixel, i) => pixel !== expected[i]).length;
-      assert.ok(off <= (/a mask|bitmap/.test(what) ? 20 : 0), `${what}: ${off} pixels differ`);
+      assert.ok(off <= (what === "LabelMe, a mask" ? 20 : 0), `${what}: ${off} pixels differ`);
       assert.deepEqual(read.unread ?? [], [], what);
     }
   }

@@ -398,12 +398,6 @@ fn colors_that_others_write_otherwise_are_read() {
     check(&colors(&stl(b"x COLOR=\x0a\xc8\x1e\xff", 31 | 3 << 10)), 1, |_| Some([255, 0, 25]));
     check(&colors(&stl(b"x COLOR=\x0a\xc8\x1e\xff", 0x8000)), 0, |_| Some([10, 200, 30]));
     assert_eq!(read(&stl(b"", 77)).colors, None);
-    // MeshLab has the header of Magics and sets bit 15 of every facet, so that it can only mark the facet's own colour.
-    let mut two = stl(b"COLOR=\x7f\x7f\x7f MATERIAL=", 0x8000 | 31 | 3 << 10);
-    two[80] = 2;
-    let next = [&two[84..132], &(0x8000_u16 | 31 | 4 << 10).to_le_bytes()].concat();
-    two.extend(next);
-    check(&colors(&two), 9, |_| Some([255, 0, 29]));
 }
 
 #[wasm_bindgen_test]
