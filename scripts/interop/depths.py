@@ -242,19 +242,19 @@ def pybullet_(c, t):
     vertices, indices = t.points.tolist(), t.triangles.ravel().tolist()
     visual = pybullet.createVisualShape(pybullet.GEOM_MESH, vertices=vertices, indices=indices)
     pybullet.createMultiBody(0, -1, visual)
-    # OpenGL's camera looks along -z. Its image is measured from the outer edges of the pixels.
+    # OpenGL's camera looks along -z. The software renderer looks through the lower left corner of each pixel.
     view = np.diag([1.0, -1, -1, 1]) @ t.matrix()
-    edge = lambda centre, size: 2 * (centre + 0.5) / size - 1
+    edge = lambda centre, size: 2 * centre / size - 1
     lens = np.zeros((4, 4))
     lens[0, 0], lens[0, 2] = 2 * t.fx / t.width, -edge(t.cx, t.width)
-    lens[1, 1], lens[1, 2] = 2 * t.fy / t.height, edge(t.cy, t.height)
+    lens[1, 1], lens[1, 2] = 2 * t.fy / t.height, edge(t.cy + 1, t.height)
     lens[2, 2], lens[2, 3], lens[3, 2] = -(far + near) / (far - near), -2 * far * near / (far - near), -1
     flat = lambda matrix: matrix.T.ravel().tolist()
     image = pybullet.getCameraImage(t.width, t.height, flat(view), flat(lens), renderer=pybullet.ER_TINY_RENDERER)
     buffer, seen = np.asarray(image[3], np.float32).reshape(t.mask.shape), np.asarray(image[4]).reshape(t.mask.shape)
     code = {"depthCode": "z-buffer", "depthNear": near, "depthFar": far}
-    # Its software renderer is a pixel off at outlines, and coarse in depth: 97 of 100 pixels count.
-    limits = {"options": code, "limitM": 0.004, "only": "mask", "share": 0.97}
+    # Outlines are drawn a pixel wider.
+    limits = {"options": code, "limitM": 1e-4, "only": "mask", "share": 0.97}
     c.write("depth", "z-buffer of getCameraImage", "depth.npy", lambda p: np.save(p, buffer), **limits)
     c.write("mask", "segmentation of getCameraImage", "mask.npy", lambda p: np.save(p, (seen == 0).astype(np.uint8)), limitPixels=260)
     pybullet.disconnect(client)
