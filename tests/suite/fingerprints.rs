@@ -81,15 +81,15 @@ pub fn alignments_have_these_bits() {
     let request = Request::new(quick()).unwrap();
     let (scan, paper) = (shapes::observe(&shapes::body()), PaperOptions::default());
     check(&[
-        ("by shape", 0xa29a_427a_c831_e3af, of(Ok(solve(&AlignOptions::default())))),
-        ("noise and an occluder", 0x72d0_2b34_b131_3749, of(align(&noisy(), &body(), &quick(), &mut Silent))),
+        ("by shape", 0xa68a_55b7_7f9f_7cf7, of(Ok(solve(&AlignOptions::default())))),
+        ("noise and an occluder", 0x732e_3a44_1fcd_8f1e, of(align(&noisy(), &body(), &quick(), &mut Silent))),
         ("a pose, bounds and up", 0x42b8_28f5_d3f0_745e, of(Ok(solve(&given)))),
-        ("a large image", 0x0fd4_028d_b396_6ac7, of(align(&large, &body(), &quick(), &mut Silent))),
-        ("a doubtful pose", 0xb490_c41a_b2b5_c0ba, of(align(&seen, &carton(), &quick(), &mut Silent))),
-        ("an inner shell", 0x7ddb_5dc0_5297_75d9, of(align(&seen, &hollow, &quick(), &mut Silent))),
-        ("proportions", 0xde3d_c6bd_856f_8a48, of(Ok(solve(&stretched)))),
-        ("a symmetric mesh", 0xc857_eb29_9786_2b97, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
-        ("colour", 0xf12d_c3d9_03bb_2700, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
+        ("a large image", 0x55f1_37cb_97b7_fc78, of(align(&large, &body(), &quick(), &mut Silent))),
+        ("a doubtful pose", 0xfbc6_0bf7_6aa8_cd42, of(align(&seen, &carton(), &quick(), &mut Silent))),
+        ("an inner shell", 0x4d3d_a52c_fef7_6b2e, of(align(&seen, &hollow, &quick(), &mut Silent))),
+        ("proportions", 0x4cd9_4cc6_e218_8490, of(Ok(solve(&stretched)))),
+        ("a symmetric mesh", 0x386a_b8b3_d3f4_3f5b, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
+        ("colour", 0x7b68_4a6e_57f4_a8fc, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
         ("paper", 0x2917_7a90_187b_87ba, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
     ]);
 }
@@ -153,11 +153,11 @@ pub fn scenes_views_and_videos_have_these_bits() {
     let wide = PreparedMesh::new(mapped(&body(), |p| p * Vec3::new(1.06, 0.97, 0.97)));
     let stretched = ViewsOptions { proportions: Proportions::Full, ..crate::views::options() };
     check(&[
-        ("alignScene", 0x16bd_3dcf_04b6_2abb, of(align_scene(&scene::scene_of(&scene, &[], true), &mut Silent))),
-        ("alignViews", 0xdaa1_944c_e61c_9849, of(views(seen, &PreparedMesh::borrowed(&body())))),
+        ("alignScene", 0xaf4b_796d_76ea_0cb3, of(align_scene(&scene::scene_of(&scene, &[], true), &mut Silent))),
+        ("alignViews", 0x9a2c_3f86_a14f_ce07, of(views(seen, &PreparedMesh::borrowed(&body())))),
         ("alignViews, proportions", 0x1873_02fb_3a85_6405, of(align_views(around, &wide, &stretched, &mut Silent))),
         ("alignViews, unknown cameras and colour", 0xaa44_994f_70a8_0aa3, of(views(printed, &printed_mesh()))),
-        ("track", 0x7fc2_c239_db94_66e1, of(frames.collect::<Result<Vec<_>>>())),
+        ("track", 0xa6be_753a_02b8_8d49, of(frames.collect::<Result<Vec<_>>>())),
         ("calibration", 0xfe4b_9b23_b207_4a72, of(calibrations.into_iter().collect::<Result<Vec<_>>>())),
     ]);
 }
