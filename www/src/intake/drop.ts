@@ -62,11 +62,15 @@ async function place({ typed, more }: Drop): Promise<void> {
   const scenes = scenesOf(typed).map((one) => ({ ...one, ...more }));
   const open = draft.peek();
   if (open !== null) {
+    const both = [...(open.forShown ?? []), ...typed];
+    if (open.forShown !== undefined && canReplace(both)) {
+      return set({ ...open, scenes: scenesOf(both).map((one) => ({ ...one, ...more })), index: 0, forShown: both });
+    }
     const depths = typed.filter(({ role }) => role === "depth").length;
     if (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open)))) {
       return rebuild(replaced(draftInputs(open).files, typed));
     }
-    const others = open.isEdit ? [] : open.scenes.filter(({ files }) => files.length > 0);
+    const others = open.scenes.filter(({ files }) => files.length > 0);
     return proposeScenes([...others, ...scenes], others.length);
   }
   const shown = inputs.peek();

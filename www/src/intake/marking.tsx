@@ -51,14 +51,14 @@ export function Marking({ open, ground }: { open: Draft; ground: Uint8ClampedArr
       marks={(mask && marksOf.get(mask.file)) ?? []}
       onCancel={() => {
         close();
-        if (open.isCorrection) dismiss();
+        if (open.corrects !== undefined) dismiss();
       }}
       onDone={async (drawn, marks) => {
         const file = await maskFile(drawn, shown, size, name);
         marksOf.set(file, marks);
         close();
         await change(withMask(i, file), true);
-        if (open.isCorrection) await acceptIfClear();
+        if (open.corrects !== undefined) await acceptIfClear();
       }}
     />
   );

@@ -58,22 +58,19 @@ async function attempt(work: () => Promise<unknown>): Promise<void> {
   }
 }
 
-/** A frame of a video with other files is a scene of its own. */
-const ownInputs = () => (video.peek() === null ? inputs.peek() : { ...inputs.peek(), id: "" });
-
 /** Makes the inputs of the scene that is shown a draft. */
 export async function editInputs(): Promise<void> {
-  if (draft.peek() === null) await attempt(async () => (await intake()).edit(ownInputs()));
+  if (draft.peek() === null) await attempt(async () => (await intake()).edit(inputs.peek()));
 }
 
 /** Makes a change of the inputs of the scene that is shown. */
 async function changeInputs(apply: (inputs: Inputs) => Inputs): Promise<void> {
-  if (draft.peek() === null) await attempt(async () => (await intake()).remake(apply(ownInputs())));
+  if (draft.peek() === null) await attempt(async () => (await intake()).remake(apply(inputs.peek())));
 }
 
 /** Corrects the mask of an object of the scene that is shown. */
 async function correctMask(object: number): Promise<void> {
-  if (draft.peek() === null) await attempt(async () => (await intake()).correct(ownInputs(), object));
+  if (draft.peek() === null) await attempt(async () => (await intake()).correct(inputs.peek(), object));
 }
 
 /** Opens a scene of the list, as it was left. */

@@ -143,7 +143,7 @@ function ObjectButton({ object }: { object: ObjectModel }) {
 }
 
 export function NameField({ object }: { object: ObjectModel }) {
-  const { renamed } = useWorkspace();
+  const { rename, renamed } = useWorkspace();
   const { name } = object;
   const field = useRef<HTMLInputElement>(null);
   // At once: the next key belongs to the name.
@@ -166,7 +166,7 @@ export function NameField({ object }: { object: ObjectModel }) {
         requestAnimationFrame(() => row?.querySelector("button")?.focus());
       }}
       onBlur={({ currentTarget }) => {
-        object.title.value = currentTarget.value.trim() || name;
+        rename(object, currentTarget.value.trim() || name);
         renamed.value = null;
       }}
     />

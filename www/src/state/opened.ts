@@ -6,6 +6,7 @@ import type { ObjectModel } from "./object-model.js";
 import type { Progress } from "./progress.js";
 import type { StatusState } from "./running.js";
 import type { Scene, SceneState } from "./scene.js";
+import type { VideoState } from "./video.js";
 
 /** What is looked for: what needs a person, what is not decided on, or anything. */
 export type NextKind = "doubtful" | "open" | "any";
@@ -42,6 +43,7 @@ export function openedState(
   { scene, support }: SceneState,
   { layers, setLayer }: DisplayState,
   { announce }: StatusState,
+  { video }: VideoState,
 ) {
   /** The inputs of the scene that is shown, or of the sample that is being read. */
   const inputs = signal<Inputs>(noInputs);
@@ -79,6 +81,32 @@ export function openedState(
     });
   }
 
+  /** Changes the inputs of the scene that is shown, which stays as it is; in a video, of this frame or of all. */
+  function amend(change: (inputs: Inputs) => Inputs, isForAll = false): void {
+    const [shown, whole, opened] = [inputs.peek(), scene.peek(), video.peek()];
+    const changed = change(shown);
+    batch(() => {
+      inputs.value = changed;
+      if (opened !== null) {
+        const frames = opened.frames.map((one) => (one === shown ? changed : isForAll ? change(one) : one));
+        video.value = { ...opened, frames };
+        enlist(list.peek().flatMap((one) => (one.inputs.id === shown.id ? { ...one.inputs, frames } : [])));
+      } else if (changed.id !== "") enlist([changed]);
+      if (whole !== null && changed.sample !== whole.sample)
+        scene.value = { ...whole, name: changed.name, sample: changed.sample };
+    });
+  }
+
+  /** Names an object, in all frames of a video. */
+  function rename(object: ObjectModel, name: string): void {
+    const index = scene.peek()?.objects.indexOf(object);
+    object.title.value = name;
+    amend(
+      (one) => ({ ...one, objects: one.objects.map((own, i) => (i === index ? { ...own, name } : own)) }),
+      true,
+    );
+  }
+
   /** Takes an object out of the scene. The others keep their poses. */
   function removeObject(object: ObjectModel): void {
     const [whole, from] = [scene.peek(), inputs.peek()];
@@ -94,5 +122,7 @@ export function openedState(
     announce(`Removed ${object.name}.`);
   }
 
-  return { inputs, isReading, list, othersScenes, notKept, fileActions, enlist, show, removeObject };
+  return { inputs, isReading, list, othersScenes, notKept, fileActions, enlist, show, amend, rename, removeObject };
 }
+
+export type OpenedState = ReturnType<typeof openedState>;

@@ -105,11 +105,13 @@ function subscribe(workspace: Workspace, view: SceneView, isDragging: () => bool
   let stopPoses: (() => void)[] = [];
   let isStopped = false;
   follow(() => {
+    if (scene.value !== null) view.setScene(sceneInput(workspace, scene.value));
+  });
+  follow(() => {
     const whole = scene.value;
     for (const stop of stopPoses) stop();
     stopPoses = [];
     if (whole === null) return;
-    view.setScene(sceneInput(workspace, whole));
     view.setObjects(whole.objects.map(objectInput)).then(() => {
       if (isStopped || scene.peek() !== whole) return;
       stopPoses = whole.objects.map((object) => followPose(workspace, view, object, isDragging));
