@@ -10,7 +10,7 @@ import { type Inputs, type NamedFile, noInputs, type Role, type Typed, withId } 
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { type Scene, visibleExtent } from "../state/scene.js";
-import { filesOf, ownName, rebuilt, replaced } from "./changed-files.js";
+import { filesOf, OWN_FILES, ownName, rebuilt, replaced } from "./changed-files.js";
 import { problemsOf } from "./checks.js";
 import { rolesOf } from "./file-roles.js";
 
@@ -61,7 +61,7 @@ export async function correct(inputs: Inputs, object: number): Promise<void> {
 }
 
 /** Gives an object of the scene that is shown another mask, and aligns it alone. One step undoes both. */
-async function correctShown(object: ObjectModel, mask: Uint8Array, named: Inputs): Promise<void> {
+async function correctShown(object: ObjectModel, mask: Uint8Array, corrected: Inputs): Promise<void> {
   const { depthM: data, width, camera } = scene.peek() as Scene;
   const step = record(object, () => {
     object.shape.value = mask;
@@ -69,7 +69,7 @@ async function correctShown(object: ObjectModel, mask: Uint8Array, named: Inputs
     // What was said of the pose before says nothing of the new mask.
     object.pose.value = object.isPlaced ? { ...object.pose.peek(), alignment: null } : object.start.peek();
     object.decision.value = null;
-    amend((now) => (video.peek() === null ? withId({ ...named, id: now.id }) : { ...named, name: now.name }));
+    amend((now) => (video.peek() === null ? withId(corrected) : { ...corrected, name: now.name }));
   });
   select(object.id);
   await alignSelected(page);
@@ -113,6 +113,13 @@ export async function change(apply: (inputs: Inputs) => Inputs, opens = false): 
   await set({ ...rest, scenes: open.scenes.map((one, i) => (i === open.index ? changed : one)) }, opens);
 }
 
+/** Changes names in the draft, for which nothing has to be read. */
+export function label(apply: (inputs: Inputs) => Inputs): void {
+  const open = draft.peek();
+  if (open === null) return;
+  draft.value = { ...open, scenes: open.scenes.map((one, i) => (i === open.index ? apply(one) : one)) };
+}
+
 /** Files for a field of the draft, whatever their names. */
 export async function choose(role: Exclude<Role, "unused">, files: readonly NamedFile[]): Promise<void> {
   const [file] = files;
@@ -138,11 +145,18 @@ export async function assign(file: NamedFile, role: Role): Promise<void> {
   await rebuild(draftInputs(open).files.map((one) => (one.file === file ? { file, role } : one)));
 }
 
+/** Inputs without empty names. */
+const named = (of: Inputs): Inputs => ({
+  ...of,
+  name: of.name.trim() || OWN_FILES,
+  objects: of.objects.map((one) => ({ ...one, name: one.name.trim() || "Object" })),
+});
+
 /** Makes the draft the scene that is shown, and aligns it. */
 export async function accept(): Promise<void> {
   const open = draft.peek();
   if (open === null || !isReady(open) || open.reading === null) return;
-  const inputs = draftInputs(open);
+  const inputs = named(draftInputs(open));
   const { corrects = -1 } = open;
   const [object, mask] = [objects.peek()[corrects], open.reading.objects[corrects]?.mask];
   const isCorrection = object !== undefined && mask != null && isCorrected(inputs, corrects);
@@ -154,18 +168,21 @@ export async function accept(): Promise<void> {
   if (isCorrection) return correctShown(object, mask, inputs);
   if (open.isVideo) {
     const listed = asListed(open.scenes);
+    // Also while its first frame is read, it is not forgotten.
+    enlist([listed]);
     // Tracking starts with the first frame, whichever is looked at.
     if (!(await openVideo(listed))) {
       draft.value = draft.peek() ?? open;
       return announce("The first frame could not be read.", "failed");
     }
-    enlist([listed]);
     await trackAll();
     return;
   }
   // A frame of a video with other files is a scene of its own.
   const isFrame = open.isEdit && video.peek() !== null;
-  const scenes = open.scenes.map((one) => (one.sample === null ? withId(isFrame ? { ...one, id: "" } : one) : one));
+  const scenes = open.scenes.map((one) =>
+    one.sample === null ? withId({ ...named(one), ...(isFrame && { id: "" }) }) : one,
+  );
   if (scenes.length > 1) enlist(scenes);
   show(opened, scenes[open.index] as Inputs);
   await alignAll(page);
@@ -186,16 +203,16 @@ export async function rebuild(files: readonly Typed[]): Promise<void> {
 
 export async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens = true): Promise<void> {
   const change = ++lastChange;
-  let progress = { done: 0, total: 0 };
-  draft.value = { ...next, reading: null, problems: [], progress };
+  draft.value = { ...next, reading: null, problems: [], progress: { done: 0, total: 0 } };
   const inputs = next.scenes[next.index] as Inputs;
-  const reading = await readInputs(inputs, (now) => {
-    progress = now;
-    if (change === lastChange) draft.value = { ...next, reading: null, problems: [], progress };
-  });
+  // Names may be typed meanwhile.
+  const update = (more: Partial<Draft>) => {
+    if (draft.peek() !== null) draft.value = { ...(draft.peek() as Draft), ...more };
+  };
+  const reading = await readInputs(inputs, (progress) => change === lastChange && update({ progress }));
   if (change !== lastChange) return;
   const problems = problemsOf(inputs, reading);
-  draft.value = { ...next, reading, problems, progress };
+  update({ reading, problems });
   announce(problems[0]?.message ?? `${inputs.name} can be opened.`, problems.length > 0 ? "failed" : "done");
   const isWhole = problems.length === 0 && (next.scenes.length === 1 || next.isVideo);
   if (opens && isWhole && !next.isEdit && !hasWork()) await accept();

@@ -2,6 +2,7 @@
 import { extractArchives } from "../input/archives.js";
 import { draft, draftInputs } from "../input/draft.js";
 import { error, errorOf } from "../input/problems.js";
+import { asListed } from "../input/video-frames.js";
 import { isSession } from "../session/pack.js";
 import { openProject } from "../session/project.js";
 import type { Inputs, NamedFile, Typed } from "../state/inputs.js";
@@ -11,7 +12,7 @@ import { proposeScenes, rebuild, refuse, set } from "./draft.js";
 import { fromSam3d, isUnassigned, rolesOf } from "./file-roles.js";
 import { scenesOf } from "./grouping.js";
 
-const { inputs } = page;
+const { enlist, inputs } = page;
 
 /** Whether a draft waits for its depth map. */
 const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
@@ -70,7 +71,9 @@ async function place({ typed, more }: Drop): Promise<void> {
     if (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open)))) {
       return rebuild(replaced(draftInputs(open).files, typed));
     }
-    const others = open.scenes.filter(({ files }) => files.length > 0);
+    // A video is listed as one, to be opened later.
+    if (open.isVideo) enlist([asListed(open.scenes)]);
+    const others = open.isVideo ? [] : open.scenes.filter(({ files }) => files.length > 0);
     return proposeScenes([...others, ...scenes], others.length);
   }
   const shown = inputs.peek();

@@ -81,6 +81,11 @@ export async function openListed({ id }: Inputs): Promise<void> {
   await attempt(async () => {
     const { reopen } = await import("../session/index.js");
     if (await reopen(listed)) return;
+    if (listed.frames !== undefined) {
+      const { openVideo, trackAll } = await import("../alignment/video.js");
+      if (await openVideo(listed)) await trackAll();
+      return;
+    }
     const { acceptIfClear, proposeScenes } = await intake();
     await proposeScenes([listed]);
     await acceptIfClear();
