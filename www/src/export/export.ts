@@ -97,7 +97,7 @@ function download(name: string, content: string | Uint8Array | Blob): void {
   announce(`Saved ${name}.`);
 }
 
-async function copy(text: string, what: string): Promise<void> {
+export async function copy(text: string, what: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
     announce(`Copied ${what}.`);

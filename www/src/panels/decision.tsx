@@ -1,17 +1,17 @@
 /** The decision about a result: accept it, fix it, go on to the next one. */
 import { accept, decideOn, fix, next } from "../commands/decisions.js";
-import type { ObjectModel } from "../state/object-model.js";
 import { Menu } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
 
-export function Decision({ object }: { object: ObjectModel | null }) {
+export function Decision() {
   const workspace = useWorkspace();
-  const { fileActions, list, scene } = workspace;
+  const { fileActions, list, rename, scene, selected } = workspace;
+  const object = selected.value?.isPlaced ? selected.value : null;
   const correct = () => object !== null && fileActions.peek()?.correct(scene.peek()?.objects.indexOf(object) ?? 0);
   const verdict = object?.verdict.value ?? null;
   const hasNext = (scene.value?.objects.length ?? 0) > 1 || list.value.length > 1;
   return (
-    <fieldset class="decision" disabled={object === null}>
+    <fieldset class="decision" part="decision" disabled={object === null}>
       <legend class="visually-hidden">Decision</legend>
       <button
         type="button"
@@ -46,6 +46,16 @@ export function Decision({ object }: { object: ObjectModel | null }) {
             {one === "skipped" ? "Skip" : "Impossible"}
           </button>
         ))}
+        <label class="field-inline">
+          <span>Name</span>
+          <input
+            id="object-name"
+            value={object?.name ?? ""}
+            onChange={({ currentTarget }) => {
+              if (object !== null) rename(object, currentTarget.value.trim() || object.name);
+            }}
+          />
+        </label>
         <label class="field-inline">
           <span>Comment</span>
           <input

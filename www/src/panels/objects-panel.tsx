@@ -142,7 +142,7 @@ function ObjectButton({ object }: { object: ObjectModel }) {
   );
 }
 
-export function NameField({ object }: { object: ObjectModel }) {
+function NameField({ object }: { object: ObjectModel }) {
   const { rename, renamed } = useWorkspace();
   const { name } = object;
   const field = useRef<HTMLInputElement>(null);

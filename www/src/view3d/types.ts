@@ -76,6 +76,8 @@ export interface PlaneInput {
 export interface Animation {
   from: Matrix;
   durationMs: number;
+  /** How long it stays where it is. */
+  delayMs?: number | undefined;
 }
 
 /** Events of the view. */
