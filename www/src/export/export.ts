@@ -36,7 +36,7 @@ export const allExports: readonly Export[] = [
   ["Copy matrix (row-major)", (_, object) => copyMatrix(object, "row")],
   ["PLY", async (_, object) => download(`${fileName(object.name)}-placed.ply`, (await writers()).plyBytes(object))],
   ["Project", saveProject],
-  ["PNG of the view", (_, object) => saveImage(fileName(object.name))],
+  ["Picture to share", (scene) => saveImage(fileName(scene.name))],
   [
     "Copy link",
     async ({ sample }) => {
@@ -68,12 +68,12 @@ export async function saveProject(): Promise<void> {
   download(`${fileName(name)}.sim3align.zip`, await (await import("../session/project.js")).projectFile());
 }
 
-/** Saves the 3D view or, without one, the image view. */
+/** Saves the 3D view, in the size that is usual for links, or, without one, the image view. */
 async function saveImage(name: string): Promise<void> {
   const state = space.peek();
-  const image = state.kind === "ready" ? await state.view.snapshot() : await imageSnapshot(page);
+  const image = state.kind === "ready" ? await state.view.picture(1200, 630) : await imageSnapshot(page);
   if (image === null) announce("There is no image yet.", "failed");
-  else download(`${name}-view.png`, image);
+  else download(`${name}.png`, image);
 }
 
 /** Types of files by their extensions. */

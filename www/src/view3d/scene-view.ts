@@ -94,13 +94,13 @@ export class SceneView {
     this.pointer = this.listen();
     stage.run(camera, {
       onResize: (width, height) => this.viewpoint.resize(width, height),
-      onFrame: (_, height) => {
+      onFrame: (heightPx, height) => {
         const isMoving = this.animations.step();
         const isGliding = this.glideOn();
         const isDamping = controls.update();
-        this.sizes.spread(camera, stage.canvas.clientHeight);
+        this.sizes.spread(camera, height);
         this.planes?.draw(JSON.stringify([this.display, this.selected, this.plane, this.objects.length]));
-        this.cloud?.prepare(camera, height);
+        this.cloud?.prepare(camera, heightPx);
         return isMoving || isDamping || isGliding;
       },
       onCanvas: (canvas) => {
@@ -397,9 +397,17 @@ export class SceneView {
     this.stage.invalidate();
   }
 
-  /** A PNG of the view. */
-  snapshot(): Promise<Blob> {
-    return this.stage.snapshot();
+  /** The view as a PNG of this size, without what is there to work with, and without bars beside the image. */
+  picture(width: number, height: number): Promise<Blob> {
+    const { stage, viewpoint } = this;
+    let taken: Promise<Blob> | null = null;
+    viewpoint.fillsView = true;
+    whileHidden([this.gizmo.object, this.mark], () => {
+      taken = stage.picture(width, height);
+    });
+    viewpoint.fillsView = false;
+    stage.fit();
+    return taken as unknown as Promise<Blob>;
   }
 
   dispose(): void {

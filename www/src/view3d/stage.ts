@@ -19,8 +19,8 @@ export class NoGraphics extends Error {
 
 /** Events of a stage. */
 export interface StageEvents {
-  /** Called before each frame. Returns whether another frame must follow. */
-  onFrame(widthPx: number, heightPx: number): boolean;
+  /** Called before each frame, with the height in pixels and in those of CSS. Returns whether another frame must follow. */
+  onFrame(heightPx: number, height: number): boolean;
   /** The canvas was resized, in CSS pixels. */
   onResize(width: number, height: number): void;
   /** A new canvas replaces the old one after the graphics device was lost. */
@@ -163,14 +163,18 @@ export class Stage {
     this.fit();
   }
 
-  private fit(): void {
+  fit(): void {
     const { clientWidth, clientHeight } = this.canvas;
     if (!this.renderer || clientWidth === 0 || clientHeight === 0) return;
-    this.renderer.setPixelRatio(Math.min(this.isSoftware ? 1 : maxPixelRatio, devicePixelRatio));
-    this.renderer.setSize(clientWidth, clientHeight, false);
-    this.events?.onResize(clientWidth, clientHeight);
+    this.resize(clientWidth, clientHeight, Math.min(this.isSoftware ? 1 : maxPixelRatio, devicePixelRatio));
     // At once, because resizing clears the canvas.
     this.draw();
+  }
+
+  private resize(width: number, height: number, pixelRatio: number): void {
+    this.renderer?.setPixelRatio(pixelRatio);
+    this.renderer?.setSize(width, height, false);
+    this.events?.onResize(width, height);
   }
 
   /** Draws in the next frame. */
@@ -185,7 +189,7 @@ export class Stage {
   private draw(): void {
     const { renderer, camera, events } = this;
     if (!renderer || !camera || !events || this.canvas.width === 0) return;
-    const isMoving = events.onFrame(this.canvas.width, this.canvas.height);
+    const isMoving = events.onFrame(this.canvas.height, this.canvas.height / renderer.getPixelRatio());
     if (this.background) renderer.setClearColor(this.background, 1);
     renderer.render(this.scene, camera);
     // The renderer requests a frame after every frame, for animations that are not used here. `render` restarts it.
@@ -216,13 +220,15 @@ export class Stage {
     to.drawImage(canvas, left, top, cutWidth, cutHeight, 0, 0, width, height);
   }
 
-  /** A PNG of the canvas. */
-  snapshot(): Promise<Blob> {
+  /** A PNG of this size, in pixels; `fit` gives the canvas its own size back. */
+  picture(width: number, height: number): Promise<Blob> {
+    this.resize(width, height, 1);
     // In the same task, because the browser clears the drawing buffer after presenting it.
     this.draw();
-    return new Promise((resolve, reject) =>
+    const taken = new Promise<Blob>((resolve, reject) =>
       this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new NoGraphics())), "image/png"),
     );
+    return taken;
   }
 
   /** Replaces a lost device: by one of the same API, then by WebGL 2, then by a message. */
