@@ -61,7 +61,6 @@ export function App() {
             <StorageWarnings />
             <RunBar />
             <StartPanel />
-            <ScenesPanel />
             <ObjectsPanel />
             <ResultPanel />
             <Decision />
@@ -71,6 +70,7 @@ export function App() {
           <TimePanel />
           <div class="more-panels">
             <HandPanel />
+            <ScenesPanel />
             <SamplesPanel />
             <ExportPanel />
             <InputPanel />

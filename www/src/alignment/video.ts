@@ -293,10 +293,35 @@ export async function correctFrame(): Promise<void> {
   }
 }
 
+/** The frames that were accepted together last, which can be taken back together. */
+export const lastAccepted = signal<readonly number[]>([]);
+
+/** Accepts all frames that were tracked without a doubt and are open or, just after that, takes it back. */
+export function acceptTracked(): void {
+  const taken = lastAccepted.peek();
+  const works = videoWork().frameWorks;
+  const isTracked = (pose: FramePose | null, i: number) => pose?.state === "tracking" && works[i]?.verdict == null;
+  const chosen = taken.length > 0 ? taken : framePoses.peek().flatMap((pose, i) => (isTracked(pose, i) ? [i] : []));
+  const verdict = taken.length > 0 ? null : "accepted";
+  frameWorks.value = works.map((work, i) => (chosen.includes(i) ? { ...(work ?? asTracked(i)), verdict } : work));
+  const shown = scene.peek()?.objects[0];
+  if (shown !== undefined && chosen.includes(frameIndex.peek()))
+    shown.decision.value = verdict && { verdict, pose: shown.pose.peek() };
+  lastAccepted.value = taken.length > 0 ? [] : chosen;
+  announce(taken.length > 0 ? `${chosen.length} frames are open again.` : `Accepted ${chosen.length} frames.`);
+}
+
+/** The work of a frame of which only the tracked pose is known. */
+const asTracked = (index: number): ObjectWork => ({
+  matrix: [...(framePoses.peek()[index]?.transform.matrix ?? [])],
+  ...{ source: "tracked", verdict: null, isShown: true, isLocked: false, knownScale: null, alignment: null },
+});
+
 const fail = (error: unknown) => announce(error instanceof Error ? error.message : `${error}`, "failed");
 
 // Another scene ends the video.
 inputs.subscribe(({ id }) => {
   const opened = video.peek();
   if (opened !== null && opened.frames[0]?.id !== id) closeVideo();
+  lastAccepted.value = [];
 });

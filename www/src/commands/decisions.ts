@@ -23,7 +23,25 @@ export const decideOn = (verdict: Verdict) => (workspace: Workspace) => {
   announce(`${decided[verdict]} ${object.name}.${all}`);
   const next = [...after(others, object), ...others].find((one) => one.verdict.peek() === null);
   if (next !== undefined) select(next.id);
+  else if (workspace.video.peek() !== null) workspace.fileActions.peek()?.next("frame");
 };
+
+/** Objects that are open, whose poses nothing puts in doubt, and that are at least this sure. */
+export const sureOf = (objects: readonly ObjectModel[], least: number) =>
+  objects.filter(
+    ({ verdict, confidence, doubt }) => verdict.value === null && doubt === null && (confidence ?? 0) >= least,
+  );
+
+/** Accepts all of these, as one step that can be undone. */
+export function acceptSure({ announce, objects, record }: Workspace, least: number): void {
+  const sure = sureOf(objects.peek(), least);
+  const [first] = sure;
+  if (first === undefined) return;
+  record(first, () => {
+    for (const { decision, pose } of sure) decision.value = { verdict: "accepted", pose: pose.peek() };
+  });
+  announce(`Accepted ${sure.length} objects. Undo takes it back.`);
+}
 
 export const accept = decideOn("accepted");
 

@@ -1,6 +1,6 @@
 /** The inputs of a scene with other files in place of some of its own. */
 import { baseName } from "../input/files.js";
-import { titleOf } from "../input/names.js";
+import { OWN_FILES, titleOf } from "../input/names.js";
 import type { Inputs, MeshSource, ObjectFiles, Role, Typed } from "../state/inputs.js";
 import { scenesOf } from "./grouping.js";
 
@@ -50,9 +50,6 @@ export function rebuilt(before: Inputs, files: readonly Typed[]): Inputs {
     ...{ depthScale, depthKind, resizeMasks, camera, ...ownName(before) },
   };
 }
-
-/** The name of a scene without one. */
-export const OWN_FILES = "Own files";
 
 /** A sample with other files is no sample. */
 export const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : OWN_FILES });

@@ -3,6 +3,7 @@
 import { alignAll, alignSelected } from "../alignment/align.js";
 import { openVideo, trackAll } from "../alignment/video.js";
 import { type Draft, draft, draftInputs, isReady, marked, seenDoubts } from "../input/draft.js";
+import { OWN_FILES } from "../input/names.js";
 import type { Problem } from "../input/problems.js";
 import { readInputs, sceneOf } from "../input/reading.js";
 import { asListed, isVideo } from "../input/video-frames.js";
@@ -10,11 +11,11 @@ import { type Inputs, type NamedFile, noInputs, type Role, type Typed, withId } 
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { type Scene, visibleExtent } from "../state/scene.js";
-import { filesOf, OWN_FILES, ownName, rebuilt, replaced } from "./changed-files.js";
+import { filesOf, ownName, rebuilt, replaced } from "./changed-files.js";
 import { problemsOf } from "./checks.js";
 import { rolesOf } from "./file-roles.js";
 
-const { amend, announce, enlist, inputs, join, objects, record, scene, select, show, video } = page;
+const { amend, announce, enlist, inputs, join, list, objects, record, scene, select, show, video } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
@@ -145,12 +146,14 @@ export async function assign(file: NamedFile, role: Role): Promise<void> {
   await rebuild(draftInputs(open).files.map((one) => (one.file === file ? { file, role } : one)));
 }
 
-/** Inputs without empty names. */
-const named = (of: Inputs): Inputs => ({
-  ...of,
-  name: of.name.trim() || OWN_FILES,
-  objects: of.objects.map((one) => ({ ...one, name: one.name.trim() || "Object" })),
-});
+/** Inputs without empty names, and with a name that no other scene has. */
+function named(of: Inputs): Inputs {
+  const own = of.name.trim() || OWN_FILES;
+  const isTaken = (name: string) => list.peek().some(({ inputs }) => inputs.name === name && inputs.id !== of.id);
+  let name = own;
+  for (let i = 2; isTaken(name); i++) name = `${own} ${i}`;
+  return { ...of, name, objects: of.objects.map((one) => ({ ...one, name: one.name.trim() || "Object" })) };
+}
 
 /** Makes the draft the scene that is shown, and aligns it. */
 export async function accept(): Promise<void> {
@@ -167,7 +170,7 @@ export async function accept(): Promise<void> {
   for (const { message } of open.problems) seenDoubts.add(message);
   if (isCorrection) return correctShown(object, mask, inputs);
   if (open.isVideo) {
-    const listed = asListed(open.scenes);
+    const listed = named(asListed(open.scenes));
     // Also while its first frame is read, it is not forgotten.
     enlist([listed]);
     // Tracking starts with the first frame, whichever is looked at.

@@ -12,7 +12,7 @@ import { proposeScenes, rebuild, refuse, set } from "./draft.js";
 import { fromSam3d, isUnassigned, rolesOf } from "./file-roles.js";
 import { scenesOf } from "./grouping.js";
 
-const { enlist, inputs } = page;
+const { announce, enlist, inputs, unpacking } = page;
 
 /** Whether a draft waits for its depth map. */
 const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
@@ -34,13 +34,32 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
     const drop = await reading;
     if (drop !== null) await place(drop);
   } catch (cause) {
-    refuse(errorOf("files", cause));
+    if (cause instanceof Stopped) announce("Nothing was opened.");
+    else refuse(errorOf("files", cause));
   }
 }
 
+/** Unpacks archives. A person can stop it. */
+async function unpacked(files: readonly NamedFile[]): Promise<NamedFile[]> {
+  let isStopped = false;
+  const cancel = () => {
+    isStopped = true;
+  };
+  try {
+    return await extractArchives(files, (share) => {
+      if (isStopped) throw new Stopped();
+      unpacking.value = { share, cancel };
+    });
+  } finally {
+    unpacking.value = null;
+  }
+}
+
+class Stopped extends Error {}
+
 /** Reads which files there are; null for a project, which is opened. */
 async function readDrop(files: readonly NamedFile[]): Promise<Drop | null> {
-  const extracted = await extractArchives(files);
+  const extracted = await unpacked(files);
   if (extracted.some(isSession)) {
     if (!(await openProject(extracted))) throw new Error("The project was saved by another version of this page.");
     draft.value = null;

@@ -3,7 +3,7 @@ import { alignAll } from "../alignment/align.js";
 import { draft } from "../input/draft.js";
 import { readInputs, sceneOf } from "../input/reading.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
-import type { Listed, NextKind } from "../state/opened.js";
+import type { Listed, NextKind, SceneKind } from "../state/opened.js";
 import { page } from "../state/page.js";
 import { isFrameDoubtful, type Progress, progressIn } from "../state/progress.js";
 import type { FramePose } from "../state/video.js";
@@ -98,29 +98,39 @@ export function progressOf({ inputs: { id }, progress }: Listed): Progress | nul
 }
 
 /** Whether a scene is of this kind. One that was aligned in vain is in doubt, too. */
-export function isOfKind(one: Listed, kind: NextKind): boolean {
+export function isOfKind(one: Listed, kind: SceneKind): boolean {
   const { state = "to do" } = progressOf(one) ?? {};
   if (kind === "doubtful")
     return state === "unsure" || state === "check files" || (state === "to do" && one.progress !== null);
   return kind === "any" || state !== "decided";
 }
 
+/** The scenes in the order in which they are listed. */
+export function orderedList(): readonly Listed[] {
+  const sureness = (one: Listed) => (isOfKind(one, "open") ? (progressOf(one)?.confidence ?? 0) : 2);
+  return page.listed.value.isSorted ? [...list.value].sort((a, b) => sureness(a) - sureness(b)) : list.value;
+}
+
 /** The next scene of the list that is of this kind, after the one that is shown. */
-export function nextListed(kind: NextKind): Inputs | null {
-  const all = list.value;
+export function nextListed(kind: SceneKind): Inputs | null {
+  const all = orderedList();
   const at = all.findIndex((one) => one.inputs.id === inputs.value.id);
   return [...all.slice(at + 1), ...all.slice(0, Math.max(at, 0))].find((one) => isOfKind(one, kind))?.inputs ?? null;
 }
 
-/** Shows a later frame of the video that waits for a person or, without any, the next scene of this kind. */
+/**
+ * Shows a later frame of the video that waits for a person or, for this kind, is not decided on; without any, the next scene of
+ * this kind.
+ */
 function openNext(kind: NextKind): boolean {
-  const { frameIndex, framePoses, frameWorks } = page;
-  const at = frameIndex.peek();
-  const isWaiting = (pose: FramePose | null, i: number) =>
-    i > at && isFrameDoubtful(pose, frameWorks.peek()[i]?.verdict ?? null);
+  const { frameIndex, framePoses } = page;
+  const isWaiting = (pose: FramePose | null, i: number) => {
+    const verdict = page.frameWorks.peek()[i]?.verdict ?? null;
+    return i > frameIndex.peek() && (kind === "frame" ? verdict === null : isFrameDoubtful(pose, verdict));
+  };
   const frame = framePoses.peek().findIndex(isWaiting);
   if (frame >= 0) attempt(async () => (await import("../alignment/video.js")).showFrame(frame));
-  const next = frame < 0 ? nextListed(kind) : null;
+  const next = frame < 0 && kind !== "frame" ? nextListed(kind) : null;
   if (next !== null) openListed(next);
   return frame >= 0 || next !== null;
 }

@@ -11,7 +11,12 @@ function toggleHelp(): void {
 }
 
 /** The commands with keys of the page: those of a scene, and its help. */
-export const pageCommands: readonly Command[] = [...commands, { key: "?", title: "?", about: "Help", act: toggleHelp }];
+export const pageCommands: readonly Command[] = [
+  ...commands,
+  // The time axis listens to these.
+  { key: "Frames", title: "Space ← →", about: "Play a video, show its frames", act: () => {} },
+  { key: "?", title: "?", about: "Help", act: toggleHelp },
+];
 
 /** The address of the sources, inserted by the build. */
 declare const SOURCE: string;

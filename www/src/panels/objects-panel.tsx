@@ -2,6 +2,7 @@
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Support } from "sim3align";
 import { alignSelected } from "../alignment/align.js";
+import { acceptSure, sureOf } from "../commands/decisions.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
 import { inOrder, sidesOf } from "../state/sides.js";
 import { Check, Icon, Menu } from "../ui/controls.js";
@@ -26,9 +27,15 @@ export function ObjectsPanel() {
   if (objects.length + awaited.length < 2) return null;
   return (
     <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
-      <h2 id="objects-title">
-        Objects <span class="quiet">{unit.value === null && "cm"}</span>
-      </h2>
+      <div class="panel-head">
+        <h2 id="objects-title">
+          Objects <span class="quiet">{unit.value === null && "cm"}</span>
+        </h2>
+        <span class="quiet">
+          {objects.filter(({ verdict }) => verdict.value !== null).length} of {objects.length} decided
+        </span>
+        <AcceptSure />
+      </div>
       <ul class="objects">
         {objects.map((object) => (
           <Row key={object.id} object={object} />
@@ -42,6 +49,25 @@ export function ObjectsPanel() {
         ))}
       </ul>
     </section>
+  );
+}
+
+/** Confidences from which on all objects may be accepted together. */
+const thresholds = [0.9, 0.95, 0.99] as const;
+
+function AcceptSure() {
+  const workspace = useWorkspace();
+  const { isReadonly, objects } = workspace;
+  const counts = thresholds.map((least) => [least, sureOf(objects.value, least).length] as const);
+  if (isReadonly.value || counts[0]?.[1] === 0) return null;
+  return (
+    <Menu title="Accept all" label="Accept all that are sure">
+      {counts.map(([least, count]) => (
+        <button key={least} type="button" disabled={count === 0} onClick={() => acceptSure(workspace, least)}>
+          {percent(least)} or more: {count}
+        </button>
+      ))}
+    </Menu>
   );
 }
 

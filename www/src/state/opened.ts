@@ -9,7 +9,10 @@ import type { Scene, SceneState } from "./scene.js";
 import type { VideoState } from "./video.js";
 
 /** What is looked for: what needs a person, what is not decided on, or anything. */
-export type NextKind = "doubtful" | "open" | "any";
+export type SceneKind = "doubtful" | "open" | "any";
+
+/** The same, or a later frame that is not decided on. */
+export type NextKind = SceneKind | "frame";
 
 /** What the page does with files; an embedded scene has none of it. */
 export interface FileActions {
@@ -48,8 +51,12 @@ export function openedState(
   /** The inputs of the scene that is shown, or of the sample that is being read. */
   const inputs = signal<Inputs>(noInputs);
   const isReading = signal(false);
+  /** The files of a drop that are being unpacked: how much of them, and what stops it. */
+  const unpacking = signal<{ share: number; cancel(): void } | null>(null);
   /** The user's own scenes in the order in which they came, with those that are still to be opened. */
   const list = signal<readonly Listed[]>([]);
+  /** Which of them are listed, and whether the least sure ones come first. */
+  const listed = signal<{ kind: SceneKind; isSorted: boolean }>({ kind: "any", isSorted: false });
   /** The scenes of other tabs. */
   const othersScenes = signal<readonly Foreign[]>([]);
   /** Why the browser does not keep a scene; null while it keeps all. */
@@ -122,7 +129,7 @@ export function openedState(
     announce(`Removed ${object.name}.`);
   }
 
-  return { inputs, isReading, list, othersScenes, notKept, fileActions, enlist, show, amend, rename, removeObject };
+  return { inputs, isReading, unpacking, list, listed, othersScenes, notKept, fileActions, enlist, show, amend, rename, removeObject };
 }
 
 export type OpenedState = ReturnType<typeof openedState>;
