@@ -1,6 +1,7 @@
 /** Aligns objects, reports their progress, and shows the alternatives of a result. */
 import type { Progress, SceneObjectInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions/similarity";
+import { messageOf } from "../input/problems.js";
 import { inCalibration } from "../state/calibration.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
 import type { Pose, PoseSource } from "../state/pose.js";
@@ -208,7 +209,7 @@ function summary(objects: readonly ObjectModel[], isAborted: boolean, ms: number
   if (isAborted) return { text: "Cancelled. The pose is unchanged.", kind: "done" };
   const failed = objects.flatMap(({ name, run }) => {
     const state = run.peek();
-    return state.state === "failed" ? [`${name}: ${state.error.message}`] : [];
+    return state.state === "failed" ? [`${name}: ${messageOf(state.error)}`] : [];
   });
   if (failed.length > 0) return { text: failed.join(" "), kind: "failed" };
   const what = objects.length > 1 ? `${objects.length} objects ` : "";

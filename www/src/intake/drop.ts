@@ -17,6 +17,8 @@ const { announce, enlist, inputs, unpacking } = page;
 /** Whether a draft waits for its depth map. */
 const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
 
+const FILM = /\.(mp4|mov|mkv|avi|webm|m4v)$/i;
+
 /** The files of a drop with their roles, and how their depth is read where that is known. */
 interface Drop {
   typed: readonly Typed[];
@@ -75,9 +77,11 @@ async function readDrop(files: readonly NamedFile[]): Promise<Drop | null> {
 
 /** Makes the files of a drop a draft, or a part of the draft that is open. */
 async function place({ typed, more }: Drop): Promise<void> {
-  if (typed.every((one) => (one.role === "unused" && !isUnassigned(one)) || one.role === "resource")) {
+  const isFilm = typed.every(({ file: { path }, role }) => role === "unused" && FILM.test(path));
+  if (isFilm || typed.every((one) => (one.role === "unused" && !isUnassigned(one)) || one.role === "resource")) {
     const names = typed.slice(0, 3).map(({ file }) => file.path);
-    return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
+    const film = isFilm ? " Save the frames of the video as pictures, with a depth map each, and drop their folder." : "";
+    return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).${film}`));
   }
   const scenes = scenesOf(typed).map((one) => ({ ...one, ...more }));
   const open = draft.peek();

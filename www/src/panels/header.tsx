@@ -47,7 +47,7 @@ export function Header() {
     <header class="head">
       <h1>sim3align</h1>
       <p class="claim">
-        A depth map, a mask and a 3D model in; <b>the model at its real size and place</b> out.
+        In: depth map, mask, 3D model. Out: <b>its real size and place</b>.
       </p>
       <nav aria-label="Project">
         {links.map(([title, address]) => (
@@ -59,7 +59,7 @@ export function Header() {
       <button type="button" class="install" title="Copy" onClick={copyInstall}>
         <code>{INSTALL}</code>
       </button>
-      <Menu title="Copy code" label="Copy the code that repeats this scene">
+      <Menu title="Copy code" label="Copy code that repeats this scene">
         {codes.map(([title, name]) => (
           <button key={name} type="button" disabled={!hasScene} onClick={() => copyCode(title, name)}>
             {title}

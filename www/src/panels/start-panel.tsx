@@ -22,7 +22,7 @@ export const StartPanel = () => (
   <section class="panel start" aria-label="Open" data-own={isOwn()}>
     <div class="row">
       <FileButton id="files" look={isOwn() ? "" : "primary"} multiple onFiles={openFiles}>
-        Drop or choose files
+        {isOwn() ? "Open files" : "Drop or choose files"}
       </FileButton>
       <FileButton id="folder" webkitdirectory onFiles={openFiles}>
         Folder
@@ -33,9 +33,11 @@ export const StartPanel = () => (
         </Menu>
       )}
     </div>
-    <p class="quiet" id="privacy">
-      Nothing leaves this device.{offlineTexts[offlineState.value]}
-    </p>
+    {(!isOwn() || offlineState.value === "newer") && (
+      <p class="quiet" id="privacy">
+        Nothing leaves this device.{offlineTexts[offlineState.value]}
+      </p>
+    )}
   </section>
 );
 
