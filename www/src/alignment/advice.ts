@@ -244,20 +244,20 @@ const rows: readonly Row[] = [
     text: ({ hidden }) => `The overlap is low because ${percent(hidden)} of the object is behind something else.`,
   },
   {
-    cause: "depth",
-    test: ({ depthKind, isMetric, confidence, isByHand, wideness }) =>
-      depthKind === "metric" && isMetric && !isByHand && confidence < 0.8 && wideness > WIDE,
-    text: ({ wideness }) =>
-      `Is it depth? Some renderers and models write distances along the rays, which are up to ${percent(wideness - 1)} longer in this image.`,
-    remedies: () => [readAs("Read it as distances along the rays", "ray-distance")],
-  },
-  {
     cause: "mesh",
     codes: ["MESH_DOUBTFUL"],
     test: (of) => !of.isByHand && has("MESH_DOUBTFUL")(of) && of.confidence < DOUBT,
     text: () =>
       "Even the best pose fits poorly: the mesh may be that of another object, or mask, depth map and camera do not belong together.",
     remedies: () => [choose("files")],
+  },
+  {
+    cause: "depth",
+    test: ({ depthKind, isMetric, confidence, isByHand, wideness }) =>
+      depthKind === "metric" && isMetric && !isByHand && confidence < 0.8 && wideness > WIDE,
+    text: ({ wideness }) =>
+      `Is it depth? Some renderers and models write distances along the rays, which are up to ${percent(wideness - 1)} longer in this image.`,
+    remedies: () => [readAs("Read it as distances along the rays", "ray-distance")],
   },
 ];
 

@@ -90,7 +90,7 @@ export class SceneView {
     });
     this.root.rotation.x = Math.PI;
     this.root.add(this.mark);
-    stage.scene.add(this.root, camera, new HemisphereLight(0xffffff, 0x8d8a86, 1.5));
+    stage.scene.add(this.root, camera, new HemisphereLight(0xffffff, 0xcfcac4, 2.3));
     this.pointer = this.listen();
     stage.run(camera, {
       onResize: (width, height) => this.viewpoint.resize(width, height),
@@ -208,6 +208,17 @@ export class SceneView {
       await end;
     } else model.pose = pose;
     this.update();
+  }
+
+  /** Whether the colours of a mesh are those of its vertices, which glTF has linear. */
+  hasVertexColours(id: string): boolean {
+    return this.models.get(id)?.hasVertexColours === true;
+  }
+
+  /** Shows a mesh in the light that the photo has, by channels. */
+  setLight(id: string, light: readonly number[]): void {
+    this.models.get(id)?.setLight(light);
+    this.stage.invalidate();
   }
 
   private moved(model: Model, phase: "drag" | "end"): void {

@@ -68,7 +68,7 @@ export class Viewpoint {
     private readonly onChange: () => void,
   ) {
     // The light moves with the camera.
-    const lamp = new DirectionalLight(0xffffff, 2.1);
+    const lamp = new DirectionalLight(0xffffff, 1.2);
     lamp.position.set(-0.4, 1, 0.8);
     this.camera.add(lamp, lamp.target);
     this.controls = new OrbitControls(this.camera, canvas);

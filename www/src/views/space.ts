@@ -2,13 +2,15 @@
 import { effect } from "@preact/signals";
 import { compose, invert, toSim3 } from "sim3align/conventions/similarity";
 import { depthImage } from "../pictures/colours.js";
+import { lightOn } from "../pictures/light.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { boundsOf, type Pose, startPose, tightBoundsOf } from "../state/pose.js";
+import { boundsOf, isResult, type Pose, startPose, tightBoundsOf } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import type { SceneView } from "../view3d/scene-view.js";
 import { loadThree } from "../view3d/three-source.js";
 import type { Matrix, ObjectInput } from "../view3d/types.js";
+import { imageOf } from "./image.js";
 
 /** Duration of the animation from one pose to the next. */
 const ANIMATION_MS = 900;
@@ -176,15 +178,21 @@ interface Waiting {
 }
 
 function followPose(
-  { gizmo, showsBefore }: Workspace,
+  workspace: Workspace,
   view: SceneView,
   object: ObjectModel,
   { matrix: waiting, delayMs: firstDelayMs }: Waiting,
   isDragging: () => boolean,
 ): () => void {
+  const { gizmo, showsBefore } = workspace;
   let delayMs = firstDelayMs ?? 0;
   let shown: Pose = firstDelayMs === null ? object.pose.peek() : object.start.peek();
   let isMoving = false;
+  const light = ({ transform }: Pose) => {
+    const drawn = imageOf(workspace).drawn.peek();
+    const found = drawn && lightOn(drawn, object.mesh, transform.matrix, view.hasVertexColours(object.id));
+    if (found !== null) view.setLight(object.id, found);
+  };
   return effect(() => {
     const pose = showsBefore.value ? object.start.value : object.pose.value;
     if (isDragging()) {
@@ -200,6 +208,7 @@ function followPose(
     shown = pose;
     isMoving = isMoved;
     const shownAt = view.setPose(object.id, at(pose), animate);
+    if (isResult(pose.source)) light(pose);
     // Where it waits is in sight from the beginning.
     if (pose.source === "start" || (isMoved && delayMs > 0)) view.frame(true);
     if (pose.source !== "start") delayMs = 0;
