@@ -4,7 +4,7 @@ import { listenToKeys } from "./commands/shortcuts.js";
 import { draft } from "./input/draft.js";
 import { Decision } from "./panels/decision.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
-import { Header, isHelpOpen, pageCommands } from "./panels/header.js";
+import { Header, isHelpOpen, pageCommands, Tools } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
 import { HandPanel, OptionsPanel } from "./panels/lazy-panels.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
@@ -77,6 +77,7 @@ export function App() {
             <OptionsPanel />
           </div>
         </main>
+        <Tools />
         <HelpDialog />
         <Intake />
         <DropOverlay />

@@ -68,7 +68,7 @@ function sceneOf(files: readonly Typed[], id: string | null): Inputs {
   const meshes = of("mesh").map((file) => ({ file, siblings: files.map((one) => one.file) }));
   return {
     ...noInputs,
-    name: nameOf(depth ?? files[0]?.file) || titleOf(meshes[0]?.file.path ?? "") || OWN_FILES,
+    name: nameOf(depth ?? files[0]?.file) || (meshes.length === 1 && titleOf(meshes[0]?.file.path ?? "")) || OWN_FILES,
     depth,
     photo: photos.find(isNamedPhoto) ?? photos[0] ?? null,
     camera: camera === undefined ? null : { kind: "file", file: camera },

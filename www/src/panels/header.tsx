@@ -41,21 +41,25 @@ async function copyCode(title: string, name: (typeof codes)[number][1]): Promise
   await copy(code[name](), `the code (${title})`);
 }
 
-export function Header() {
+export const Header = () => (
+  <header class="head">
+    <h1>sim3align</h1>
+    <p class="claim">
+      In: depth map, mask, 3D model. Out: <b>its real size and place</b>.
+    </p>
+  </header>
+);
+
+/** Beside the claim for the eye; for the Tab key after the scene, which is worked with all day. */
+export function Tools() {
   const hasScene = page.scene.value !== null;
   return (
-    <header class="head">
-      <h1>sim3align</h1>
-      <p class="claim">
-        In: depth map, mask, 3D model. Out: <b>its real size and place</b>.
-      </p>
-      <nav aria-label="Project">
-        {links.map(([title, address]) => (
-          <a key={title} href={address} target="_blank" rel="noreferrer">
-            {title}
-          </a>
-        ))}
-      </nav>
+    <nav class="tools" aria-label="Project">
+      {links.map(([title, address]) => (
+        <a key={title} href={address} target="_blank" rel="noreferrer">
+          {title}
+        </a>
+      ))}
       <button type="button" class="install" title="Copy" onClick={copyInstall}>
         <code>{INSTALL}</code>
       </button>
@@ -69,6 +73,6 @@ export function Header() {
       <button type="button" id="help" onClick={toggleHelp} aria-keyshortcuts="?">
         Help
       </button>
-    </header>
+    </nav>
   );
 }

@@ -26,13 +26,18 @@ export function ObjectsPanel() {
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
-    <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
+    <section
+      class="panel objects-panel"
+      style={{ gridArea: "objects" }}
+      part="objects"
+      aria-labelledby="objects-title"
+    >
       <div class="panel-head">
         <h2 id="objects-title">
           Objects <span class="quiet">{unit.value === null && "cm"}</span>
         </h2>
-        <span class="quiet">
-          {objects.filter(({ verdict }) => verdict.value !== null).length} of {objects.length} decided
+        <span class="quiet" title="Decided">
+          {objects.filter(({ verdict }) => verdict.value !== null).length} of {objects.length}
         </span>
         <AcceptSure />
       </div>

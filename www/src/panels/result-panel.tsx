@@ -20,6 +20,7 @@ export function ResultPanel() {
   return (
     <section
       class="result panel"
+      style={{ gridArea: "result" }}
       part="result"
       aria-labelledby="result-title"
       data-source={chosen?.pose.value.source ?? "none"}

@@ -13,7 +13,7 @@ export function RunBar() {
   const { text, kind } = status.value;
   const percent = Math.round(100 * (opening?.share ?? fraction.value));
   return (
-    <section class="run" part="run" aria-label="Run">
+    <section class="run" style={{ gridArea: "run" }} part="run" aria-label="Run">
       <RunButton />
       <div class="status-lines">
         {/* Screen readers announce only the status line below; every stage would be too much. */}

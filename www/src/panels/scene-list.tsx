@@ -33,7 +33,7 @@ export function ScenesPanel() {
   const isShown = (one: Listed) => one.inputs.id === id;
   const count = (of: SceneKind) => all.filter((one) => isOfKind(one, of)).length;
   return (
-    <section class="panel scenes-panel" aria-labelledby="scenes-title">
+    <section class="panel scenes-panel" style={{ gridArea: "scenes" }} aria-labelledby="scenes-title">
       <div class="panel-head">
         <h2 id="scenes-title">Scenes</h2>
         <span class="quiet">

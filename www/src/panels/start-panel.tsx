@@ -19,7 +19,7 @@ async function choose(sample: Sample): Promise<void> {
 const isOwn = () => scene.value !== null && scene.value.sample === null;
 
 export const StartPanel = () => (
-  <section class="panel start" aria-label="Open" data-own={isOwn()}>
+  <section class="panel start" style={{ gridArea: "start" }} aria-label="Open" data-own={isOwn()}>
     <div class="row">
       <FileButton id="files" look={isOwn() ? "" : "primary"} multiple onFiles={openFiles}>
         {isOwn() ? "Open files" : "Drop or choose files"}
@@ -45,7 +45,7 @@ export const StartPanel = () => (
 export function SamplesPanel() {
   if (isOwn()) return null;
   return (
-    <section class="panel samples-panel" aria-labelledby="samples-title">
+    <section class="panel samples-panel" style={{ gridArea: "samples" }} aria-labelledby="samples-title">
       <h2 id="samples-title">Samples</h2>
       <Gallery />
     </section>
