@@ -44,7 +44,9 @@ await script(async () => {
         const [download] = await Promise.all([
           page.waitForEvent("download"),
           page.evaluate(() => {
-            const button = [...document.querySelectorAll("button")].find((one) => one.textContent === "Picture to share");
+            const button = [...document.querySelectorAll("button")].find(
+              (one) => one.textContent === "Picture to share",
+            );
             button?.click();
           }),
         ]);
@@ -53,14 +55,23 @@ await script(async () => {
         return `data:image/png;base64,${Buffer.concat(parts).toString("base64")}`;
       };
       if (id === samples[0]?.id) {
-        writeFileSync(at("www", "samples", "share.jpg"), Buffer.from(await converted(page, await taken(), "image/jpeg", [1200, 630])));
+        writeFileSync(
+          at("www", "samples", "share.jpg"),
+          Buffer.from(await converted(page, await taken(), "image/jpeg", [1200, 630])),
+        );
       }
       // Sizes are too small to be read there.
       await page.evaluate(() => {
         const boxes = [...document.querySelectorAll("label.check")];
-        boxes.find((one) => one.textContent === "Sizes")?.querySelector("input")?.click();
+        boxes
+          .find((one) => one.textContent === "Sizes")
+          ?.querySelector("input")
+          ?.click();
       });
-      writeFileSync(at("www", "samples", picture), Buffer.from(await converted(page, await taken(), "image/webp", [320, 240])));
+      writeFileSync(
+        at("www", "samples", picture),
+        Buffer.from(await converted(page, await taken(), "image/webp", [320, 240])),
+      );
       await page.close();
     }
   } finally {

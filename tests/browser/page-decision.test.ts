@@ -127,26 +127,34 @@ test(
   },
 );
 
-test("a corrected mask concerns its object only, and one step takes all of it back", "#sample=desk", async (opened, page) => {
-  const rows = () => page.locator(".objects .select").allTextContents();
-  const state = async () => [await rows(), await page.textContent("#result-title"), await page.textContent("#centre")];
-  await page.click("#accept");
-  await page.click("#accept");
-  const before = await state();
-  await page.click("#correct-mask");
-  await page.locator("#mask-edges").uncheck(PATIENCE);
-  await page.locator("#mask-size").press("End");
-  await page.click("#mask-here");
-  await page.click("#mask-done");
-  await opened.shows("Own files");
-  const after = await state();
-  assert.deepEqual([(after[0] as string[]).slice(0, 2), after[1]], [(before[0] as string[]).slice(0, 2), before[1]]);
-  assert.notEqual(after[2], before[2]);
-  await page.keyboard.press("Control+z");
-  assert.deepEqual(await state(), before);
-  await page.keyboard.press("Control+Shift+z");
-  assert.deepEqual(await state(), after);
-});
+test(
+  "a corrected mask concerns its object only, and one step takes all of it back",
+  "#sample=desk",
+  async (opened, page) => {
+    const rows = () => page.locator(".objects .select").allTextContents();
+    const state = async () => [
+      await rows(),
+      await page.textContent("#result-title"),
+      await page.textContent("#centre"),
+    ];
+    await page.click("#accept");
+    await page.click("#accept");
+    const before = await state();
+    await page.click("#correct-mask");
+    await page.locator("#mask-edges").uncheck(PATIENCE);
+    await page.locator("#mask-size").press("End");
+    await page.click("#mask-here");
+    await page.click("#mask-done");
+    await opened.shows("Own files");
+    const after = await state();
+    assert.deepEqual([(after[0] as string[]).slice(0, 2), after[1]], [(before[0] as string[]).slice(0, 2), before[1]]);
+    assert.notEqual(after[2], before[2]);
+    await page.keyboard.press("Control+z");
+    assert.deepEqual(await state(), before);
+    await page.keyboard.press("Control+Shift+z");
+    assert.deepEqual(await state(), after);
+  },
+);
 
 test("a mask is corrected beside the result, or left as it is", async (opened, page) => {
   await drop(opened, files);

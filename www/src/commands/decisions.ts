@@ -17,13 +17,13 @@ export const decideOn = (verdict: Verdict) => (workspace: Workspace) => {
   if (object.verdict.peek() !== verdict) decide(object, verdict);
   const others = objects.peek();
   const isAll = others.every((one) => one.verdict.peek() !== null);
-  const all = isAll
-    ? ` All objects are ${others.every(({ isAccepted }) => isAccepted.peek()) ? "accepted" : "decided on"}.`
-    : "";
-  announce(`${decided[verdict]} ${object.name}.${all}`);
+  const isInVideo = workspace.video.peek() !== null;
+  const all = ` All objects are ${others.every(({ isAccepted }) => isAccepted.peek()) ? "accepted" : "decided on"}.`;
+  const what = isInVideo ? `frame ${workspace.frameIndex.peek() + 1}` : object.name;
+  announce(`${decided[verdict]} ${what}.${isAll && !isInVideo ? all : ""}`);
   const next = [...after(others, object), ...others].find((one) => one.verdict.peek() === null);
   if (next !== undefined) select(next.id);
-  else if (workspace.video.peek() !== null) workspace.fileActions.peek()?.next("frame");
+  else if (isInVideo) workspace.fileActions.peek()?.next("frame");
 };
 
 /** Objects that are open, whose poses nothing puts in doubt, and that are at least this sure. */

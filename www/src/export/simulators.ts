@@ -17,7 +17,8 @@ async function simulated(scene: Scene) {
   const { width, height, camera } = scene;
   const objects = placed.map((object) => {
     const { restsOn = null } = object.alignment.peek()?.contact ?? {};
-    const below = typeof restsOn === "number" ? placed.indexOf(scene.objects[restsOn] as (typeof placed)[number]) : restsOn;
+    const below =
+      typeof restsOn === "number" ? placed.indexOf(scene.objects[restsOn] as (typeof placed)[number]) : restsOn;
     return {
       name: keyOf(scene, object),
       mesh: object.mesh,

@@ -80,7 +80,9 @@ async function place({ typed, more }: Drop): Promise<void> {
   const isFilm = typed.every(({ file: { path }, role }) => role === "unused" && FILM.test(path));
   if (isFilm || typed.every((one) => (one.role === "unused" && !isUnassigned(one)) || one.role === "resource")) {
     const names = typed.slice(0, 3).map(({ file }) => file.path);
-    const film = isFilm ? " Save the frames of the video as pictures, with a depth map each, and drop their folder." : "";
+    const film = isFilm
+      ? " Save the frames of the video as pictures, with a depth map each, and drop their folder."
+      : "";
     return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).${film}`));
   }
   const scenes = scenesOf(typed).map((one) => ({ ...one, ...more }));

@@ -38,9 +38,7 @@ export function ExportPanel() {
               {all.map((one) => (
                 <>
                   {button(one)}
-                  <span class="quiet">
-                    {one.title === "Copy link" && whole?.sample === null ? NO_LINK : one.about}
-                  </span>
+                  <span class="quiet">{one.title === "Copy link" && whole?.sample === null ? NO_LINK : one.about}</span>
                 </>
               ))}
             </fieldset>

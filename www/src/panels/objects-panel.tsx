@@ -26,12 +26,7 @@ export function ObjectsPanel() {
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
-    <section
-      class="panel objects-panel"
-      style={{ gridArea: "objects" }}
-      part="objects"
-      aria-labelledby="objects-title"
-    >
+    <section class="panel objects-panel" style={{ gridArea: "objects" }} part="objects" aria-labelledby="objects-title">
       <div class="panel-head">
         <h2 id="objects-title">
           Objects <span class="quiet">{unit.value === null && "cm"}</span>

@@ -72,7 +72,7 @@ export function ScenesPanel() {
                 title={one.inputs.name}
                 onClick={() => openListed(one.inputs)}
               >
-                <span class="listed">{one.inputs.name}</span> <span class="quiet">{textOf(one)}</span>
+                <span class="listed">{one.inputs.name}</span> <span class="quiet how">{textOf(one)}</span>
               </button>
             </li>
           ))}

@@ -134,7 +134,14 @@ function Play({ count }: { count: number }) {
 function onKey(event: KeyboardEvent): void {
   const { key, target } = event;
   const opened = video.peek();
-  if (opened === null || target !== document.body || event.defaultPrevented || gizmo.peek() !== null || isTracking.peek()) return;
+  if (
+    opened === null ||
+    target !== document.body ||
+    event.defaultPrevented ||
+    gizmo.peek() !== null ||
+    isTracking.peek()
+  )
+    return;
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   const step = { ArrowLeft: -1, ArrowRight: 1 }[key];
   if (step !== undefined) showFrame(frameIndex.peek() + step);

@@ -21,12 +21,7 @@ const linear = Float32Array.from({ length: 256 }, (_, i) =>
  * linear light; null where there is no photo, or the mesh has no colours.
  * @param isLinear whether the colours are shown as linear ones
  */
-export function lightOn(
-  view: DrawnScene,
-  mesh: MeshArrays,
-  matrix: ArrayLike<number>,
-  isLinear: boolean,
-): Rgb | null {
+export function lightOn(view: DrawnScene, mesh: MeshArrays, matrix: ArrayLike<number>, isLinear: boolean): Rgb | null {
   const { camera, depthM, height, rgba, width } = view;
   const { samples } = mesh;
   if (rgba === null || samples == null) return null;

@@ -108,10 +108,7 @@ export function openedState(
   function rename(object: ObjectModel, name: string): void {
     const index = scene.peek()?.objects.indexOf(object);
     object.title.value = name;
-    amend(
-      (one) => ({ ...one, objects: one.objects.map((own, i) => (i === index ? { ...own, name } : own)) }),
-      true,
-    );
+    amend((one) => ({ ...one, objects: one.objects.map((own, i) => (i === index ? { ...own, name } : own)) }), true);
   }
 
   /** Takes an object out of the scene. The others keep their poses. */
@@ -129,7 +126,21 @@ export function openedState(
     announce(`Removed ${object.name}.`);
   }
 
-  return { inputs, isReading, unpacking, list, listed, othersScenes, notKept, fileActions, enlist, show, amend, rename, removeObject };
+  return {
+    inputs,
+    isReading,
+    unpacking,
+    list,
+    listed,
+    othersScenes,
+    notKept,
+    fileActions,
+    enlist,
+    show,
+    amend,
+    rename,
+    removeObject,
+  };
 }
 
 export type OpenedState = ReturnType<typeof openedState>;

@@ -7,9 +7,9 @@ import { markOf } from "./label.js";
 import { Model } from "./model.js";
 import { release, whileHidden } from "./parts.js";
 import { pick } from "./picker.js";
-import { eased } from "./pose.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
+import { eased } from "./pose.js";
 import { Sizes } from "./sizes.js";
 import { Stage } from "./stage.js";
 import { colours, Surroundings } from "./surroundings.js";
@@ -273,12 +273,7 @@ export class SceneView {
   private aim(at: Extent): void {
     const { look, fits, scene, objects, models } = this;
     this.aimed = at;
-    this.viewpoint.lookFrom(
-      look,
-      toThree(at.centre),
-      at.radius,
-      fits && scene ? cropOf(scene, objects, models) : null,
-    );
+    this.viewpoint.lookFrom(look, toThree(at.centre), at.radius, fits && scene ? cropOf(scene, objects, models) : null);
   }
 
   /** Moves the viewpoint on its way to another extent. Returns whether it is still on the way. */
@@ -305,7 +300,10 @@ export class SceneView {
     // The grid surrounds the objects where they are now.
     if (this.plane !== null) this.setGround(this.plane);
     if (this.viewpoint.isTouched) return;
-    if (isAtOnce || this.look === "camera" || isMotionReduced()) return this.lookFrom(this.look, this.fits);
+    if (isAtOnce || this.look === "camera" || isMotionReduced()) {
+      this.lookFrom(this.look, this.fits);
+      return;
+    }
     this.glide = { from: this.aimed, to: this.extent(), started: performance.now() };
     this.stage.invalidate();
   }
