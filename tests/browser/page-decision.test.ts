@@ -97,6 +97,10 @@ test("objects are hidden, locked, renamed and removed", "#sample=desk", async (o
 test("what an object stands on is said, and the scene is saved as one GLB", "", async (opened, page) => {
   await page.click("#align-all");
   await page.locator(".contact", { hasText: /^Stands on the ground/ }).waitFor(PATIENCE);
+  const masks = JSON.parse(`${(await opened.saved("COCO JSON")).bytes}`) as { annotations: { area: number }[] };
+  assert.equal(masks.annotations.filter(({ area }) => area > 0).length, 3);
+  const { bytes: bodies } = await opened.saved("MJCF");
+  assert.match(`${bodies}`, /scene\.xml/);
   const { name, bytes } = await opened.saved("GLB of the scene");
   assert.equal(name, "scene.glb");
   const length = bytes.readUInt32LE(12);

@@ -76,7 +76,7 @@ globalThis.harness = {
   /** The colours at positions in the view, CSS pixels. */
   async colours(places) {
     const { clientWidth, clientHeight } = document.querySelector("#host");
-    const bitmap = await createImageBitmap(await harness.view.picture(clientWidth, clientHeight));
+    const bitmap = await createImageBitmap(await harness.view.picture(clientWidth, clientHeight, false));
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
     context.drawImage(bitmap, 0, 0);
     const ratio = bitmap.width / clientWidth;

@@ -1,6 +1,7 @@
 /** The light on an object in the photo. */
-import type { MeshArrays } from "sim3align";
 import type { Rgb } from "sim3align/pictures/colours";
+import type { ObjectModel } from "../state/object-model.js";
+import { rgbOf } from "./colours.js";
 import { projected, renderDepth } from "./rasteriser.js";
 import type { DrawnScene } from "./reduced.js";
 
@@ -16,18 +17,26 @@ const linear = Float32Array.from({ length: 256 }, (_, i) =>
   i / 255 <= 0.04045 ? i / 255 / 12.92 : ((i / 255 + 0.055) / 1.055) ** 2.4,
 );
 
+/** What a mesh is drawn in: one colour, colours of its vertices, which glTF has linear, or those of textures. */
+export type Colouring = "plain" | "vertices" | "textures";
+
 /**
  * How much brighter the photo shows an object than its own colours are: the ratio of both for what is seen of it, by channels of
- * linear light; null where there is no photo, or the mesh has no colours.
- * @param isLinear whether the colours are shown as linear ones
+ * linear light. Null where there is no photo. A mesh in one colour gets that of the photo.
  */
-export function lightOn(view: DrawnScene, mesh: MeshArrays, matrix: ArrayLike<number>, isLinear: boolean): Rgb | null {
+export function lightOn(
+  view: DrawnScene,
+  { colour, mesh }: ObjectModel,
+  matrix: ArrayLike<number>,
+  colouring: Colouring,
+): Rgb | null {
   const { camera, depthM, height, rgba, width } = view;
-  const { samples } = mesh;
-  if (rgba === null || samples == null) return null;
-  const { positions, colors } = samples;
+  if (rgba === null) return null;
+  const { positions, colors } = mesh.samples ?? { positions: mesh.positions, colors: null };
+  if (colors === null && colouring !== "plain") return null;
   const depth = renderDepth(mesh, matrix, view);
   const points = projected(positions, matrix, camera);
+  const plain = rgbOf(colour);
   const [seen, own] = [new Float64Array(3), new Float64Array(3)];
   let count = 0;
   for (let i = 0; i + 2 < positions.length; i += 3) {
@@ -40,14 +49,14 @@ export function lightOn(view: DrawnScene, mesh: MeshArrays, matrix: ArrayLike<nu
     if (drawn === 0 || isHidden) continue;
     count++;
     for (let k = 0; k < 3; k++) {
+      const byte = (colouring === "plain" ? plain[k] : colors?.[i + k]) ?? 0;
       seen[k] = (seen[k] as number) + (linear[rgba[4 * pixel + k] as number] as number);
-      const colour = colors[i + k] as number;
-      own[k] = (own[k] as number) + (isLinear ? colour / 255 : (linear[colour] as number));
+      own[k] = (own[k] as number) + (colouring === "vertices" ? byte / 255 : (linear[byte] as number));
     }
   }
   if (count < LEAST_POINTS) return null;
   return [0, 1, 2].map((k) => {
     const ratio = (seen[k] as number) / Math.max(own[k] as number, 1e-3 * count);
-    return Math.min(Math.max(ratio, DARKEST), BRIGHTEST);
+    return colouring === "plain" ? ratio : Math.min(Math.max(ratio, DARKEST), BRIGHTEST);
   }) as unknown as Rgb;
 }

@@ -2,6 +2,7 @@
 
 import { applyToObject3D } from "sim3align/three";
 import type { Intersection, Material, Object3D, Raycaster } from "three/webgpu";
+import type { Colouring } from "../pictures/light.js";
 import { matrixOf, type Pose, poseOf, shifted } from "./pose.js";
 import {
   BackSide,
@@ -51,7 +52,7 @@ export class Model {
   private readonly materials: Material[] = [];
   private readonly box: readonly Vector3[];
   private isPlaced = false;
-  hasVertexColours = false;
+  colouring: Colouring = "textures";
 
   private constructor(
     readonly id: string,
@@ -121,7 +122,7 @@ export class Model {
   /** The given material or, for a mesh without colours, one in the colour of the object. */
   private materialFor(given: Material | undefined, { attributes }: BufferGeometry): Material {
     const standard = given as MeshStandardMaterial | undefined;
-    this.hasVertexColours ||= attributes.color !== undefined;
+    if (attributes.color !== undefined) this.colouring = "vertices";
     const hasColours =
       attributes.color !== undefined ||
       Boolean(standard?.map) ||
@@ -134,6 +135,7 @@ export class Model {
       return standard;
     }
     given?.dispose();
+    if (attributes.color === undefined) this.colouring = "plain";
     const material = new MeshStandardMaterial({ color: this.colour, roughness: 0.62, metalness: 0, side: DoubleSide });
     if (attributes.color !== undefined) {
       material.vertexColors = true;

@@ -1,5 +1,6 @@
 /** The 3D view: point cloud, meshes, gizmo and viewpoint. */
 
+import type { Colouring } from "../pictures/light.js";
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { Gizmo } from "./gizmo.js";
@@ -207,9 +208,9 @@ export class SceneView {
     this.update();
   }
 
-  /** Whether the colours of a mesh are those of its vertices, which glTF has linear. */
-  hasVertexColours(id: string): boolean {
-    return this.models.get(id)?.hasVertexColours === true;
+  /** What a mesh is drawn in. */
+  colouringOf(id: string): Colouring {
+    return this.models.get(id)?.colouring ?? "textures";
   }
 
   /** Shows a mesh in the light that the photo has, by channels. */
@@ -379,11 +380,11 @@ export class SceneView {
     this.stage.invalidate();
   }
 
-  /** The view as a PNG of this size, without what is there to work with, and without bars beside the image. */
-  picture(width: number, height: number): Promise<Blob> {
+  /** The view as a PNG of this size, without what is there to work with; `fillsView` leaves no bars beside the image. */
+  picture(width: number, height: number, fillsView = true): Promise<Blob> {
     const { stage, viewpoint } = this;
     let taken: Promise<Blob> | null = null;
-    viewpoint.fillsView = true;
+    viewpoint.fillsView = fillsView;
     whileHidden([this.gizmo.object, this.mark], () => {
       taken = stage.picture(width, height);
     });

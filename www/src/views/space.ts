@@ -190,7 +190,7 @@ function followPose(
   let isMoving = false;
   const light = ({ transform }: Pose) => {
     const drawn = imageOf(workspace).drawn.peek();
-    const found = drawn && lightOn(drawn, object.mesh, transform.matrix, view.hasVertexColours(object.id));
+    const found = drawn && lightOn(drawn, object, transform.matrix, view.colouringOf(object.id));
     if (found !== null) view.setLight(object.id, found);
   };
   return effect(() => {
