@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Comparisons of corners after which the polygons of a file are fans: their number may grow with the cube of that of the corners.
-const MAX_COMPARISONS: usize = 1 << 26;
+const MAX_COMPARISONS: usize = 1 << 24;
 
 /// Relative to its area, by how much a polygon may be dented and still be a fan: corners on a line are off by rounding.
 const FLAT: f64 = 1e-6;
@@ -32,7 +32,7 @@ impl Polygon {
             while ring.len() > 3 {
                 let ear = (0..ring.len()).find(|&i| {
                     let ear @ [a, b, c] = corner(&ring, i);
-                    self.comparisons += ring.len();
+                    self.comparisons = self.comparisons.saturating_add(ring.len());
                     // On an edge, too, but for a corner that stands twice, as where a hole is joined to the outline.
                     let is_at = |p: usize| [a, b, c].iter().any(|own| points[*own] == points[p]);
                     let is_inside = |p: &usize| {

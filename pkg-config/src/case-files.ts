@@ -25,6 +25,9 @@ export const LEVELS = 8;
 /** Files by name, relative to the folder of the case or scene: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
 
+/** Reads a file on disk; one that another file refers to may not be a link out of its folder. */
+export type ReadOnDisk = (isReferred?: boolean) => Promise<EncodedBytes>;
+
 /** How to read the files of a case or scene. */
 export type ReadCaseOptions = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask" | "maskIndex">> &
   DepthCoding & {
@@ -112,15 +115,15 @@ export function filesOf(files: CaseFiles, { image = true }: ReadCaseOptions, pla
     throw fileNotFound(owner ?? part, found, namesOf(part).join(" or "));
   };
   const viewNames = () => withoutUndefined({ camera: find("camera"), image: find("image"), truth: find("truth") });
-  const read = async (name: string) => {
+  const read = async (name: string, isReferred = false) => {
     used.add(name);
-    const file = files[name];
-    return requiredBytes(name, typeof file === "function" ? await file() : file);
+    const file: CaseFiles[string] | ReadOnDisk | undefined = files[name];
+    return requiredBytes(name, typeof file === "function" ? await file(isReferred) : file);
   };
   const optional = async (name: string | undefined) => (name === undefined ? undefined : read(name));
   /** Reads a file that the mesh refers to. */
   const beside = async (path: string) => {
-    if (path in files) return read(path);
+    if (path in files) return read(path, true);
     throw fileNotFound("mesh", `no ${path} in ${place}`, "the files that the mesh refers to");
   };
   return { find, required, viewNames, read, optional, beside, unread };

@@ -1,14 +1,16 @@
 /** Cases on disk (Node only). */
-import { readdir, stat } from "node:fs/promises";
-import { basename, dirname, join, resolve } from "node:path";
+import { readdir, realpath, stat } from "node:fs/promises";
+import { basename, dirname, join, resolve, sep } from "node:path";
 import {
   type Case,
   type CaseFiles,
   caseFrom,
   type FoundFiles,
+  fileNotFound,
   LEVELS,
   meshFile,
   type ReadCaseOptions,
+  type ReadOnDisk,
 } from "./case-files.js";
 import { partOf } from "./case-names.js";
 import { refersToFiles } from "./input/formats.js";
@@ -44,14 +46,44 @@ export async function readCaseFolder(folder: string, settings: ReadCaseOptions =
   return { name: basename(resolve(folder)), input, truth, found: { folder, ...found } };
 }
 
+/** A file in a folder, read on demand. */
+export const fileIn =
+  (argument: string, folder: string, path: string): ReadOnDisk =>
+  async (isReferred) => {
+    if (isReferred) await checkLink(folder, path);
+    return read(argument, join(folder, path));
+  };
+
 /** Files of a folder, read on demand. */
 export const filesIn = (argument: string, folder: string, paths: readonly string[]): CaseFiles =>
-  Object.fromEntries(paths.map((path) => [path, () => read(argument, join(folder, path))]));
+  Object.fromEntries(paths.map((path) => [path, fileIn(argument, folder, path)]));
 
 /** Reads a mesh file, and the files next to it that it refers to. */
 export async function readMeshFile(path: string): Promise<MeshFile> {
-  const beside = (uri: string) => read("mesh", join(dirname(path), uri));
+  const beside = async (uri: string) => {
+    await checkLink(dirname(path), uri, [basename(path)]);
+    return read("mesh", join(dirname(path), uri));
+  };
   return meshFile(path, await read("mesh", path), beside);
+}
+
+/**
+ * Refuses a link out of the folder of a mesh where the mesh refers to it: the mesh may be malicious. Where the mesh itself is such
+ * a link, as in stores of large files, others may be as well.
+ * @param meshes the names of the mesh; by default, of all meshes in the folder
+ */
+async function checkLink(folder: string, path: string, meshes?: readonly string[]): Promise<void> {
+  const root = await realpath(folder).catch(() => resolve(folder));
+  const isBelow = async (name: string) => {
+    const target = await realpath(join(folder, name)).catch(() => undefined);
+    return target === undefined || target.startsWith(root.endsWith(sep) ? root : root + sep);
+  };
+  if (await isBelow(path)) return;
+
+  const names = meshes ?? (await readdir(folder)).filter((name) => partOf(name) === "mesh");
+  for (const name of names) if (!(await isBelow(name))) return;
+  const found = `a link at ${join(folder, path)} that leads out of its folder`;
+  throw fileNotFound("mesh", found, "the files that the mesh refers to");
 }
 
 /** The files of a case folder; those in subfolders only if the mesh may refer to them. */

@@ -6,7 +6,7 @@
  * quaternions are x, y, z, w, matrices are column-major, and pixel centres have integer coordinates.
  * @packageDocumentation
  */
-export { fromBop, toBop } from "./conventions/bop.js";
+export { bopSymmetries, fromBop, toBop } from "./conventions/bop.js";
 export { toCuboid } from "./conventions/cuboid.js";
 export { fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
 export { correctDepth } from "./conventions/depth.js";

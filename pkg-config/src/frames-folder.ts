@@ -2,9 +2,9 @@
 import { readdir } from "node:fs/promises";
 import { join } from "node:path";
 import type { FrameFiles, ReadCaseOptions } from "./case-files.js";
-import { filesBelow } from "./case-folder.js";
+import { fileIn, filesBelow } from "./case-folder.js";
 import { type Folder, type Frames, frameNamesIn, framesIn } from "./frames.js";
-import { read, unreadable } from "./read-files.js";
+import { unreadable } from "./read-files.js";
 import type { AlignInput, MeshFile } from "./types/inputs.js";
 
 function folderAt(root: string): Folder {
@@ -17,7 +17,7 @@ function folderAt(root: string): Folder {
     entries: async () =>
       (await list()).map((entry) => ({ name: entry.name, isFolder: entry.isDirectory() || entry.isSymbolicLink() })),
     below: (folder, levels) => filesBelow(join(root, folder), "", levels),
-    file: (folder, path) => () => read("case", join(root, folder, path)),
+    file: (folder, path) => fileIn("case", join(root, folder), path),
   };
 }
 

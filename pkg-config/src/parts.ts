@@ -3,7 +3,7 @@
  * as `Alignment["diagnostics"]["counts"]`.
  * @packageDocumentation
  */
-export type { BopPose } from "./conventions/bop.js";
+export type { BopPose, BopSymmetries } from "./conventions/bop.js";
 export type { Cuboid, CuboidOptions, MeshAxis } from "./conventions/cuboid.js";
 export type { CvatCuboid } from "./conventions/cvat-cuboid.js";
 export type { CvatMaskElement } from "./conventions/cvat-rle.js";

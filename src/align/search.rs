@@ -6,12 +6,15 @@
 
 use core::ops::Range;
 
+use glam::DQuat;
+
 use super::outcome::{Outcome, Setup, outcome, score};
 use super::warnings::{about_fit, about_mesh, about_search, retain_doubts};
 use crate::error::Result;
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
+use crate::geometry::rotations::quaternion_of;
 use crate::precise;
 use crate::precise::drawing::equivalence::DISTINCT_MIN_ANGLE_RAD;
 use crate::precise::drawing::pose::CropPose;
@@ -21,6 +24,7 @@ use crate::precise::scoring::conditioning::DROP;
 use crate::precise::scoring::scene_term::SceneContext;
 use crate::precise::search::efforts;
 use crate::precise::search::plate::without_invented_plate;
+use crate::precise::search::problem::FACING_CAMERA;
 use crate::precise::search::recipe::{SURE, SearchSettings};
 use crate::precise::search::rounds::Rounds;
 use crate::precise::search::start::{self, SearchState, WarmStart};
@@ -38,6 +42,8 @@ pub struct Request {
     options: AlignOptions,
     efforts: Vec<SearchSettings>,
     setup: Setup,
+    /// The rotation near which the result is, of poses that are equal.
+    reference: DQuat,
 }
 
 /// The alignment of one object.
@@ -71,7 +77,8 @@ impl Request {
     /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
     pub fn new(options: AlignOptions) -> Result<Self> {
         let (setup, efforts) = (Setup::of_precise(&options)?, efforts::of(&options));
-        Ok(Self { options, efforts, setup })
+        let reference = options.initial.as_ref().map_or(FACING_CAMERA, quaternion_of);
+        Ok(Self { options, efforts, setup, reference })
     }
 
     /// The options.
@@ -86,8 +93,8 @@ impl Request {
 }
 
 impl SearchResult {
-    fn new(rounds: Rounds) -> Result<Self> {
-        let (solution, verdict) = conclusion::conclude(&rounds, None)?;
+    fn new(rounds: Rounds, reference: Option<DQuat>) -> Result<Self> {
+        let (solution, verdict) = conclusion::conclude(&rounds, None, reference)?;
         Ok(Self { rounds, solution, verdict })
     }
 
@@ -169,7 +176,7 @@ impl<'a> Search<'a> {
             self.scheduler.yield_point().await;
             self.run(&mut rounds, efforts::share(index, efforts.len())).await;
 
-            let conclusion = conclusion::conclude(&rounds, None);
+            let conclusion = conclusion::conclude(&rounds, None, self.reference());
             let is_last = index + 1 == efforts.len();
             let is_sure = matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.overall() >= SURE);
             let mut rivals = if is_sure && !is_last { start::rival_search(&rounds) } else { None };
@@ -185,6 +192,12 @@ impl<'a> Search<'a> {
             previous = Some(rounds);
         }
         Err(precise::no_candidate())
+    }
+
+    /// The rotation near which the result is, of poses that are equal by shape; `None` where colours choose among these.
+    fn reference(&self) -> Option<DQuat> {
+        let is_colored = self.observation.photo().is_some() && self.mesh.colors().is_some();
+        (!is_colored).then_some(self.request.reference)
     }
 
     /// The search with these settings, before its first round.
@@ -208,18 +221,19 @@ impl<'a> Search<'a> {
         self.scheduler.yield_point().await;
         self.run(&mut rounds, efforts::share(0, 1)).await;
 
-        let mut result = SearchResult::new(rounds)?;
+        let reference = self.reference();
+        let mut result = SearchResult::new(rounds, reference)?;
         if result.confidence() < earlier.confidence - MAX_CONFIDENCE_LOSS
             && result.rounds.move_to_front(&earlier.candidates)
         {
-            result = SearchResult::new(result.rounds)?;
+            result = SearchResult::new(result.rounds, reference)?;
         }
 
         let is_contradicted = result.confidence() < CONTRADICTION_RATIO * earlier.confidence;
         if is_contradicted || leaves_image(earlier, &result.rounds) {
             // Tables, undersides and neighbours are as inaccurate as the object: what its image shows, wins.
             let alone = WarmStart { earlier, context: SceneContext::default() };
-            result = SearchResult::new(self.restart(alone, Some(&result.rounds))?)?;
+            result = SearchResult::new(self.restart(alone, Some(&result.rounds))?, reference)?;
         }
         Ok(result)
     }
@@ -246,7 +260,8 @@ impl<'a> Search<'a> {
     pub fn finish(mut self, mut clouds: Clouds, result: SearchResult, colors: Option<&Judgment>) -> Result<Alignment> {
         let SearchResult { rounds, mut solution, mut verdict } = result;
         if colors.is_some() {
-            (solution, verdict) = conclusion::conclude(&rounds, colors)?;
+            let reference = Some(self.request.reference);
+            (solution, verdict) = conclusion::conclude(&rounds, colors, reference)?;
         }
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
         verdict.confidence.relief_deviation = observation.relief_deviation();

@@ -17,6 +17,7 @@ use crate::precise::observation::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::score::NOISE;
+use crate::precise::search::problem::FACING_CAMERA;
 use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::SURE;
 use crate::precise::search::rounds::Rounds;
@@ -121,11 +122,12 @@ fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) 
             }
         }
     }
-    if let (Some((_, before)), false) = (known.before, is_colored) {
-        // Of the rotations that the symmetry makes one, the search keeps any.
-        let nearest = rounds.search.equivalence.nearest(chosen.pose.rotation, before);
-        chosen.pose = rounds.search.mesh.turns.turned(&chosen.pose, nearest);
-    }
+    // Of the rotations that the symmetry makes one, the search keeps any.
+    chosen.pose = match known.before {
+        _ if is_colored => chosen.pose,
+        Some((_, before)) => rounds.search.nearest(&chosen.pose, before),
+        None => rounds.search.canonical(&chosen.pose, FACING_CAMERA).unwrap_or(chosen.pose),
+    };
     let others: Vec<Candidate> =
         rounds.candidates.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();
     let margin = lead(&rounds.search.equivalence, &chosen, &others, |other| other.score.total);

@@ -83,6 +83,12 @@ pub fn in_world(
     used.parts.extend(unmasked.iter().map(|(k, search)| unmasked_part(*k, search, &cameras)));
     unmasked.iter().for_each(|(k, _)| roles[*k] = ViewRole::Used);
 
+    if let Some(best) = ranked.first_mut()
+        && let Some(pose) = used.canonical(&best.pose)
+    {
+        best.pose = pose;
+    }
+
     let mut size_sd = None;
     if let Some(best) = ranked.first_mut()
         && used.parts.len() > 1

@@ -3,11 +3,12 @@
 use super::common_size::{DEPTH_ERROR, SILHOUETTE_ERROR, SizeEvidence, mean};
 use super::joint::{Joint, JointScore, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
+use crate::geometry::rotations::angle_between;
 use crate::precise::drawing::pose::CropPose;
 use crate::precise::drawing::render::Canvas;
 use crate::precise::scoring::score::Score;
 use crate::precise::search::cascade::{Cascade, Stage};
-use crate::precise::search::problem::Search;
+use crate::precise::search::problem::{EQUAL_MAX_RAD, EQUIVALENT_MAX_SCORE_LOSS, FACING_CAMERA, Search};
 use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{FINE, JOINT, JOINT_POLISH, JOINT_RANKING};
 use crate::precise::search::refine::Refiner;
@@ -101,6 +102,24 @@ impl<'a> ViewSet<'a> {
     /// A pose after one more stage.
     pub fn polished(&mut self, stage: &Stage, pose: WorldPose) -> WorldPose {
         self.cascade(core::slice::from_ref(stage), vec![pose]).first().map_or(pose, |polished| polished.pose)
+    }
+
+    /// The equivalent of a pose whose rotation is nearest to that of a mesh that faces the first camera; see [`Search::canonical`].
+    pub fn canonical(&mut self, pose: &WorldPose) -> Option<WorldPose> {
+        let part = *self.parts.first()?;
+        let nearest = |pose: &WorldPose| {
+            let seen = part.camera.see(pose)?;
+            Some(part.camera.place(&part.search.nearest(&seen, FACING_CAMERA)))
+        };
+        let turned = nearest(pose)?;
+        if angle_between(turned.rotation, pose.rotation) < EQUAL_MAX_RAD {
+            return None;
+        }
+
+        let equivalent = nearest(&self.polished(&JOINT_POLISH, turned))?;
+        let mut joint = self.level(FINE);
+        let loss = joint.score(pose).total - joint.score(&equivalent).total;
+        (loss < EQUIVALENT_MAX_SCORE_LOSS * self.parts.len() as f32).then_some(equivalent)
     }
 
     /// The joint objective on the fine grids at a free size, for the final numbers.

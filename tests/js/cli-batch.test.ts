@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, renameSync, symlinkSync, utimesSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { basename, join } from "node:path";
 import { test } from "node:test";
 import {
   files,
@@ -18,7 +18,7 @@ import {
   writeCase,
 } from "../support/command-line.js";
 import { commandLine } from "../support/environment.js";
-import { glb, maskPng } from "../support/files.js";
+import { glb, gltfBuffer, gltfJson, maskPng } from "../support/files.js";
 import { mesh, poseJson, truth } from "../support/scene.js";
 
 const inFolder = (...path: string[]) => join(folder, ...path);
@@ -219,6 +219,19 @@ test("check reads cases without aligning them", () => {
   const { doubtful, sound } = results("checked.json");
   assert.deepEqual([sound.warnings, doubtful.inputs["mask.png"].as], [[], "mask"]);
   assert.equal(run("check", "sound").status, 0);
+});
+
+test("a link out of the folder of a mesh is followed for a mesh, and not for what it refers to", () => {
+  const { "mesh.glb": _glb, ...view } = files;
+  const gltf = gltfJson(mesh, {}, { uri: "mesh.bin" });
+  writeCase("stored", { "mesh.bin": gltfBuffer(mesh), "mesh.gltf": gltf });
+  writeCase("escaping", { ...view, "mesh.gltf": gltf });
+  writeCase("linking", view);
+  const link = (name: string) => symlinkSync(join("..", "stored", basename(name)), inFolder(name));
+  for (const name of ["escaping/mesh.bin", "linking/mesh.bin", "linking/mesh.gltf"]) link(name);
+  const { stdout } = run("check", "escaping", "linking");
+  assert.match(stdout, /failed escaping: FILE_NOT_FOUND.*a link at .*mesh\.bin that leads out of its folder/);
+  assert.match(stdout, /^linking: can be aligned$/m);
 });
 
 test("a transform is that of the case by its path, not of another one by its name", () => {

@@ -4,6 +4,7 @@ import { test } from "node:test";
 import type { Sim3Like } from "sim3align";
 import {
   applyToPoints,
+  bopSymmetries,
   compose,
   fromBop,
   fromFrame,
@@ -106,6 +107,49 @@ test("BOP's poses move models in millimetres, and survive", () => {
     const { entry, scale } = toBop(pose);
     assertNear(fromBop(entry, { scale }).matrix, columnMajor(pose), seed);
   });
+});
+
+test("symmetries of BOP map a model onto itself, about its centroid", async () => {
+  // A square prism away from the origin of its mesh.
+  const corners = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-3, 3].map((z) => [x + 5, y - 2, z + 1] as const)));
+  const quads = [
+    [0, 2, 6, 4],
+    [1, 5, 7, 3],
+    [0, 4, 5, 1],
+    [2, 3, 7, 6],
+    [0, 1, 3, 2],
+    [4, 6, 7, 5],
+  ] as const;
+  const indices = Uint32Array.from(quads.flatMap(([a, b, c, d]) => [a, b, c, a, c, d]));
+  const mesh = { positions: Float32Array.from(corners.flat()), indices };
+  const model = corners.map((corner) => corner.map((x) => 20 * x));
+
+  const axes = [
+    { axis: [0, 0, 2], fold: 4 },
+    { axis: [1, 0, 0], fold: 2 },
+  ] as const;
+  const { symmetries_discrete = [], ...rest } = bopSymmetries(axes, mesh, { scale: 0.02 });
+  assert.deepEqual([symmetries_discrete.length, rest], [7, {}]);
+  for (const m of symmetries_discrete) {
+    const moved = model.map((p) =>
+      [0, 4, 8].map((r) => [0, 1, 2].reduce((sum, c) => sum + (m[r + c] ?? 0) * (p[c] ?? 0), m[r + 3] ?? 0)),
+    );
+    const isCorner = (p: number[]) => model.some((q) => Math.hypot(...q.map((x, i) => x - (p[i] ?? 0))) < 1e-9);
+    assert.ok(moved.every(isCorner), m.join());
+  }
+
+  const { symmetries_continuous } = bopSymmetries([{ axis: [0, 0, 2] }], mesh, { scale: 0.02 });
+  assert.deepEqual(
+    symmetries_continuous?.map(({ axis }) => axis),
+    [[0, 0, 1]],
+  );
+  assertNear(symmetries_continuous?.[0]?.offset ?? [], [100, -40, 20], "a point on the axis");
+  assert.deepEqual(bopSymmetries([], mesh), {});
+  const infinite = [
+    { axis: [0, 0, 1], fold: 4 },
+    { axis: [0, 1, 1], fold: 5 },
+  ] as const;
+  await rejectsWith(() => bopSymmetries(infinite, mesh), "INVALID_OPTION symmetry");
 });
 
 test("SAM 3D Objects' layouts put vertices where its formula puts them, and survive", () => {

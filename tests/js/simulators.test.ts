@@ -147,6 +147,14 @@ test("every file, body, mesh and prim has a name of its own, which means nothing
   }
 });
 
+test("faces without area and repeated ones are not written, and the surface of a prim has its name", async () => {
+  const spoilt = { ...tower, indices: Uint32Array.from([...tower.indices, 0, 0, 1, ...tower.indices.slice(0, 3)]) };
+  const scene = await simulatorScene([{ name: "tower", mesh: spoilt, transform: over(0, 0, 0) }], hulls);
+  const faces = (toMjcf(scene)["meshes/tower.obj"] ?? "").match(/^f /gm) ?? [];
+  assert.equal(faces.length, tower.indices.length / 3);
+  assert.match(toUsd(scene), /def Xform "tower".*def Mesh "tower".*def Mesh "tower_collider_0"/s);
+});
+
 /** The results of the simulators after a second of physics. */
 interface Simulated {
   mujoco: { bodies: Rested[]; cameras: { position: number[]; axes: number[]; window: number[] }[]; planes: number };

@@ -90,6 +90,29 @@ fn an_initial_pose_decides_between_turns_that_look_alike_and_no_others() {
 }
 
 #[wasm_bindgen_test]
+fn of_equal_poses_the_result_is_nearest_to_the_initial_pose_or_faces_the_camera() {
+    let brick = cuboid(Vec3::new(1.0, 0.8, 0.55));
+    let observation = observe(&brick, &truth());
+    let found =
+        |initial| pose(&align(&observation, &brick, &AlignOptions { initial, ..quick() }, &mut Silent).unwrap());
+    let half_turns =
+        [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| Rotation3::new(axis * core::f64::consts::PI));
+    let equal: Vec<Similarity> = core::iter::once(Rotation3::identity())
+        .chain(half_turns)
+        .map(|turn| Similarity { rotation: truth().rotation * turn, ..truth() })
+        .collect();
+    for initial in &equal {
+        let found = found(Some(*initial));
+        assert!(turn_deg(&found, initial) < 3.0, "{}° from {initial:?}", turn_deg(&found, initial));
+    }
+
+    let facing = Similarity { rotation: half_turns[0], ..truth() };
+    let from_facing = |pose: &&Similarity| (turn_deg(pose, &facing) * 1e6) as u64;
+    let nearest = equal.iter().min_by_key(from_facing).unwrap();
+    assert!(turn_deg(&found(None), nearest) < 3.0, "{:?}, not {nearest:?}", found(None));
+}
+
+#[wasm_bindgen_test]
 fn an_occluder_hides_and_does_not_shrink() {
     let mesh = body();
     let whole = observe(&mesh, &truth());

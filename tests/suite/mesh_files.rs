@@ -175,6 +175,21 @@ fn splats_have_the_surface_that_their_gaussians_cover() {
 }
 
 #[wasm_bindgen_test]
+fn polygons_of_very_many_corners_take_bounded_work() {
+    // The square of their number exceeds 32 bits.
+    let count = 70_000_u32;
+    let corner = |i: u32| {
+        let (sin, cos) = libm::sincos(core::f64::consts::TAU * f64::from(i) / f64::from(count));
+        let radius = if i % 2 == 0 { 1.0 } else { 0.5 };
+        format!("v {:.6} {:.6} 0\n", radius * cos, radius * sin)
+    };
+    let corners: String = (0..count).map(corner).collect();
+    let face: String = (1..=count).map(|i| format!(" {i}")).collect();
+    let star = read(format!("{corners}f{face}\n").as_bytes()).unwrap();
+    assert_eq!(star.triangles().len(), count as usize - 2);
+}
+
+#[wasm_bindgen_test]
 fn coordinates_of_maps_keep_their_shape() {
     let near = read(fixture!("mesh.obj")).unwrap();
     let east = [500_123.25, 5_200_456.5, 312.125];

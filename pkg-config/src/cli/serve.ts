@@ -4,18 +4,13 @@ import { createInterface } from "node:readline";
 import { autoWorkers } from "../aligner/aligner-options.js";
 import { readCaseFolder, readMeshFile } from "../case-folder.js";
 import { type Aligner, type AlignInput, createAligner } from "../index.js";
+import { inputProperties } from "../input/resolve.js";
 import { read } from "../read-files.js";
 import { invalidArgument } from "../values/error.js";
 import { isRecord } from "../values/kinds.js";
 import { checkNames, withoutUndefined } from "../values/validation.js";
 import { failureEntry } from "./entry.js";
 import type { Flags } from "./flags.js";
-
-/** The fields of a request, but for its id. */
-const fields = [
-  ...["case", "depth", "mask", "mesh", "camera", "image", "options"],
-  ...["depthScale", "depthKind", "imageId", "resizeMask", "width", "height"],
-];
 
 /** Types of the numbers of inline arrays. */
 const arrays = { float32: Float32Array, uint16: Uint16Array, uint8: Uint8Array, uint32: Uint32Array } as const;
@@ -54,7 +49,7 @@ async function answer(aligner: Aligner, line: string, number: number): Promise<s
     if (!isRecord(request)) throw invalidArgument("request", request, "an object in a line", "Write one line each.");
     id = request.id ?? number;
     const { id: _, options = {}, ...more } = request;
-    checkNames("request.", more, fields, "Options of align() belong in options.");
+    checkNames("request.", more, ["case", ...inputProperties], "Options of align() belong in options.");
     return JSON.stringify({ id, result: await aligner.align(await inputOf(more), options as object) });
   } catch (error) {
     const isSyntax = error instanceof SyntaxError;

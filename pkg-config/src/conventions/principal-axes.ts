@@ -18,8 +18,8 @@ import {
   transposed,
 } from "./rotation.js";
 
-/** The covariance of the surface, weighted by area, independent of the distribution of vertices. */
-function covariance(mesh: Mesh): Matrix3 {
+/** The centroid and the covariance of the surface, weighted by area, independent of the distribution of vertices. */
+export function surfaceMoments(mesh: Mesh): { centroid: Vector3; covariance: Matrix3 } {
   let area = 0;
   let sum: Vector3 = [0, 0, 0];
   const squares = new Float64Array(9);
@@ -37,8 +37,11 @@ function covariance(mesh: Mesh): Matrix3 {
       }
     }
   }
-  if (area === 0) return identity;
-  return matrixOf((i, j) => (squares[3 * i + j] ?? 0) / area - (sum[i] / area) * (sum[j] / area));
+  if (area === 0) return { centroid: [0, 0, 0], covariance: identity };
+
+  const centroid = scaled(sum, 1 / area);
+  const covariance = matrixOf((i, j) => (squares[3 * i + j] ?? 0) / area - centroid[i] * centroid[j]);
+  return { centroid, covariance };
 }
 
 const axes = [0, 1, 2] as const;
@@ -47,7 +50,7 @@ const axes = [0, 1, 2] as const;
 const planes = [[0, 1] as const, [0, 2] as const, [1, 2] as const] as const;
 
 /** The axes along which a surface is spread most and least, as columns; right-handed. */
-export const principalAxes = (mesh: Mesh): Matrix3 => eigenvectors(covariance(mesh));
+export const principalAxes = (mesh: Mesh): Matrix3 => eigenvectors(surfaceMoments(mesh).covariance);
 
 /** The eigenvectors of a symmetric matrix as columns, by Jacobi rotations; right-handed. */
 export function eigenvectors(symmetric: Matrix3): Matrix3 {

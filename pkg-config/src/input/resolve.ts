@@ -13,6 +13,8 @@ import { coreSim3 } from "./sim3.js";
 import { type Resolved, readView, viewProperties } from "./view.js";
 
 const frameProperties = [...viewProperties, "mask", "resizeMask", "maskIndex"];
+/** The properties of an input of `align`. */
+export const inputProperties: readonly string[] = [...frameProperties, "mesh"];
 
 const spelling = "Check the spelling. Options belong in the second argument.";
 const oneMesh =
@@ -123,5 +125,5 @@ export const withMesh = (
 
 /** Rejects misspelt properties, which would otherwise be ignored. */
 function checkInput(input: unknown): asserts input is Record<string, unknown> {
-  checkNames("input.", part("input", input, "{ depth, mask, mesh, camera }"), [...frameProperties, "mesh"], spelling);
+  checkNames("input.", part("input", input, "{ depth, mask, mesh, camera }"), inputProperties, spelling);
 }

@@ -106,12 +106,13 @@ function bodyPrim(body: ExportedBody, names: readonly string[]): string {
     ...(filtered.length > 0 ? [`rel physics:filteredPairs = [${filtered.join(", ")}]`] : []),
   ].map((line) => `    ${line}\n`);
   const hull = [`uniform token physics:approximation = "convexHull"`, `uniform token purpose = "guide"`];
-  const colliders = parts.map((part, k) => mesh(`collider_${k}`, part, color, COLLIDER, hull));
+  // Importers that merge a prim with its only child take the name of the child.
+  const colliders = parts.map((part, k) => mesh(`${name}_collider_${k}`, part, color, COLLIDER, hull));
   return `def Xform "${name}"${applied(schemas)}
 {
 ${properties.join("")}${placement(position, rotation)}
 
-${indented([mesh("surface", body.mesh, color, [], []), ...colliders].join("\n\n"))}
+${indented([mesh(name, body.mesh, color, [], []), ...colliders].join("\n\n"))}
 }`;
 }
 

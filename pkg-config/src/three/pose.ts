@@ -94,8 +94,14 @@ const worldFrom = (argument: string, object: PlacedObject): Sim3 =>
     return toSim3(numbersOf(`${argument}.matrixWorld`, object.matrixWorld));
   });
 
-/** Removes the scale that a camera inherits from its parents, which three.js ignores when rendering. */
-const worldFromCamera = (camera: PlacedObject): Sim3Like => ({ ...worldFrom("options.camera", camera), scale: 1 });
+/** The inverse of what three.js renders with: whether it contains the scale of a camera's parents depends on its version. */
+function worldFromCamera(
+  camera: PlacedObject & { readonly matrixWorldInverse?: PlacedObject["matrixWorld"] },
+): Sim3Like {
+  const world = worldFrom("options.camera", camera);
+  const inverse = camera.matrixWorldInverse;
+  return inverse === undefined ? world : invert(numbersOf("options.camera.matrixWorldInverse", inverse));
+}
 
 const numbersOf = (argument: string, { elements }: { readonly elements: unknown }) =>
   finiteNumbers(`${argument}.elements`, elements, 16, "16 finite numbers");

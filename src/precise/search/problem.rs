@@ -3,9 +3,11 @@
 use core::cell::OnceCell;
 use std::rc::Rc;
 
+use glam::DQuat;
+
 use super::coarse::Coarse;
 use super::ranking::{Candidate, distinct};
-use super::recipe::{COARSE, FINE, GRIDS, SearchSettings};
+use super::recipe::{COARSE, COLORED, FINE, GRIDS, SearchSettings};
 use super::refine::Refiner;
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawing::equivalence::Equivalence;
@@ -15,7 +17,7 @@ use crate::precise::drawing::render::Canvas;
 use crate::precise::observation::box_fits::{BoxFit, box_fits};
 use crate::precise::observation::clean::CleanObservation;
 use crate::precise::observation::grid::CropGrid;
-use crate::precise::scoring::conditioning::{Conditioning, at_known, gradient_of_scale};
+use crate::precise::scoring::conditioning::{Conditioning, DROP, at_known, gradient_of_scale};
 use crate::precise::scoring::objective::Objective;
 use crate::precise::scoring::prior::Prior;
 use crate::precise::scoring::scene_term::SceneTerm;
@@ -30,6 +32,15 @@ const NEIGHBORS: usize = 7;
 /// those that are refined, radians.
 const ROLLS: usize = 24;
 const MIN_TURN_RAD: f64 = 0.3;
+
+/// Rotation of an upright mesh that faces the camera, as glTF has it: +y up, +z to the viewer. Of poses that a symmetry makes
+/// equal, the one nearest to it is the result.
+pub const FACING_CAMERA: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
+/// Rotation between two poses below which they are one, radians.
+pub const EQUAL_MAX_RAD: f64 = 0.01;
+/// Score below a pose at which the image tells its equivalent from it: one standard deviation. Symmetries are
+/// approximate.
+pub const EQUIVALENT_MAX_SCORE_LOSS: f32 = 3.0 * DROP as f32;
 
 /// A search: the observation and the mesh, prepared.
 pub struct Search {
@@ -176,6 +187,31 @@ impl Search {
     /// The score of any pose on the fine grid.
     pub fn score(&self, pose: &CropPose) -> Score {
         self.objective(FINE).score(&mut Canvas::default(), pose)
+    }
+
+    /// A pose refined on the finest grid.
+    pub fn polished(&self, pose: CropPose) -> CropPose {
+        let [_, polish] = COLORED;
+        let refiner = Refiner { objective: self.objective(polish.grid), lock_scale: self.settings.lock_scale };
+        refiner.refine_in_proportion(&mut Canvas::default(), pose, polish.steps, &self.mesh.surface).pose
+    }
+
+    /// The equivalent of a pose whose rotation is nearest to `reference`, so that noise does not choose among them; `None` if
+    /// it is the pose itself, or the image tells them apart.
+    pub fn canonical(&self, pose: &CropPose, reference: DQuat) -> Option<CropPose> {
+        let turned = self.nearest(pose, reference);
+        if angle_between(turned.rotation, pose.rotation) < EQUAL_MAX_RAD {
+            return None;
+        }
+
+        let equivalent = self.nearest(&self.polished(turned), reference);
+        let loss = self.score(pose).total - self.score(&equivalent).total;
+        (loss < EQUIVALENT_MAX_SCORE_LOSS).then_some(equivalent)
+    }
+
+    /// The pose, of those that the symmetry of the mesh makes equal, whose rotation is nearest to `reference`.
+    pub fn nearest(&self, pose: &CropPose, reference: DQuat) -> CropPose {
+        self.mesh.turns.turned(pose, self.equivalence.nearest(pose.rotation, reference))
     }
 
     /// The part of a score that the image gives.

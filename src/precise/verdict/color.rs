@@ -96,7 +96,7 @@ fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared:
     let is_changed = choice.chosen != 0;
     let mut candidate = compared[choice.chosen].candidate;
     if is_changed {
-        candidate.pose = polished(rounds, candidate.pose);
+        candidate.pose = rounds.search.polished(candidate.pose);
     }
     let axis = if choice.is_used { loose_axis(&rounds.search, &candidate.pose, LOOSE_MIN_SD_RAD) } else { None };
     let rolled = axis.and_then(|axis| roll(&rounds.search, photo, colors, candidate.pose, axis));
@@ -263,11 +263,4 @@ pub fn agreement_at(search: &Search, photo: &PhotoCells, colors: &SurfaceColors,
 /// The photo on the fine grid of a search in the whole depth map.
 pub fn cells(photo: &Photo, search: &Search) -> PhotoCells {
     PhotoCells::new(photo, &PhotoRegion::WHOLE, search.observation.image, search.grid(FINE))
-}
-
-/// A pose refined on the finest grid.
-fn polished(rounds: &Rounds, pose: CropPose) -> CropPose {
-    let (search, [_, polish]) = (&rounds.search, COLORED);
-    let refiner = Refiner { objective: search.objective(polish.grid), lock_scale: search.settings.lock_scale };
-    refiner.refine_in_proportion(&mut Canvas::default(), pose, polish.steps, &search.mesh.surface).pose
 }

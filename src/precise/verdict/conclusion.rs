@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use glam::DQuat;
+
 use super::alternatives::{UNSURE_MAX_SCORE_LOSS, add_rivals, alternatives};
 use super::color::Judgment;
 use super::confidence::{Confidence, shape_confidence};
@@ -69,17 +71,24 @@ pub fn reliability(
     Ok(Reliability { confidence, alternatives })
 }
 
-/// The best pose of the search, or the one that colour chose, and its reliability.
+/// The best pose of the search, or the one that colour chose, and its reliability. Of poses that symmetry and colour leave equal,
+/// the one nearest to `reference` counts, if there is one.
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose overlaps the mask.
-pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, Verdict)> {
+pub fn conclude(rounds: &Rounds, color: Option<&Judgment>, reference: Option<DQuat>) -> Result<(Solution, Verdict)> {
     let search = &rounds.search;
     let mut candidates = Cow::Borrowed(&rounds.candidates);
     if let Some(chosen) = color.and_then(|color| color.chosen) {
         candidates.to_mut().insert(0, chosen);
     }
-    let best = candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+    candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+    if color.is_none_or(|color| color.turn.is_none())
+        && let Some(pose) = reference.and_then(|reference| search.canonical(&candidates[0].pose, reference))
+    {
+        candidates.to_mut()[0].pose = pose;
+    }
+    let best = &candidates[0];
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
