@@ -2,7 +2,7 @@
 import { useEffect } from "preact/hooks";
 import { listenToKeys } from "./commands/shortcuts.js";
 import { draft } from "./input/draft.js";
-import { Decision } from "./panels/decision.js";
+import { AcceptSure, Decision } from "./panels/decision.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
 import { Header, isHelpOpen, pageCommands, Tools } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
@@ -61,7 +61,9 @@ export function App() {
             <StorageWarnings />
             <RunBar />
             <StartPanel />
-            <ObjectsPanel />
+            <ObjectsPanel>
+              <AcceptSure />
+            </ObjectsPanel>
             <ResultPanel />
             <Decision />
           </aside>

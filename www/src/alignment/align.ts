@@ -1,7 +1,6 @@
 /** Aligns objects, reports their progress, and shows the alternatives of a result. */
 import type { Progress, SceneObjectInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions/similarity";
-import { messageOf } from "../input/problems.js";
 import { inCalibration } from "../state/calibration.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
 import type { Pose, PoseSource } from "../state/pose.js";
@@ -59,7 +58,7 @@ type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;
 
 /** Runs an alignment of objects, unless another one is running. */
 export async function run(
-  { scene, controller, announce, status }: Workspace,
+  { scene, controller, announce, fileActions, status }: Workspace,
   objects: readonly ObjectModel[],
   work: Work,
 ): Promise<void> {
@@ -85,7 +84,7 @@ export async function run(
       controller.value = null;
       const ms = performance.now() - started;
       const back = wasAccepted ? " Undo brings the accepted pose back." : "";
-      const { text, kind } = summary(objects, abort.signal.aborted, ms);
+      const { text, kind } = summary(objects, abort.signal.aborted, ms, fileActions.peek()?.words);
       status.value = { text: text + back, kind };
     }
   }
@@ -205,11 +204,16 @@ function finish({ place, scene }: Workspace, object: ObjectModel, alignment: Any
   place(object, poseOf(whole === null ? alignment : withoutStated(alignment, whole), source));
 }
 
-function summary(objects: readonly ObjectModel[], isAborted: boolean, ms: number): Status {
+function summary(
+  objects: readonly ObjectModel[],
+  isAborted: boolean,
+  ms: number,
+  words = ({ message }: Error) => message,
+): Status {
   if (isAborted) return { text: "Cancelled. The pose is unchanged.", kind: "done" };
   const failed = objects.flatMap(({ name, run }) => {
     const state = run.peek();
-    return state.state === "failed" ? [`${name}: ${messageOf(state.error)}`] : [];
+    return state.state === "failed" ? [`${name}: ${words(state.error)}`] : [];
   });
   if (failed.length > 0) return { text: failed.join(" "), kind: "failed" };
   const what = objects.length > 1 ? `${objects.length} objects ` : "";

@@ -40,18 +40,8 @@ export const errorOf = (field: Field, cause: unknown, object?: number, source?: 
 /** Remedies for programs, which name arguments and calls. */
 const ofPrograms = /\b(pass|convert it:)\b|\w\(\)|`/i;
 
-/** What a person does instead, by the code of the error. */
-const onPage: Partial<Record<ErrorCode, string>> = {
-  COMPRESSED_MESH: "Export the mesh without compression.",
-  CORRUPT_FILE: "Export or download the file again.",
-  EIGHT_BIT_DEPTH: "Choose the depth map as the camera or the model wrote it.",
-  FILE_TOO_LARGE: "Choose a smaller file.",
-  INVALID_CAMERA: "Choose another camera file, or enter the numbers.",
-  NO_DEPTH_IN_MASK: "Choose the mask and the depth map of one view, or flip the sign of the depth.",
-  SIZE_MISMATCH: "Choose the files of one view.",
-  UNSUPPORTED_FORMAT: "Save the file in another format, and choose it again.",
-  WRONG_LENGTH: "Choose a file of one image.",
-};
+/** What a person does instead, by the code of the error; the page has words for it. */
+export const onPage: Partial<Record<ErrorCode, string>> = {};
 
 /** The words for an error, with what a person can do. */
 export function messageOf(cause: unknown): string {
@@ -59,7 +49,7 @@ export function messageOf(cause: unknown): string {
   const { argument, code, found, expected, remedy } = cause;
   // The part of a file, such as the fx of a camera.
   const part = /\.(\w+)$/.exec(argument)?.[1];
-  const helps = ofPrograms.test(remedy) ? (onPage[code] ?? "Choose another file.") : remedy;
+  const helps = ofPrograms.test(remedy) ? (onPage[code] ?? "") : remedy;
   return `${part === undefined ? "" : `${part}: `}Found ${found}; expected ${expected}. ${helps}`;
 }
 

@@ -1,6 +1,7 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
 import { alignAll } from "../alignment/align.js";
 import { draft } from "../input/draft.js";
+import { messageOf, onPage } from "../input/problems.js";
 import { readInputs, sceneOf } from "../input/reading.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { Listed, NextKind, SceneKind } from "../state/opened.js";
@@ -13,8 +14,12 @@ const { announce, inputs, isReading, list, objects, scene, show, video } = page;
 
 /** The number of the last call of `openSample`. The results of earlier calls are discarded. */
 let lastCall = 0;
+let lastId = "";
 objects.subscribe(() => {
-  lastCall++;
+  const { id } = inputs.peek();
+  // The frames of a video, which follow one another while it is tracked, are one scene.
+  if (id === "" || id !== lastId) lastCall++;
+  lastId = id;
 });
 
 /** Reads a sample and shows it. On failure, the scene is unchanged. */
@@ -145,4 +150,17 @@ async function openAnother(): Promise<void> {
 
 page.fileActions.value = {
   ...{ edit: editInputs, change: changeInputs, correct: correctMask, next: openNext, another: openAnother },
+  words: messageOf,
 };
+
+Object.assign(onPage, {
+  COMPRESSED_MESH: "Export the mesh without compression.",
+  CORRUPT_FILE: "Export or download the file again.",
+  EIGHT_BIT_DEPTH: "Choose the depth map as the camera or the model wrote it.",
+  FILE_TOO_LARGE: "Choose a smaller file.",
+  INVALID_CAMERA: "Choose another camera file, or enter the numbers.",
+  NO_DEPTH_IN_MASK: "Choose the mask and the depth map of one view, or flip the sign of the depth.",
+  SIZE_MISMATCH: "Choose the files of one view.",
+  UNSUPPORTED_FORMAT: "Save the file in another format, and choose it again.",
+  WRONG_LENGTH: "Choose a file of one image.",
+} satisfies typeof onPage);

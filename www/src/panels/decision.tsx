@@ -1,6 +1,7 @@
 /** The decision about a result: accept it, fix it, go on to the next one. */
-import { accept, decideOn, fix, next } from "../commands/decisions.js";
+import { accept, acceptSure, decideOn, fix, next, sureOf } from "../commands/decisions.js";
 import { Menu } from "../ui/controls.js";
+import { percent } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
 export function Decision() {
@@ -68,5 +69,24 @@ export function Decision() {
         </label>
       </Menu>
     </fieldset>
+  );
+}
+
+/** Confidences from which on all objects may be accepted together. */
+const thresholds = [0.9, 0.95, 0.99] as const;
+
+/** Accepts all objects of a scene that are sure, at once. */
+export function AcceptSure() {
+  const workspace = useWorkspace();
+  const counts = thresholds.map((least) => [least, sureOf(workspace.objects.value, least).length] as const);
+  if (counts[0]?.[1] === 0) return null;
+  return (
+    <Menu title="Accept all" label="Accept all that are sure">
+      {counts.map(([least, count]) => (
+        <button key={least} type="button" disabled={count === 0} onClick={() => acceptSure(workspace, least)}>
+          {percent(least)} or more: {count}
+        </button>
+      ))}
+    </Menu>
   );
 }

@@ -1,8 +1,8 @@
 /** The outliner: the objects of the scene. The selected one has a menu, by which it is shown, locked, renamed and removed. */
+import type { ComponentChildren } from "preact";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Support } from "sim3align";
 import { alignSelected } from "../alignment/align.js";
-import { acceptSure, sureOf } from "../commands/decisions.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
 import { inOrder, sidesOf } from "../state/sides.js";
 import { Check, Icon, Menu } from "../ui/controls.js";
@@ -19,7 +19,8 @@ function stateOf(run: Run, object: ObjectModel, unit: Unit, ground: Support | nu
   return sizeM.map((side) => Math.round(100 * side)).join("×");
 }
 
-export function ObjectsPanel() {
+/** @param children further controls beside the title */
+export function ObjectsPanel({ children }: { children?: ComponentChildren }) {
   const { inputs, isReading, scene, unit } = useWorkspace();
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
@@ -34,7 +35,7 @@ export function ObjectsPanel() {
         <span class="quiet" title="Decided">
           {objects.filter(({ verdict }) => verdict.value !== null).length} of {objects.length}
         </span>
-        <AcceptSure />
+        {children}
       </div>
       <ul class="objects">
         {objects.map((object) => (
@@ -49,25 +50,6 @@ export function ObjectsPanel() {
         ))}
       </ul>
     </section>
-  );
-}
-
-/** Confidences from which on all objects may be accepted together. */
-const thresholds = [0.9, 0.95, 0.99] as const;
-
-function AcceptSure() {
-  const workspace = useWorkspace();
-  const { isReadonly, objects } = workspace;
-  const counts = thresholds.map((least) => [least, sureOf(objects.value, least).length] as const);
-  if (isReadonly.value || counts[0]?.[1] === 0) return null;
-  return (
-    <Menu title="Accept all" label="Accept all that are sure">
-      {counts.map(([least, count]) => (
-        <button key={least} type="button" disabled={count === 0} onClick={() => acceptSure(workspace, least)}>
-          {percent(least)} or more: {count}
-        </button>
-      ))}
-    </Menu>
   );
 }
 

@@ -3,7 +3,7 @@
  * layout does not shift.
  */
 import type { PoseErrors } from "sim3align";
-import { fieldOf, messageOf } from "../input/problems.js";
+import { fieldOf } from "../input/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { SURE } from "../state/progress.js";
 import { inOrder, sidesOf } from "../state/sides.js";
@@ -56,7 +56,7 @@ function Failure({ error }: { error: Error }) {
   const files = useWorkspace().fileActions.value;
   return (
     <p class="error" role="alert">
-      {messageOf(error)}{" "}
+      {files?.words(error) ?? error.message}{" "}
       {files !== null && fieldOf(error) !== null && (
         <button type="button" onClick={files.edit}>
           Change files …

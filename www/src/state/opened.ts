@@ -24,6 +24,8 @@ export interface FileActions {
   correct(object: number): void;
   /** Shows the next scene of the list or, without any, a sample. */
   another(): Promise<void>;
+  /** What a person can do about an error, in place of what a program can. */
+  words(error: Error): string;
   /** Shows the next frame or scene of this kind. Returns whether there is one. */
   next(kind: NextKind): boolean;
 }
