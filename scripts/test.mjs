@@ -2,8 +2,9 @@
  * `npm test`: every test. `npm test -- --only native,js` runs some suites, `npm test -- --all` also what takes long and repeats
  * what others test: other runtimes, simulators, notebooks, servers, and the commands that measure.
  *
- * Two lanes of suites run side by side; the output of a suite comes when it ends. A failing suite does not stop the others,
- * except that without the package there is nothing to try. The last line is the sum over all suites.
+ * Two lanes of suites run side by side, and whichever is free takes what belongs to neither; the output of a suite comes when it
+ * ends. A failing suite does not stop the others, except that without the package there is nothing to try. The last line is the
+ * sum over all suites.
  */
 import { parseArgs } from "node:util";
 import { once } from "./lib/cache.mjs";
@@ -23,7 +24,7 @@ import { native, wasm } from "./suites/rust.mjs";
  * @typedef {object} Suite
  * @property {string} title
  * @property {(isAll: boolean) => Promise<Counts>} run
- * @property {0 | 1} lane
+ * @property {0 | 1} [lane]
  * @property {boolean} [needsNoPackage]
  * @property {boolean} [isHeavy] whether it is left out without `--all`
  */
@@ -36,10 +37,10 @@ const suites = {
   commands: { title: "Commands in their smallest form", run: commands, lane: 0 },
   js: { title: "JavaScript tests on the installed package", run: javaScript, lane: 1 },
   browser: { title: "Browser tests", run: browser, lane: 1 },
-  bundlers: { title: "The package in bundlers' apps", run: bundlers, lane: 1 },
-  examples: { title: "Examples", run: examples, lane: 1 },
-  runtimes: { title: "The package in other runtimes", run: runtimes, lane: 1, isHeavy: true },
-  package: { title: "Package checks", run: checkPackage, lane: 1 },
+  bundlers: { title: "The package in bundlers' apps", run: bundlers },
+  examples: { title: "Examples", run: examples },
+  runtimes: { title: "The package in other runtimes", run: runtimes, isHeavy: true },
+  package: { title: "Package checks", run: checkPackage },
 };
 
 const { values } = parseArgs({ options: { only: { type: "string" }, all: { type: "boolean", default: false } } });
@@ -80,11 +81,17 @@ const build = once(() =>
   runSuite("build", { title: "Build of the package", run: () => runChecks([["package", buildPackage]]) }),
 );
 
-/** @param {Suite["lane"]} lane */
+/** The suites that nobody has begun. */
+const waiting = Object.entries(suites).filter(
+  ([name, { isHeavy }]) => only?.includes(name) ?? (values.all || !isHeavy),
+);
+
+/** @param {0 | 1} lane */
 async function runLane(lane) {
-  for (const [name, suite] of Object.entries(suites)) {
-    const isChosen = only?.includes(name) ?? (values.all || !suite.isHeavy);
-    if (suite.lane !== lane || !isChosen) continue;
+  for (;;) {
+    const next = [lane, undefined].map((of) => waiting.findIndex(([, suite]) => suite.lane === of)).find((i) => i >= 0);
+    if (next === undefined) return;
+    const [[name, suite]] = /** @type {[[string, Suite]]} */ (waiting.splice(next, 1));
     if (!suite.needsNoPackage && (await build()).failed > 0) print(`\n${name}: not run, for the build failed.\n`);
     else await runSuite(name, suite);
   }

@@ -9,8 +9,7 @@
 export { bopSymmetries, fromBop, toBop } from "./conventions/bop.js";
 export { toCuboid } from "./conventions/cuboid.js";
 export { fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
-export { correctDepth } from "./conventions/depth.js";
-export { depthFromCode } from "./conventions/depth-code.js";
+export { correctDepth, depthFromCode } from "./conventions/depth.js";
 export { fromFrame, toFrame } from "./conventions/frames.js";
 export { generatorFrames } from "./conventions/generators.js";
 export { exportGlb } from "./conventions/glb.js";

@@ -16,7 +16,7 @@ function named(extension) {
 }
 
 /** Entries whose scripts are bundled in ways of their own. */
-const apart = ["inline", join("element", "sim3-align"), join("element", "shared")];
+const apart = ["inline", ...["sim3-align", "single", "shared"].map((name) => join("element", name))];
 
 /**
  * Files that are named relative to a script, as seen from another place.

@@ -17,6 +17,16 @@ const entries = {
 /** What the 3D view uses of three.js. */
 const threeFile = join(sources, "view3d", "three.ts");
 
+/** Leaves three.js in the file that the split build makes of it. */
+const threeBeside = /** @type {import("esbuild").Plugin} */ ({
+  name: "three-beside",
+  setup(build) {
+    build.onResolve({ filter: /\/three\.js$/ }, ({ importer }) =>
+      importer === entries["sim3-align"] ? { path: "./three.js", external: true } : undefined,
+    );
+  },
+});
+
 /** The package's files, style sheets as texts, and addresses of files beside the bundle instead of beside their source. */
 const ownFiles = /** @type {import("esbuild").Plugin} */ ({
   name: "own-files",
@@ -80,28 +90,28 @@ export async function bundleElement() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
   const { OPTIONS } = await import(pathToFileURL(join(packageDir, "index.js")).href);
+  /** @type {import("esbuild").BuildOptions} */
+  const common = {
+    outdir: folder,
+    ...{ bundle: true, minify: true, format: "esm", platform: "browser", target: "es2022" },
+    ...{ jsx: "automatic", jsxImportSource: "preact", logLevel: "warning", legalComments: "none" },
+    define: definitions(OPTIONS),
+  };
   const { metafile } = await build({
+    ...common,
     entryPoints: {
       ...entries,
+      three: threeFile,
       frame: join(sources, "element", "frame.ts"),
       "reader-worker": join(sources, "input", "reader-worker.ts"),
       worker: join(compiledDir, "worker.js"),
     },
-    outdir: folder,
     // Parts that the first alignment does not need are files of their own.
-    ...{
-      bundle: true,
-      splitting: true,
-      minify: true,
-      format: "esm",
-      platform: "browser",
-      target: "es2022",
-    },
-    ...{ jsx: "automatic", jsxImportSource: "preact", logLevel: "warning", legalComments: "none", metafile: true },
-    chunkNames: "part-[hash]",
-    define: definitions(OPTIONS),
+    ...{ splitting: true, chunkNames: "part-[hash]", metafile: true },
     plugins: [ownFiles],
   });
+  // For hosts that would rather load one script than many small ones.
+  await build({ ...common, entryPoints: { single: entries["sim3-align"] }, plugins: [threeBeside, ownFiles] });
   allowBundled(metafile);
   const page = readFileSync(at("www", "frame.html"), "utf8");
   writeFileSync(join(folder, "frame.html"), page.replace("./src/element/frame.ts", "./frame.js"));

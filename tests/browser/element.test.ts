@@ -49,7 +49,7 @@ const give = (page: Page, id: string, properties: object = {}) =>
   );
 
 /** A page of a host, with the script of the element and a record of all events. */
-async function host(html: string): Promise<{ page: Page; errors: string[] }> {
+async function host(html: string, script = "sim3-align"): Promise<{ page: Page; errors: string[] }> {
   const opened = await browser.open(`${elementFolder}/frame.html`);
   const { page } = opened;
   await page.setContent(html);
@@ -64,7 +64,7 @@ async function host(html: string): Promise<{ page: Page; errors: string[] }> {
       }
     }
   });
-  await page.evaluate(`import("/${elementFolder}/sim3-align.js")`);
+  await page.evaluate(`import("/${elementFolder}/${script}.js")`);
   return opened;
 }
 
@@ -127,6 +127,22 @@ test("instances on one page are independent, and report what they do", async () 
     (await states()).map(({ source }) => source),
     ["aligned", "start"],
   );
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("the element in one script loads that and three.js", async () => {
+  const { page, errors } = await host(`<sim3-align id="a"></sim3-align>`, "single");
+  await give(page, "a");
+  await told(page, "a", "align");
+  await page.waitForFunction(() => performance.getEntriesByName(new URL("three.js", location.href).href).length > 0);
+  const scripts = await page.evaluate(() =>
+    performance
+      .getEntriesByType("resource")
+      .flatMap(({ name }) => /\/element\/(?!frame)([^/]*)\.js$/.exec(name)?.[1] ?? []),
+  );
+  const onPage = new Set(scripts.filter((name) => !name.includes("worker") && !name.startsWith("part-")));
+  assert.deepEqual([...onPage].sort(), ["single", "three"]);
   assert.deepEqual(errors, []);
   await page.close();
 });

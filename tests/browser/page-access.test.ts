@@ -3,29 +3,28 @@ import assert from "node:assert/strict";
 import type { BrowserContextOptions } from "playwright-core";
 import { WEBGL } from "../support/browser.js";
 import { drop, files } from "../support/page-files.js";
-import { PATIENCE, pageTests } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
 const test = pageTests(WEBGL);
 
 const phone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true } satisfies BrowserContextOptions;
-const views: readonly [string, BrowserContextOptions][] = [
-  ["a laptop", { viewport: { width: 1280, height: 800 } }],
-  ["a phone, dark", { ...phone, colorScheme: "dark" }],
-];
 
-for (const [name, context] of views) {
-  test(`axe finds nothing on ${name}`, { address: "#sample=desk", ...context }, async (opened, page) => {
-    for (const summary of await page.locator("details:not([open]) > summary").all()) {
-      if (await summary.isVisible()) await summary.click();
-    }
-    assert.deepEqual(await opened.violations(), []);
-    await page.locator(".tools").getByRole("button", { name: "Help" }).click();
-    assert.deepEqual(await opened.violations(), []);
-    await page.keyboard.press("Escape");
-    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-    assert.ok(overflow <= 0, `the page is ${overflow} pixels wider than the window`);
-  });
+/** Opens all disclosures, and checks the page with them, and the help. */
+async function assertAccessible(opened: SitePage): Promise<void> {
+  const { page } = opened;
+  for (const summary of await page.locator("details:not([open]) > summary").all()) {
+    if (await summary.isVisible()) await summary.click();
+  }
+  assert.deepEqual(await opened.violations(), []);
+  await page.locator(".tools").getByRole("button", { name: "Help" }).click();
+  assert.deepEqual(await opened.violations(), []);
+  await page.keyboard.press("Escape");
+  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(overflow <= 0, `the page is ${overflow} pixels wider than the window`);
 }
+
+const laptop = { address: "#sample=desk", viewport: { width: 1280, height: 800 } };
+test("axe finds nothing on a laptop", laptop, (opened) => assertAccessible(opened));
 
 test("axe finds nothing on the intake sheet", phone, async (opened) => {
   const { "camera.json": _, ...rest } = files;
@@ -67,10 +66,9 @@ const controlsInSight = `[...document.querySelectorAll("a[href], button, input, 
     return [one.id || one.getAttribute("aria-label") || one.textContent, Math.min(width, height)];
   })`;
 
-test("all targets are large enough on a phone", { address: "", ...phone }, async (opened, page) => {
-  for (const summary of await page.locator("details:not([open]) > summary").all()) {
-    if (await summary.isVisible()) await summary.click();
-  }
+const darkPhone = { address: "", ...phone, colorScheme: "dark" } as const;
+test("on a phone, dark, axe finds nothing, and all targets are large enough", darkPhone, async (opened, page) => {
+  await assertAccessible(opened);
   const measure = async () => {
     const found = (await page.evaluate(controlsInSight)) as [string, number][];
     assert.deepEqual(

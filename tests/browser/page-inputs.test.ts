@@ -247,12 +247,11 @@ test("a wrong file is an error of its field alone", async (opened, page, t) => {
       await page.click("#intake-cancel");
     });
   }
-});
-
-test("beside a depth map that cannot be read, mask and mesh are shown", async (opened, page) => {
-  await drop(opened, { ...files, "depth.npy": Uint8Array.of(1, 2, 3) });
-  assert.deepEqual(Object.keys(await problems(opened)), ["depth"]);
-  for (const of of ["Mask of", "Mesh for"]) await page.locator(`.pair canvas[aria-label^="${of}"]`).waitFor(PATIENCE);
+  await t.test("a damaged depth map, beside which mask and mesh are shown", async () => {
+    await drop(opened, { ...files, "depth.npy": Uint8Array.of(1, 2, 3) });
+    assert.deepEqual(Object.keys(await problems(opened)), ["depth"]);
+    for (const of of ["Mask of", "Mesh for"]) await page.locator(`.pair canvas[aria-label^="${of}"]`).waitFor(PATIENCE);
+  });
 });
 
 test("remedies are buttons", async (opened, page) => {

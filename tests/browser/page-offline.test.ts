@@ -9,7 +9,7 @@ import { drop, files } from "../support/page-files.js";
 import { PATIENCE, pageTests, siteDir } from "../support/site.js";
 
 const test = pageTests();
-const visit = { serviceWorkers: "allow" } as const;
+const visit = { serviceWorkers: "allow", isLoading: true } as const;
 
 const folder = mkdtempSync(join(tmpdir(), "sim3align-site-"));
 after(() => rmSync(folder, { recursive: true, force: true }));

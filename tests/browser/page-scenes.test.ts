@@ -69,7 +69,8 @@ async function secondTab(page: Page): Promise<SitePage> {
   return opened;
 }
 
-test("a tab that does not answer is taken over, and stores nothing from then on", async (opened, page) => {
+const early = { isLoading: true };
+test("a tab that does not answer is taken over, and stores nothing from then on", early, async (opened, page) => {
   // As one that the browser has frozen.
   await page.addInitScript(() => {
     BroadcastChannel.prototype.addEventListener = () => {};

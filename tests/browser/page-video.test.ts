@@ -5,7 +5,7 @@ import { COUNT, cameraAt, dropFolder, frames, poseIn } from "../support/page-fil
 import { truth } from "../support/scene.js";
 import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
-const test = pageTests(WEBGL);
+const test = pageTests();
 
 /** The x of the object's centre, metres. */
 async function centreX({ page }: SitePage): Promise<number> {
@@ -17,7 +17,8 @@ async function goTo({ page }: SitePage, frame: number): Promise<void> {
   await page.locator("#frame-name", { hasText: `${frame + 1}/${COUNT}` }).waitFor(PATIENCE);
 }
 
-test("a video with one mask is tracked by itself", async (opened, page) => {
+// The 3D view shows each frame.
+pageTests(WEBGL)("a video with one mask is tracked by itself", async (opened, page) => {
   await dropFolder(opened, frames(false));
   await opened.says(new RegExp(`^Tracked ${COUNT} frames`));
   assert.equal(await page.locator('.strip [data-state="tracking"]').count(), COUNT);

@@ -88,7 +88,7 @@ test("an output of SAM 3D is a scene; a scale goes before its placements, and si
 });
 
 test("upright objects of a scene stand in the files of simulators", async () => {
-  const simulators = "--mjcf mujoco --urdf urdf --usd scene.usda --density 250 --parts 4";
+  const simulators = "--mjcf mujoco --urdf urdf --usd scene.usda --density 250 --parts 2";
   const upright = `scene table --quality fast --no-rest --upright --scene-glb straight.glb ${simulators}`;
   assert.match(succeeds(upright).stdout, /thing_0: [\d.]+ kg, \d convex parts, free, where it was found/);
   await assertValid(bytes("straight.glb"));
@@ -111,8 +111,8 @@ test("exported cameras are those of the result, whatever form the camera has", (
     "a field of view": { fovYDeg: (2 * Math.atan(height / (2 * fy)) * 180) / Math.PI },
   };
   for (const [what, form] of Object.entries(cameras)) {
-    writeCase("seen", { ...tableFiles(), "camera.json": form });
-    succeeds("scene seen --quality fast --no-rest --scene-glb seen.glb --mjcf in-mujoco --urdf in-urdf");
+    writeCase("seen", { ...tableFiles(1), "camera.json": form });
+    succeeds("scene seen --quality fast --no-rest --parts 1 --scene-glb seen.glb --mjcf in-mujoco --urdf in-urdf");
     const [, yfov] = /"yfov":([\d.]+)/.exec(read("seen.glb")) ?? [];
     const [, resolution, focal = ""] =
       /resolution="([^"]+)".*focalpixel="([^"]+)"/.exec(read(join("in-mujoco", "scene.xml"))) ?? [];
@@ -126,17 +126,18 @@ test("exported cameras are those of the result, whatever form the camera has", (
 
 test("files that other programs wrote are not written over", () => {
   writeCase("blob", files);
+  writeCase("one", tableFiles(1));
   const flags: Record<string, string> = {
     "--scene-glb": "own.glb",
-    "--mjcf": "own/scene.xml",
-    "--urdf": "own/load.py",
-    "--usd": "own.usda",
+    "--parts 1 --mjcf": "own/scene.xml",
+    "--parts 1 --urdf": "own/load.py",
+    "--parts 1 --usd": "own.usda",
     "--overlay": "own/blob.png",
     "--glb": "own/blob.glb",
   };
   for (const [flag, file] of Object.entries(flags)) {
     writeCase(".", { [file]: "a day's work" });
-    const [argument, command] = [file.split("/")[0], file.includes("blob") ? "align blob" : "scene table"];
+    const [argument, command] = [file.split("/")[0], file.includes("blob") ? "align blob" : "scene one"];
     const { status, stderr } = run(`${command} --quality fast ${flag} ${argument}`);
     assert.ok(status === 1 || status === 2, `${flag}: ${status}`);
     assert.match(stderr, /not written by/, flag);

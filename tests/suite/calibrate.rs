@@ -104,7 +104,7 @@ fn a_focal_length_is_found_from_relief() {
 fn a_known_length_makes_depth_metric() {
     let (mesh, seen) = (body(), observe(&body(), &truth()));
     let options = AlignOptions { scale: ScaleOption::Fixed(truth().scale), ..quick() };
-    for kind in [DepthKind::ScaleInvariant, DepthKind::AffineInvariant, DepthKind::AffineInvariantDisparity] {
+    for kind in [DepthKind::ScaleInvariant, DepthKind::AffineInvariantDisparity] {
         let view = raw(&seen, kind, Focal::Known, 1.0);
         let Calibrated { depth, calibration, .. } = calibrated(&view, seen.mask(), &mesh, &options).unwrap();
         assert!(calibration.is_metric, "{kind:?}");

@@ -180,7 +180,7 @@ fn polygons_of_very_many_corners_take_bounded_work() {
     let count = 70_000_u32;
     let corner = |i: u32| {
         let (sin, cos) = libm::sincos(core::f64::consts::TAU * f64::from(i) / f64::from(count));
-        let radius = if i % 2 == 0 { 1.0 } else { 0.5 };
+        let radius = if i.is_multiple_of(2) { 1.0 } else { 0.5 };
         format!("v {:.6} {:.6} 0\n", radius * cos, radius * sin)
     };
     let corners: String = (0..count).map(corner).collect();

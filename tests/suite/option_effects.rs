@@ -220,10 +220,10 @@ const REGISTER: &[Effect<RegisterOptions, Registration, Counts>] = &[
     ("scale", |t| (t.with(|o| o.scale = ScaleOption::Fixed(1.4)).target_from_source.scale - 1.4).abs() < 1e-9),
     ("workBudget", |t| {
         // Clouds with half of their surface in common, which one search after the other is tried on.
-        let mut points = blob(&mut Draw::new(23), 3000).points;
+        let mut points = blob(&mut Draw::new(23), 1500).points;
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let part = |points: &[Vec3]| flat(&points.iter().copied().map(vector3).collect::<Vec<_>>());
-        let (source, target) = (part(&points[..2000]), part(&points[1000..]));
+        let (source, target) = (part(&points[..1000]), part(&points[500..]));
         let counts = |work_budget| {
             let options = RegisterOptions { work_budget, ..t.base.clone() };
             let found = register(&source, &target, &options, &mut Silent);
@@ -233,9 +233,9 @@ const REGISTER: &[Effect<RegisterOptions, Registration, Counts>] = &[
     }),
     ("seed", |t| t.with(|o| o.seed = 1).target_from_source != t.usual.target_from_source),
     ("maxPoints", |t| {
-        let counts = t.count(|o| o.max_points = 900);
+        let counts = t.count(|o| o.max_points = 600);
         // Sparse points, which may be clutter, go from what was drawn.
-        [counts.source_points, counts.target_points].iter().all(|points| (450..=900).contains(points))
+        [counts.source_points, counts.target_points].iter().all(|points| (300..=600).contains(points))
     }),
     ("voxelSize", |t| 2 * t.count(|o| o.voxel_size = Some(0.4)).target_voxels < t.usually.target_voxels),
     ("voxelDivisions", |t| 2 * t.count(|o| o.voxel_divisions = Some(15.0)).target_voxels < t.usually.target_voxels),
@@ -267,7 +267,7 @@ fn every_option_of_register_has_its_effect() {
     let draw = &mut Draw::new(21);
     let truth = draw.similarity([1.0, 2.0], 3.0);
     let [source, target] = [0, 1].map(|_| {
-        let points = blob(draw, 2500).points;
+        let points = blob(draw, 1200).points;
         draw.noisy(&points, 0.01).into_iter().map(vector3).collect::<Vec<_>>()
     });
     let (source, target) = (flat(&source), flat(&target.iter().map(|&p| truth.apply(p)).collect::<Vec<_>>()));

@@ -96,12 +96,7 @@ fn sheets_boxes_and_discs_have_their_mass_centre_and_one_part() {
 
 #[wasm_bindgen_test]
 fn vessels_have_the_mass_of_their_walls() {
-    for (what, [radius, height, wall]) in [
-        ("mug", [0.04, 0.1, 0.004]),
-        ("glass", [0.035, 0.12, 0.002]),
-        ("bucket", [0.15, 0.3, 0.002]),
-        ("tin", [0.05, 0.11, 0.0005]),
-    ] {
+    for (what, [radius, height, wall]) in [("mug", [0.04, 0.1, 0.004]), ("tin", [0.05, 0.11, 0.0005])] {
         let (mesh, volume) = cup(radius, height, wall);
         let found = body(&mesh);
         assert!(is_near(found.mass.mass, DENSITY * volume, 1e-3), "{what}: {} and {volume} m³", found.mass.mass);

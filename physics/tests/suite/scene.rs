@@ -185,7 +185,7 @@ fn a_ground_that_was_found_is_moved_to_what_most_bodies_stand_on() {
 /// Settles one object of parts; all of its numbers are finite. Returns the number of its parts and its mass.
 fn settled(mesh: &Mesh, scale: f64, what: &str) -> (usize, f64) {
     let pose = similarity(scale, DQuat::from_rotation_x(0.02), DVec3::new(0.1, 0.2, 0.3));
-    let found = &settle(&[object(mesh.clone(), pose, On::Ground)], &Settings { parts: 16, ..SETTINGS })[0];
+    let found = &settle(&[object(mesh.clone(), pose, On::Ground)], &Settings { parts: 4, ..SETTINGS })[0];
     let (body, mass) = (&found.body, found.body.mass);
     let corners = body.parts.iter().flat_map(|part| &part.positions);
     let vectors = [mass.center, mass.moments, body.pose.translation];
@@ -217,9 +217,9 @@ fn meshes_that_are_no_solids_have_finite_bodies() {
         let huge = object(cuboid(-Vec3::splat(size), Vec3::splat(size)), moved(0.0, 0.0, 0.0), On::Ground);
         assert!(settle(&[huge], &SETTINGS)[0].body.parts.len() <= 1, "{size}");
     }
-    for seed in 0..12 {
+    for seed in 0..3 {
         let mut draw = Draw::new(700 + seed);
-        let count = 3 + seed as usize % 30;
+        let count = 3 + 9 * seed as usize;
         // Coordinates of few values: coincident, collinear and coplanar vertices, triangles without area.
         let positions: Vec<Vec3> = (0..count).map(|_| draw.vector(0.0, 3.99).floor().as_vec3()).collect();
         let triangles = (0..2 * count as u32).map(|k| [0, 5, 11].map(|step| (k * 7 + step) % count as u32)).collect();

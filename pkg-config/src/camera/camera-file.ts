@@ -5,12 +5,11 @@ import { describe, failure, invalidArgument } from "../values/error.js";
 import { isNumber, type JsonFile, keysText, parsedJson } from "../values/json.js";
 import { isKind, isRecord } from "../values/kinds.js";
 import type { ImageSize } from "../values/pixels.js";
-import { type CameraFileNames, noCamera } from "./camera-errors.js";
 import { type StatedUnit, unitOf } from "./depth-unit.js";
 import { imageCamera, inPixels } from "./image-camera.js";
 import { intrinsicsOf, type StatedCamera, sizeOf } from "./intrinsics.js";
 import { isOther } from "./keys.js";
-import { type CameraPlace, camerasOf } from "./statements.js";
+import { type CameraFileNames, type CameraPlace, camerasOf, noCamera } from "./statements.js";
 
 /** The content of a camera file. */
 export interface CameraFile extends PinholeCamera {

@@ -1,9 +1,8 @@
 /** The unit of integer depth in a camera file. */
 import { failure } from "../values/error.js";
 import { isNumber } from "../values/json.js";
-import type { CameraFileNames } from "./camera-errors.js";
 import type { Meaning } from "./keys.js";
-import type { Fact } from "./statements.js";
+import type { CameraFileNames, Fact } from "./statements.js";
 
 /** The unit that a camera file states. */
 export interface StatedUnit {

@@ -3,11 +3,10 @@ import { failure } from "../values/error.js";
 import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import type { ImageSize } from "../values/pixels.js";
-import { type CameraFileNames, noCamera, withoutSize } from "./camera-errors.js";
 import type { Meaning } from "./keys.js";
 import { distortionOf, isFisheye, isNoPerspective } from "./lens-distortion.js";
 import { checkedPinhole, focalOfAngle, MAX_SKEW_PX, type Pinhole, resizedPinhole, skewedMatrix } from "./pinhole.js";
-import { type Fact, numbersOf } from "./statements.js";
+import { type CameraFileNames, type Fact, noCamera, numbersOf } from "./statements.js";
 
 /** What a camera file states of one camera. */
 export interface StatedCamera {
@@ -267,4 +266,10 @@ function distorted(facts: readonly Fact[], model: string, camera: Pinhole, size:
   const keys = [...(isFish ? [model] : []), ...(lists.length > 0 ? lists : single).map(({ key }) => key)];
   const message = distortionOf({ keys, model, coefficients }, camera, size);
   return message === undefined ? [] : [message];
+}
+
+/** The error for intrinsics that depend on the size of the image. */
+function withoutSize(found: string, { options }: CameraFileNames) {
+  const remedy = "Pass the width and height of the depth map in pixels.";
+  return failure("INVALID_ARGUMENT", `${options}width`, `${found} without image size`, "width and height", remedy);
 }

@@ -1,7 +1,24 @@
 /** The cameras in a camera file, each with the facts that hold for it. */
+import { failure } from "../values/error.js";
 import { isNumber } from "../values/json.js";
 import { isRecord } from "../values/kinds.js";
 import { isOther, type Meaning, meaningOf } from "./keys.js";
+
+/** The names of a camera file and of its options in errors. */
+export interface CameraFileNames {
+  file: string;
+  /** Prefix of the names of options. */
+  options: "" | "options.";
+}
+
+const forms =
+  "{ fx, fy, cx, cy }, { K } or another name of a 3 × 3, 3 × 4 or 4 × 4 matrix, { fovYDeg }, a BOP scene_camera.json, or the numbers as text";
+
+/** The error for JSON that is not the content of a camera file. */
+export function noCamera({ file }: Pick<CameraFileNames, "file">, found: string) {
+  const remedy = "Write the focal lengths and the principal point as fx, fy, cx and cy, in pixels of the depth map.";
+  return failure("INVALID_CAMERA", file, found, forms, remedy);
+}
 
 /** A key with its value; `meaning` is `undefined` for a key with numbers that is not in the table. */
 export interface Fact {
