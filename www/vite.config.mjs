@@ -12,6 +12,7 @@ const repository = dirname(www);
 const samples = join(www, "samples", "index.json");
 
 const guides = documents(repository);
+const manifest = JSON.parse(readFileSync(join(repository, "pkg-config", "package.json"), "utf8"));
 
 // Modules, not bundles: the page also uses some that the package does not export.
 const compiled = join(repository, "target", "compiled");
@@ -58,6 +59,7 @@ export default defineConfig({
   },
   define: {
     ...definitions(OPTIONS, existsSync(samples) ? readFileSync(samples, "utf8") : undefined),
+    SOURCE: JSON.stringify(manifest.homepage.replace(/#.*/, "")),
     DOCUMENTS: JSON.stringify(guides.listed.map(({ title, fileName }) => [title, fileName])),
   },
   // What workers load later has names of its own.

@@ -9,7 +9,7 @@
 export { bopSymmetries, fromBop, toBop } from "./conventions/bop.js";
 export { toCuboid } from "./conventions/cuboid.js";
 export { fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
-export { correctDepth, depthFromCode } from "./conventions/depth.js";
+export { correctDepth } from "./conventions/depth.js";
 export { fromFrame, toFrame } from "./conventions/frames.js";
 export { generatorFrames } from "./conventions/generators.js";
 export { exportGlb } from "./conventions/glb.js";
@@ -26,4 +26,5 @@ export { stretchMesh } from "./conventions/stretch.js";
 export { fromTensor } from "./conventions/tensor.js";
 export { uprightMesh } from "./conventions/upright.js";
 export { toCocoRle } from "./input/coco-rle.js";
+export { depthFromCode } from "./input/depth-codes.js";
 export { Sim3AlignError } from "./values/error.js";

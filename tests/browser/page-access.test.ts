@@ -16,7 +16,7 @@ async function assertAccessible(opened: SitePage): Promise<void> {
     if (await summary.isVisible()) await summary.click();
   }
   assert.deepEqual(await opened.violations(), []);
-  await page.locator(".head").getByRole("button", { name: "Help" }).click();
+  await page.locator(".tools").getByRole("button", { name: "Help" }).click();
   assert.deepEqual(await opened.violations(), []);
   await page.keyboard.press("Escape");
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);

@@ -97,6 +97,10 @@ test("objects are hidden, locked, renamed and removed", "#sample=desk", async (o
 test("what an object stands on is said, and the scene is saved as one GLB", "", async (opened, page) => {
   await page.click("#align-all");
   await page.locator(".contact", { hasText: /^Stands on the ground/ }).waitFor(PATIENCE);
+  const masks = JSON.parse(`${(await opened.saved("COCO JSON")).bytes}`) as { annotations: { area: number }[] };
+  assert.equal(masks.annotations.filter(({ area }) => area > 0).length, 3);
+  const { bytes: bodies } = await opened.saved("MJCF");
+  assert.match(`${bodies}`, /scene\.xml/);
   const { name, bytes } = await opened.saved("GLB of the scene");
   assert.equal(name, "scene.glb");
   const length = bytes.readUInt32LE(12);
@@ -124,6 +128,35 @@ test(
     const decisions = Object.values(saved).map((one) => (one as { decision: string | null }).decision);
     assert.deepEqual(decisions, ["accepted", "skipped", null]);
     assert.equal((Object.values(saved)[0] as { comment: string }).comment, "lid open");
+  },
+);
+
+test(
+  "a corrected mask concerns its object only, and one step takes all of it back",
+  "#sample=desk",
+  async (opened, page) => {
+    const rows = () => page.locator(".objects .select").allTextContents();
+    const state = async () => [
+      await rows(),
+      await page.textContent("#result-title"),
+      await page.textContent("#centre"),
+    ];
+    await page.click("#accept");
+    await page.click("#accept");
+    const before = await state();
+    await page.click("#correct-mask");
+    await page.locator("#mask-edges").uncheck(PATIENCE);
+    await page.locator("#mask-size").press("End");
+    await page.click("#mask-here");
+    await page.click("#mask-done");
+    await opened.shows("Own files");
+    const after = await state();
+    assert.deepEqual([(after[0] as string[]).slice(0, 2), after[1]], [(before[0] as string[]).slice(0, 2), before[1]]);
+    assert.notEqual(after[2], before[2]);
+    await page.keyboard.press("Control+z");
+    assert.deepEqual(await state(), before);
+    await page.keyboard.press("Control+Shift+z");
+    assert.deepEqual(await state(), after);
   },
 );
 

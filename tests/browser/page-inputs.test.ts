@@ -270,6 +270,28 @@ test("remedies are buttons", async (opened, page) => {
   await opened.shows("Own files");
 });
 
+test("a depth map that looks backwards is turned around, and a video file is named", async (opened, page) => {
+  await drop(opened, { "clip.mp4": Uint8Array.of(0) });
+  assert.match((await (await opened.sheet()).textContent()) ?? "", /Save the frames of the video as pictures/);
+  await page.click("#intake-cancel");
+  await drop(opened, { ...files, "depth.npy": depthNpy(seen.depth.map((z) => -z)) });
+  const sheet = await opened.sheet();
+  assert.doesNotMatch((await sheet.textContent()) ?? "", /\bPass\b/);
+  await page.getByRole("button", { name: "Flip the sign" }).click();
+  await opened.shows("Own files");
+  assert.ok((await opened.metric("iou")) > 0.9);
+});
+
+test("pasted files are opened", async (opened, page) => {
+  const content = Object.entries(files).map(([name, bytes]) => [name, [...bytes]] as const);
+  await page.evaluate((content) => {
+    const data = new DataTransfer();
+    for (const [name, bytes] of content) data.items.add(new File([Uint8Array.from(bytes)], name));
+    document.body.dispatchEvent(new ClipboardEvent("paste", { clipboardData: data, bubbles: true }));
+  }, content);
+  await opened.shows("Own files");
+});
+
 test("a camera of a resized image is scaled, that of another image is not", async (opened, page) => {
   await drop(opened, otherCamera(2 * WIDTH, HEIGHT));
   assert.match((await problems(opened)).camera ?? "", /camera\.json: Found .*320 × 120/);

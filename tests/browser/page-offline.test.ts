@@ -21,7 +21,7 @@ test("after the first visit, the page and all samples work without a connection"
   await page.reload();
   await opened.aligned();
   await isStored();
-  await opened.choose("#sample", "desk");
+  await opened.sample("desk");
   await opened.shows("Desk");
   await page.keyboard.press("?");
   await page.locator("dialog.help").waitFor(PATIENCE);

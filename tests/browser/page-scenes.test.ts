@@ -27,7 +27,7 @@ test("the work on all scenes of a drop is kept: in the list, in one file, and af
   await page.click("#next");
   await opened.shows("IMG_003");
   // The last one is aligned, too, though nobody has opened it.
-  await page.locator(".scenes li", { hasText: /^IMG_004 aligned \d+ %/ }).waitFor(PATIENCE);
+  await page.locator(".scenes li", { hasText: /^IMG_004 (\d+ %|look at it)/ }).waitFor(PATIENCE);
   assert.deepEqual(
     (await states(page)).slice(0, 2).map((text) => text.replace(/^IMG_00\d /, "")),
     ["✓ accepted", "✓ accepted"],

@@ -75,6 +75,8 @@ test("the ground that objects stand on is known again after a reload", async (op
   await opened.kept();
   await page.reload();
   await page.locator('main[data-scene="Own files"]').waitFor(PATIENCE);
+  // Another one may wait for a decision, and be selected.
+  await page.locator(".objects .select").first().click();
   await page.locator(".sides", { hasText: "width × depth × height" }).waitFor(PATIENCE);
   assert.deepEqual(await opened.dimensions(), before);
 });

@@ -57,7 +57,7 @@ test("a correction in the middle is carried to the other frames, and all poses a
   const { toy } = JSON.parse(`${bytes}`) as { toy: { frames: Record<string, { scale: number }> } };
   assert.equal(Object.keys(toy.frames).length, COUNT);
   // Another scene ends the video.
-  await opened.choose("#sample", "mug");
+  await opened.sample("mug");
   await opened.shows("Mug");
   assert.equal(await page.locator(".time").count(), 0);
 });
@@ -86,6 +86,9 @@ test("a video and what was accepted in it survive another one, and a reload", as
   await opened.says(/^Tracked/);
   await goTo(opened, 2);
   await page.click("#accept");
+  // The next one comes by itself.
+  await page.locator("#frame-name", { hasText: `4/${COUNT}` }).waitFor(PATIENCE);
+  await goTo(opened, 2);
   const centre = await page.textContent("#centre");
   const isAsLeft = async () => {
     await page.locator("#frame-name", { hasText: `3/${COUNT}` }).waitFor(PATIENCE);
@@ -98,11 +101,50 @@ test("a video and what was accepted in it survive another one, and a reload", as
   await page.locator("#frame-name", { hasText: `1/${COUNT}` }).waitFor(PATIENCE);
   await page.locator(".scenes button", { hasText: "toy" }).click();
   await isAsLeft();
-  await opened.choose("#sample", "mug");
+  await opened.sample("mug");
   await opened.shows("Mug");
   await opened.kept();
   await page.reload();
   await opened.shows("Mug");
   await page.locator(".scenes button", { hasText: "toy" }).click();
   await isAsLeft();
+});
+
+test("names hold in all frames, keys go through them, and what was tracked is accepted at once", async (opened, page) => {
+  await dropFolder(opened, frames(true));
+  await opened.says(/^Tracked/);
+  await opened.enter("#object-name", "My toy");
+  await page.evaluate(() => (document.activeElement as HTMLElement).blur());
+  await page.keyboard.press("ArrowLeft");
+  await page.locator("#frame-name", { hasText: `${COUNT - 1}/${COUNT}` }).waitFor(PATIENCE);
+  assert.equal((await page.textContent("#result-title"))?.trim(), "My toy");
+  await page.click("#accept-tracked");
+  await opened.says(new RegExp(`^Accepted ${COUNT} frames`));
+  assert.equal(await page.textContent("#accept"), "✓ Accepted");
+  const { bytes } = await opened.saved("JSON of all frames");
+  const saved = JSON.parse(`${bytes}`) as Record<string, { frames: Record<string, { decision: string | null }> }>;
+  const decisions = Object.values(saved["My toy"]?.frames ?? {}).map(({ decision }) => decision);
+  assert.deepEqual(decisions, Array(COUNT).fill("accepted"));
+  await page.click("#accept-tracked");
+  assert.equal(await page.textContent("#accept"), "Accept");
+});
+
+test("tracking that is left goes on with the video, however far it was", async (opened, page) => {
+  await page.evaluate(() => {
+    const status = document.querySelector("#status") as HTMLElement;
+    const leave = new MutationObserver(() => {
+      if (!/^Tracking frame 2/.test(status.textContent ?? "")) return;
+      leave.disconnect();
+      document.querySelector<HTMLElement>('[data-sample="mug"]')?.click();
+    });
+    leave.observe(status, { childList: true, characterData: true, subtree: true });
+  });
+  await dropFolder(opened, frames(true));
+  await page.locator(".scenes button", { hasText: "toy" }).waitFor(PATIENCE);
+  await page.locator('main[data-scene="Mug"]').waitFor(PATIENCE);
+  await page.locator(".scenes button", { hasText: "toy" }).click();
+  await page
+    .locator('.strip [data-state="tracking"]')
+    .nth(COUNT - 1)
+    .waitFor({ ...PATIENCE, state: "attached" });
 });

@@ -45,12 +45,12 @@ test("the page aligns its sample as the library does, and draws the pose that it
 });
 
 test("every sample can be chosen, and is aligned", async (opened, page) => {
-  const ids = await page.$$eval("#sample option", (found) =>
-    found.map((option) => (option as HTMLOptionElement).value),
+  const ids = await page.$$eval("[data-sample]", (found) =>
+    found.map((one) => (one as HTMLButtonElement).dataset.sample ?? ""),
   );
   assert.ok(ids.length >= 4, ids.join());
   for (const id of ids.slice(1)) {
-    await opened.choose("#sample", id);
+    await opened.sample(id);
     await page.waitForFunction((id) => location.hash.includes(`sample=${id}`), id);
     await opened.aligned();
     assert.ok((await opened.metric("iou")) > 0.3, id);
@@ -60,15 +60,16 @@ test("every sample can be chosen, and is aligned", async (opened, page) => {
 const link = "#sample=desk&quality=fast&seed=7&symmetry=none";
 test("a link holds the sample and the options", link, async (opened, page) => {
   const isShown = async (values: Record<string, string>) => {
+    assert.equal(await page.getAttribute('[data-sample="desk"]', "aria-pressed"), "true");
     for (const [id, value] of Object.entries(values)) assert.equal(await page.inputValue(`#${id}`), value);
   };
-  await isShown({ sample: "desk", effort: "fast", "option-seed": "7", "option-symmetry": "none" });
+  await isShown({ effort: "fast", "option-seed": "7", "option-symmetry": "none" });
   assert.equal(await page.locator(".objects .name").count(), 3);
   await opened.choose("#effort", "best");
   // The address is that of a link now.
   await page.reload();
   await opened.aligned();
-  await isShown({ sample: "desk", effort: "best", "option-seed": "7", "option-symmetry": "none" });
+  await isShown({ effort: "best", "option-seed": "7", "option-symmetry": "none" });
 });
 
 /** The IoU that the library measures for a mesh at a pose. */

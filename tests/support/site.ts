@@ -124,6 +124,9 @@ export class SitePage {
   /** Chooses from a list, wherever it is. */
   choose = (list: string, value: string) => this.reveal(this.page.locator(list), (found) => found.selectOption(value));
 
+  /** Chooses a sample. */
+  sample = (id: string) => this.click(`[data-sample="${id}"]`);
+
   /** Clicks a control, wherever it is. */
   click = (control: string) => this.reveal(this.page.locator(control), (found) => found.click());
 

@@ -75,10 +75,11 @@ globalThis.harness = {
   },
   /** The colours at positions in the view, CSS pixels. */
   async colours(places) {
-    const bitmap = await createImageBitmap(await harness.view.snapshot());
+    const { clientWidth, clientHeight } = document.querySelector("#host");
+    const bitmap = await createImageBitmap(await harness.view.picture(clientWidth, clientHeight, false));
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
     context.drawImage(bitmap, 0, 0);
-    const ratio = bitmap.width / document.querySelector("#host").clientWidth;
+    const ratio = bitmap.width / clientWidth;
     const at = ([x, y]) => [
       ...context.getImageData(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1).data.slice(0, 3),
     ];

@@ -2,14 +2,15 @@
 import { useEffect } from "preact/hooks";
 import { listenToKeys } from "./commands/shortcuts.js";
 import { draft } from "./input/draft.js";
+import { AcceptSure, Decision } from "./panels/decision.js";
 import { DropOverlay } from "./panels/drop-overlay.js";
-import { Header, isHelpOpen, pageCommands } from "./panels/header.js";
+import { Header, isHelpOpen, pageCommands, Tools } from "./panels/header.js";
 import { InputPanel } from "./panels/input-panel.js";
 import { HandPanel, OptionsPanel } from "./panels/lazy-panels.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
-import { StartPanel } from "./panels/start-panel.js";
+import { SamplesPanel, StartPanel } from "./panels/start-panel.js";
 import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
 import { WorkspaceProvider } from "./ui/workspace.js";
@@ -59,19 +60,26 @@ export function App() {
           <aside class="side" aria-label="Scene">
             <StorageWarnings />
             <RunBar />
-            <ScenesPanel />
             <StartPanel />
-            <ObjectsPanel />
+            <ObjectsPanel>
+              <AcceptSure />
+            </ObjectsPanel>
             <ResultPanel />
-            <InputPanel />
-            <ExportPanel />
-            <OptionsPanel />
+            <Decision />
           </aside>
           <SpaceView />
           <ImageView />
           <TimePanel />
-          <HandPanel />
+          <div class="more-panels">
+            <HandPanel />
+            <ScenesPanel />
+            <SamplesPanel />
+            <ExportPanel />
+            <InputPanel />
+            <OptionsPanel />
+          </div>
         </main>
+        <Tools />
         <HelpDialog />
         <Intake />
         <DropOverlay />

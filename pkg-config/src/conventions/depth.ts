@@ -1,10 +1,9 @@
-/** Depth in metres from the values of depth models, and from the codes in which programs store it. */
+/** Depth in metres from the values of depth models. */
 import { depthOfRays, pinholeOf } from "../camera/pinhole.js";
-import { decodedDepth } from "../input/depth-codes.js";
-import { depthCodeNames, depthKindNames } from "../input/formats.js";
-import type { CameraInput, DepthCode, DepthCoding, DepthKind } from "../types/inputs.js";
+import { depthKindNames } from "../input/formats.js";
+import type { CameraInput, DepthKind } from "../types/inputs.js";
 import { type PixelArray, pixelsOf } from "../values/pixels.js";
-import { finite, oneOf, optionsOf, positive, record } from "../values/validation.js";
+import { finite, oneOf, positive, record } from "../values/validation.js";
 
 /** See `src/calibrate/calibration.rs`. */
 const FARTHEST = 1e3;
@@ -50,27 +49,6 @@ export function correctDepth(
     if (depthKind === "affine-invariant-disparity") return scale / Math.max(d + shift, scale / FARTHEST);
     return d * scale;
   });
-}
-
-/**
- * The depth along the optical axis in metres, from the numbers of a code; 0 where there is no reading. `align` and `readDepth`
- * take a code as `depthCode`; this is for other uses.
- * @param codes 24 bits of three channels as red + 256 · green + 65536 · blue
- * @param code the name of the code; the guide on frames has their formulas
- * @param range `depthNear` and `depthFar` in metres, for codes that need them
- *
- * @example
- * const metres = depthFromCode(buffer, "z-buffer", { depthNear: 0.01, depthFar: 10 });
- * @throws {@link Sim3AlignError} for arrays of the wrong type or length, unknown codes, and a missing range
- */
-export function depthFromCode(
-  codes: PixelArray<Float32Array | Uint16Array>,
-  code: DepthCode,
-  range: Pick<DepthCoding, "depthNear" | "depthFar"> = {},
-): PixelArray<Float32Array> {
-  const { data, width, height } = pixelsOf<Float32Array>("codes", codes, ["Float32Array", "Uint16Array"]);
-  const name = oneOf("code", code, depthCodeNames, "INVALID_ARGUMENT");
-  return { data: decodedDepth(data, name, optionsOf(range, ["depthNear", "depthFar"])), width, height };
 }
 
 /** The depth of each pixel; 0 where it is not a number above 0. */

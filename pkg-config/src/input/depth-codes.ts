@@ -2,9 +2,11 @@
  * Codes in which programs store depth: numbers that are no multiples of a length. Loaded only where a code is stated, or where
  * the numbers look like one; what decides that is in `coded-depth.ts`.
  */
-import type { DepthCode } from "../types/inputs.js";
+import type { DepthCode, DepthCoding } from "../types/inputs.js";
 import { invalidArgument } from "../values/error.js";
-import { finite } from "../values/validation.js";
+import { type PixelArray, pixelsOf } from "../values/pixels.js";
+import { finite, oneOf, optionsOf } from "../values/validation.js";
+import { depthCodeNames } from "./formats.js";
 
 /** A code of depth. */
 interface Code {
@@ -318,4 +320,25 @@ function planeOf({ values, columns }: Block): Plane {
   const variance = squares / values.length;
   const range = Math.abs(a) * (columns - 1) + Math.abs(b) * (rows - 1);
   return { values: plane, rest, variance, misfit: Math.sqrt(variance) / range };
+}
+
+/**
+ * The depth along the optical axis in metres, from the numbers of a code; 0 where there is no reading. `align` and `readDepth`
+ * take a code as `depthCode`; this is for other uses.
+ * @param codes 24 bits of three channels as red + 256 · green + 65536 · blue
+ * @param code the name of the code; the guide on frames has their formulas
+ * @param range `depthNear` and `depthFar` in metres, for codes that need them
+ *
+ * @example
+ * const metres = depthFromCode(buffer, "z-buffer", { depthNear: 0.01, depthFar: 10 });
+ * @throws {@link Sim3AlignError} for arrays of the wrong type or length, unknown codes, and a missing range
+ */
+export function depthFromCode(
+  codes: PixelArray<Float32Array | Uint16Array>,
+  code: DepthCode,
+  range: Pick<DepthCoding, "depthNear" | "depthFar"> = {},
+): PixelArray<Float32Array> {
+  const { data, width, height } = pixelsOf<Float32Array>("codes", codes, ["Float32Array", "Uint16Array"]);
+  const name = oneOf("code", code, depthCodeNames, "INVALID_ARGUMENT");
+  return { data: decodedDepth(data, name, optionsOf(range, ["depthNear", "depthFar"])), width, height };
 }

@@ -59,6 +59,8 @@ interface Findings extends Evidence {
   isMetric: boolean;
   depthUnit: Scene["depthUnit"];
   camera: Scene["camera"];
+  /** The length of the ray to the farthest corner of the image, over its depth. */
+  wideness: number;
   /** By how much the image to which the intrinsics seem to belong is smaller; null if they seem to be those of this one. */
   cameraFactor: number | null;
 }
@@ -75,6 +77,8 @@ interface Row {
 const LOW_IOU = 0.85;
 /** Overlaps below this are no fit at all. */
 const WRONG_IOU = 0.7;
+/** From this ratio of ray and depth on, distances along rays bend the scene visibly. */
+const WIDE = 1.15;
 /** Below this confidence, a result is rather wrong than right. */
 const DOUBT = 0.5;
 
@@ -247,6 +251,14 @@ const rows: readonly Row[] = [
       "Even the best pose fits poorly: the mesh may be that of another object, or mask, depth map and camera do not belong together.",
     remedies: () => [choose("files")],
   },
+  {
+    cause: "depth",
+    test: ({ depthKind, isMetric, confidence, isByHand, wideness }) =>
+      depthKind === "metric" && isMetric && !isByHand && confidence < 0.8 && wideness > WIDE,
+    text: ({ wideness }) =>
+      `Is it depth? Some renderers and models write distances along the rays, which are up to ${percent(wideness - 1)} longer in this image.`,
+    remedies: () => [readAs("Read it as distances along the rays", "ray-distance")],
+  },
 ];
 
 /** How much larger one image of a camera usually is than another one. */
@@ -305,6 +317,7 @@ function findingsOf(scene: Scene, object: ObjectModel, metrics: Metrics): Findin
     foundIou: alignment.value?.metrics.iou ?? null,
     confidence: confidence ?? 1,
     warnings: alignment.value?.warnings.map(({ code }) => code) ?? [],
+    wideness: Math.hypot(1, ...[camera.cx / camera.fx, camera.cy / camera.fy]),
     cameraFactor: cameraSource === null ? otherSize(camera, scene) : null,
   };
 }

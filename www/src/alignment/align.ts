@@ -58,7 +58,7 @@ type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;
 
 /** Runs an alignment of objects, unless another one is running. */
 export async function run(
-  { scene, controller, announce, status }: Workspace,
+  { scene, controller, announce, fileActions, status }: Workspace,
   objects: readonly ObjectModel[],
   work: Work,
 ): Promise<void> {
@@ -84,7 +84,7 @@ export async function run(
       controller.value = null;
       const ms = performance.now() - started;
       const back = wasAccepted ? " Undo brings the accepted pose back." : "";
-      const { text, kind } = summary(objects, abort.signal.aborted, ms);
+      const { text, kind } = summary(objects, abort.signal.aborted, ms, fileActions.peek()?.words);
       status.value = { text: text + back, kind };
     }
   }
@@ -204,11 +204,16 @@ function finish({ place, scene }: Workspace, object: ObjectModel, alignment: Any
   place(object, poseOf(whole === null ? alignment : withoutStated(alignment, whole), source));
 }
 
-function summary(objects: readonly ObjectModel[], isAborted: boolean, ms: number): Status {
+function summary(
+  objects: readonly ObjectModel[],
+  isAborted: boolean,
+  ms: number,
+  words = ({ message }: Error) => message,
+): Status {
   if (isAborted) return { text: "Cancelled. The pose is unchanged.", kind: "done" };
   const failed = objects.flatMap(({ name, run }) => {
     const state = run.peek();
-    return state.state === "failed" ? [`${name}: ${state.error.message}`] : [];
+    return state.state === "failed" ? [`${name}: ${words(state.error)}`] : [];
   });
   if (failed.length > 0) return { text: failed.join(" "), kind: "failed" };
   const what = objects.length > 1 ? `${objects.length} objects ` : "";

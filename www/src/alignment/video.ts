@@ -33,6 +33,17 @@ export const isTracking = computed(() => controller.value !== null);
 /** The tracker of the last run, which corrections need. */
 let tracker: Tracker | null = null;
 
+/** Tracking of a video that was left: it goes on where it was once the video is opened again. */
+interface Paused {
+  id: string;
+  tracker: Tracker;
+  next: number;
+  /** The pose of the last frame, which came after the video was left. */
+  late: FramePose | null;
+}
+
+let paused: Paused | null = null;
+
 /** Opens a video, as it was left. Returns false if the frame cannot be read. */
 export async function openVideo({ frames = [] }: Inputs, done: VideoWork = begun): Promise<boolean> {
   const { frameIndex: index } = done;
@@ -49,6 +60,7 @@ export async function openVideo({ frames = [] }: Inputs, done: VideoWork = begun
     frameWorks.value = ofFrames(done.frameWorks);
     put(index, frame, read);
   });
+  if (paused?.id === frame.id) trackAll();
   return true;
 }
 
@@ -73,10 +85,9 @@ function workOf(object: ObjectModel | undefined): ObjectWork | null {
 /** Whether a decision holds the pose of a frame. */
 const isHeld = (index: number) => frameWorks.peek()[index]?.verdict != null;
 
-/** Forgets the video, for another scene. */
+/** Forgets the video, for another scene. What is being tracked pauses by itself. */
 function closeVideo(): void {
-  stopTracking();
-  tracker?.dispose();
+  if (!isTracking.peek()) tracker?.dispose();
   tracker = null;
   video.value = null;
   framePoses.value = [];
@@ -162,41 +173,66 @@ const maskOf = (frame: Inputs, object: ObjectModel) => (frame.objects[0]?.mask =
 export const trackAll = () =>
   run(async (opened, first, signal) => {
     const started = performance.now();
+    const [{ id }, count] = [inputs.peek(), opened.frames.length];
+    const from = paused?.id === id ? paused : null;
+    if (from === null) paused?.tracker.dispose();
+    paused = null;
     tracker?.dispose();
     // A pose that a person has set in the first frame is where tracking begins.
     const { source, transform } = first.pose.peek();
     const initial = frameIndex.peek() === 0 && source === "hand" ? transform : null;
-    tracker = await (await aligner()).track(first.mesh, { ...sceneOptions(), initial, ...scaleOf(first) });
+    const settings = { ...sceneOptions(), initial, ...scaleOf(first) };
+    const own = from?.tracker ?? (await (await aligner()).track(first.mesh, settings));
+    let late = from?.late ?? null;
     // The next frame is decoded on this thread while the worker tracks in the one before it.
-    let next: ReturnType<typeof readInputs> | undefined;
-    for (const [index, frame] of opened.frames.entries()) {
-      if (signal.aborted || video.peek() !== opened) return announce("Stopped.");
-      announce(`Tracking frame ${index + 1} of ${opened.frames.length} …`, "working");
-      const read = await readFrame(frame, next);
+    let following: ReturnType<typeof readInputs> | undefined;
+    for (let index = from?.next ?? 0; ; index++) {
+      if (!isShown(id)) {
+        paused = { id, tracker: own, next: index, late };
+        const name = page.list.peek().find((one) => one.inputs.id === id)?.inputs.name ?? "the video";
+        return announce(`Tracking of ${name} waits after frame ${index} of ${count}: open it to go on.`);
+      }
+      tracker = own;
+      if (late !== null) setPose(index - 1, late);
+      late = null;
+      const frame = video.peek()?.frames[index];
+      if (frame === undefined) break;
+      if (signal.aborted) return announce("Stopped.");
+      announce(`Tracking frame ${index + 1} of ${count} …`, "working");
+      const read = await readFrame(frame, following);
       const object = read?.objects[0];
       if (read === null || object === undefined) return;
       const { image: _, ...view } = givenViewOf(read);
-      const tracked = tracker.next({ ...view, ...maskOf(frame, object) });
-      const following = opened.frames[index + 1];
-      next = following && readInputs(following);
-      const found = await tracked;
-      if (video.peek() !== opened) return;
-      const { confidence, depthCalibration: calibration = null, state } = found;
+      const tracked = own.next({ ...view, ...maskOf(frame, object) });
+      const next = opened.frames[index + 1];
+      following = next && readInputs(next);
+      const { confidence, depthCalibration: calibration = null, state, ...found } = await tracked;
       const pose: FramePose = { transform: toSim3(found), confidence, state, isCorrected: false, calibration };
-      if (!isHeld(index)) {
-        framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
-        frameWorks.value = frameWorks.peek().map((other, i) => (i === index ? null : other));
+      if (!isShown(id)) late = pose;
+      else {
+        setPose(index, pose);
+        put(index, video.peek()?.frames[index] ?? frame, read);
       }
-      put(index, frame, read);
     }
     const lost = framePoses.peek().filter((pose) => pose?.state === "lost").length;
     const seconds = ((performance.now() - started) / 1000).toFixed(1);
-    announce(`Tracked ${opened.frames.length} frames in ${seconds} s${lost > 0 ? `; lost in ${lost}` : ""}.`);
+    announce(`Tracked ${count} frames in ${seconds} s${lost > 0 ? `; lost in ${lost}` : ""}.`);
   });
+
+/** Whether the video with this id is shown. */
+const isShown = (id: string) => video.peek() !== null && inputs.peek().id === id;
+
+/** Sets the tracked pose of a frame, unless a decision holds the one that it has. */
+function setPose(index: number, pose: FramePose): void {
+  if (isHeld(index)) return;
+  framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
+  frameWorks.value = frameWorks.peek().map((other, i) => (i === index ? null : other));
+}
 
 /** Aligns the object in all frames together, as views of cameras whose poses are known: it has not moved. */
 export const alignFrames = () =>
   run(async (opened, first, signal) => {
+    const { id } = inputs.peek();
     const views: ViewInput[] = [];
     for (const [index, frame] of opened.frames.entries()) {
       announce(`Reading view ${index + 1} of ${opened.frames.length} …`, "working");
@@ -209,7 +245,7 @@ export const alignFrames = () =>
     announce(`Aligning ${views.length} views together …`, "working");
     const settings = { ...sceneOptions(), ...scaleOf(first), signal };
     const found = await (await aligner()).alignViews({ mesh: first.mesh, views }, settings);
-    if (video.peek() !== opened) return;
+    if (!isShown(id)) return;
     framePoses.value = found.views.map((view, i): FramePose | null => {
       if (isHeld(i)) return framePoses.peek()[i] ?? null;
       const { confidence, depthCalibration: calibration = null } = view;
@@ -257,10 +293,35 @@ export async function correctFrame(): Promise<void> {
   }
 }
 
+/** The frames that were accepted together last, which can be taken back together. */
+export const lastAccepted = signal<readonly number[]>([]);
+
+/** Accepts all frames that were tracked without a doubt and are open or, just after that, takes it back. */
+export function acceptTracked(): void {
+  const taken = lastAccepted.peek();
+  const works = videoWork().frameWorks;
+  const isTracked = (pose: FramePose | null, i: number) => pose?.state === "tracking" && works[i]?.verdict == null;
+  const chosen = taken.length > 0 ? taken : framePoses.peek().flatMap((pose, i) => (isTracked(pose, i) ? [i] : []));
+  const verdict = taken.length > 0 ? null : "accepted";
+  frameWorks.value = works.map((work, i) => (chosen.includes(i) ? { ...(work ?? asTracked(i)), verdict } : work));
+  const shown = scene.peek()?.objects[0];
+  if (shown !== undefined && chosen.includes(frameIndex.peek()))
+    shown.decision.value = verdict && { verdict, pose: shown.pose.peek() };
+  lastAccepted.value = taken.length > 0 ? [] : chosen;
+  announce(taken.length > 0 ? `${chosen.length} frames are open again.` : `Accepted ${chosen.length} frames.`);
+}
+
+/** The work of a frame of which only the tracked pose is known. */
+const asTracked = (index: number): ObjectWork => ({
+  matrix: [...(framePoses.peek()[index]?.transform.matrix ?? [])],
+  ...{ source: "tracked", verdict: null, isShown: true, isLocked: false, knownScale: null, alignment: null },
+});
+
 const fail = (error: unknown) => announce(error instanceof Error ? error.message : `${error}`, "failed");
 
 // Another scene ends the video.
-inputs.subscribe((shown) => {
+inputs.subscribe(({ id }) => {
   const opened = video.peek();
-  if (opened !== null && !opened.frames.includes(shown)) closeVideo();
+  if (opened !== null && opened.frames[0]?.id !== id) closeVideo();
+  lastAccepted.value = [];
 });

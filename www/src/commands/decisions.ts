@@ -17,13 +17,31 @@ export const decideOn = (verdict: Verdict) => (workspace: Workspace) => {
   if (object.verdict.peek() !== verdict) decide(object, verdict);
   const others = objects.peek();
   const isAll = others.every((one) => one.verdict.peek() !== null);
-  const all = isAll
-    ? ` All objects are ${others.every(({ isAccepted }) => isAccepted.peek()) ? "accepted" : "decided on"}.`
-    : "";
-  announce(`${decided[verdict]} ${object.name}.${all}`);
+  const isInVideo = workspace.video.peek() !== null;
+  const all = ` All objects are ${others.every(({ isAccepted }) => isAccepted.peek()) ? "accepted" : "decided on"}.`;
+  const what = isInVideo ? `frame ${workspace.frameIndex.peek() + 1}` : object.name;
+  announce(`${decided[verdict]} ${what}.${isAll && !isInVideo ? all : ""}`);
   const next = [...after(others, object), ...others].find((one) => one.verdict.peek() === null);
   if (next !== undefined) select(next.id);
+  else if (isInVideo) workspace.fileActions.peek()?.next("frame");
 };
+
+/** Objects that are open, whose poses nothing puts in doubt, and that are at least this sure. */
+export const sureOf = (objects: readonly ObjectModel[], least: number) =>
+  objects.filter(
+    ({ verdict, confidence, doubt }) => verdict.value === null && doubt === null && (confidence ?? 0) >= least,
+  );
+
+/** Accepts all of these, as one step that can be undone. */
+export function acceptSure({ announce, objects, record }: Workspace, least: number): void {
+  const sure = sureOf(objects.peek(), least);
+  const [first] = sure;
+  if (first === undefined) return;
+  record(first, () => {
+    for (const { decision, pose } of sure) decision.value = { verdict: "accepted", pose: pose.peek() };
+  });
+  announce(`Accepted ${sure.length} objects. Undo takes it back.`);
+}
 
 export const accept = decideOn("accepted");
 

@@ -1,4 +1,5 @@
 /** The content of an element: the views and panels of the page, without those for files. */
+import { Decision } from "../panels/decision.js";
 import { HandPanel, OptionsPanel } from "../panels/lazy-panels.js";
 import { ObjectsPanel } from "../panels/objects-panel.js";
 import { ResultPanel } from "../panels/result-panel.js";
@@ -35,6 +36,7 @@ export function Embedded() {
           <>
             <HandPanel />
             <OptionsPanel />
+            <Decision />
           </>
         )}
       </div>

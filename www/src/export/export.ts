@@ -7,55 +7,126 @@ import type { Scene } from "../state/scene.js";
 import { isMetric } from "../state/scene.js";
 import { imageSnapshot } from "../views/image-view.js";
 
-const { announce, list, scene, space } = page;
+const { announce, list, scene, space, video } = page;
 
-/** A way to save or copy the object or the whole scene: the title of its button, and what it does. */
-export type Export = readonly [title: string, act: (scene: Scene, object: ObjectModel) => Promise<void>];
+/** A way to save or copy the object or the whole scene. */
+export interface Export {
+  /** The title of its button. */
+  title: string;
+  /** What it is for. */
+  about: string;
+  act(scene: Scene, object: ObjectModel): Promise<void>;
+}
 
 /** The writers of files are loaded on demand. */
 const writers = () => import("./files.js");
+const simulators = () => import("./simulators.js");
 
-export const allExports: readonly Export[] = [
-  ["GLB", async (_, object) => download(`${fileName(object.name)}-placed.glb`, (await writers()).glbBytes(object))],
-  ["GLB of the scene", async (scene) => download("scene.glb", (await writers()).sceneBytes(scene))],
-  [
-    "JSON",
-    async (scene, { name }) => {
-      const of = scene.objects.length > 1 ? scene.name : name;
-      download(`${fileName(of)}.json`, (await writers()).jsonText(scene));
-    },
-  ],
-  [
-    "BOP JSON",
-    async (scene) => {
-      if (isMetric(scene)) download("scene_gt.json", (await writers()).bopText(scene));
-      else announce("BOP files are in millimetres: enter the known size of an object first.", "failed");
-    },
-  ],
-  ["Copy matrix (column-major)", (_, object) => copyMatrix(object, "column")],
-  ["Copy matrix (row-major)", (_, object) => copyMatrix(object, "row")],
-  ["PLY", async (_, object) => download(`${fileName(object.name)}-placed.ply`, (await writers()).plyBytes(object))],
-  ["Project", saveProject],
-  ["PNG of the view", (_, object) => saveImage(fileName(object.name))],
-  [
-    "Copy link",
-    async ({ sample }) => {
-      if (sample !== null) await copy(permalink(), "the link");
-      else announce("Your own files cannot be linked. Save the project instead.", "failed");
-    },
-  ],
-];
+const results: Export = {
+  ...{ title: "JSON", about: "Poses, sizes and confidences; the command line reads it" },
+  async act(scene, { name }) {
+    download(`${fileName(scene.objects.length > 1 ? scene.name : name)}.json`, (await writers()).jsonText(scene));
+  },
+};
+
+const picture: Export = {
+  ...{ title: "Picture", about: "The 3D view, 1200 × 630, to share" },
+  act: (scene) => saveImage(fileName(scene.name)),
+};
 
 /** What can be saved of several scenes besides. */
-export const listExport: Export = [
-  "JSON of all scenes",
-  async () => download("scenes.json", await (await writers()).allJsonText()),
-];
+const listResults: Export = {
+  ...{ title: "JSON of all scenes", about: "The results of every scene of the list" },
+  act: async () => download("scenes.json", await (await writers()).allJsonText()),
+};
 
 /** What can be saved of a video besides. */
-export const videoExport: Export = [
-  "JSON of all frames",
-  async (_, { name }) => download(`${fileName(name)}-frames.json`, (await writers()).videoText(name)),
+const videoResults: Export = {
+  ...{ title: "JSON of all frames", about: "The poses of the video by frame" },
+  act: async (_, { name }) => download(`${fileName(name)}-frames.json`, (await writers()).videoText(name)),
+};
+
+/** What is in sight. */
+export const firstExports = (): Export[] => [
+  ...(video.value === null ? [] : [videoResults]),
+  ...(list.value.length > 1 ? [listResults] : []),
+  ...[results, picture],
+];
+
+/** All others, by what they are. */
+export const exportGroups: readonly (readonly [title: string, exports: readonly Export[]])[] = [
+  [
+    "Meshes",
+    [
+      {
+        ...{ title: "GLB", about: "The object at its size, for viewers and engines" },
+        act: async (_, one) => download(`${fileName(one.name)}-placed.glb`, (await writers()).glbBytes(one)),
+      },
+      {
+        ...{ title: "GLB of the scene", about: "All objects, y up, on the ground" },
+        act: async (scene) => download("scene.glb", (await writers()).sceneBytes(scene)),
+      },
+      {
+        ...{ title: "PLY", about: "The object in the camera's frame, for point tools" },
+        act: async (_, one) => download(`${fileName(one.name)}-placed.ply`, (await writers()).plyBytes(one)),
+      },
+    ],
+  ],
+  [
+    "Poses",
+    [
+      {
+        ...{ title: "BOP JSON", about: "scene_gt.json of pose benchmarks, millimetres" },
+        async act(scene) {
+          if (isMetric(scene)) download("scene_gt.json", (await writers()).bopText(scene));
+          else announce("BOP files are in millimetres: enter the known size of an object first.", "failed");
+        },
+      },
+      {
+        ...{ title: "Copy matrix (column-major)", about: "three.js, OpenGL, Unity" },
+        act: (_, object) => copyMatrix(object, "column"),
+      },
+      {
+        ...{ title: "Copy matrix (row-major)", about: "NumPy, ROS, Blender" },
+        act: (_, object) => copyMatrix(object, "row"),
+      },
+    ],
+  ],
+  [
+    "Simulators",
+    [
+      {
+        ...{ title: "MJCF", about: "MuJoCo: rigid bodies with mass, a zip" },
+        act: async (scene) => download("mjcf.zip", await (await simulators()).mjcfZip(scene)),
+      },
+      {
+        ...{ title: "URDF", about: "PyBullet and ROS, a zip" },
+        act: async (scene) => download("urdf.zip", await (await simulators()).urdfZip(scene)),
+      },
+      {
+        ...{ title: "USD", about: "Isaac Sim and Omniverse" },
+        act: async (scene) => download("scene.usda", await (await simulators()).usdText(scene)),
+      },
+    ],
+  ],
+  [
+    "Masks and files",
+    [
+      {
+        ...{ title: "COCO JSON", about: "The masks as annotations, with corrections" },
+        act: async (scene) => download("masks.json", (await simulators()).cocoText(scene)),
+      },
+      {
+        ...{ title: "Masks as PNG", about: "One picture an object, a zip" },
+        act: async (scene) => download("masks.zip", await (await simulators()).maskZip(scene)),
+      },
+      { title: "Project", about: "All scenes with files and decisions, to go on elsewhere", act: saveProject },
+      {
+        ...{ title: "Copy link", about: "This sample with its options" },
+        act: () => copy(permalink(), "the link"),
+      },
+    ],
+  ],
 ];
 
 async function copyMatrix(object: ObjectModel, order: "column" | "row"): Promise<void> {
@@ -68,12 +139,12 @@ export async function saveProject(): Promise<void> {
   download(`${fileName(name)}.sim3align.zip`, await (await import("../session/project.js")).projectFile());
 }
 
-/** Saves the 3D view or, without one, the image view. */
+/** Saves the 3D view, in the size that is usual for links, or, without one, the image view. */
 async function saveImage(name: string): Promise<void> {
   const state = space.peek();
-  const image = state.kind === "ready" ? await state.view.snapshot() : await imageSnapshot(page);
+  const image = state.kind === "ready" ? await state.view.picture(1200, 630) : await imageSnapshot(page);
   if (image === null) announce("There is no image yet.", "failed");
-  else download(`${name}-view.png`, image);
+  else download(`${name}.png`, image);
 }
 
 /** Types of files by their extensions. */
@@ -97,7 +168,7 @@ function download(name: string, content: string | Uint8Array | Blob): void {
   announce(`Saved ${name}.`);
 }
 
-async function copy(text: string, what: string): Promise<void> {
+export async function copy(text: string, what: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
     announce(`Copied ${what}.`);

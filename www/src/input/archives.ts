@@ -2,7 +2,7 @@
 import { type ErrorCode, Sim3AlignError } from "sim3align";
 import type { NamedFile } from "../state/inputs.js";
 import { Allowance } from "./allowance.js";
-import { baseName, extension, isContent } from "./files.js";
+import { baseName, extension, isContent, stem } from "./files.js";
 import { gathered, streamOf } from "./slices.js";
 
 /** An archive whose directory was read. */
@@ -25,7 +25,10 @@ interface Entry {
 }
 
 /** Replaces zip archives by the files in them. */
-export async function extractArchives(files: readonly NamedFile[]): Promise<NamedFile[]> {
+export async function extractArchives(
+  files: readonly NamedFile[],
+  onProgress: (share: number) => void = () => {},
+): Promise<NamedFile[]> {
   const [held, allowance] = [new Allowance(), new Allowance()];
   const isArchive = ({ path }: NamedFile) => extension(path) === "zip";
   // Archives too large to be held are not read at all.
@@ -33,12 +36,18 @@ export async function extractArchives(files: readonly NamedFile[]): Promise<Name
   // All directories first: together, archives may be too much of which each is not.
   const parts = await Promise.all(files.map((file) => (isArchive(file) ? opened(file, allowance) : file)));
   const extracted: NamedFile[] = [];
+  const total = parts.reduce((sum, part) => sum + ("entries" in part ? part.bytes.length : 0), 0);
+  let done = 0;
   for (const part of parts) {
     if (!("entries" in part)) extracted.push(part);
     else {
+      // What lies in no folder is in one with the name of the archive.
+      const folder = part.entries.every(({ path }) => path.includes("/")) ? "" : `${stem(part.name)}/`;
       for (const entry of part.entries) {
         const content = await contentOf(part, entry);
-        extracted.push({ path: entry.path, bytes: async () => content, size: content.length });
+        done += entry.packed;
+        onProgress(done / total);
+        extracted.push({ path: folder + entry.path, bytes: async () => content, size: content.length });
       }
     }
   }

@@ -26,6 +26,13 @@ export async function readDepthMap(
 ): Promise<ReadDepthMap> {
   const bytes = await file.bytes();
   const depthKind = kind ?? suggestedKind(file, bytes);
+  const { depthScale = 1 } = scales;
+  if (depthScale < 0) {
+    // In the frame of OpenGL, z points backwards. As values without a unit, they are read as they are.
+    const read = await readDepth(bytes, { depthKind: "affine-invariant" });
+    const data = read.data.map((z) => (Number.isFinite(z) ? z * depthScale : 0));
+    return { ...read, data, unit: { metres: -depthScale, source: "entered", isAssumed: false }, depthKind: "metric" };
+  }
   return { ...(await readDepth(bytes, { ...scales, depthKind })), depthKind };
 }
 

@@ -17,8 +17,8 @@ export interface Draft {
   isVideo: boolean;
   /** Whether these are the inputs of the scene that is shown already. */
   isEdit: boolean;
-  /** Whether it was made to correct one mask: it is opened once that is done. */
-  isCorrection?: boolean;
+  /** The index of the object whose mask it corrects: it is opened once that is done. */
+  corrects?: number;
   /** Files that may belong to the scene that is shown: whether they do is asked. */
   forShown?: readonly Typed[];
 }

@@ -1,5 +1,8 @@
 /** Names of objects in the paths of their files. */
 
+/** The name of a scene whose files tell none. */
+export const OWN_FILES = "Own files";
+
 /** Words that tell the kind of a file, not its object. */
 const kindWords = new Set("mask masks visib visible mesh meshes model models obj object objects gt truth".split(" "));
 

@@ -37,10 +37,22 @@ export interface LoadedMesh {
   glb: Uint8Array | null;
 }
 
-/** The mesh of a source. */
-export const meshOf = once(load);
+/** Meshes that are being decoded, and those that an object still has: what no scene shows, memory does not keep. */
+const loading = new WeakMap<MeshSource, Promise<LoadedMesh>>();
+const known = new WeakMap<MeshSource, WeakRef<MeshFromFile>>();
+const glbOf = new WeakMap<MeshFromFile, LoadedMesh["glb"]>();
 
-async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
+/** The mesh of a source. */
+export function meshOf(source: MeshSource): Promise<LoadedMesh> {
+  const mesh = known.get(source)?.deref();
+  if (mesh !== undefined) return Promise.resolve({ mesh, glb: glbOf.get(mesh) ?? null });
+  const started = loading.get(source) ?? load(source).finally(() => loading.delete(source));
+  loading.set(source, started);
+  return started;
+}
+
+async function load(source: MeshSource): Promise<LoadedMesh> {
+  const { file, siblings } = source;
   if ((file.size ?? 0) > MAX_BYTES) {
     throw new Sim3AlignError({
       ...{ code: "FILE_TOO_LARGE", argument: "mesh", expected: "at most 1 GB" },
@@ -51,7 +63,12 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
   const bytes = await file.bytes();
   const ending = extension(file.path);
   const glb = shownGlb(bytes);
-  if (!refersToFiles(file.path)) return { mesh: await readMesh(bytes), glb };
+  const keep = (mesh: MeshFromFile): LoadedMesh => {
+    known.set(source, new WeakRef(mesh));
+    glbOf.set(mesh, glb);
+    return { mesh, glb };
+  };
+  if (!refersToFiles(file.path)) return keep(await readMesh(bytes));
   const resources: Record<string, Uint8Array> = {};
   const addResources = async (file: Uint8Array) => {
     const { shape, colors } = await externalResources(file);
@@ -65,7 +82,7 @@ async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
     }
   };
   await addResources(bytes);
-  return { mesh: await readMesh(bytes, { format: ending as MeshFormat, resources }), glb };
+  return keep(await readMesh(bytes, { format: ending as MeshFormat, resources }));
 }
 
 /** A name in a mesh file, which may be a URI. */

@@ -9,6 +9,8 @@ export interface Photo {
   height: number;
   /** The size of `rgba`. */
   shown: Size;
+  /** Whether its EXIF data are passed over, by which it would not have the shape of the depth map. */
+  isAsTaken: boolean;
 }
 
 interface Size {
@@ -32,9 +34,18 @@ export async function readPhoto(file: NamedFile, size: Size | null): Promise<Pho
 
 /** The pixels of an image, resized. */
 export async function photoFrom(source: Blob | ImageData, size: Size | null): Promise<Photo> {
-  const bitmap = await createImageBitmap(source).catch(() => {
-    throw new Error("The browser cannot decode this image. Choose a JPEG, PNG or WebP file.");
-  });
+  const decoded = (options?: ImageBitmapOptions) =>
+    createImageBitmap(source, options).catch(() => {
+      throw new Error("The browser cannot decode this image. Choose a JPEG, PNG or WebP file.");
+    });
+  let bitmap = await decoded();
+  const isUpright = ({ width, height }: Size) => height > width;
+  let isAsTaken = false;
+  if (size !== null && source instanceof Blob && isUpright(bitmap) !== isUpright(size)) {
+    const taken = await decoded({ imageOrientation: "none" });
+    isAsTaken = isUpright(taken) === isUpright(size);
+    if (isAsTaken) bitmap = taken;
+  }
   const { width, height } = bitmap;
   const scale = Math.min(1, MAX_SIDE / Math.max(width, height));
   const shown = size ?? { width: Math.ceil(scale * width), height: Math.ceil(scale * height) };
@@ -43,5 +54,5 @@ export async function photoFrom(source: Blob | ImageData, size: Size | null): Pr
   context.imageSmoothingQuality = "high";
   context.drawImage(bitmap, 0, 0, shown.width, shown.height);
   bitmap.close();
-  return { rgba: context.getImageData(0, 0, shown.width, shown.height).data, width, height, shown };
+  return { rgba: context.getImageData(0, 0, shown.width, shown.height).data, width, height, shown, isAsTaken };
 }

@@ -37,12 +37,20 @@ export const errorOf = (field: Field, cause: unknown, object?: number, source?: 
   ...(cause instanceof Sim3AlignError ? { code: cause.code } : {}),
 });
 
-function messageOf(cause: unknown): string {
+/** Remedies for programs, which name arguments and calls. */
+const ofPrograms = /\b(pass|convert it:)\b|\w\(\)|`/i;
+
+/** What a person does instead, by the code of the error; the page has words for it. */
+export const onPage: Partial<Record<ErrorCode, string>> = {};
+
+/** The words for an error, with what a person can do. */
+export function messageOf(cause: unknown): string {
   if (!(cause instanceof Sim3AlignError)) return cause instanceof Error ? cause.message : `${cause}`;
-  const { argument, found, expected, remedy } = cause;
+  const { argument, code, found, expected, remedy } = cause;
   // The part of a file, such as the fx of a camera.
   const part = /\.(\w+)$/.exec(argument)?.[1];
-  return `${part === undefined ? "" : `${part}: `}Found ${found}; expected ${expected}. ${remedy}`;
+  const helps = ofPrograms.test(remedy) ? (onPage[code] ?? "") : remedy;
+  return `${part === undefined ? "" : `${part}: `}Found ${found}; expected ${expected}. ${helps}`;
 }
 
 const fields: readonly Field[] = ["depth", "mask", "mesh", "camera", "photo"];

@@ -184,10 +184,17 @@ const isSameSize = (a: ImageSize, b: ImageSize | null) => a.width === b?.width &
 async function cameraFrom(source: CameraSource | null, imageId: string | null): Promise<Camera> {
   if (source === null) return cameraOf({});
   if (source.kind === "file") {
+    if (await isCut(source.file)) throw new Error("The file is cut off: its JSON does not end. Export it again.");
     return cameraOf({ cameraFile: await source.file.bytes(), ...(imageId !== null && { imageId }) });
   }
   const { kind: _, ...camera } = source;
   return cameraOf({ camera });
+}
+
+/** Whether a file begins as JSON, and ends before it is complete. */
+async function isCut(file: NamedFile): Promise<boolean> {
+  const text = new TextDecoder().decode(await file.bytes()).trim();
+  return /^[[{]/.test(text) && !/[\]}]$/.test(text);
 }
 
 const exifOf = async (photo: NamedFile) => readExif(await photo.bytes()).catch(() => undefined);

@@ -1,5 +1,6 @@
 /** The inputs of a scene with other files in place of some of its own. */
 import { baseName } from "../input/files.js";
+import { OWN_FILES, titleOf } from "../input/names.js";
 import type { Inputs, MeshSource, ObjectFiles, Role, Typed } from "../state/inputs.js";
 import { scenesOf } from "./grouping.js";
 
@@ -31,11 +32,15 @@ export function rebuilt(before: Inputs, files: readonly Typed[]): Inputs {
   const camera = before.camera?.kind === "file" ? after.camera : (after.camera ?? before.camera);
   const paired = new Set<MeshSource>();
   const objects = after.objects.map((object) => {
-    const known = before.objects.find(({ mask }) => mask !== null && mask.file === object.mask?.file);
+    const known = before.objects.find(({ mask, mesh }) =>
+      mask === null ? mesh !== null && mesh.file === object.mesh?.file : mask.file === object.mask?.file,
+    );
     if (known === undefined) return object;
     const mesh = after.meshes.find(({ file }) => file === known.mesh?.file) ?? object.mesh;
     if (mesh !== null) paired.add(mesh);
-    return { ...object, name: known.name, mask: known.mask, mesh };
+    // That of a mesh alone is a guess, unless somebody has typed it.
+    const isTyped = known.mask !== null || known.name !== titleOf(mesh?.file.path ?? "");
+    return { ...object, name: isTyped ? known.name : object.name, mask: known.mask ?? object.mask, mesh };
   });
   // A mesh of which a pair is kept is that of no other object.
   const isTaken = ({ mask, mesh }: ObjectFiles) => mesh !== null && paired.has(mesh) && mask === null;
@@ -47,7 +52,7 @@ export function rebuilt(before: Inputs, files: readonly Typed[]): Inputs {
 }
 
 /** A sample with other files is no sample. */
-export const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : "Own files" });
+export const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : OWN_FILES });
 
 /** The files of inputs with their roles, also of a sample. */
 export function filesOf(inputs: Inputs): Typed[] {

@@ -21,7 +21,7 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
   // What a wrong depth map does to the objects is not their fault.
   const seen = depth.length === 0 ? reading : { ...reading, depth: null };
   return [
-    ...reading.problems,
+    ...reading.problems.map(withRemedies),
     ...unassigned(inputs),
     ...several(inputs),
     ...missing(inputs),
@@ -30,6 +30,13 @@ export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
     ...ofPhoto(reading),
     ...reading.objects.flatMap((object, i) => ofObject(inputs, seen, object, i)),
   ];
+}
+
+/** The problems of the readers with what a button can do. */
+function withRemedies(problem: Problem): Problem {
+  if (problem.field !== "depth" || !problem.message.includes("below 0")) return problem;
+  const flip: Remedy = { title: "Flip the sign", apply: (inputs) => ({ ...inputs, depthScale: -1 }) };
+  return { ...problem, remedies: [flip] };
 }
 
 function missing({ depth, objects }: Inputs): Problem[] {
@@ -113,8 +120,13 @@ export const fovYDegOf = ({ fy }: { fy: number }, { height }: { height: number }
 function ofPhoto({ photo, depth }: Reading): Problem[] {
   if (photo === null || depth === null) return [];
   const ratio = (photo.width * depth.height) / (photo.height * depth.width);
-  if (Math.abs(Math.log(ratio)) <= ASPECT_TOLERANCE) return [];
+  const isAlike = Math.abs(Math.log(ratio)) <= ASPECT_TOLERANCE;
+  if (isAlike && !photo.isAsTaken) return [];
   const sizes = `${photo.width} × ${photo.height}, the depth map ${depth.width} × ${depth.height}`;
+  if (isAlike) {
+    const turned = "The photo's EXIF data turn it, but the depth map is not turned: the photo is used as it was taken.";
+    return [doubt("photo", turned)];
+  }
   const leaveOut: Remedy = { title: "Leave out the photo", apply: (inputs) => ({ ...inputs, photo: null }) };
   return [error("photo", `The photo is ${sizes}: they do not show the same view.`, [leaveOut])];
 }

@@ -2,6 +2,7 @@
 import { extractArchives } from "../input/archives.js";
 import { draft, draftInputs } from "../input/draft.js";
 import { error, errorOf } from "../input/problems.js";
+import { asListed } from "../input/video-frames.js";
 import { isSession } from "../session/pack.js";
 import { openProject } from "../session/project.js";
 import type { Inputs, NamedFile, Typed } from "../state/inputs.js";
@@ -11,10 +12,12 @@ import { proposeScenes, rebuild, refuse, set } from "./draft.js";
 import { fromSam3d, isUnassigned, rolesOf } from "./file-roles.js";
 import { scenesOf } from "./grouping.js";
 
-const { inputs } = page;
+const { announce, enlist, inputs, unpacking } = page;
 
 /** Whether a draft waits for its depth map. */
 const lacksDepth = ({ depth, files }: Inputs) => depth === null && files.some(({ role }) => role !== "unused");
+
+const FILM = /\.(mp4|mov|mkv|avi|webm|m4v)$/i;
 
 /** The files of a drop with their roles, and how their depth is read where that is known. */
 interface Drop {
@@ -33,13 +36,32 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
     const drop = await reading;
     if (drop !== null) await place(drop);
   } catch (cause) {
-    refuse(errorOf("files", cause));
+    if (cause instanceof Stopped) announce("Nothing was opened.");
+    else refuse(errorOf("files", cause));
   }
 }
 
+/** Unpacks archives. A person can stop it. */
+async function unpacked(files: readonly NamedFile[]): Promise<NamedFile[]> {
+  let isStopped = false;
+  const cancel = () => {
+    isStopped = true;
+  };
+  try {
+    return await extractArchives(files, (share) => {
+      if (isStopped) throw new Stopped();
+      unpacking.value = { share, cancel };
+    });
+  } finally {
+    unpacking.value = null;
+  }
+}
+
+class Stopped extends Error {}
+
 /** Reads which files there are; null for a project, which is opened. */
 async function readDrop(files: readonly NamedFile[]): Promise<Drop | null> {
-  const extracted = await extractArchives(files);
+  const extracted = await unpacked(files);
   if (extracted.some(isSession)) {
     if (!(await openProject(extracted))) throw new Error("The project was saved by another version of this page.");
     draft.value = null;
@@ -55,18 +77,28 @@ async function readDrop(files: readonly NamedFile[]): Promise<Drop | null> {
 
 /** Makes the files of a drop a draft, or a part of the draft that is open. */
 async function place({ typed, more }: Drop): Promise<void> {
-  if (typed.every((one) => (one.role === "unused" && !isUnassigned(one)) || one.role === "resource")) {
+  const isFilm = typed.every(({ file: { path }, role }) => role === "unused" && FILM.test(path));
+  if (isFilm || typed.every((one) => (one.role === "unused" && !isUnassigned(one)) || one.role === "resource")) {
     const names = typed.slice(0, 3).map(({ file }) => file.path);
-    return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
+    const film = isFilm
+      ? " Save the frames of the video as pictures, with a depth map each, and drop their folder."
+      : "";
+    return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).${film}`));
   }
   const scenes = scenesOf(typed).map((one) => ({ ...one, ...more }));
   const open = draft.peek();
   if (open !== null) {
+    const both = [...(open.forShown ?? []), ...typed];
+    if (open.forShown !== undefined && canReplace(both)) {
+      return set({ ...open, scenes: scenesOf(both).map((one) => ({ ...one, ...more })), index: 0, forShown: both });
+    }
     const depths = typed.filter(({ role }) => role === "depth").length;
     if (depths === 0 || (depths === 1 && lacksDepth(draftInputs(open)))) {
       return rebuild(replaced(draftInputs(open).files, typed));
     }
-    const others = open.isEdit ? [] : open.scenes.filter(({ files }) => files.length > 0);
+    // A video is listed as one, to be opened later.
+    if (open.isVideo) enlist([asListed(open.scenes)]);
+    const others = open.isVideo ? [] : open.scenes.filter(({ files }) => files.length > 0);
     return proposeScenes([...others, ...scenes], others.length);
   }
   const shown = inputs.peek();

@@ -2,7 +2,7 @@
 import { ofDepthCamera } from "sim3align/case-names";
 import { naturally } from "sim3align/values/order";
 import { baseName, folderOf, stem } from "../input/files.js";
-import { keyOf, titleOf } from "../input/names.js";
+import { keyOf, OWN_FILES, titleOf } from "../input/names.js";
 import {
   type Inputs,
   type MeshSource,
@@ -68,7 +68,7 @@ function sceneOf(files: readonly Typed[], id: string | null): Inputs {
   const meshes = of("mesh").map((file) => ({ file, siblings: files.map((one) => one.file) }));
   return {
     ...noInputs,
-    name: nameOf(depth ?? files[0]?.file),
+    name: nameOf(depth ?? files[0]?.file) || (meshes.length === 1 && titleOf(meshes[0]?.file.path ?? "")) || OWN_FILES,
     depth,
     photo: photos.find(isNamedPhoto) ?? photos[0] ?? null,
     camera: camera === undefined ? null : { kind: "file", file: camera },
@@ -82,7 +82,7 @@ function sceneOf(files: readonly Typed[], id: string | null): Inputs {
 /** The name of the folder of a file; that of depth maps alone says nothing. */
 function nameOf(file: NamedFile | undefined): string {
   const [, folder = "", above] = file?.path.split("/").reverse() ?? [];
-  return (/^depth$/i.test(folder) ? above : folder) || "Own files";
+  return (/^depth$/i.test(folder) ? above : folder) || "";
 }
 
 interface OfObjects {

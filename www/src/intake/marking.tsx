@@ -8,8 +8,11 @@ import type { Inputs, NamedFile, ObjectFiles } from "../state/inputs.js";
 import { lazy } from "../ui/lazy.js";
 import { acceptIfClear, change, dismiss } from "./draft.js";
 
-/** How masks were made that were made here, for going on with them. */
-const marksOf = new WeakMap<NamedFile, readonly Mark[]>();
+/** How masks were made that were made here, for going on with them: the mask before, and the marks on it. */
+const made = new WeakMap<NamedFile, { before: Uint8Array | null; marks: readonly Mark[] }>();
+
+const begunWith = (file: NamedFile | undefined, mask: Uint8Array | null) =>
+  (file && made.get(file)) ?? { before: mask, marks: [] };
 
 const MaskEditor = lazy(
   () => marked.value !== null,
@@ -47,18 +50,18 @@ export function Marking({ open, ground }: { open: Draft; ground: Uint8ClampedArr
     <MaskEditor
       {...{ name, view }}
       colour={colourOf(i)}
-      before={reading?.objects[i]?.mask ?? null}
-      marks={(mask && marksOf.get(mask.file)) ?? []}
+      {...begunWith(mask?.file, reading?.objects[i]?.mask ?? null)}
       onCancel={() => {
         close();
-        if (open.isCorrection) dismiss();
+        if (open.corrects !== undefined) dismiss();
       }}
       onDone={async (drawn, marks) => {
         const file = await maskFile(drawn, shown, size, name);
-        marksOf.set(file, marks);
+        const { before } = begunWith(mask?.file, reading?.objects[i]?.mask ?? null);
+        made.set(file, { before, marks });
         close();
         await change(withMask(i, file), true);
-        if (open.isCorrection) await acceptIfClear();
+        if (open.corrects !== undefined) await acceptIfClear();
       }}
     />
   );

@@ -10,7 +10,7 @@ import { maskThumbnail, meshThumbnail } from "../pictures/thumbnails.js";
 import type { Inputs, MeshSource, ObjectFiles } from "../state/inputs.js";
 import { Check, Choices, Picture } from "../ui/controls.js";
 import { acceptOf, FieldFiles } from "./cards.js";
-import { change } from "./draft.js";
+import { change, label } from "./draft.js";
 import { MarkButton } from "./marking.js";
 import { Problems, problemsFor } from "./problem-list.js";
 
@@ -102,9 +102,9 @@ function Row({ inputs, object, read, i, ground, width }: RowProps) {
   );
   const shape = useMemo(() => (mesh === null ? null : meshThumbnail(mesh, SIZE, colour)), [mesh, colour]);
   const rename = (name: string) =>
-    change((now) => ({
+    label((now) => ({
       ...now,
-      objects: now.objects.map((one, k) => (k === i ? { ...one, name: name || one.name } : one)),
+      objects: now.objects.map((one, k) => (k === i ? { ...one, name } : one)),
     }));
   const triangles = mesh === null ? null : mesh.indices.length / 3;
   return (
@@ -125,7 +125,7 @@ function Row({ inputs, object, read, i, ground, width }: RowProps) {
         <input
           aria-label={`Name of object ${i + 1}`}
           value={object.name}
-          onChange={({ currentTarget }) => rename(currentTarget.value)}
+          onInput={({ currentTarget }) => rename(currentTarget.value)}
         />
         <span class="path" title={object.mask?.file.path}>
           {maskTitle(object)}

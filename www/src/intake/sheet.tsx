@@ -8,7 +8,7 @@ import type { Inputs, Role } from "../state/inputs.js";
 import { page } from "../state/page.js";
 import { Check, Choices, FileButton } from "../ui/controls.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
-import { accept, assign, asVideo, change, dismiss, look, putIntoShown } from "./draft.js";
+import { accept, assign, asVideo, change, dismiss, label, look, putIntoShown } from "./draft.js";
 import { propose } from "./drop.js";
 import { isUnassigned } from "./file-roles.js";
 import { Marking } from "./marking.js";
@@ -49,7 +49,7 @@ export function Sheet() {
           class="scene-name"
           aria-label="Name of the scene"
           value={inputs.name}
-          onChange={({ currentTarget }) => change((now) => ({ ...now, name: currentTarget.value || now.name }))}
+          onInput={({ currentTarget }) => label((now) => ({ ...now, name: currentTarget.value }))}
         />
         <SceneChoice open={open} />
         <VideoChoice open={open} />

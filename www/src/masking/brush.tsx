@@ -39,7 +39,7 @@ export function Brush({ brush, width, height, onBrush, onCross, onMark, onUndo }
       const [dx = 0, dy = 0] = by;
       const within = (value: number, most: number) => Math.round(Math.min(Math.max(value, 0), most - 1));
       onCross(([x, y]) => [within(x + dx, width), within(y + dy, height)]);
-    } else if (event.key === "Backspace" || (event.key === "z" && (event.ctrlKey || event.metaKey))) onUndo();
+    } else if (event.key === "Backspace") onUndo();
     else if (event.key === "x") onBrush({ adds: !adds });
     else return;
     event.preventDefault();

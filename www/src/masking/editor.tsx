@@ -24,6 +24,7 @@ export function MaskEditor({ name, view, colour, before, marks: first, ...on }: 
   const { width, height } = view;
   const dialog = useRef<HTMLDialogElement>(null);
   const [marks, setMarks] = useState(first);
+  const [undone, setUndone] = useState<readonly Mark[]>([]);
   const [brush, setBrush] = useState(firstBrush(Math.max(width, height)));
   const [cross, setCross] = useState<Pixel>([Math.round(width / 2), Math.round(height / 2)]);
   const [isWaiting, setWaiting] = useState(false);
@@ -36,8 +37,27 @@ export function MaskEditor({ name, view, colour, before, marks: first, ...on }: 
     dialog.current?.querySelector<HTMLElement>("#mask-here")?.focus();
   }, []);
 
-  const put = (mark: Mark) => setMarks((now) => [...now, mark]);
-  const undo = () => setMarks((now) => now.slice(0, -1));
+  const put = (mark: Mark) => {
+    setMarks([...marks, mark]);
+    setUndone([]);
+  };
+  const undo = () => {
+    setMarks(marks.slice(0, -1));
+    setUndone([...undone, ...marks.slice(-1)]);
+  };
+  const redo = () => {
+    setMarks([...marks, ...undone.slice(-1)]);
+    setUndone(undone.slice(0, -1));
+  };
+  const onKeyDown = (event: KeyboardEvent) => {
+    if (!event.ctrlKey && !event.metaKey) return;
+    const key = event.key.toLowerCase();
+    if (key !== "z" && key !== "y") return;
+    event.preventDefault();
+    event.stopPropagation();
+    if (key === "y" || event.shiftKey) redo();
+    else undo();
+  };
 
   const attempt = async (work: () => Promise<void>) => {
     setWaiting(true);
@@ -52,6 +72,7 @@ export function MaskEditor({ name, view, colour, before, marks: first, ...on }: 
       ref={dialog}
       class="mask-editor"
       aria-labelledby="mask-title"
+      onKeyDown={onKeyDown}
       onCancel={(event) => {
         event.preventDefault();
         event.stopPropagation();
@@ -70,12 +91,20 @@ export function MaskEditor({ name, view, colour, before, marks: first, ...on }: 
         <button type="button" id="mask-undo" disabled={marks.length === 0} onClick={undo}>
           Undo
         </button>
+        <button type="button" id="mask-redo" disabled={undone.length === 0} onClick={redo}>
+          Redo
+        </button>
       </header>
       <Stage {...{ name, view, colour, mask, marks, cross, brush }} onCross={setCross} onMark={put} />
       <footer>
         <p class="quiet" id="mask-keys">
-          Click the object; strokes add to it or remove from it, and Alt turns the brush around. On the button of the
-          cross, arrows move it, Enter marks, X changes the brush, and Backspace takes back.
+          Click the object. Strokes add to it or remove from it; with Alt, a stroke does the other one. The wheel or two
+          fingers zoom and move the photo.
+          <span class="for-keys">
+            {" "}
+            With the focus on “Mark at the cross”: arrows move the cross, Enter marks, X changes between adding and
+            removing, Backspace undoes.
+          </span>
         </p>
         <p class="quiet" role="status" id="mask-status" aria-busy={isBusy}>
           {failure || status}

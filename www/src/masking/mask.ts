@@ -19,14 +19,21 @@ export function useMask(view: View, marks: readonly Mark[], before: Uint8Array |
   }, [view]);
 
   const edges = marks.filter((mark) => mark.followsEdges);
-  const hasRegion = edges.some((mark) => mark.adds);
+  const adds = edges.some((mark) => mark.adds);
+  const hasRegion = adds || (before !== null && edges.length > 0);
   useEffect(() => {
     if (!hasRegion) return setRegion(null);
     setBusy(true);
-    finder.current?.find(edges);
+    // What is only taken away from the mask before is a region, too.
+    finder.current?.find(adds ? edges : edges.map((mark) => ({ ...mark, adds: true })));
   }, [JSON.stringify(edges)]);
 
-  const mask = painted(marks, hasRegion ? region : null, before, view);
+  const found = hasRegion ? region : null;
+  const whole =
+    found === null || before === null
+      ? (found ?? before)
+      : before.map((inside, i) => (adds ? inside | (found[i] as number) : inside & ~(found[i] as number)));
+  const mask = painted(marks, whole, view);
   const share = mask.reduce((sum, inside) => sum + inside, 0) / mask.length;
   return { mask, share, isBusy };
 }

@@ -16,21 +16,15 @@ export interface Mark extends Stroke {
   followsEdges: boolean;
 }
 
-/**
- * The mask: the region that marks select, or a mask that was there before, on which the others paint.
- *
- * @param region of the marks that follow edges; null without any
- * @param before null for none
- */
+/** A mask on which marks paint, except those that select up to edges; null is an empty one. */
 export function painted(
   marks: readonly Mark[],
-  region: Uint8Array | null,
   before: Uint8Array | null,
   { width, height }: { width: number; height: number },
 ): Uint8Array {
-  const mask = Uint8Array.from(region ?? before ?? new Uint8Array(width * height));
+  const mask = Uint8Array.from(before ?? new Uint8Array(width * height));
   for (const mark of marks) {
-    if (!mark.followsEdges)
+    if (!mark.followsEdges || !mark.adds)
       eachCovered(mark, width, height, (pixel) => {
         mask[pixel] = mark.adds ? 1 : 0;
       });

@@ -1,9 +1,10 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
 import { alignAll } from "../alignment/align.js";
 import { draft } from "../input/draft.js";
+import { messageOf, onPage } from "../input/problems.js";
 import { readInputs, sceneOf } from "../input/reading.js";
 import type { Inputs, NamedFile } from "../state/inputs.js";
-import type { Listed, NextKind } from "../state/opened.js";
+import type { Listed, NextKind, SceneKind } from "../state/opened.js";
 import { page } from "../state/page.js";
 import { isFrameDoubtful, type Progress, progressIn } from "../state/progress.js";
 import type { FramePose } from "../state/video.js";
@@ -13,8 +14,12 @@ const { announce, inputs, isReading, list, objects, scene, show, video } = page;
 
 /** The number of the last call of `openSample`. The results of earlier calls are discarded. */
 let lastCall = 0;
+let lastId = "";
 objects.subscribe(() => {
-  lastCall++;
+  const { id } = inputs.peek();
+  // The frames of a video, which follow one another while it is tracked, are one scene.
+  if (id === "" || id !== lastId) lastCall++;
+  lastId = id;
 });
 
 /** Reads a sample and shows it. On failure, the scene is unchanged. */
@@ -58,22 +63,19 @@ async function attempt(work: () => Promise<unknown>): Promise<void> {
   }
 }
 
-/** A frame of a video with other files is a scene of its own. */
-const ownInputs = () => (video.peek() === null ? inputs.peek() : { ...inputs.peek(), id: "" });
-
 /** Makes the inputs of the scene that is shown a draft. */
 export async function editInputs(): Promise<void> {
-  if (draft.peek() === null) await attempt(async () => (await intake()).edit(ownInputs()));
+  if (draft.peek() === null) await attempt(async () => (await intake()).edit(inputs.peek()));
 }
 
 /** Makes a change of the inputs of the scene that is shown. */
 async function changeInputs(apply: (inputs: Inputs) => Inputs): Promise<void> {
-  if (draft.peek() === null) await attempt(async () => (await intake()).remake(apply(ownInputs())));
+  if (draft.peek() === null) await attempt(async () => (await intake()).remake(apply(inputs.peek())));
 }
 
 /** Corrects the mask of an object of the scene that is shown. */
 async function correctMask(object: number): Promise<void> {
-  if (draft.peek() === null) await attempt(async () => (await intake()).correct(ownInputs(), object));
+  if (draft.peek() === null) await attempt(async () => (await intake()).correct(inputs.peek(), object));
 }
 
 /** Opens a scene of the list, as it was left. */
@@ -84,6 +86,11 @@ export async function openListed({ id }: Inputs): Promise<void> {
   await attempt(async () => {
     const { reopen } = await import("../session/index.js");
     if (await reopen(listed)) return;
+    if (listed.frames !== undefined) {
+      const { openVideo, trackAll } = await import("../alignment/video.js");
+      if (await openVideo(listed)) await trackAll();
+      return;
+    }
     const { acceptIfClear, proposeScenes } = await intake();
     await proposeScenes([listed]);
     await acceptIfClear();
@@ -96,29 +103,39 @@ export function progressOf({ inputs: { id }, progress }: Listed): Progress | nul
 }
 
 /** Whether a scene is of this kind. One that was aligned in vain is in doubt, too. */
-export function isOfKind(one: Listed, kind: NextKind): boolean {
+export function isOfKind(one: Listed, kind: SceneKind): boolean {
   const { state = "to do" } = progressOf(one) ?? {};
   if (kind === "doubtful")
     return state === "unsure" || state === "check files" || (state === "to do" && one.progress !== null);
   return kind === "any" || state !== "decided";
 }
 
+/** The scenes in the order in which they are listed. */
+export function orderedList(): readonly Listed[] {
+  const sureness = (one: Listed) => (isOfKind(one, "open") ? (progressOf(one)?.confidence ?? 0) : 2);
+  return page.listed.value.isSorted ? [...list.value].sort((a, b) => sureness(a) - sureness(b)) : list.value;
+}
+
 /** The next scene of the list that is of this kind, after the one that is shown. */
-export function nextListed(kind: NextKind): Inputs | null {
-  const all = list.value;
+export function nextListed(kind: SceneKind): Inputs | null {
+  const all = orderedList();
   const at = all.findIndex((one) => one.inputs.id === inputs.value.id);
   return [...all.slice(at + 1), ...all.slice(0, Math.max(at, 0))].find((one) => isOfKind(one, kind))?.inputs ?? null;
 }
 
-/** Shows a later frame of the video that waits for a person or, without any, the next scene of this kind. */
+/**
+ * Shows a later frame of the video that waits for a person or, for this kind, is not decided on; without any, the next scene of
+ * this kind.
+ */
 function openNext(kind: NextKind): boolean {
-  const { frameIndex, framePoses, frameWorks } = page;
-  const at = frameIndex.peek();
-  const isWaiting = (pose: FramePose | null, i: number) =>
-    i > at && isFrameDoubtful(pose, frameWorks.peek()[i]?.verdict ?? null);
+  const { frameIndex, framePoses } = page;
+  const isWaiting = (pose: FramePose | null, i: number) => {
+    const verdict = page.frameWorks.peek()[i]?.verdict ?? null;
+    return i > frameIndex.peek() && (kind === "frame" ? verdict === null : isFrameDoubtful(pose, verdict));
+  };
   const frame = framePoses.peek().findIndex(isWaiting);
   if (frame >= 0) attempt(async () => (await import("../alignment/video.js")).showFrame(frame));
-  const next = frame < 0 ? nextListed(kind) : null;
+  const next = frame < 0 && kind !== "frame" ? nextListed(kind) : null;
   if (next !== null) openListed(next);
   return frame >= 0 || next !== null;
 }
@@ -133,4 +150,17 @@ async function openAnother(): Promise<void> {
 
 page.fileActions.value = {
   ...{ edit: editInputs, change: changeInputs, correct: correctMask, next: openNext, another: openAnother },
+  words: messageOf,
 };
+
+Object.assign(onPage, {
+  COMPRESSED_MESH: "Export the mesh without compression.",
+  CORRUPT_FILE: "Export or download the file again.",
+  EIGHT_BIT_DEPTH: "Choose the depth map as the camera or the model wrote it.",
+  FILE_TOO_LARGE: "Choose a smaller file.",
+  INVALID_CAMERA: "Choose another camera file, or enter the numbers.",
+  NO_DEPTH_IN_MASK: "Choose the mask and the depth map of one view, or flip the sign of the depth.",
+  SIZE_MISMATCH: "Choose the files of one view.",
+  UNSUPPORTED_FORMAT: "Save the file in another format, and choose it again.",
+  WRONG_LENGTH: "Choose a file of one image.",
+} satisfies typeof onPage);

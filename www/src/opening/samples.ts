@@ -11,7 +11,7 @@ export interface Sample {
   camera: string;
   photo?: string;
   /** A small picture of it. */
-  picture?: string;
+  picture: string;
   objects: readonly { id: string; title: string; mask: string; mesh: string; truth: string }[];
 }
 

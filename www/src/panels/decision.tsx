@@ -1,17 +1,18 @@
 /** The decision about a result: accept it, fix it, go on to the next one. */
-import { accept, decideOn, fix, next } from "../commands/decisions.js";
-import type { ObjectModel } from "../state/object-model.js";
+import { accept, acceptSure, decideOn, fix, next, sureOf } from "../commands/decisions.js";
 import { Menu } from "../ui/controls.js";
+import { percent } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 
-export function Decision({ object }: { object: ObjectModel | null }) {
+export function Decision() {
   const workspace = useWorkspace();
-  const { fileActions, list, scene } = workspace;
+  const { fileActions, list, rename, scene, selected } = workspace;
+  const object = selected.value?.isPlaced ? selected.value : null;
   const correct = () => object !== null && fileActions.peek()?.correct(scene.peek()?.objects.indexOf(object) ?? 0);
   const verdict = object?.verdict.value ?? null;
   const hasNext = (scene.value?.objects.length ?? 0) > 1 || list.value.length > 1;
   return (
-    <fieldset class="decision" disabled={object === null}>
+    <fieldset class="decision" part="decision" disabled={object === null}>
       <legend class="visually-hidden">Decision</legend>
       <button
         type="button"
@@ -47,6 +48,16 @@ export function Decision({ object }: { object: ObjectModel | null }) {
           </button>
         ))}
         <label class="field-inline">
+          <span>Name</span>
+          <input
+            id="object-name"
+            value={object?.name ?? ""}
+            onChange={({ currentTarget }) => {
+              if (object !== null) rename(object, currentTarget.value.trim() || object.name);
+            }}
+          />
+        </label>
+        <label class="field-inline">
           <span>Comment</span>
           <input
             id="comment"
@@ -58,5 +69,24 @@ export function Decision({ object }: { object: ObjectModel | null }) {
         </label>
       </Menu>
     </fieldset>
+  );
+}
+
+/** Confidences from which on all objects may be accepted together. */
+const thresholds = [0.9, 0.95, 0.99] as const;
+
+/** Accepts all objects of a scene that are sure, at once. */
+export function AcceptSure() {
+  const workspace = useWorkspace();
+  const counts = thresholds.map((least) => [least, sureOf(workspace.objects.value, least).length] as const);
+  if (counts[0]?.[1] === 0) return null;
+  return (
+    <Menu title="Accept all" label="Accept all that are sure">
+      {counts.map(([least, count]) => (
+        <button key={least} type="button" disabled={count === 0} onClick={() => acceptSure(workspace, least)}>
+          {percent(least)} or more: {count}
+        </button>
+      ))}
+    </Menu>
   );
 }

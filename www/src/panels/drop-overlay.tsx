@@ -1,6 +1,6 @@
-/** Accepts files dropped anywhere on the page. */
+/** Accepts files that are dropped or pasted anywhere on the page. */
 import { useEffect, useState } from "preact/hooks";
-import { droppedFiles } from "../input/files.js";
+import { droppedFiles, fromFile } from "../input/files.js";
 import { openFiles } from "../opening/open.js";
 
 const hasFiles = ({ dataTransfer }: DragEvent) => dataTransfer?.types.includes("Files") === true;
@@ -28,6 +28,13 @@ export function DropOverlay() {
       await openFiles(await droppedFiles(event.dataTransfer));
     };
     addEventListener("drop", drop, { signal });
+    const paste = (event: ClipboardEvent) => {
+      const files = Array.from(event.clipboardData?.files ?? [], (file) => fromFile(file));
+      if (files.length === 0) return;
+      event.preventDefault();
+      openFiles(files);
+    };
+    addEventListener("paste", paste, { signal });
     return () => listening.abort();
   }, []);
   return isOver ? (

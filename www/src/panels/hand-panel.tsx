@@ -31,7 +31,7 @@ export function HandPanel() {
   const isMetric = unit.value === null;
   const size = <KnownSize object={object} id="known-size" />;
   return (
-    <section class="panel hand-panel" part="hand" aria-labelledby="hand-title">
+    <section class="panel hand-panel" style={{ gridArea: "hand" }} part="hand" aria-labelledby="hand-title">
       {/* Each is in sight while it can do something, or has the focus. */}
       <div class="panel-head">
         {steps.map(([name, title, keys, can]) => (

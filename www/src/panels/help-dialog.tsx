@@ -53,9 +53,8 @@ export function HelpDialog() {
         </form>
       </header>
       <p>
-        A generated mesh has no metric scale and no pose. A depth map with a mask shows where the visible part of the
-        object is. This page estimates the similarity transform <code>x_cam = s·R·p_mesh + t</code> that aligns the mesh
-        with it.
+        A generated mesh has no real size and no place. A depth map with a mask shows where the visible part of the
+        object is. This page finds the size, the place and the turn at which the mesh is that object.
       </p>
       <p>
         Drop a folder, a zip archive or single files anywhere on the page: a depth map ({formatsText("depth")}),{" "}

@@ -35,7 +35,7 @@ export function InputPanel() {
     ["Objects", pairs.map(({ name }) => name).join(", ")],
   ] as const;
   return (
-    <details class="panel input-panel" id="inputs">
+    <details class="panel input-panel" style={{ gridArea: "input" }} id="inputs">
       <summary>
         <h2>Files</h2>
         {/* A wrong unit makes every size wrong, so it is said at all times. */}

@@ -1,4 +1,5 @@
 /** The outliner: the objects of the scene. The selected one has a menu, by which it is shown, locked, renamed and removed. */
+import type { ComponentChildren } from "preact";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import type { Support } from "sim3align";
 import { alignSelected } from "../alignment/align.js";
@@ -18,17 +19,24 @@ function stateOf(run: Run, object: ObjectModel, unit: Unit, ground: Support | nu
   return sizeM.map((side) => Math.round(100 * side)).join("×");
 }
 
-export function ObjectsPanel() {
+/** @param children further controls beside the title */
+export function ObjectsPanel({ children }: { children?: ComponentChildren }) {
   const { inputs, isReading, scene, unit } = useWorkspace();
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
-    <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
-      <h2 id="objects-title">
-        Objects <span class="quiet">{unit.value === null && "cm"}</span>
-      </h2>
+    <section class="panel objects-panel" style={{ gridArea: "objects" }} part="objects" aria-labelledby="objects-title">
+      <div class="panel-head">
+        <h2 id="objects-title">
+          Objects <span class="quiet">{unit.value === null && "cm"}</span>
+        </h2>
+        <span class="quiet" title="Decided">
+          {objects.filter(({ verdict }) => verdict.value !== null).length} of {objects.length}
+        </span>
+        {children}
+      </div>
       <ul class="objects">
         {objects.map((object) => (
           <Row key={object.id} object={object} />
@@ -142,8 +150,8 @@ function ObjectButton({ object }: { object: ObjectModel }) {
   );
 }
 
-export function NameField({ object }: { object: ObjectModel }) {
-  const { renamed } = useWorkspace();
+function NameField({ object }: { object: ObjectModel }) {
+  const { rename, renamed } = useWorkspace();
   const { name } = object;
   const field = useRef<HTMLInputElement>(null);
   // At once: the next key belongs to the name.
@@ -166,7 +174,7 @@ export function NameField({ object }: { object: ObjectModel }) {
         requestAnimationFrame(() => row?.querySelector("button")?.focus());
       }}
       onBlur={({ currentTarget }) => {
-        object.title.value = currentTarget.value.trim() || name;
+        rename(object, currentTarget.value.trim() || name);
         renamed.value = null;
       }}
     />

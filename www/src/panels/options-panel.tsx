@@ -129,7 +129,7 @@ export function OptionsPanel() {
   const metres = unit.value === null ? "m" : "";
   const isPaper = options.value.preset === "paper";
   return (
-    <details class="panel options-panel" part="options" id="options">
+    <details class="panel options-panel" style={{ gridArea: "options" }} part="options" id="options">
       <summary>
         <h2>Quality and constraints</h2>
       </summary>

@@ -10,20 +10,17 @@ import { inOrder, sidesOf } from "../state/sides.js";
 import type { MetricText } from "../ui/texts.js";
 import { orDash, overlapText, percent, significant, size } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { Decision } from "./decision.js";
 import { Advised, Alternatives, Details, Remedies, Warnings } from "./lazy-panels.js";
-import { NameField } from "./objects-panel.js";
 
 export function ResultPanel() {
-  const { isReadonly, objects, renamed, selected } = useWorkspace();
-  // Several objects are renamed where they are listed.
-  const isRenamed = renamed.value !== null && objects.value.length === 1 && !isReadonly.value;
+  const { isReadonly, selected } = useWorkspace();
   const chosen = selected.value;
   const run = chosen?.run.value;
   const object = chosen?.isPlaced ? chosen : null;
   return (
     <section
       class="result panel"
+      style={{ gridArea: "result" }}
       part="result"
       aria-labelledby="result-title"
       data-source={chosen?.pose.value.source ?? "none"}
@@ -34,7 +31,7 @@ export function ResultPanel() {
         ) : (
           <>
             <span class="swatch" style={{ background: chosen.colour }} />
-            {isRenamed ? <NameField object={chosen} /> : ` ${chosen.name}`}
+            {chosen.name}
           </>
         )}
       </h2>
@@ -43,7 +40,6 @@ export function ResultPanel() {
       {run?.state === "failed" && <Failure error={run.error} />}
       {!isReadonly.value && (
         <>
-          <Decision object={object} />
           <Remedies object={object} />
           <Alternatives object={object} />
         </>
@@ -60,7 +56,7 @@ function Failure({ error }: { error: Error }) {
   const files = useWorkspace().fileActions.value;
   return (
     <p class="error" role="alert">
-      {error.message}{" "}
+      {files?.words(error) ?? error.message}{" "}
       {files !== null && fieldOf(error) !== null && (
         <button type="button" onClick={files.edit}>
           Change files …

@@ -5,20 +5,21 @@ import { useWorkspace } from "../ui/workspace.js";
 
 export function RunBar() {
   const workspace = useWorkspace();
-  const { fraction, isRunning, scene, selected, status } = workspace;
-  const running = isRunning.value;
+  const { fraction, isRunning, scene, selected, status, unpacking } = workspace;
+  const opening = unpacking.value;
+  const running = isRunning.value || opening !== null;
   const run = selected.value?.run.value;
   const stage = run?.state === "running" && run.stage !== null ? stageTitles[run.stage] : "";
   const { text, kind } = status.value;
-  const percent = Math.round(100 * fraction.value);
+  const percent = Math.round(100 * (opening?.share ?? fraction.value));
   return (
-    <section class="run" part="run" aria-label="Run">
+    <section class="run" style={{ gridArea: "run" }} part="run" aria-label="Run">
       <RunButton />
       <div class="status-lines">
         {/* Screen readers announce only the status line below; every stage would be too much. */}
         {running && (
           <p class="stage" aria-hidden="true">
-            {stage || "Waiting"} … {percent} %
+            {opening !== null ? "Unpacking" : stage || "Waiting"} … {percent} %
           </p>
         )}
         <p id="status" class={running ? "behind" : ""} role="status" data-state={kind} title={text}>
@@ -39,13 +40,13 @@ export function RunBar() {
 /** One button: it aligns what the scene has, and cancels that. One of several objects is aligned from its own menu. */
 function RunButton() {
   const workspace = useWorkspace();
-  const { cancel, inputs, isReading, isRunning, scene } = workspace;
+  const { cancel, inputs, isReading, isRunning, scene, unpacking } = workspace;
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, the button is that of its objects already, so that the layout does not shift.
   const count = Math.max(objects.length, isReading.value ? inputs.value.objects.length : 0);
-  if (isRunning.value) {
+  if (isRunning.value || unpacking.value !== null) {
     return (
-      <button type="button" id="cancel" class="primary" onClick={cancel}>
+      <button type="button" id="cancel" class="primary" onClick={unpacking.value?.cancel ?? cancel}>
         Cancel
       </button>
     );

@@ -1,12 +1,21 @@
 /** The time axis of a video. */
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { alignFrames, correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../alignment/video.js";
+import {
+  acceptTracked,
+  alignFrames,
+  correctFrame,
+  isTracking,
+  lastAccepted,
+  showFrame,
+  stopTracking,
+  trackAll,
+} from "../alignment/video.js";
 import { page } from "../state/page.js";
 import type { FramePose } from "../state/video.js";
 import { percent } from "../ui/texts.js";
 
-const { frameIndex, framePoses, selected, video } = page;
+const { frameIndex, framePoses, gizmo, selected, video } = page;
 
 /** Time between frames while they are played. */
 const FRAME_MS = 120;
@@ -21,6 +30,10 @@ function titleOf(pose: FramePose | null): string {
 
 export function TimePanel() {
   const opened = video.value;
+  useEffect(() => {
+    addEventListener("keydown", onKey);
+    return () => removeEventListener("keydown", onKey);
+  }, []);
   if (opened === null) return null;
   const count = opened.frames.length;
   const index = frameIndex.value;
@@ -95,6 +108,9 @@ export function TimePanel() {
       <button type="button" id="correct" disabled={!canCorrect} onClick={correctFrame}>
         Use this pose
       </button>
+      <button type="button" id="accept-tracked" disabled={isTracking.value} onClick={acceptTracked}>
+        {lastAccepted.value.length > 0 ? `Take ${lastAccepted.value.length} back` : "Accept all tracked"}
+      </button>
     </section>
   );
 }
@@ -112,6 +128,26 @@ function Play({ count }: { count: number }) {
       {isPlaying.value ? "⏸" : "▶"}
     </button>
   );
+}
+
+/** Space plays, and arrows go from frame to frame, unless a control or the handles have a use for these keys. */
+function onKey(event: KeyboardEvent): void {
+  const { key, target } = event;
+  const opened = video.peek();
+  if (
+    opened === null ||
+    target !== document.body ||
+    event.defaultPrevented ||
+    gizmo.peek() !== null ||
+    isTracking.peek()
+  )
+    return;
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const step = { ArrowLeft: -1, ArrowRight: 1 }[key];
+  if (step !== undefined) showFrame(frameIndex.peek() + step);
+  else if (key === " ") isPlaying.peek() ? stopPlaying() : play(opened.frames.length);
+  else return;
+  event.preventDefault();
 }
 
 let timer: ReturnType<typeof setTimeout> | undefined;

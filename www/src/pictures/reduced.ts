@@ -21,7 +21,7 @@ export interface DrawnScene extends Omit<Scene, "objects"> {
 /** The scene at the size that is drawn. */
 export const drawnScene = once((scene: Scene): DrawnScene => {
   const step = Math.ceil(Math.sqrt((scene.width * scene.height) / MOST_PIXELS));
-  if (step === 1) return { ...scene, step, offset: 0, ...masksOf(({ mask }) => mask, scene.width) };
+  if (step === 1) return { ...scene, step, offset: 0, ...masksOf((mask) => mask, scene.width) };
   const offset = Math.floor(step / 2);
   const [width, height] = [Math.floor(scene.width / step), Math.floor(scene.height / step)];
   /** The pixels that are drawn. */
@@ -33,21 +33,21 @@ export const drawnScene = once((scene: Scene): DrawnScene => {
     return into;
   };
   const { fx, fy, cx, cy } = scene.camera;
-  const maskOf = once(({ mask }: ObjectModel) => picked(mask, new Uint8Array(width * height)));
+  const reduced = once((mask: Uint8Array) => picked(mask, new Uint8Array(width * height)));
   const { rgba } = scene;
   const coloured = new Uint8ClampedArray(rgba === null ? 0 : 4 * width * height);
   if (rgba !== null) picked(new Uint32Array(rgba.buffer, rgba.byteOffset), new Uint32Array(coloured.buffer));
   return {
     ...scene,
-    ...{ width, height, step, offset, ...masksOf(maskOf, width) },
+    ...{ width, height, step, offset, ...masksOf(reduced, width) },
     depthM: picked(scene.depthM, new Float32Array(width * height)),
     rgba: rgba === null ? null : coloured,
     camera: { fx: fx / step, fy: fy / step, cx: (cx - offset) / step, cy: (cy - offset) / step },
   };
 });
 
-/** Masks with their boxes: a pose changes with every frame of a drag, the box of a mask never. */
-const masksOf = (maskOf: DrawnScene["maskOf"], width: number): Pick<DrawnScene, "maskOf" | "maskBoxOf"> => ({
-  maskOf,
-  maskBoxOf: once((object) => boxOf(maskOf(object), width)),
-});
+/** Masks with their boxes: a pose changes with every frame of a drag, the box of a mask does not. */
+function masksOf(reduced: (mask: Uint8Array) => Uint8Array, width: number): Pick<DrawnScene, "maskOf" | "maskBoxOf"> {
+  const boxOfMask = once((mask: Uint8Array) => boxOf(reduced(mask), width));
+  return { maskOf: ({ mask }) => reduced(mask), maskBoxOf: ({ mask }) => boxOfMask(mask) };
+}

@@ -37,3 +37,17 @@ export function clampedZoom({ factor, x, y }: Zoom): Zoom {
   const clamped = (centre: number) => Math.min(Math.max(centre, half), 1 - half);
   return { factor, x: clamped(x), y: clamped(y) };
 }
+
+/** Where a point of the window is in a picture, as shares of its size. */
+export const shareOf = ({ left, top, width, height }: DOMRect, clientX: number, clientY: number) =>
+  [(clientX - left) / width, (clientY - top) / height] as const;
+
+/** The largest factor that a wheel or fingers reach. */
+const MAX_OWN_FACTOR = 24;
+
+/** Another zoom, in which a place of the picture stays where it is in the view. */
+export function zoomedAt({ factor, x, y }: Zoom, by: number, [u, v]: readonly [number, number]): Zoom {
+  const next = Math.min(Math.max(factor * by, 1), MAX_OWN_FACTOR);
+  const kept = (centre: number, share: number) => share + ((centre - share) * factor) / next;
+  return clampedZoom({ factor: next, x: kept(x, u), y: kept(y, v) });
+}

@@ -11,7 +11,7 @@ import type { Inputs, NamedFile } from "../state/inputs.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { stateOf } from "../state/object-work.js";
 import { hasSession, page } from "../state/page.js";
-import type { Progress } from "../state/progress.js";
+import { isDoubtful, judged, type Progress } from "../state/progress.js";
 import type { Scene } from "../state/scene.js";
 import type { VideoWork } from "../state/video.js";
 import { disown, onTakenOver, own } from "./owner.js";
@@ -19,8 +19,8 @@ import { applyState, type Packed, packed, progressOfPacked, type Settings, unpac
 import { type SceneResult, sceneResult, videoResult } from "./results.js";
 import { claimWork, forgetWork, storedFiles, storedWorks, storeWork, type Work } from "./store.js";
 
-const { announce, enlist, fileActions, inputs, list, notKept, options, othersScenes, scene, show, support, video } =
-  page;
+const { announce, enlist, fileActions, inputs, list, notKept, options, othersScenes, scene, select, show } = page;
+const { support, video } = page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
@@ -275,6 +275,10 @@ async function open(session: Packed, named: Inputs): Promise<boolean> {
   batch(() => {
     show(opened, from);
     applyState(session, page);
+    // What waits for a person.
+    const isOpen = ({ verdict }: ObjectModel) => verdict.value === null;
+    const waiting = opened.objects.find((one) => isDoubtful(judged(one))) ?? opened.objects.find(isOpen);
+    if (waiting !== undefined) select(waiting.id);
   });
   // Nobody has seen one that was aligned in the background.
   announce(works.get(from.id)?.shownAt === 0 ? `Aligned ${from.name} in the background.` : `Restored ${from.name}.`);

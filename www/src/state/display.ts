@@ -19,8 +19,6 @@ export interface Display3d {
   mesh: boolean;
   wireframe: boolean;
   dimensions: boolean;
-  /** Whether there are views from above, from the side and from the front. */
-  planes: boolean;
   pointSize: number;
 }
 
@@ -40,7 +38,7 @@ export function displayState() {
   };
 
   const display3d = signal<Display3d>({
-    ...{ cloud: true, mesh: true, wireframe: false, dimensions: true, planes: false },
+    ...{ cloud: true, mesh: true, wireframe: false, dimensions: true },
     pointSize: 1.6,
   });
 

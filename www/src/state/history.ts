@@ -1,10 +1,12 @@
 /**
- * Undo and redo: of poses with their alignments, of known sizes and decisions, and of the calibration and the support that
- * they are in.
+ * Undo and redo: of poses with their alignments, of known sizes, decisions and masks, and of the calibration and the support
+ * that they are in.
  */
 import { batch, computed, type Signal, signal } from "@preact/signals";
 import type { Support } from "sim3align";
-import type { Decision, ObjectModel, Verdict } from "./object-model.js";
+import type { Inputs } from "./inputs.js";
+import type { Decision, ObjectModel, Verdict, VisibleExtent } from "./object-model.js";
+import type { OpenedState } from "./opened.js";
 import { type Nudge, nudged, type Pose } from "./pose.js";
 import type { StatusState } from "./running.js";
 import type { Scene, SceneState } from "./scene.js";
@@ -13,6 +15,7 @@ import type { Scene, SceneState } from "./scene.js";
 interface Snapshot {
   scene: Scene | null;
   support: Support | null;
+  files: Pick<Inputs, "objects" | "files">;
   objects: Map<ObjectModel, Settled>;
 }
 
@@ -20,10 +23,13 @@ interface Settled {
   pose: Pose;
   decision: Decision | null;
   knownScale: number | null;
+  shape: Uint8Array;
+  visible: VisibleExtent;
 }
 
-const settled = ({ pose, decision, knownScale }: ObjectModel): Settled => ({
+const settled = ({ pose, decision, knownScale, shape, visible }: ObjectModel): Settled => ({
   ...{ pose: pose.peek(), decision: decision.peek(), knownScale: knownScale.peek() },
+  ...{ shape: shape.peek(), visible: visible.peek() },
 });
 
 interface Step {
@@ -39,6 +45,7 @@ const MAX_STEPS = 200;
 export function historyState(
   { objects, recalibrate, scene, select, support }: SceneState,
   { announce }: Pick<StatusState, "announce">,
+  { amend, inputs }: Pick<OpenedState, "amend" | "inputs">,
 ) {
   const undoSteps = signal<readonly Step[]>([]);
   const redoSteps = signal<readonly Step[]>([]);
@@ -49,14 +56,24 @@ export function historyState(
   const snapshot = (): Snapshot => ({
     scene: scene.peek(),
     support: support.peek(),
+    files: inputs.peek(),
     objects: new Map(objects.peek().map((one) => [one, settled(one)] as const)),
   });
 
   /** Makes a change, as one step that can be undone. It is shown at this object. */
-  function record(object: ObjectModel, change: () => void, before = snapshot()): void {
+  function record(object: ObjectModel, change: () => void, before = snapshot()): Step {
     batch(change);
-    undoSteps.value = [...undoSteps.peek().slice(1 - MAX_STEPS), { object, before, after: snapshot() }];
+    const step = { object, before, after: snapshot() };
+    undoSteps.value = [...undoSteps.peek().slice(1 - MAX_STEPS), step];
     redoSteps.value = [];
+    return step;
+  }
+
+  /** Makes the last step a part of the one before it, if that is `step`. */
+  function join(step: Step | undefined): void {
+    const [before, last] = undoSteps.peek().slice(-2);
+    if (step === undefined || before !== step || last === undefined) return;
+    undoSteps.value = [...undoSteps.peek().slice(0, -2), { ...step, after: last.after }];
   }
 
   /** Sets the pose of an object, as a step that can be undone. */
@@ -88,9 +105,7 @@ export function historyState(
   function nudge(object: ObjectModel, change: Nudge, continues = false): void {
     const last = undoSteps.peek().at(-1);
     place(object, byHand(object, change));
-    if (!continues || last?.object !== object) return;
-    const [after] = undoSteps.peek().slice(-1);
-    undoSteps.value = [...undoSteps.peek().slice(0, -2), { ...last, ...(after && { after: after.after }) }];
+    if (continues && last?.object === object) join(last);
   }
 
   /** Moves the last step from one list to the other, and shows the state on one side of it. */
@@ -99,12 +114,22 @@ export function historyState(
     if (step === undefined) return;
     from.value = from.peek().slice(0, -1);
     to.value = [...to.peek(), step];
-    const { scene: whole, support: plane, objects: states } = step[side];
+    const { scene: whole, support: plane, files, objects: states } = step[side];
+    const now = scene.peek();
     batch(() => {
       select(step.object.id);
-      if (whole !== null && whole !== scene.peek()) recalibrate(whole);
+      const masks = files.objects.map(({ mask }) => mask);
+      if (inputs.peek().objects.some(({ mask }, i) => mask !== masks[i])) {
+        const objects = inputs.peek().objects.map((one, i) => ({ ...one, mask: masks[i] ?? null }));
+        amend((one) => ({ ...one, objects, files: files.files }));
+      }
+      // A sample whose mask was corrected stays a scene of its own.
+      if (whole !== null && now !== null && whole !== now)
+        recalibrate({ ...whole, name: now.name, sample: now.sample });
       support.value = plane;
-      for (const [object, { pose, decision, knownScale }] of states) {
+      for (const [object, { pose, decision, knownScale, shape, visible }] of states) {
+        object.shape.value = shape;
+        object.visible.value = visible;
         object.pose.value = pose;
         object.decision.value = decision;
         object.knownScale.value = knownScale;
@@ -122,5 +147,5 @@ export function historyState(
     redoSteps.value = [];
   });
 
-  return { canUndo, canRedo, record, place, decide, byHand, nudge, undo, redo };
+  return { canUndo, canRedo, record, join, place, decide, byHand, nudge, undo, redo };
 }

@@ -54,11 +54,11 @@ export interface VisibleExtent {
   sizeM: number;
 }
 
-/** An object of a scene. The inputs are constant; signals hold the state. */
+/** An object of a scene. The inputs are constant, except for its mask, which can be corrected; signals hold the state. */
 export class ObjectModel implements Readonly<ObjectParts> {
   readonly id: string;
   readonly colour: string;
-  readonly mask: Uint8Array;
+  readonly shape: Signal<Uint8Array>;
   readonly mesh: MeshArrays;
   readonly glb: Uint8Array | null;
   readonly truth: ObjectParts["truth"];
@@ -100,7 +100,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
     this.id = parts.id;
     this.title = signal(parts.name);
     this.colour = parts.colour;
-    this.mask = parts.mask;
+    this.shape = signal(parts.mask);
     this.mesh = parts.mesh;
     this.glb = parts.glb;
     this.truth = parts.truth;
@@ -113,6 +113,10 @@ export class ObjectModel implements Readonly<ObjectParts> {
 
   get name(): string {
     return this.title.value;
+  }
+
+  get mask(): Uint8Array {
+    return this.shape.value;
   }
 
   /** Makes the present scale the known one, or no scale. */

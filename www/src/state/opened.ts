@@ -6,9 +6,13 @@ import type { ObjectModel } from "./object-model.js";
 import type { Progress } from "./progress.js";
 import type { StatusState } from "./running.js";
 import type { Scene, SceneState } from "./scene.js";
+import type { VideoState } from "./video.js";
 
 /** What is looked for: what needs a person, what is not decided on, or anything. */
-export type NextKind = "doubtful" | "open" | "any";
+export type SceneKind = "doubtful" | "open" | "any";
+
+/** The same, or a later frame that is not decided on. */
+export type NextKind = SceneKind | "frame";
 
 /** What the page does with files; an embedded scene has none of it. */
 export interface FileActions {
@@ -20,6 +24,8 @@ export interface FileActions {
   correct(object: number): void;
   /** Shows the next scene of the list or, without any, a sample. */
   another(): Promise<void>;
+  /** What a person can do about an error, in place of what a program can. */
+  words(error: Error): string;
   /** Shows the next frame or scene of this kind. Returns whether there is one. */
   next(kind: NextKind): boolean;
 }
@@ -42,12 +48,17 @@ export function openedState(
   { scene, support }: SceneState,
   { layers, setLayer }: DisplayState,
   { announce }: StatusState,
+  { video }: VideoState,
 ) {
   /** The inputs of the scene that is shown, or of the sample that is being read. */
   const inputs = signal<Inputs>(noInputs);
   const isReading = signal(false);
+  /** The files of a drop that are being unpacked: how much of them, and what stops it. */
+  const unpacking = signal<{ share: number; cancel(): void } | null>(null);
   /** The user's own scenes in the order in which they came, with those that are still to be opened. */
   const list = signal<readonly Listed[]>([]);
+  /** Which of them are listed, and whether the least sure ones come first. */
+  const listed = signal<{ kind: SceneKind; isSorted: boolean }>({ kind: "any", isSorted: false });
   /** The scenes of other tabs. */
   const othersScenes = signal<readonly Foreign[]>([]);
   /** Why the browser does not keep a scene; null while it keeps all. */
@@ -79,6 +90,29 @@ export function openedState(
     });
   }
 
+  /** Changes the inputs of the scene that is shown, which stays as it is; in a video, of this frame or of all. */
+  function amend(change: (inputs: Inputs) => Inputs, isForAll = false): void {
+    const [shown, whole, opened] = [inputs.peek(), scene.peek(), video.peek()];
+    const changed = change(shown);
+    batch(() => {
+      inputs.value = changed;
+      if (opened !== null) {
+        const frames = opened.frames.map((one) => (one === shown ? changed : isForAll ? change(one) : one));
+        video.value = { ...opened, frames };
+        enlist(list.peek().flatMap((one) => (one.inputs.id === shown.id ? { ...one.inputs, frames } : [])));
+      } else if (changed.id !== "") enlist([changed]);
+      if (whole !== null && changed.sample !== whole.sample)
+        scene.value = { ...whole, name: changed.name, sample: changed.sample };
+    });
+  }
+
+  /** Names an object, in all frames of a video. */
+  function rename(object: ObjectModel, name: string): void {
+    const index = scene.peek()?.objects.indexOf(object);
+    object.title.value = name;
+    amend((one) => ({ ...one, objects: one.objects.map((own, i) => (i === index ? { ...own, name } : own)) }), true);
+  }
+
   /** Takes an object out of the scene. The others keep their poses. */
   function removeObject(object: ObjectModel): void {
     const [whole, from] = [scene.peek(), inputs.peek()];
@@ -94,5 +128,21 @@ export function openedState(
     announce(`Removed ${object.name}.`);
   }
 
-  return { inputs, isReading, list, othersScenes, notKept, fileActions, enlist, show, removeObject };
+  return {
+    inputs,
+    isReading,
+    unpacking,
+    list,
+    listed,
+    othersScenes,
+    notKept,
+    fileActions,
+    enlist,
+    show,
+    amend,
+    rename,
+    removeObject,
+  };
 }
+
+export type OpenedState = ReturnType<typeof openedState>;

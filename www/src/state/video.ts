@@ -44,3 +44,5 @@ export function videoState() {
 
   return { video, frameIndex, framePoses, frameWorks };
 }
+
+export type VideoState = ReturnType<typeof videoState>;

@@ -21,17 +21,18 @@ interface Surroundings {
 export type Workspace = ReturnType<typeof createWorkspace>;
 
 export function createWorkspace({ theme }: Surroundings) {
-  const [scene, display, status] = [sceneState(), displayState(), statusState()];
+  const [scene, display, status, video] = [sceneState(), displayState(), statusState(), videoState()];
+  const opened = openedState(scene, display, status, video);
   const isReadonly = signal(false);
   return {
     ...scene,
     ...display,
     ...status,
-    ...historyState(scene, status),
+    ...opened,
+    ...video,
+    ...historyState(scene, status, opened),
     ...optionsState(),
     ...runningState(scene),
-    ...openedState(scene, display, status),
-    ...videoState(),
     theme,
     /** Whether the scene is read-only. */
     isReadonly,

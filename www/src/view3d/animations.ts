@@ -19,7 +19,7 @@ export class Animations {
   /** Starts an animation. The promise resolves when it ends or is replaced. */
   start(
     name: string,
-    { from, durationMs }: Animation,
+    { from, durationMs, delayMs = 0 }: Animation,
     target: Matrix,
     centre: Vector3,
     apply: (pose: Matrix) => void,
@@ -29,7 +29,7 @@ export class Animations {
     const poseAt = (share: number) => matrixOf(between(first, last, eased(share), centre));
     apply(from);
     return new Promise((finish) => {
-      this.running.set(name, { poseAt, started: performance.now(), durationMs, apply, target, finish });
+      this.running.set(name, { poseAt, started: performance.now() + delayMs, durationMs, apply, target, finish });
     });
   }
 

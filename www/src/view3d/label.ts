@@ -17,8 +17,8 @@ const LABEL_PX = 28;
 export const lengthText = (m: number, unit: Unit, largestM: number): string =>
   unit === null && m >= 1 ? depth(m, unit) : size(m, unit, largestM);
 
-/** A text. */
-export function labelOf(text: string): Sprite {
+/** A text, with a border in the colour of what it is about. */
+export function labelOf(text: string, colour: string): Sprite {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [256, 64];
   const context = canvas.getContext("2d");
@@ -32,6 +32,9 @@ export function labelOf(text: string): Sprite {
     context.beginPath();
     context.roundRect((256 - width) / 2, 6, width, 52, 14);
     context.fill();
+    context.strokeStyle = colour;
+    context.lineWidth = 4;
+    context.stroke();
     context.fillStyle = "#ffffff";
     context.textAlign = "center";
     context.textBaseline = "middle";
@@ -43,37 +46,33 @@ export function labelOf(text: string): Sprite {
 }
 
 /**
- * Keeps labels apart and in sight, as seen from the camera, in one size on the screen.
+ * Keeps labels apart and in sight, each at its line, as seen from the camera, in one size on the screen; the first ones first.
  * @param viewPx the height of the view in CSS pixels
  */
 export function spreadLabels(labels: readonly Sprite[], camera: PerspectiveCamera, viewPx: number): void {
   const [across = 1, , , , , down = 1] = camera.projectionMatrix.elements;
   // In the units of the view, which is 2 high and 2 wide.
   const height = (2 * LABEL_PX) / Math.max(viewPx, 1);
-  const lowest = -1 + height / 2;
-  const seen = labels.map((label) => ({ label, at: label.getWorldPosition(new Vector3()).project(camera) }));
   const placed: { x: number; y: number; width: number }[] = [];
-  for (const { label, at } of seen.sort((a, b) => b.at.y - a.at.y)) {
+  for (const label of labels) {
     label.scale.set((4 * height) / down, height / down, 1);
     const canvasWidth = label.scale.x * across;
     const width = canvasWidth * (label.userData.share as number);
-    const isInView = Math.abs(at.x) < 1.2 && Math.abs(at.y) < 1.2;
-    const edge = Math.max(1 - width / 2, 0);
-    const x = isInView ? Math.min(Math.max(at.x, -edge), edge) : at.x;
-    const start = isInView ? Math.min(Math.max(at.y, lowest), -lowest) : at.y;
-    /** The first free place from the start, in steps of one label. */
-    const free = (step: number) => {
-      let y = start;
-      const overlaps = () =>
-        placed.find((other) => Math.abs(other.x - x) < (other.width + width) / 2 && Math.abs(other.y - y) < height);
-      // Each step leaves one of the others behind, so there are at most as many.
-      for (let other = overlaps(); other !== undefined; other = overlaps()) y = other.y + step;
-      return y;
-    };
-    const below = free(-1.02 * height);
-    const y = isInView && below < lowest ? free(1.02 * height) : below;
-    label.center.set(0.5 + (at.x - x) / canvasWidth, 0.5 + (at.y - y) / height);
-    placed.push({ x, y, width });
+    const overlaps = ({ x, y }: Vector3) =>
+      placed.some((other) => Math.abs(other.x - x) < (other.width + width) / 2 && Math.abs(other.y - y) < height);
+    const [edge, end] = [Math.max(1 - width / 2, 0), 1 - height / 2];
+    const isInside = ({ x, y }: Vector3) => Math.abs(x) < edge && Math.abs(y) < end;
+    const places = (label.userData.places as readonly Vector3[]).map((place) => ({
+      place,
+      at: label.parent?.localToWorld(place.clone()).project(camera) ?? new Vector3(),
+    }));
+    const free = places.filter(({ at }) => !overlaps(at));
+    const found = free.find(({ at }) => isInside(at)) ?? free[0];
+    // Rather none than one upon another.
+    label.visible = found !== undefined;
+    if (found === undefined) continue;
+    label.position.copy(found.place);
+    placed.push({ x: found.at.x, y: found.at.y, width });
   }
 }
 

@@ -3,14 +3,19 @@ import type { ColorRepresentation, Sprite, Vector3 } from "three/webgpu";
 import { labelOf, lengthText } from "./label.js";
 import { geometryOf, linesOf } from "./lines.js";
 import { release } from "./parts.js";
-import { Group } from "./three.js";
+import { Color, Group } from "./three.js";
 
 /** A line, and where its length is written; OpenCV camera frame, metres. */
 export interface Measure {
   from: Vector3;
   to: Vector3;
   label: Vector3;
+  /** From the middle of the line to the label. */
+  outwards: Vector3;
 }
+
+/** Shares of the line at which its label may be, best first. */
+const PLACES = [0.5, 0.3, 0.7, 0.1, 0.9];
 
 export class Measures {
   readonly object = new Group();
@@ -19,7 +24,10 @@ export class Measures {
   private readonly lines;
   private shown = "";
 
-  constructor(color: ColorRepresentation, renderOrder: number) {
+  constructor(
+    private readonly color: ColorRepresentation,
+    renderOrder: number,
+  ) {
     this.lines = linesOf([], { color, depthTest: false });
     this.lines.renderOrder = renderOrder;
     this.object.add(this.lines);
@@ -36,15 +44,19 @@ export class Measures {
     this.lines.geometry = geometryOf(positions);
     for (const label of this.labels.splice(measures.length)) release(label);
     const lengths = measures.map(({ from, to }) => from.distanceTo(to));
-    for (const [i, { label }] of measures.entries())
-      this.labelAt(i, lengthText(lengths[i] ?? 0, unit, Math.max(...lengths))).position.copy(label);
+    for (const [i, { label, from, to, outwards }] of measures.entries()) {
+      const sprite = this.labelAt(i, lengthText(lengths[i] ?? 0, unit, Math.max(...lengths)));
+      sprite.position.copy(label);
+      // Where else it may be: along its line.
+      sprite.userData.places = PLACES.map((share) => from.clone().lerp(to, share).add(outwards));
+    }
   }
 
   private labelAt(i: number, text: string): Sprite {
     const known = this.labels[i];
     if (known?.userData.text === text) return known;
     release(known);
-    const label = labelOf(text);
+    const label = labelOf(text, `#${new Color(this.color).getHexString()}`);
     label.userData.text = text;
     this.labels[i] = label;
     this.object.add(label);

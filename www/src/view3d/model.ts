@@ -2,6 +2,7 @@
 
 import { applyToObject3D } from "sim3align/three";
 import type { Intersection, Material, Object3D, Raycaster } from "three/webgpu";
+import type { Colouring } from "../pictures/light.js";
 import { matrixOf, type Pose, poseOf, shifted } from "./pose.js";
 import {
   BackSide,
@@ -32,6 +33,10 @@ function cornersAround(content: Object3D): Vector3[] {
     (i) => new Vector3(side(i & 1, min.x, max.x), side(i & 2, min.y, max.y), side(i & 4, min.z, max.z)),
   );
 }
+
+/** What the lights of the view make of a surface that faces the viewer, on average. */
+const MEAN_LIGHT = 1;
+
 /** The outline's width as a share of the mesh's box diagonal. */
 const outlineWidth = 0.006;
 
@@ -47,6 +52,7 @@ export class Model {
   private readonly materials: Material[] = [];
   private readonly box: readonly Vector3[];
   private isPlaced = false;
+  colouring: Colouring = "textures";
 
   private constructor(
     readonly id: string,
@@ -116,6 +122,7 @@ export class Model {
   /** The given material or, for a mesh without colours, one in the colour of the object. */
   private materialFor(given: Material | undefined, { attributes }: BufferGeometry): Material {
     const standard = given as MeshStandardMaterial | undefined;
+    if (attributes.color !== undefined) this.colouring = "vertices";
     const hasColours =
       attributes.color !== undefined ||
       Boolean(standard?.map) ||
@@ -128,6 +135,7 @@ export class Model {
       return standard;
     }
     given?.dispose();
+    if (attributes.color === undefined) this.colouring = "plain";
     const material = new MeshStandardMaterial({ color: this.colour, roughness: 0.62, metalness: 0, side: DoubleSide });
     if (attributes.color !== undefined) {
       material.vertexColors = true;
@@ -150,6 +158,16 @@ export class Model {
     this.pivot.visible = true;
     // The pivot's parent is in the OpenCV camera frame.
     applyToObject3D(this.pivot, matrixOf(shifted(poseOf(pose), this.centre)), { frame: "opencv" });
+  }
+
+  /** Gives the colours this light, linear; 1 leaves them as they are. */
+  setLight(light: readonly number[]): void {
+    for (const material of this.materials) {
+      const { color, userData } = material as MeshStandardMaterial;
+      if (!(material as MeshStandardMaterial).isMeshStandardMaterial) continue;
+      userData.own ??= color.toArray();
+      color.fromArray(userData.own.map((own: number, k: number) => (own * (light[k] ?? 1)) / MEAN_LIGHT));
+    }
   }
 
   /** The corners of the box in the OpenCV camera frame, bit k of an index for side k; `null` while it is hidden. */

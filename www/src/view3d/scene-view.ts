@@ -1,5 +1,6 @@
 /** The 3D view: point cloud, meshes, gizmo and viewpoint. */
 
+import type { Colouring } from "../pictures/light.js";
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { Gizmo } from "./gizmo.js";
@@ -7,9 +8,9 @@ import { markOf } from "./label.js";
 import { Model } from "./model.js";
 import { release, whileHidden } from "./parts.js";
 import { pick } from "./picker.js";
-import { PlaneViews, SHARE } from "./plane-views.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
+import { eased } from "./pose.js";
 import { Sizes } from "./sizes.js";
 import { Stage } from "./stage.js";
 import { colours, Surroundings } from "./surroundings.js";
@@ -31,6 +32,11 @@ import { cropOf, description, Viewpoint } from "./viewpoint.js";
 /** Screens resolve no more points, and software renderers draw no more in acceptable time. */
 const maxPoints = { hardware: 400_000, software: 80_000 };
 
+/** How long the viewpoint takes to another extent. */
+const GLIDE_MS = 700;
+
+const isMotionReduced = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
 /** A view of a scene with meshes. */
 export class SceneView {
   /** Its children are in the OpenCV camera frame. In three.js, y is up and z points towards the camera. */
@@ -47,7 +53,6 @@ export class SceneView {
   private scene: SceneInput | null = null;
   private cloud: Cloud | null = null;
   private readonly surroundings = new Surroundings(this.root);
-  private planes: PlaneViews | null = null;
   private readonly sizes = new Sizes(this.root);
   private objects: readonly ObjectInput[] = [];
   private selected: string | null = null;
@@ -55,6 +60,9 @@ export class SceneView {
   private look: Look = "orbit";
   private fits = false;
   private loading = 0;
+  /** What the viewpoint shows, and where it is on its way from and to. */
+  private aimed: Extent = { centre: [0, 0, 1], radius: 0.5 };
+  private glide: { from: Extent; to: Extent; started: number } | null = null;
   private display: Display = { cloud: true, mesh: true, wireframe: false, pointSize: 1.2, theme: "light" };
 
   /**
@@ -81,17 +89,17 @@ export class SceneView {
     });
     this.root.rotation.x = Math.PI;
     this.root.add(this.mark);
-    stage.scene.add(this.root, camera, new HemisphereLight(0xffffff, 0x8d8a86, 1.5));
+    stage.scene.add(this.root, camera, new HemisphereLight(0xffffff, 0xcfcac4, 2.3));
     this.pointer = this.listen();
     stage.run(camera, {
       onResize: (width, height) => this.viewpoint.resize(width, height),
-      onFrame: (_, height) => {
+      onFrame: (heightPx, height) => {
         const isMoving = this.animations.step();
+        const isGliding = this.glideOn();
         const isDamping = controls.update();
-        this.sizes.spread(camera, stage.canvas.clientHeight);
-        this.planes?.draw(JSON.stringify([this.display, this.selected, this.plane, this.objects.length]));
-        this.cloud?.prepare(camera, height);
-        return isMoving || isDamping;
+        this.sizes.spread(camera, height);
+        this.cloud?.prepare(camera, heightPx);
+        return isMoving || isDamping || isGliding;
       },
       onCanvas: (canvas) => {
         this.viewpoint.connect(canvas);
@@ -180,7 +188,7 @@ export class SceneView {
     for (const id of [...this.poses.keys()]) if (!this.models.has(id)) this.poses.delete(id);
     this.objects = objects;
     if (this.selected !== null && !this.models.has(this.selected)) this.selected = null;
-    this.frame();
+    if (!this.viewpoint.isTouched) this.lookFrom(this.look, this.fits);
     this.highlight();
   }
 
@@ -190,8 +198,7 @@ export class SceneView {
     this.poses.set(id, pose);
     const model = this.models.get(id);
     if (!model) return;
-    const isReduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (animate && animate.durationMs > 0 && !isReduced) {
+    if (animate && animate.durationMs > 0 && !isMotionReduced()) {
       const end = this.animations.start(id, animate, pose, model.centre, (at) => {
         model.pose = at;
       });
@@ -199,6 +206,17 @@ export class SceneView {
       await end;
     } else model.pose = pose;
     this.update();
+  }
+
+  /** What a mesh is drawn in. */
+  colouringOf(id: string): Colouring {
+    return this.models.get(id)?.colouring ?? "textures";
+  }
+
+  /** Shows a mesh in the light that the photo has, by channels. */
+  setLight(id: string, light: readonly number[]): void {
+    this.models.get(id)?.setLight(light);
+    this.stage.invalidate();
   }
 
   private moved(model: Model, phase: "drag" | "end"): void {
@@ -248,14 +266,28 @@ export class SceneView {
   lookFrom(which: Look, fits = false): void {
     this.look = which;
     this.fits = fits;
-    const { centre, radius } = this.extent();
-    this.viewpoint.lookFrom(
-      which,
-      toThree(centre),
-      radius,
-      fits && this.scene ? cropOf(this.scene, this.objects, this.models) : null,
-    );
+    this.glide = null;
+    this.aim(this.extent());
     this.update();
+  }
+
+  private aim(at: Extent): void {
+    const { look, fits, scene, objects, models } = this;
+    this.aimed = at;
+    this.viewpoint.lookFrom(look, toThree(at.centre), at.radius, fits && scene ? cropOf(scene, objects, models) : null);
+  }
+
+  /** Moves the viewpoint on its way to another extent. Returns whether it is still on the way. */
+  private glideOn(): boolean {
+    const { glide } = this;
+    if (glide === null || this.viewpoint.isTouched) return false;
+    const share = Math.min((performance.now() - glide.started) / GLIDE_MS, 1);
+    const mixed = (a: number, b: number) => a + (b - a) * eased(share);
+    const { from, to } = glide;
+    const centre = from.centre.map((x, k) => mixed(x, to.centre[k] as number)) as [number, number, number];
+    this.aim({ centre, radius: mixed(from.radius, to.radius) });
+    if (share === 1) this.glide = null;
+    return share < 1;
   }
 
   /** Shows where other cameras are: their poses in the frame of the depth camera, 16 numbers each, column-major. */
@@ -264,11 +296,17 @@ export class SceneView {
     this.update();
   }
 
-  /** Frames all objects at their present poses, unless the user has moved the viewpoint. */
-  frame(): void {
+  /** Frames all objects at their present poses, unless the user has moved the viewpoint; it goes there, or is there at once. */
+  frame(isAtOnce = false): void {
     // The grid surrounds the objects where they are now.
     if (this.plane !== null) this.setGround(this.plane);
-    if (!this.viewpoint.isTouched) this.lookFrom(this.look, this.fits);
+    if (this.viewpoint.isTouched) return;
+    if (isAtOnce || this.look === "camera" || isMotionReduced()) {
+      this.lookFrom(this.look, this.fits);
+      return;
+    }
+    this.glide = { from: this.aimed, to: this.extent(), started: performance.now() };
+    this.stage.invalidate();
   }
 
   /** Orbits around a point of the OpenCV camera frame, metres. */
@@ -280,12 +318,16 @@ export class SceneView {
   /** The extent of all objects: of their meshes, or of their points if there are no meshes. */
   private extent(): Extent {
     const corners = [...this.models.values()].flatMap((model) => model.corners() ?? []);
-    if (corners.length > 0) {
-      const { center, radius } = new Sphere().setFromPoints(corners);
-      return { centre: center.toArray(), radius };
-    }
-    if (!this.cloud) return { centre: [0, 0, 1], radius: 0.5 };
-    return extentOf(this.cloud.points, (pixel) => this.objects.some(({ mask }) => mask[pixel]));
+    const isOnTheWay = this.objects.some(({ id }) => this.animations.isRunning(id));
+    const seen =
+      this.cloud && (corners.length === 0 || isOnTheWay)
+        ? extentOf(this.cloud.points, (pixel) => this.objects.some(({ mask }) => mask[pixel]))
+        : null;
+    if (corners.length === 0) return seen ?? { centre: [0, 0, 1], radius: 0.5 };
+    // Where they are going is in sight, too.
+    if (seen !== null) corners.push(new Vector3(...seen.centre));
+    const { center, radius } = new Sphere().setFromPoints(corners);
+    return { centre: center.toArray(), radius };
   }
 
   private highlight(): void {
@@ -308,33 +350,9 @@ export class SceneView {
       model.show(display, model.id === selected, display.hidden?.includes(model.id));
     }
     this.showSizes();
-    if ((display.planes === true) !== (this.planes !== null)) this.togglePlanes();
     this.gizmo?.set(this.models.get(selected ?? "") ?? null, this.gizmoMode, this.gizmoSettings);
     stage.canvas.setAttribute("aria-label", this.label());
     stage.invalidate();
-  }
-
-  private togglePlanes(): void {
-    const surface = {
-      stage: this.stage,
-      model: () => this.models.get(this.selected ?? "") ?? null,
-      plane: () => this.plane,
-      undecorated: (draw: () => void) => this.undecorated(draw),
-      onPose: (model: Model, phase: "drag" | "end") => this.moved(model, phase),
-    };
-    this.planes?.dispose();
-    this.planes = this.planes ? null : new PlaneViews(this.host, surface);
-    // Draws at once.
-    this.stage.setShare(this.planes ? 1 - SHARE : 1);
-  }
-
-  /** Runs while points and meshes alone are visible. */
-  private undecorated(draw: () => void): void {
-    const { cloud, gizmo, mark, sizes } = this;
-    this.surroundings.show(false, false);
-    if (cloud) cloud.object.visible = this.display.cloud;
-    whileHidden([gizmo.object, mark, ...sizes.objects, ...(cloud ? [cloud.veil] : [])], draw);
-    this.update();
   }
 
   private showSizes(): void {
@@ -362,9 +380,17 @@ export class SceneView {
     this.stage.invalidate();
   }
 
-  /** A PNG of the view. */
-  snapshot(): Promise<Blob> {
-    return this.stage.snapshot();
+  /** The view as a PNG of this size, without what is there to work with; `fillsView` leaves no bars beside the image. */
+  picture(width: number, height: number, fillsView = true): Promise<Blob> {
+    const { stage, viewpoint } = this;
+    let taken: Promise<Blob> | null = null;
+    viewpoint.fillsView = fillsView;
+    whileHidden([this.gizmo.object, this.mark], () => {
+      taken = stage.picture(width, height);
+    });
+    viewpoint.fillsView = false;
+    stage.fit();
+    return taken as unknown as Promise<Blob>;
   }
 
   dispose(): void {
@@ -378,7 +404,6 @@ export class SceneView {
     this.models.clear();
     this.cloud?.dispose();
     release(this.mark);
-    this.planes?.dispose();
     this.surroundings.dispose();
     this.stage.dispose();
   }

@@ -29,7 +29,7 @@ export class Sizes {
       this.measures.delete(id);
     }
     for (const [id, model] of models) {
-      const measures = this.measures.get(id) ?? new Measures(0xffffff, 2);
+      const measures = this.measures.get(id) ?? new Measures(model.colour, 2);
       this.root.add(measures.object);
       this.measures.set(id, measures);
       const corners = (id === selected || models.size <= FEW) && isShown(id) ? model.corners() : null;
@@ -47,6 +47,8 @@ export class Sizes {
   /** Keeps the labels apart from one another, as seen from the camera in a view of this height in CSS pixels. */
   spread(camera: PerspectiveCamera, viewPx: number): void {
     const shown = [...this.measures.values()].filter(({ object }) => object.visible);
+    // Those of the selected object, which are more.
+    shown.sort((a, b) => b.labels.length - a.labels.length);
     spreadLabels(
       shown.flatMap(({ labels }) => labels),
       camera,
@@ -73,6 +75,7 @@ function sidesOf(corners: readonly Vector3[]): Measure[] {
     });
     const { from, to, middle } = sides.reduce((best, side) => (side.score > best.score ? side : best));
     const outwards = middle.clone().sub(centre).normalize();
-    return { from, to, label: middle.addScaledVector(outwards, APART * diagonal) };
+    outwards.multiplyScalar(APART * diagonal);
+    return { from, to, label: middle.add(outwards), outwards };
   });
 }

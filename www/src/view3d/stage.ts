@@ -1,5 +1,5 @@
 /** A canvas that fills its host, and its renderer. It draws on demand. */
-import type { Color, OrthographicCamera, PerspectiveCamera } from "three/webgpu";
+import type { Color, PerspectiveCamera } from "three/webgpu";
 import { isPresentable } from "./presentable.js";
 import { Scene, WebGPURenderer } from "./three.js";
 
@@ -19,8 +19,8 @@ export class NoGraphics extends Error {
 
 /** Events of a stage. */
 export interface StageEvents {
-  /** Called before each frame. Returns whether another frame must follow. */
-  onFrame(widthPx: number, heightPx: number): boolean;
+  /** Called before each frame, with the height in pixels and in those of CSS. Returns whether another frame must follow. */
+  onFrame(heightPx: number, height: number): boolean;
   /** The canvas was resized, in CSS pixels. */
   onResize(width: number, height: number): void;
   /** A new canvas replaces the old one after the graphics device was lost. */
@@ -92,8 +92,6 @@ export class Stage {
   private events: StageEvents | null = null;
   private readonly observer = new ResizeObserver(() => this.fit());
   private frame = 0;
-  /** The share of the host's width that the canvas takes. */
-  private share = 1;
   /** Time of the last loss of a graphics device (`performance.now`). */
   private lastLoss = Number.NEGATIVE_INFINITY;
   private isDisposed = false;
@@ -124,8 +122,7 @@ export class Stage {
     const graphics = (this.forceWebGL ? null : await webGpu()) ?? (await webGlWithRetries());
     if (!graphics) throw new NoGraphics();
     const { canvas } = this;
-    canvas.style.cssText = "display:block;position:absolute;inset:0;height:100%;touch-action:none";
-    canvas.style.width = `${100 * this.share}%`;
+    canvas.style.cssText = "display:block;position:absolute;inset:0;width:100%;height:100%;touch-action:none";
     canvas.setAttribute("role", "img");
     const renderer = new WebGPURenderer({
       canvas,
@@ -156,21 +153,18 @@ export class Stage {
     this.observer.observe(this.host);
   }
 
-  /** Leaves a part of the host's width to others. */
-  setShare(share: number): void {
-    this.share = share;
-    this.canvas.style.width = `${100 * share}%`;
-    this.fit();
-  }
-
-  private fit(): void {
+  fit(): void {
     const { clientWidth, clientHeight } = this.canvas;
     if (!this.renderer || clientWidth === 0 || clientHeight === 0) return;
-    this.renderer.setPixelRatio(Math.min(this.isSoftware ? 1 : maxPixelRatio, devicePixelRatio));
-    this.renderer.setSize(clientWidth, clientHeight, false);
-    this.events?.onResize(clientWidth, clientHeight);
+    this.resize(clientWidth, clientHeight, Math.min(this.isSoftware ? 1 : maxPixelRatio, devicePixelRatio));
     // At once, because resizing clears the canvas.
     this.draw();
+  }
+
+  private resize(width: number, height: number, pixelRatio: number): void {
+    this.renderer?.setPixelRatio(pixelRatio);
+    this.renderer?.setSize(width, height, false);
+    this.events?.onResize(width, height);
   }
 
   /** Draws in the next frame. */
@@ -185,7 +179,7 @@ export class Stage {
   private draw(): void {
     const { renderer, camera, events } = this;
     if (!renderer || !camera || !events || this.canvas.width === 0) return;
-    const isMoving = events.onFrame(this.canvas.width, this.canvas.height);
+    const isMoving = events.onFrame(this.canvas.height, this.canvas.height / renderer.getPixelRatio());
     if (this.background) renderer.setClearColor(this.background, 1);
     renderer.render(this.scene, camera);
     // The renderer requests a frame after every frame, for animations that are not used here. `render` restarts it.
@@ -193,36 +187,15 @@ export class Stage {
     if (isMoving) this.invalidate();
   }
 
-  /**
-   * Draws the scene as another camera sees it into a canvas of another size, at so many of its CSS pixels per metre. The next
-   * frame replaces it here.
-   */
-  copy(
-    camera: OrthographicCamera,
-    to: CanvasRenderingContext2D,
-    { width, height, pxPerM }: { width: number; height: number; pxPerM: number },
-  ): void {
-    const { canvas, renderer } = this;
-    if (!renderer || canvas.width === 0 || canvas.height === 0) return;
-    // The largest part with the sides' ratio of the other canvas.
-    const scale = Math.min(canvas.width / width, canvas.height / height);
-    const [halfWidth, halfHeight] = [canvas.width, canvas.height].map((side) => side / (2 * scale * pxPerM));
-    Object.assign(camera, { left: -(halfWidth ?? 1), right: halfWidth, top: halfHeight, bottom: -(halfHeight ?? 1) });
-    camera.updateProjectionMatrix();
-    if (this.background) renderer.setClearColor(this.background, 1);
-    renderer.render(this.scene, camera);
-    const [cutWidth, cutHeight] = [scale * width, scale * height];
-    const [left, top] = [(canvas.width - cutWidth) / 2, (canvas.height - cutHeight) / 2];
-    to.drawImage(canvas, left, top, cutWidth, cutHeight, 0, 0, width, height);
-  }
-
-  /** A PNG of the canvas. */
-  snapshot(): Promise<Blob> {
+  /** A PNG of this size, in pixels; `fit` gives the canvas its own size back. */
+  picture(width: number, height: number): Promise<Blob> {
+    this.resize(width, height, 1);
     // In the same task, because the browser clears the drawing buffer after presenting it.
     this.draw();
-    return new Promise((resolve, reject) =>
+    const taken = new Promise<Blob>((resolve, reject) =>
       this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new NoGraphics())), "image/png"),
     );
+    return taken;
   }
 
   /** Replaces a lost device: by one of the same API, then by WebGL 2, then by a message. */

@@ -37,7 +37,6 @@ export {
   MeshBasicNodeMaterial,
   MeshStandardMaterial,
   NodeMaterial,
-  OrthographicCamera,
   PerspectiveCamera,
   Quaternion,
   Raycaster,

@@ -40,8 +40,6 @@ export interface Display {
   /** The width of a point in pixels of the depth map. At 1, adjacent points touch. */
   pointSize: number;
   theme: "light" | "dark";
-  /** Whether there are views from above, from the side and from the front. */
-  planes?: boolean | undefined;
   /** Whether the sizes of the objects are shown. */
   dimensions?: boolean | undefined;
   /** What lengths are shown as multiples of; by default, they are in metres. */
@@ -76,6 +74,8 @@ export interface PlaneInput {
 export interface Animation {
   from: Matrix;
   durationMs: number;
+  /** How long it stays where it is. */
+  delayMs?: number | undefined;
 }
 
 /** Events of the view. */

@@ -47,6 +47,8 @@ export class Viewpoint {
   isCamera = false;
   /** Whether the user moved the camera since the last `lookFrom`. */
   isTouched = false;
+  /** Whether the image fills the view, so that a part of it is out of sight. */
+  fillsView = false;
   /** Whether the user started to move the camera since the last `lookFrom`. */
   private isHeld = false;
   private scene: SceneInput | null = null;
@@ -66,7 +68,7 @@ export class Viewpoint {
     private readonly onChange: () => void,
   ) {
     // The light moves with the camera.
-    const lamp = new DirectionalLight(0xffffff, 2.1);
+    const lamp = new DirectionalLight(0xffffff, 1.2);
     lamp.position.set(-0.4, 1, 0.8);
     this.camera.add(lamp, lamp.target);
     this.controls = new OrbitControls(this.camera, canvas);
@@ -129,7 +131,7 @@ export class Viewpoint {
     const { left, top, right, bottom } = this.crop ?? { left: 0, top: 0, right: image.width, bottom: image.height };
     const fill = this.crop === null ? 1 : CROP_FILL;
     // No more than the image is shown at once.
-    const least = Math.min(width / image.width, height / image.height);
+    const least = Math[this.fillsView ? "max" : "min"](width / image.width, height / image.height);
     const scale = Math.max(least, fill / Math.max((right - left) / width, (bottom - top) / height, 1e-6));
     const [visibleWidth, visibleHeight] = [width / scale, height / scale];
     const centre = (low: number, high: number, visible: number, all: number) => {

@@ -1,5 +1,5 @@
 /** What pointer and wheel do in the image view: read, select, drag and zoom. */
-import { clampedZoom, type Zoom } from "../pictures/zoom.js";
+import { clampedZoom, shareOf, type Zoom, zoomedAt } from "../pictures/zoom.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import { imageOf } from "./image.js";
@@ -37,13 +37,9 @@ export function pointerOf(workspace: Workspace) {
   /** Zooms at the pointer. */
   function wheel(event: WheelEvent): void {
     event.preventDefault();
-    const { left, top, width, height } = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
-    const { factor, x, y } = zoom.peek();
-    const next = Math.min(Math.max(factor * Math.exp(-0.0015 * event.deltaY), 1), 24);
-    // What is under the pointer stays there.
-    const at = [(event.clientX - left) / width, (event.clientY - top) / height] as const;
-    const kept = (centre: number, share: number) => share + ((centre - share) * factor) / next;
-    ownZoom.value = clampedZoom({ factor: next, x: kept(x, at[0]), y: kept(y, at[1]) });
+    const box = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
+    const at = shareOf(box, event.clientX, event.clientY);
+    ownZoom.value = zoomedAt(zoom.peek(), Math.exp(-0.0015 * event.deltaY), at);
   }
 
   /** Selects the clicked object, and centres the 3D view on the clicked point. */

@@ -5,7 +5,7 @@ import { differenceLimit } from "sim3align/pictures/colours";
 import { depthGradient } from "../pictures/colours.js";
 import type { Workspace } from "../state/workspace.js";
 import { Check, Menu } from "../ui/controls.js";
-import { depth, small } from "../ui/texts.js";
+import { depth, percent, small } from "../ui/texts.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 import { pointerOf } from "./image-pointer.js";
@@ -105,7 +105,7 @@ export function ImageView() {
       </div>
       <div class="image-foot">
         <label class="wipe">
-          <span>Before</span>
+          <span>{wipe <= 0 ? "Result" : wipe >= 1 ? "Before" : "Before | result"}</span>
           <input
             id="wipe"
             type="range"
@@ -113,10 +113,10 @@ export function ImageView() {
             max="1"
             step="0.01"
             value={wipe}
-            aria-label="Share of the view that shows the poses before any alignment"
+            aria-label="Compare: the share of the picture that is as before"
+            aria-valuetext={`${percent(wipe)} before, ${percent(1 - wipe)} result`}
             onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
           />
-          <span>After</span>
         </label>
         {difference && limit !== null ? (
           <p class="legend">

@@ -6,12 +6,11 @@ import { Check, Menu, Picture } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 
-const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions" | "planes", title: string][] = [
+const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
   ["cloud", "Points"],
   ["mesh", "Mesh"],
   ["wireframe", "Wireframe"],
   ["dimensions", "Sizes"],
-  ["planes", "Top, side and front"],
 ];
 
 const viewpoints = [
