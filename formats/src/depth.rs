@@ -73,6 +73,14 @@ pub fn read_depth_image(bytes: &[u8], options: &DepthReadOptions, kind: DepthKin
     if bytes.starts_with(npy::MAGIC) {
         return read_npy(bytes, options, kind);
     }
+    if bytes.get(ROS_HEADER_BYTES..).is_some_and(|rest| rest.starts_with(png::MAGIC)) {
+        return Err(unsupported(
+            "depth",
+            "a PNG behind 12 bytes: the data of a compressedDepth message of ROS",
+            "the PNG alone",
+            "Pass the bytes from the 13th on for 16UC1. For 32FC1, decode them: a / (v - b), a and b being the floats at the bytes 4 and 8.",
+        ));
+    }
     Err(unsupported(
         "depth",
         beginning(bytes),
@@ -80,6 +88,9 @@ pub fn read_depth_image(bytes: &[u8], options: &DepthReadOptions, kind: DepthKin
         "Save the depth with numpy.save, or as 16-bit PNG in millimetres.",
     ))
 }
+
+/// The configuration that compressed_depth_image_transport puts before the image; whether its numbers are used, it doesn't say.
+const ROS_HEADER_BYTES: usize = 12;
 
 fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     let info = PngInfo::read("depth", bytes)?;

@@ -98,7 +98,7 @@ pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result
 
 /// Describes the start of an unrecognised file, for the error message.
 pub(crate) fn beginning(bytes: &[u8]) -> String {
-    const KNOWN: [(&[u8], &str); 9] = [
+    const KNOWN: [(&[u8], &str); 10] = [
         (b"\x89PNG\r\n\x1a\n", "a PNG image"),
         (b"\x93NUMPY", "a NumPy array"),
         (b"\xff\xd8\xff", "a JPEG image"),
@@ -108,6 +108,7 @@ pub(crate) fn beginning(bytes: &[u8]) -> String {
         (b"v/1\x01", "an OpenEXR image"),
         (b"PK\x03\x04", "a ZIP archive (NPZ?)"),
         (b"\x1f\x8b", "a gzip stream"),
+        (b"\x89HDF\r\n\x1a\n", "an HDF5 file"),
     ];
     if bytes.is_empty() {
         return "no bytes".into();

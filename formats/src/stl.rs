@@ -37,10 +37,15 @@ pub fn read_stl(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
 
 fn read_binary(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let mut cursor = Cursor::new("mesh", bytes);
-    let palette = Palette::of(cursor.take(HEADER_BYTES)?);
+    let header = cursor.take(HEADER_BYTES)?;
     let count = cursor.u32_le()?;
+    let attributes = cursor
+        .remaining()
+        .chunks_exact(TRIANGLE_BYTES)
+        .map(|triangle| u16::from_le_bytes([triangle[48], triangle[49]]));
     // Nearly all write zeros.
-    let has_attributes = cursor.remaining().chunks_exact(TRIANGLE_BYTES).any(|triangle| triangle[48..] != [0; 2]);
+    let has_attributes = attributes.clone().any(|attribute| attribute != 0);
+    let palette = Palette::of(header, attributes);
     let mut welder = Welder::default();
     for _ in 0..count {
         let triangle: [u8; TRIANGLE_BYTES] = cursor.array()?;
@@ -60,22 +65,27 @@ fn read_binary(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
 /// How the two bytes after each triangle mean its colour: five bits a channel.
 struct Palette {
     /// The colour of the object in the header, as Materialise Magics writes it; a set bit 15 stands for it, and red has the lowest bits.
-    /// Without it, as of VisCAM, SolidView and MeshLab, a set bit 15 marks a colour, and blue has the lowest bits.
+    /// Without it, as of VisCAM and SolidView, a set bit 15 marks a colour, and blue has the lowest bits.
     object: Option<[f64; 3]>,
+    /// Whether bit 15 is set everywhere though the colours differ: MeshLab writes the header of Magics, and marks colours.
+    is_always_marked: bool,
 }
 
 impl Palette {
-    fn of(header: &[u8]) -> Self {
+    fn of(header: &[u8], attributes: impl Iterator<Item = u16> + Clone) -> Self {
         let after =
             |window: &[u8]| window.strip_prefix(b"COLOR=").map(|rgb| [0, 1, 2].map(|i| f64::from(rgb[i]) / 255.0));
-        Self { object: header.windows(9).find_map(after) }
+        let first = attributes.clone().next();
+        let is_always_marked = attributes.clone().all(|attribute| attribute >> 15 == 1)
+            && attributes.clone().any(|each| Some(each) != first);
+        Self { object: header.windows(9).find_map(after), is_always_marked }
     }
 
     fn color(&self, attribute: u16) -> [f64; 3] {
         let channels = [0, 5, 10].map(|shift| f64::from(attribute >> shift & 31) / 31.0);
         let is_marked = attribute >> 15 == 1;
         match self.object {
-            Some(object) if is_marked => object,
+            Some(object) if is_marked && !self.is_always_marked => object,
             Some(_) => channels,
             None if is_marked => [channels[2], channels[1], channels[0]],
             None => [1.0; 3],

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
-use tiff::{ColorType, TiffError};
+use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
 use crate::depth_image::{DepthImage, DepthReadOptions, Stored};
 use crate::guard::{MAX_PIXELS, corrupt, pixel_count, too_large, unsupported};
@@ -202,6 +202,12 @@ fn words(color: ColorType) -> &'static str {
 
 fn broken(error: TiffError) -> Error {
     match error {
+        TiffError::UnsupportedError(TiffUnsupportedError::UnknownInterpretation) => unsupported(
+            "depth",
+            "a TIFF with an unknown photometric interpretation, such as LogLuv, which OpenCV 4 turns three floats a pixel into",
+            "the numbers as they are",
+            "Save the array again with numpy.save or tifffile.imwrite: LogLuv has lost what is negative.",
+        ),
         TiffError::UnsupportedError(feature) => unsupported(
             "depth",
             format!("a TIFF with {feature}"),

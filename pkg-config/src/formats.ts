@@ -115,7 +115,7 @@ export async function readDepth(file: EncodedBytes, options: ReadDepthOptions = 
 
 /**
  * Reads a mask file (PNG, NPY, JSON or JPEG), or the content of a JSON file: COCO RLE, or a file of COCO, SAM, LabelMe, VGG
- * Image Annotator, Supervisely or ISAT. The outline of a mask with soft edges is at half of its range, that of logits at 0; in
+ * Image Annotator, Supervisely, ISAT or Datumaro. The outline of a mask with soft edges is at half of its range, that of logits at 0; in
  * a map of labels, all are the object.
  * @param options.index the place of the mask in a JSON file of several, from 0
  * @param options.width the width of the image, for polygons whose file does not state it, with `height`

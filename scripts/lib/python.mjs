@@ -17,16 +17,26 @@ const pythonIn = (folder) =>
  */
 export async function pythonWith(name, program = "python3") {
   const requirements = at("scripts", "bench", name, "requirements.txt");
-  const folder = at("target", "bench", name);
+  const install = () =>
+    pythonOf(at("target", "bench", name), digest([requirements]), ["--requirement", requirements], program);
+  return step("Python libraries", install);
+}
+
+/**
+ * The Python of an environment in a folder, which is made where it is missing or was made from something else.
+ * @param {string} folder
+ * @param {string} inputs the digest of what it is made from
+ * @param {readonly string[]} packages arguments of `pip install`
+ * @param {string} program the Python that makes it
+ */
+export async function pythonOf(folder, inputs, packages, program) {
   const python = pythonIn(folder);
-  await step("Python libraries", () =>
-    cached(join(folder, "installed-from"), digest([requirements]), [python], async () => {
-      rmSync(folder, { recursive: true, force: true });
-      const remedy = "install Python 3.11 or 3.12 with venv, name it with --python, and check that PyPI can be reached";
-      await run(program, ["-m", "venv", folder], { remedy });
-      await run(python, ["-m", "pip", "install", "--quiet", "--requirement", requirements], { remedy });
-    }),
-  );
+  await cached(join(folder, "installed-from"), inputs, [python], async () => {
+    rmSync(folder, { recursive: true, force: true });
+    const remedy = "install Python 3.11 or 3.12 with venv, name it with --python, and check that PyPI can be reached";
+    await run(program, ["-m", "venv", folder], { remedy });
+    await run(python, ["-m", "pip", "install", "--quiet", ...packages], { remedy });
+  });
   return python;
 }
 

@@ -98,9 +98,9 @@ impl SearchResult {
         Ok(Self { rounds, solution, verdict })
     }
 
-    /// The probability that the best pose is right.
+    /// The probability that the best pose is right up to the symmetry of the shape.
     pub fn confidence(&self) -> f64 {
-        self.verdict.confidence.overall()
+        self.verdict.confidence.up_to_symmetry()
     }
 }
 
@@ -178,7 +178,7 @@ impl<'a> Search<'a> {
 
             let conclusion = conclusion::conclude(&rounds, None, self.reference());
             let is_last = index + 1 == efforts.len();
-            let is_sure = matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.overall() >= SURE);
+            let is_sure = matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.up_to_symmetry() >= SURE);
             let mut rivals = if is_sure && !is_last { start::rival_search(&rounds) } else { None };
             if let Some(rivals) = &mut rivals {
                 self.run(rivals, efforts::share(index + 1, efforts.len() + 1)).await;
@@ -266,7 +266,7 @@ impl<'a> Search<'a> {
         let Self { observation, mesh, request: Request { setup, options, .. }, .. } = self;
         verdict.confidence.relief_deviation = observation.relief_deviation();
         if mesh.lacks_colors() && observation.photo().is_some() {
-            verdict.turn_confidence = rounds.search.equivalence.chance(ROLLS);
+            verdict.confidence.turn = rounds.search.equivalence.chance(ROLLS);
         }
 
         let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
@@ -281,19 +281,20 @@ impl<'a> Search<'a> {
 
         let Outcome { camera_from_mesh, metrics, mut warnings, diagnostics: common, points } =
             outcome(observation, setup, &clouds, &solution, metrics, self.stages);
-        let confidence = verdict.confidence.overall();
+        let confidence = verdict.confidence;
         warnings.extend(about_mesh(&mesh.removed_parts()));
         warnings.extend(about_search(common.converged));
         warnings.extend(about_fit(&verdict.terms));
-        retain_doubts(&mut warnings, confidence);
+        retain_doubts(&mut warnings, confidence.up_to_symmetry());
 
         let [target_points, source_points] = points;
         let counts = SearchCounts { source_points, target_points, renders: search.renders };
-        let Verdict { turn_confidence, alternatives, uncertainty, effort, score, terms, color, .. } = verdict;
+        let Verdict { alternatives, uncertainty, effort, score, terms, color, .. } = verdict;
         Ok(Alignment {
             camera_from_mesh,
-            confidence,
-            turn_confidence,
+            confidence: confidence.overall(),
+            shape_confidence: confidence.up_to_symmetry(),
+            turn_confidence: confidence.turn,
             symmetry: search.equivalence.axes(),
             alternatives,
             uncertainty,

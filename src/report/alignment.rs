@@ -16,10 +16,13 @@ pub struct Alignment {
     /// The transform.
     #[serde(flatten)]
     pub camera_from_mesh: Sim3,
-    /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
-    /// of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
+    /// Probability that the pose is right in everything that the input shows: `shapeConfidence` times `turnConfidence`, where that is
+    /// not `null`. It assumes that the mesh is the object's.
     pub confidence: f64,
-    /// Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the one
+    /// Probability that the pose is right up to the symmetry of the shape (scale within 5 %, rotation within 10°, translation within
+    /// 5 % of the diameter), calibrated on generated cases.
+    pub shape_confidence: f64,
+    /// Probability that the turn is right: that of the poses which a symmetry of the shape makes equal, this is the one
     /// whose colours are those of the photo. `null` where no other turn is possible: the shape has no symmetry, its turns look
     /// alike, or there are no colours to compare. Where no turn agrees with the photo, or the colours of the mesh could not be read,
     /// all are equally likely.

@@ -41,6 +41,8 @@ pub struct Lead {
     pub margin: f64,
     /// Probability that colours have chosen the right one of the poses; 1 without colours.
     pub color_probability: f64,
+    /// Probability that colours have chosen the right one of the turns that are equal by shape; `None` where there are none.
+    pub turn: Option<f64>,
 }
 
 /// A found object.
@@ -92,8 +94,10 @@ impl Detection {
             let rounds = rounds.ok_or_else(no_candidate)?;
             let judgment = by_color(&rounds, observation, mesh, scheduler).await;
             let (candidate, margin) = chosen(&rounds, judgment.as_ref(), known)?;
+            let turn = judgment.as_ref().and_then(|judgment| judgment.turn);
             let color_probability = judgment.map_or(1.0, |judgment| judgment.probability);
-            Ok(Self { candidate, observation: rounds.search.observation, lead: Lead { margin, color_probability } })
+            let lead = Lead { margin, color_probability, turn };
+            Ok(Self { candidate, observation: rounds.search.observation, lead })
         })
     }
 }

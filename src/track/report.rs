@@ -33,6 +33,10 @@ pub struct TrackedFrame {
     pub state: TrackState,
     /// Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost.
     pub confidence: f64,
+    /// The same up to the symmetry of the shape; see `Alignment.shapeConfidence`.
+    pub shape_confidence: f64,
+    /// The probability of the turn in which the object was found, which is kept while it is tracked; see `Alignment.turnConfidence`.
+    pub turn_confidence: Option<f64>,
     /// The symmetry of the shape; see `Alignment.symmetry`.
     pub symmetry: Vec<FoundSymmetry>,
     /// Standard deviation of the size, relative: 0.01 is one per cent. It includes errors that all frames share. 0 for a given

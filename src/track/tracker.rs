@@ -115,7 +115,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             state: TrackState::Lost,
             usual: None,
             certain: None,
-            lead: Lead { margin: 0.0, color_probability: 1.0 },
+            lead: Lead { margin: 0.0, color_probability: 1.0, turn: None },
             history: History::default(),
         })
     }
@@ -185,7 +185,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.last = self.history.last();
             self.state = TrackState::Tracking;
             self.usual = None;
-            self.lead = Lead { margin: f64::from(NOISE), color_probability: 1.0 };
+            self.lead = Lead { margin: f64::from(NOISE), color_probability: 1.0, turn: None };
             self.certain = self.last.map(|pose| pose.rotation);
             let evidence =
                 SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0, depth_agreement: 1.0 };
@@ -356,8 +356,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let conditioning = conditioning
                 .map(|own| precise::scoring::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
             let shape = pose_probability(&candidate, self.lead.margin, conditioning.as_ref());
-            let (color, relief_deviation) = (self.lead.color_probability, frame.relief_deviation);
-            Confidence { shape, color, relief_deviation }.overall()
+            let Lead { color_probability: color, turn, .. } = self.lead;
+            Confidence { shape, color, relief_deviation: frame.relief_deviation, turn }
         };
         let camera_from_mesh = pose.similarity(&self.tracked.pyramid.frame);
         let observed = if self.options.metrics { frame.observation().ok().flatten() } else { None };
@@ -373,7 +373,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             camera_from_mesh: (&camera_from_mesh).into(),
             frame: self.history.frames() - 1,
             state: self.state,
-            confidence,
+            confidence: confidence.overall(),
+            shape_confidence: confidence.up_to_symmetry(),
+            turn_confidence: confidence.turn,
             symmetry: self.tracked.equivalence.axes(),
             scale_sd: self.size.deviation(),
             is_scale_settled: self.size.is_settled(),
@@ -425,6 +427,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             frame: self.history.frames() - 1,
             state: self.state,
             confidence: 0.0,
+            shape_confidence: 0.0,
+            turn_confidence: None,
             symmetry: self.tracked.equivalence.axes(),
             scale_sd: self.size.deviation(),
             is_scale_settled: self.size.is_settled(),

@@ -14,7 +14,7 @@ use crate::precise::scoring::score::NOISE;
 use crate::precise::search::ranking::Candidate;
 use crate::precise::search::recipe::{COARSE, COLORED, FINE};
 use crate::precise::verdict::choice::{Choice, ColorScore, best_roll};
-use crate::precise::verdict::color::{DISTINCT_MIN_CONTRAST, Judgment, LOOSE_MIN_SD_RAD, are_rivals};
+use crate::precise::verdict::color::{Judgment, LOOSE_MIN_SD_RAD, are_rivals};
 use crate::precise::verdict::lookalikes::{Likeness, Lookalike, ROLLS, among};
 
 /// Correlation above which a photo agrees no better.
@@ -66,11 +66,12 @@ impl Photos<'_> {
             let other = self.compare(&mut joint, &Ranked { pose, ..best.clone() }, Some(shape));
             compared.extend(other.filter(|other| likeness == Likeness::Equal || other.shape >= shape - NOISE));
         }
-        let differ = |a: usize, b: usize| {
+        let contrast = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|k| &compared[k]);
-            are_rivals(a.ranked.pose.rotation, b.ranked.pose.rotation) && difference(a, b) > DISTINCT_MIN_CONTRAST
+            let is_rival = are_rivals(a.ranked.pose.rotation, b.ranked.pose.rotation);
+            if is_rival { difference(a, b) } else { 0.0 }
         };
-        let choice = Choice::among(compared.iter().map(|compared| compared.look).collect(), differ)?;
+        let choice = Choice::among(compared.iter().map(|compared| compared.look).collect(), contrast)?;
         let is_changed = choice.chosen != 0;
         let mut chosen = compared[choice.chosen].ranked.clone();
         if is_changed {

@@ -178,14 +178,16 @@ fn summary(
     let of_used = views.iter().zip(&roles).filter(|(_, role)| **role == ViewRole::Used);
     let is_sure = confidence.shape >= SURE;
     confidence.relief_deviation = of_used.map(|(view, _)| view.frame.relief_deviation).fold(f64::INFINITY, f64::min);
-    let confidence = confidence.overall().min(share_of_used(&roles));
+    let turn_confidence = confidence.turn;
+    let shape_confidence = confidence.up_to_symmetry().min(share_of_used(&roles));
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let of_view = |(k, (role, score)): (usize, (ViewRole, Score))| {
         let world_from_camera = cameras[k].world_from_camera();
         SummaryView {
             camera_from_mesh: world_from_camera.inverse().compose(&world_from_mesh),
             // The camera pose of a view that contradicts may be the cause, and the pose in it follows from that.
-            confidence: if role == ViewRole::Contradicting { 0.0 } else { confidence },
+            shape_confidence: if role == ViewRole::Contradicting { 0.0 } else { shape_confidence },
+            turn_confidence,
             role,
             world_from_camera,
             rotation_sd_deg: Some(0.0),
@@ -197,7 +199,8 @@ fn summary(
     Ok(Summary {
         world_from_mesh,
         world: WorldFrame::Given,
-        confidence,
+        shape_confidence,
+        turn_confidence,
         is_sure,
         symmetry: first.search.equivalence.axes(),
         alternatives: alternatives.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),

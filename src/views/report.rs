@@ -126,9 +126,12 @@ pub struct ViewsAlignment {
     pub world_from_mesh: Sim3,
     /// The world.
     pub world: WorldFrame,
-    /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
-    /// of the diameter). Without given camera poses, that of the least certain view.
+    /// Probability that the pose is right; see `Alignment.confidence`. Without given camera poses, that of the least certain view.
     pub confidence: f64,
+    /// The same up to the symmetry of the shape; see `Alignment.shapeConfidence`.
+    pub shape_confidence: f64,
+    /// The probability of the turn; see `Alignment.turnConfidence`.
+    pub turn_confidence: Option<f64>,
     /// The symmetry of the shape by which poses counted as one: that of the option, or what was found on the mesh. Empty without one.
     pub symmetry: Vec<FoundSymmetry>,
     /// Other poses that explain all views nearly as well, world from mesh, best first. Empty without given camera poses.

@@ -20,8 +20,10 @@ pub struct Summary {
     pub world_from_mesh: Similarity,
     /// The world.
     pub world: WorldFrame,
+    /// See [`ViewsAlignment::shape_confidence`].
+    pub shape_confidence: f64,
     /// See [`ViewsAlignment`].
-    pub confidence: f64,
+    pub turn_confidence: Option<f64>,
     /// Whether more effort would not change the verdict of shape.
     pub is_sure: bool,
     /// The symmetry of the shape.
@@ -48,8 +50,10 @@ pub struct Summary {
 pub struct SummaryView {
     /// The pose in the view.
     pub camera_from_mesh: Similarity,
-    /// See [`ViewPose`].
-    pub confidence: f64,
+    /// The probability that it is right up to the symmetry of the shape.
+    pub shape_confidence: f64,
+    /// That of the turn.
+    pub turn_confidence: Option<f64>,
     /// The part of the view in the result.
     pub role: ViewRole,
     /// The camera.
@@ -69,7 +73,8 @@ impl SummaryView {
     pub fn unseen(world_from_mesh: Similarity) -> Self {
         Self {
             camera_from_mesh: world_from_mesh,
-            confidence: 0.0,
+            shape_confidence: 0.0,
+            turn_confidence: None,
             role: ViewRole::Unusable,
             world_from_camera: Similarity::identity(),
             rotation_sd_deg: None,
@@ -115,10 +120,10 @@ impl Summary {
             if view.role == ViewRole::Used && observation.is_some() {
                 warnings.extend(warnings::about_fit(&terms));
             }
-            warnings::retain_doubts(&mut warnings, view.confidence);
+            warnings::retain_doubts(&mut warnings, view.shape_confidence);
             views.push(ViewPose {
                 camera_from_mesh: (&view.camera_from_mesh).into(),
-                confidence: view.confidence,
+                confidence: view.shape_confidence * view.turn_confidence.unwrap_or(1.0),
                 role: view.role,
                 camera: CameraPose {
                     world_from_camera: (&view.world_from_camera).into(),
@@ -135,7 +140,9 @@ impl Summary {
         Ok(ViewsAlignment {
             world_from_mesh: (&self.world_from_mesh).into(),
             world: self.world,
-            confidence: self.confidence,
+            confidence: self.shape_confidence * self.turn_confidence.unwrap_or(1.0),
+            shape_confidence: self.shape_confidence,
+            turn_confidence: self.turn_confidence,
             symmetry: self.symmetry.clone(),
             alternatives: self.alternatives.clone(),
             uncertainty: self.uncertainty,

@@ -111,7 +111,8 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
 
     let used = || views.iter().filter(|view| view.summary.role == ViewRole::Used);
     // Without a view that agrees, nothing is known.
-    let confidence = used().map(|view| view.summary.confidence).reduce(f64::min).unwrap_or(0.0);
+    let shape_confidence = used().map(|view| view.summary.shape_confidence).reduce(f64::min).unwrap_or(0.0);
+    let turn_confidence = used().filter_map(|view| view.summary.turn_confidence).reduce(f64::min);
     let is_sure = used().next().is_some() && used().all(|view| view.shape_confidence >= SURE);
     let depths = used().map(|view| f64::from(view.summary.score.depth));
     let search = &searched[first].rounds.search;
@@ -130,7 +131,8 @@ pub fn unrelated(searched: &[SearchedView], frames: &[View]) -> Result<Summary> 
     Ok(Summary {
         world_from_mesh,
         world: WorldFrame::Camera,
-        confidence,
+        shape_confidence,
+        turn_confidence,
         is_sure,
         symmetry: search.equivalence.axes(),
         alternatives: Vec::new(),
@@ -175,11 +177,13 @@ fn judged(view: &SearchedView, (candidate, agrees): &(Candidate, bool), size_sd:
         shape: if *agrees { pose_probability(candidate, lead, conditioning.as_ref()) } else { 0.0 },
         color: color.map_or(1.0, |color| color.probability),
         relief_deviation: frames[view.index].frame.relief_deviation,
+        turn: color.and_then(|color| color.turn),
     };
     JudgedView {
         summary: SummaryView {
             camera_from_mesh: candidate.pose.similarity(&search.mesh.frame),
-            confidence: confidence.overall(),
+            shape_confidence: confidence.up_to_symmetry(),
+            turn_confidence: confidence.turn,
             role: if *agrees { ViewRole::Used } else { ViewRole::Contradicting },
             world_from_camera: Similarity::identity(),
             rotation_sd_deg: Some(0.0),

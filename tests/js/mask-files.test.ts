@@ -76,6 +76,10 @@ const layouts: [what: string, json: object, index?: number][] = [
       objects: [{ classTitle: "mug", geometryType: "polygon", points: { exterior: corners, interior: [] } }],
     },
   ],
+  [
+    "Datumaro, a polygon",
+    { items: [{ image: { size: [height, width] }, annotations: [{ type: "polygon", points: box }] }] },
+  ],
   ["ISAT", { info: { width, height }, objects: [{ category: "mug", segmentation: corners, area: 1 }] }],
 ];
 

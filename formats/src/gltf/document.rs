@@ -36,8 +36,8 @@ const HARMLESS: &str = "KHR_materials_anisotropy KHR_materials_clearcoat KHR_mat
     KHR_implicit_shapes KHR_collision_shapes MSFT_collision_primitives KHR_xmp* KHR_mesh_variants \
     EXT_mesh_features EXT_mesh_manifold EXT_mesh_primitive_edge_visibility EXT_instance_features EXT_structural_metadata \
     EXT_feature_metadata EXT_primitive_* EXT_properties_* EXT_property_* CESIUM_primitive_outline CESIUM_RTC \
-    AGI_articulations AGI_stk_metadata FB_geometry_metadata GODOT_single_root GRIFFEL_bim_data BLENDER_* \
-    NEEDLE_* WEB3D_* MOZ_* HUBS_* AVN_* UX3D_*";
+    AGI_articulations AGI_stk_metadata FB_geometry_metadata FB_ngon_encoding GODOT_single_root GRIFFEL_bim_data \
+    BLENDER_* NEEDLE_* WEB3D_* MOZ_* HUBS_* AVN_* UX3D_*";
 
 /// Beginnings of the names of extensions that leave the shape as it is, also those that are not known yet.
 const SHAPELESS: &str = "KHR_materials_* KHR_texture_* EXT_texture_*";

@@ -29,7 +29,7 @@ import { isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/validation.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
-import { DOUBT, sourcesOf, withNotes } from "./notes.js";
+import { DOUBT, sourcesOf, withDoubts, withNotes } from "./notes.js";
 import { fromOrigin, toOrigin } from "./origin.js";
 
 /** Two clouds and, for `estimateSim3`, the correspondences between their points. */
@@ -91,7 +91,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     run: (job, context) =>
       aligned(job, context, job.options, async (input, context, options) => {
         const found = await context.search("align", input, options);
-        if (found.confidence >= DOUBT && (found.diagnostics.color?.agreement ?? 1) >= DOUBT) return found;
+        if (found.shapeConfidence >= DOUBT && (found.diagnostics.color?.agreement ?? 1) >= DOUBT) return found;
         const { lookedAtAgain } = await import("./second-look.js");
         return lookedAtAgain(found, input, options, context);
       }),
@@ -142,7 +142,10 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       }
       const ofView = (view: ViewAlignment, k: number) =>
         withNotes(withCalibration(view, calibrated[k]), notes[k] as InputNotes);
-      return { ...fromOrigin({ ...result, views: [] }, read.mesh.fileOrigin), views: result.views.map(ofView) };
+      const inWorld = fromOrigin({ ...result, views: [] }, read.mesh.fileOrigin);
+      const ofViews = result.views.map(ofView);
+      const doubts = ofViews.flatMap(({ role, warnings }) => (role === "used" ? warnings : []));
+      return { ...withDoubts(inWorld, doubts), views: ofViews };
     },
   },
   calibrate: {
@@ -193,7 +196,7 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     async run({ data, options: { tracker } }, context) {
       const { core: frame, notes } = await resolveFrame(data, context.modules);
       const pose = await context.task("joint", frame, (j) => j.beginTrackFrame(tracker, frame, context.listener));
-      return { ...pose, ...sourcesOf(notes) };
+      return withDoubts({ ...pose, ...sourcesOf(notes) }, notes.warnings);
     },
   },
   correctTrack: {

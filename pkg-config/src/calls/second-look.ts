@@ -92,7 +92,7 @@ export async function lookedAtAgain(
       .search("align", core, { ...options, ...more, metrics: false })
       .catch(() => undefined);
   };
-  const isInDoubt = found.confidence < DOUBT;
+  const isInDoubt = found.shapeConfidence < DOUBT;
   const share = isInDoubt ? speckled(input) : 0;
   const isSpeckled = share > SPECKLED;
   // The mesh is not in doubt for what the depth explains.
@@ -102,7 +102,8 @@ export async function lookedAtAgain(
     if (continuesPlane(input)) warnings.push(background);
     const other = await searched(mirrorOf(shape), { initial: undefined });
     const score = found.diagnostics.score + BETTER_SHAPE;
-    if (other !== undefined && other.confidence > DOUBT && other.diagnostics.score > score) warnings.push(mirrorImage);
+    if (other !== undefined && other.shapeConfidence > DOUBT && other.diagnostics.score > score)
+      warnings.push(mirrorImage);
   }
   const isWhole = warnings.every(({ code }) => code !== "MESH_PARTS_LEFT_OUT");
   const large = isWhole && isInDoubt ? largePart(shape) : null;

@@ -21,12 +21,13 @@ export const isNoPerspective = (model: string) =>
   /omni|\bmei\b|eucm|unified|^ds$|double.?sphere|scaramuzza|ocam|equirect|spheric|panoram|ortho|cylind/i.test(model);
 
 /** Displacement in pixels that no one will notice. */
-const MIN_DISPLACEMENT_PX = 0.3;
+const MIN_DISPLACEMENT = 0.003;
 
 /** Points of the image, along a side, at which the displacement is computed. */
 const STEPS = 9;
 
-/** Why the pinhole model is not that of the camera, with the size of the error; `undefined` if it is, within a third of a pixel. */
+/** Why the pinhole model is not that of the camera, with the size of the error; `undefined` if it is, within a few thousandths of
+ * the image. */
 export function distortionOf(
   { keys, model, coefficients }: Distortion,
   camera: Pinhole,
@@ -43,7 +44,7 @@ export function distortionOf(
     return Math.hypot(dx * camera.fx, dy * camera.fy);
   });
   const largest = Math.max(...points);
-  if (largest < MIN_DISPLACEMENT_PX) return undefined;
+  if (largest < MIN_DISPLACEMENT * Math.max(width, height)) return undefined;
   const [kind, places] = [isFish ? "a fisheye lens" : "lens distortion", keys.join(", ")];
   const extent =
     isNumber(largest) && largest < Math.max(width, height) ? `about ${Math.ceil(largest)} pixels` : "many pixels";

@@ -127,8 +127,19 @@ function resizedCamera(camera: CameraInput, first: readonly [string, unknown] | 
   const { K: _, fovYDeg: __, ...others } = (isRecord(camera) ? camera : {}) as Record<string, unknown>;
   const isSized = others.width !== undefined || first === undefined;
   const from = isSized ? sizeOf("input.camera", camera) : sizeOf(`input.${first[0]}`, first[1]);
-  return { ...others, ...resizedPinhole(pinholeOf("input.camera", camera, from), from, to), ...to };
+  const resized = resizedPinhole(pinholeOf("input.camera", camera, from), from, to);
+  const sampled = first === undefined ? from : sizeOf(`input.${first[0]}`, first[1]);
+  const { cx, cy } = resized;
+  const ofSamples = {
+    ...resized,
+    cx: cx - offset(sampled.width / to.width),
+    cy: cy - offset(sampled.height / to.height),
+  };
+  return { ...others, ...ofSamples, ...to };
 }
+
+/** How far the samples of a reduction are beside the middles of the new pixels: of an even number, none is in the middle. */
+const offset = (factor: number) => (factor % 2 === 0 ? 0.5 / factor : 0);
 
 /** The bounding box of the object in a mask, with a margin that is clipped to the image. */
 function maskBox(mask: unknown, marginPx: unknown): PixelBox {

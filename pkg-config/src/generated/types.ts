@@ -591,13 +591,18 @@ export type PaperAlignment = Sim3 & {
  */
 export type Alignment = Sim3 & {
   /**
-   * Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
-   * of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
+   * Probability that the pose is right in everything that the input shows: `shapeConfidence` times `turnConfidence`,
+   * where that is not `null`. It assumes that the mesh is the object's.
    */
   confidence: number;
   /**
-   * Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the
-   * one whose colours are those of the photo. `null` where no other turn is possible: the shape has no symmetry, its
+   * Probability that the pose is right up to the symmetry of the shape (scale within 5 %, rotation within 10°,
+   * translation within 5 % of the diameter), calibrated on generated cases.
+   */
+  shapeConfidence: number;
+  /**
+   * Probability that the turn is right: that of the poses which a symmetry of the shape makes equal, this is the one
+   * whose colours are those of the photo. `null` where no other turn is possible: the shape has no symmetry, its
    * turns look alike, or there are no colours to compare. Where no turn agrees with the photo, or the colours of the
    * mesh could not be read, all are equally likely.
    */
@@ -702,10 +707,14 @@ export type ViewsAlignment = Sim3 & {
   /** The world. */
   world: WorldFrame;
   /**
-   * Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
-   * of the diameter). Without given camera poses, that of the least certain view.
+   * Probability that the pose is right; see `Alignment.confidence`. Without given camera poses, that of the least
+   * certain view.
    */
   confidence: number;
+  /** The same up to the symmetry of the shape; see `Alignment.shapeConfidence`. */
+  shapeConfidence: number;
+  /** The probability of the turn; see `Alignment.turnConfidence`. */
+  turnConfidence: number | null;
   /**
    * The symmetry of the shape by which poses counted as one: that of the option, or what was found on the mesh. Empty
    * without one.
@@ -746,6 +755,13 @@ export type TrackedFrame = Sim3 & {
   state: TrackState;
   /** Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost. */
   confidence: number;
+  /** The same up to the symmetry of the shape; see `Alignment.shapeConfidence`. */
+  shapeConfidence: number;
+  /**
+   * The probability of the turn in which the object was found, which is kept while it is tracked; see
+   * `Alignment.turnConfidence`.
+   */
+  turnConfidence: number | null;
   /** The symmetry of the shape; see `Alignment.symmetry`. */
   symmetry: Array<FoundSymmetry>;
   /**

@@ -16,7 +16,7 @@ interface Entry {
   name: string;
   /** The size of its image; `undefined` if the file has none. */
   size?: ImageSize | undefined;
-  /** COCO's run lengths; or areas; or a PNG, base64, at a place in the image. */
+  /** COCO's run lengths; or areas; or a PNG, base64, at a place in the image; Supervisely compresses it once more. */
   rle?: unknown;
   areas?: readonly (readonly Ring[])[];
   png?: { base64: string; left: number; top: number };
@@ -192,15 +192,41 @@ const layouts: readonly Layout[] = [
         "area",
         "layer",
       ],
-      ...["bbox", "iscrowd", "note"],
+      ...["bbox", "iscrowd", "note", "bitmap", "shape"],
     ],
     find: (json) => (isRecord(json) && Array.isArray(json.objects) ? json.objects : undefined),
-    entry({ classTitle, category = classTitle, id, group, points, segmentation }, { size, info }) {
+    entry({ classTitle, category = classTitle, id, group, points, segmentation, bitmap }, { size, info }) {
       const of = isRecord(size) ? size : isRecord(info) ? info : {};
+      const [left, top] = (isRecord(bitmap) && numbersIn(bitmap.origin, 2)) || [];
+      if (isRecord(bitmap) && typeof bitmap.data === "string" && left !== undefined && top !== undefined) {
+        const name = facts({ category, id, group });
+        return { name, size: sizeIn(of.height, of.width), png: { base64: bitmap.data, left, top } };
+      }
       const { exterior, interior = [] } = isRecord(points) ? points : { exterior: segmentation };
       const rings = [exterior, ...(Array.isArray(interior) ? interior : [])].map(ringOf);
       if (!rings.every((ring) => ring !== undefined)) return undefined;
       return { name: facts({ category, id, group }), size: sizeIn(of.height, of.width), areas: [rings] };
+    },
+  },
+  {
+    name: "Datumaro",
+    keys: [
+      ...["dm_format_version", "media_type", "infos", "categories", "items", "id", "type", "attributes", "group"],
+      ...["label_id", "rle", "z_order", "points", "object_id", "size"],
+    ],
+    find: (json) =>
+      isRecord(json) && Array.isArray(json.items)
+        ? json.items.flatMap((item) =>
+            isRecord(item) && Array.isArray(item.annotations)
+              ? item.annotations.map((one) => ({ ...one, size: isRecord(item.image) ? item.image.size : undefined }))
+              : [],
+          )
+        : undefined,
+    entry({ id, label_id: label, type, rle, points, size }) {
+      const name = facts({ id, label, type });
+      if (isRle(rle)) return { name, rle };
+      const ring = type === "polygon" ? ringOf(points) : undefined;
+      return ring && { name, size: sizeIn(...(numbersIn(size, 2) ?? [])), areas: [[ring]] };
     },
   },
 ];
@@ -281,7 +307,10 @@ async function pixelsOf(
     throw failure("UNSUPPORTED_FORMAT", argument, "polygons without the size of their image", "a size", remedy);
   }
   if (png !== undefined) {
-    const bytes = Uint8Array.from(decodedBase64(argument, png.base64), (letter) => letter.charCodeAt(0));
+    const bytes = await inflated(
+      argument,
+      Uint8Array.from(decodedBase64(argument, png.base64), (letter) => letter.charCodeAt(0)),
+    );
     const box = await callReader(formats, argument, bytes, (readers) => readers.readMask(bytes));
     const data = new Uint8Array(size.width * size.height);
     for (let i = 0; i < box.data.length; i++) {
@@ -307,6 +336,21 @@ async function pixelsOf(
   }
   return { data: filledAreas(areas ?? [], size), ...size };
 }
+
+/** The bytes of a PNG that may have been compressed once more, by zlib. */
+async function inflated(argument: string, bytes: Uint8Array<ArrayBuffer>): Promise<Uint8Array> {
+  if (bytes[0] !== ZLIB) return bytes;
+  try {
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  } catch (cause) {
+    const remedy = "Save the annotation again.";
+    throw failure("CORRUPT_FILE", argument, "a bitmap that can't be decompressed", "a PNG", remedy, cause);
+  }
+}
+
+/** The first byte of a stream of zlib. */
+const ZLIB = 0x78;
 
 function decodedBase64(argument: string, text: string): string {
   try {

@@ -1,7 +1,7 @@
 /** Aligns the objects of a scene, on this thread or in workers. */
 import { inCalibration, isRaw } from "../calls/calibrate.js";
 import { type Call, type Engine, signalsOf } from "../calls/engine.js";
-import { withNotes } from "../calls/notes.js";
+import { withDoubts, withNotes } from "../calls/notes.js";
 import { fromOrigin } from "../calls/origin.js";
 import { ProgressListener } from "../calls/progress.js";
 import { checkSignals, onAnyAbort } from "../concurrency/on-abort.js";
@@ -71,7 +71,8 @@ function resultOf(scene: ReadScene, placed: readonly PlacedOrError[], arrangemen
     if (of instanceof Sim3AlignError) return { ...named, error: of };
     // Contacts may have moved the pose.
     const aligned = { ...named, ...of.alignment, ...fromOrigin(arrangement.objects[i], of.origin) };
-    const moved = { ...aligned, ...withoutUndefined({ maskReading }) } as SceneAlignment;
+    const read = { ...aligned, ...withoutUndefined({ maskReading }) } as SceneAlignment;
+    const moved = withDoubts(read, scene.notes.warnings);
     const { proportions } = moved;
     const before = of.alignment?.translation;
     if (proportions === undefined || before === undefined) return moved;

@@ -100,6 +100,9 @@ function urdfOf(body: ExportedBody): string {
   return robot(name, lines);
 }
 
+/** MuJoCo 3 drops the folder of every mesh unless it is told otherwise; other programs pass over this. */
+const keepFolders = `<mujoco><compiler strippath="false"/></mujoco>`;
+
 const plate = `<origin xyz="0 0 -0.5" rpy="0 0 0"/><geometry><box size="10 10 1"/></geometry>`;
 const ground = robot("ground", [
   contact,
@@ -109,5 +112,5 @@ const ground = robot("ground", [
 ]);
 
 function robot(name: string, lines: readonly string[]): string {
-  return `<?xml version="1.0"?>\n<!-- ${GENERATOR} -->\n<robot name="${name}">\n  <link name="${name}">\n${lines.map((line) => `    ${line}\n`).join("")}  </link>\n</robot>\n`;
+  return `<?xml version="1.0"?>\n<!-- ${GENERATOR} -->\n<robot name="${name}">\n  ${keepFolders}\n  <link name="${name}">\n${lines.map((line) => `    ${line}\n`).join("")}  </link>\n</robot>\n`;
 }

@@ -78,7 +78,7 @@ export interface CocoRle {
  * - `Uint8Array` of the depth map's size, one byte per pixel;
  * - `{ data, width, height }`, for a mask of another size (see the property `resizeMask`);
  * - the bytes of a mask file (PNG, NPY, JSON or JPEG), detected by their signature;
- * - COCO RLE, as an object; or what the JSON of COCO, SAM, LabelMe, VGG Image Annotator, Supervisely or ISAT holds.
+ * - COCO RLE, as an object; or what the JSON of COCO, SAM, LabelMe, VGG Image Annotator, Supervisely, ISAT or Datumaro holds.
  */
 export type MaskInput =
   | Uint8Array

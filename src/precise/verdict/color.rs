@@ -30,8 +30,6 @@ use crate::precise::search::rounds::Rounds;
 use crate::report::{ColorReport, Effort};
 use crate::scheduler::{Boxed, Scheduler, boxed};
 
-/// Contrast between two poses, relative to the noise, from which on they look different.
-pub const DISTINCT_MIN_CONTRAST: f64 = 2.0;
 /// Minimum rotation between poses that are rivals, radians.
 const RIVAL_MIN_ANGLE_RAD: f64 = 0.35;
 /// Standard deviation of a rotation, radians, from which on colour refines it.
@@ -87,12 +85,12 @@ pub fn judgment<'a>(
 /// Chooses among the compared poses.
 fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared: &[Compared]) -> Judgment {
     let scores = compared.iter().map(|compared| compared.agreement).collect();
-    let differ = |a: usize, b: usize| {
+    let contrast = |a: usize, b: usize| {
         let [a, b] = [a, b].map(|k| &compared[k]);
-        are_rivals(a.candidate.pose.rotation, b.candidate.pose.rotation)
-            && a.appearance.difference(&b.appearance) > DISTINCT_MIN_CONTRAST
+        let is_rival = are_rivals(a.candidate.pose.rotation, b.candidate.pose.rotation);
+        if is_rival { a.appearance.difference(&b.appearance) } else { 0.0 }
     };
-    let Some(choice) = Choice::among(scores, differ) else { return Judgment::none() };
+    let Some(choice) = Choice::among(scores, contrast) else { return Judgment::none() };
     let is_changed = choice.chosen != 0;
     let mut candidate = compared[choice.chosen].candidate;
     if is_changed {

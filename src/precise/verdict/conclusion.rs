@@ -21,8 +21,6 @@ use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Solution, Unce
 pub struct Verdict {
     /// The confidence in it, without the calibration of the depth.
     pub confidence: Confidence,
-    /// See [`Alignment::turn_confidence`](crate::report::Alignment::turn_confidence).
-    pub turn_confidence: Option<f64>,
     /// Alternative poses.
     pub alternatives: Vec<Alternative>,
     /// The uncertainty of each part of the pose.
@@ -66,8 +64,9 @@ pub fn reliability(
         shape: shape_confidence(best, &listed(NOISE, false), conditioning),
         color: color.map_or(1.0, |color| color.probability),
         relief_deviation: 0.0,
+        turn: color.and_then(|color| color.turn),
     };
-    let alternatives = listed(if confidence.overall() < SURE { UNSURE_MAX_SCORE_LOSS } else { NOISE }, true);
+    let alternatives = listed(if confidence.up_to_symmetry() < SURE { UNSURE_MAX_SCORE_LOSS } else { NOISE }, true);
     Ok(Reliability { confidence, alternatives })
 }
 
@@ -103,7 +102,6 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>, reference: Option<DQu
     let Reliability { confidence, alternatives } = reliability(&candidates, color, by_image.as_ref(), search)?;
     let verdict = Verdict {
         confidence,
-        turn_confidence: color.and_then(|color| color.turn),
         alternatives,
         uncertainty: as_fixed.map(|c| Uncertainty {
             scale: c.scale,

@@ -32,11 +32,19 @@ pub struct Confidence {
     pub color: f64,
     /// The relative standard deviation of the relief of the depth; 0 for metric depth.
     pub relief_deviation: f64,
+    /// The probability that it is the right one of the poses that a symmetry of the shape makes equal, by colour; `None` where no
+    /// other turn is possible.
+    pub turn: Option<f64>,
 }
 
 impl Confidence {
     /// The probability that the pose is right.
     pub fn overall(&self) -> f64 {
+        self.up_to_symmetry() * self.turn.unwrap_or(1.0)
+    }
+
+    /// The probability that the pose is right up to the symmetry of the shape.
+    pub fn up_to_symmetry(&self) -> f64 {
         self.shape * self.color * depth_calibration_reliability(self.relief_deviation)
     }
 }

@@ -1,0 +1,140 @@
+/** `npm run interop`: real programs write what our readers read, and load what we write; see `--help`. */
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { command } from "./bench/command.mjs";
+import { cached, digest } from "./lib/cache.mjs";
+import { buildPackage } from "./lib/package.mjs";
+import { at } from "./lib/paths.mjs";
+import { pythonOf } from "./lib/python.mjs";
+import { attempt, run } from "./lib/run.mjs";
+import { step } from "./lib/step.mjs";
+
+/** @typedef {import("./interop/table.mjs").Cell} Cell */
+/** @typedef {{ program: string, version: string, kind: string, variant: string, notWritten?: string }} Written */
+/** @typedef {{ program: string, version: string, kind: string, variant: string, failed?: string, error?: number, limit: number }} Loaded */
+
+const root = at("target", "interop");
+const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
+/** @type {{ python: Record<string, { programs: string[], packages: string[] }>, npm: Record<string, string> }} */
+const packages = JSON.parse(readFileSync(at("scripts", "interop", "packages.json"), "utf8"));
+
+/** Installs npm packages that the repository does not have. */
+async function npm() {
+  const folder = join(root, "npm");
+  const wanted = JSON.stringify({ private: true, dependencies: packages.npm }, null, 2);
+  await cached(join(folder, "installed-from"), digest([], [wanted]), [], async () => {
+    mkdirSync(folder, { recursive: true });
+    writeFileSync(join(folder, "package.json"), wanted);
+    await run("npm", ["install", "--ignore-scripts", "--no-audit", "--no-fund"], {
+      cwd: folder,
+      remedy: "check that the npm registry can be reached",
+    });
+  });
+}
+
+/** The rows of a Python program. @param {string} python @param {string[]} args @param {string} out */
+async function rowsOf(python, args, out) {
+  rmSync(out, { force: true });
+  const { reason, output } = await attempt(python, ["-m", "interop", ...args, root, out], { env });
+  if (reason !== "") throw new Error(`${args.join(" ")}: ${reason}\n${output.slice(-2000)}`);
+  return JSON.parse(readFileSync(out, "utf8"));
+}
+
+/** @param {Loaded} row @returns {Cell} */
+function loadedCell({ failed, error = Number.NaN, limit, ...row }) {
+  const passed = failed === undefined && error <= limit;
+  const unit = /mass|relative|pixels|moved|faults|number|letters|radians|pose|metres/.test(row.variant) ? "" : "m";
+  return {
+    ...row,
+    action: "load",
+    passed,
+    error,
+    unit,
+    result: failed ?? `${error.toPrecision(2)}${passed ? "" : `, more than ${limit}`}`,
+  };
+}
+
+/** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
+async function interop({ only, write, verbose, python: program }) {
+  await buildPackage();
+  const [{ readBack }, { writeOurs }, { programs, rowsOf: rowsOfPackage }, { writeTable, writeFixtures }] =
+    await Promise.all([
+      import("./interop/read.mjs"),
+      import("./interop/ours.mjs"),
+      import("./interop/programs.mjs"),
+      import("./interop/table.mjs"),
+    ]);
+  rmSync(join(root, "files"), { recursive: true, force: true });
+  mkdirSync(join(root, "rows"), { recursive: true });
+  const pythonIn = (/** @type {string} */ name) => {
+    const list = packages.python[name]?.packages ?? [];
+    return step(`Python packages: ${name}`, () => pythonOf(join(root, name), digest([], list), list, program));
+  };
+  const main = await pythonIn("main");
+  await run(main, ["-m", "interop", "truth", root], { env });
+  await writeOurs(join(root, "ours"), join(root, "truth"));
+  /** @type {Cell[]} */
+  const cells = [];
+  /** @type {any[]} */
+  const read = [];
+  /** @type {Written[]} */
+  const unwritten = [];
+  const add = async (/** @type {any[]} */ rows) => {
+    for (const row of rows) {
+      if (row.notWritten !== undefined) unwritten.push(row);
+      else if (row.limit !== undefined) cells.push(loadedCell(row));
+      else read.push(row.read === undefined ? await readBack(row) : row);
+    }
+    return `${rows.length} cells`;
+  };
+  const isWanted = (/** @type {string} */ name) => only === undefined || only.includes(name);
+  for (const [environment, { programs: names }] of Object.entries(packages.python)) {
+    const wanted = names.filter(isWanted);
+    if (wanted.length === 0) continue;
+    const python = await pythonIn(environment);
+    const known = (await run(python, ["-m", "interop", "list"], { env })).trim().split("\n");
+    for (const name of wanted) {
+      await step(`${name} (${environment})`, async (say) => {
+        const rows = [];
+        for (const action of ["write", "load"]) {
+          const out = join(root, "rows", `${environment}-${name}-${action}.json`);
+          if (known.includes(`${action}\t${name}`)) rows.push(...(await rowsOf(python, [action, name], out)));
+        }
+        say(await add(rows));
+      });
+    }
+  }
+  await step("npm packages", npm);
+  for (const name of Object.keys(programs).filter(isWanted)) {
+    await step(name, async (say) => say(await add(await rowsOfPackage(name))));
+  }
+  const file = join(root, "rows", "read.json");
+  writeFileSync(file, JSON.stringify(read));
+  await run(main, ["-m", "interop", "check", root], { env });
+  cells.push(...JSON.parse(readFileSync(file, "utf8")));
+  writeFileSync(join(root, "cells.json"), JSON.stringify(cells, null, 1));
+  for (const { program, version, variant, notWritten } of unwritten) {
+    console.log(`not written: ${program} ${version}, ${variant}: ${notWritten?.split("\n")[0]}`);
+  }
+  for (const { program, version, kind, variant, result, passed } of cells) {
+    if (verbose || !passed)
+      console.log(`${passed ? "as stated" : "MISS"}: ${program} ${version}, ${kind}, ${variant}: ${result}`);
+  }
+  const misses = cells.filter(({ passed }) => !passed).length;
+  console.log(`${cells.length} cells, ${misses} misses.`);
+  if (write) writeFixtures(read.filter(({ file }) => file !== undefined));
+  if (write) writeTable(cells, new Date().toISOString().slice(0, 10));
+  if (misses > 0) process.exitCode = 1;
+}
+
+await command("interop", (program) =>
+  program
+    .description(
+      "Runs some forty programs: our readers read what they write, and they load what we write. Takes about ten minutes, the first time more.",
+    )
+    .option("--only <program...>", "some programs, by the names in scripts/interop/packages.json")
+    .option("--write", "write the table of docs/guides/interoperability.md", false)
+    .option("--verbose", "print every cell", false)
+    .option("--python <program>", "the Python (3.11) that installs the packages", "python3")
+    .action(interop),
+);

@@ -1,0 +1,98 @@
+/** What a run leaves in the repository: the table of the guide, a row for each program and version, all cells, and fixtures. */
+import { copyFileSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { extname, join } from "node:path";
+import { at } from "../lib/paths.mjs";
+
+/** @typedef {{ action: "write" | "load", program: string, version: string, kind: string, variant: string, passed: boolean, result: string, error?: number, unit?: string }} Cell */
+
+const guide = at("docs", "guides", "interoperability.md");
+const list = at("docs", "record", "interop.tsv");
+/** @type {Record<string, string>} */
+const notes = JSON.parse(readFileSync(at("scripts", "interop", "notes.json"), "utf8"));
+
+/** Counts by kind: "mesh 12, depth 3". @param {readonly Cell[]} cells */
+function counts(cells) {
+  const kinds = [...new Set(cells.map(({ kind }) => kind))];
+  const texts = kinds.map((kind) => {
+    const all = cells.filter((cell) => cell.kind === kind);
+    const passed = all.filter((cell) => cell.passed).length;
+    return `${kind} ${passed === all.length ? all.length : `${passed} of ${all.length}`}`;
+  });
+  return texts.join(", ");
+}
+
+/** The largest difference of cells in metres, as millimetres. @param {readonly Cell[]} cells */
+function largest(cells) {
+  const errors = cells.flatMap(({ error, unit }) => (unit === "m" && error !== undefined ? [1000 * error] : []));
+  const most = Math.max(...errors);
+  return errors.length === 0
+    ? ""
+    : most < 1e-4
+      ? "< 0.0001"
+      : most < 0.01
+        ? `${Number(most.toPrecision(1))}`
+        : most.toFixed(2);
+}
+
+/** Writes the table between the markers of the guide. @param {readonly Cell[]} cells @param {string} date */
+export function writeTable(cells, date) {
+  const name = (/** @type {Cell} */ { program, version }) => `${program} ${version}`;
+  const names = [...new Set(cells.map(name))].sort((a, b) =>
+    a.localeCompare(b, "en", { sensitivity: "base", numeric: true }),
+  );
+  const rows = names.map((each) => {
+    const own = cells.filter((cell) => name(cell) === each);
+    const written = own.filter(({ action }) => action === "write");
+    const isRefused = (/** @type {Cell} */ { passed, result }) => passed && result.startsWith("refused");
+    const refused = [...new Set(written.filter(isRefused).map(({ variant }) => variant))];
+    const read = counts(written.filter((cell) => !isRefused(cell)));
+    const texts = [read, refused.length > 0 ? `named, not read: ${refused.join(", ")}` : ""].filter(Boolean);
+    const loaded = own.filter(({ action }) => action === "load");
+    const note = [notes[own[0]?.program ?? ""], notes[each]].filter(Boolean).join(" ");
+    return `| ${each} | ${texts.join("; ")} | ${counts(loaded)} | ${largest(own)} | ${note} |`;
+  });
+  const misses = cells.filter(({ passed }) => !passed).length;
+  const total = `Measured on ${date}: ${cells.length} cells, ${misses === 0 ? "all as stated" : `${misses} not as stated`}; [every cell](../record/interop.tsv).`;
+  const head =
+    "| program | what it writes, read by sim3align | what it loads of sim3align | largest difference, mm | what to know |\n|---|---|---|---|---|";
+  const text = readFileSync(guide, "utf8");
+  const table = `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`;
+  writeFileSync(
+    guide,
+    text.replace(/(<!-- interop -->\n)[\s\S]*(<!-- \/interop -->)/, (_, start, end) => `${start}${table}${end}`),
+  );
+  const lines = cells.map(({ action, kind, variant, passed, result, ...cell }) => {
+    const short = result.replace(/\s+/g, " ").replaceAll(at(), "").slice(0, 160);
+    return [
+      name(/** @type {Cell} */ ({ action, kind, variant, passed, result, ...cell })),
+      action,
+      kind,
+      variant,
+      passed ? "as stated" : "MISS",
+      short,
+    ].join("\t");
+  });
+  writeFileSync(list, `program\taction\tkind\tvariant\toutcome\tdifference\n${lines.sort().join("\n")}\n`);
+}
+
+/** Bytes of a fixture at most. */
+const MOST = 20_480;
+
+/** Copies some of the written files to the tests, with what is expected of them. @param {readonly any[]} rows */
+export function writeFixtures(rows) {
+  const folder = at("tests", "fixtures", "interop");
+  /** @type {string[]} */
+  const wanted = JSON.parse(readFileSync(at("scripts", "interop", "fixtures.json"), "utf8"));
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  const index = wanted.map((title) => {
+    const row = rows.find(({ program, version, variant }) => title === `${program} ${version}: ${variant}`);
+    if (row === undefined) throw new Error(`No program wrote the fixture ${title}`);
+    const { program, version, kind, variant, file, expect } = row;
+    const name = `${kind}-${`${program}-${version} ${variant}`.toLowerCase().replace(/[^a-z0-9.]+/g, "-")}${extname(file)}`;
+    if (statSync(file).size > MOST) throw new Error(`The fixture ${title} is too large`);
+    copyFileSync(file, join(folder, name));
+    return { program, version, kind, variant, file: name, expect };
+  });
+  writeFileSync(join(folder, "index.json"), `${JSON.stringify(index, null, 2)}\n`);
+}
