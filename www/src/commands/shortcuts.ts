@@ -39,7 +39,7 @@ const selectNeighbour =
   };
 
 const toggle3d =
-  (name: "cloud" | "mesh" | "wireframe") =>
+  (name: "cloud" | "mesh" | "wireframe" | "planes") =>
   ({ display3d }: Workspace) => {
     display3d.value = { ...display3d.peek(), [name]: !display3d.peek()[name] };
   };
@@ -85,6 +85,7 @@ export const commands: readonly Command[] = [
   { key: "o", title: "O", about: "Three-quarter view", act: lookFrom("orbit") },
   { key: "t", title: "T", about: "Top view", act: lookFrom("top") },
   { key: "e", title: "E", about: "Side view", act: lookFrom("side") },
+  { key: "q", title: "Q", about: "Top, side and front views, to drag in", act: toggle3d("planes") },
   { key: "w", title: "W", about: "Wireframe", act: toggle3d("wireframe") },
   { key: "p", title: "P", about: "Show or hide the points", act: toggle3d("cloud") },
   { key: "m", title: "M", about: "Show or hide the mesh", act: toggle3d("mesh") },

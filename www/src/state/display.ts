@@ -19,6 +19,8 @@ export interface Display3d {
   mesh: boolean;
   wireframe: boolean;
   dimensions: boolean;
+  /** Whether there are views from above, from the side and from the front. */
+  planes: boolean;
   pointSize: number;
 }
 
@@ -38,7 +40,7 @@ export function displayState() {
   };
 
   const display3d = signal<Display3d>({
-    ...{ cloud: true, mesh: true, wireframe: false, dimensions: true },
+    ...{ cloud: true, mesh: true, wireframe: false, dimensions: true, planes: false },
     pointSize: 1.6,
   });
 

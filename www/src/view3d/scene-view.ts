@@ -8,6 +8,7 @@ import { markOf } from "./label.js";
 import { Model } from "./model.js";
 import { release, whileHidden } from "./parts.js";
 import { pick } from "./picker.js";
+import { PlaneViews, SHARE } from "./plane-views.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
 import { eased } from "./pose.js";
@@ -53,6 +54,7 @@ export class SceneView {
   private scene: SceneInput | null = null;
   private cloud: Cloud | null = null;
   private readonly surroundings = new Surroundings(this.root);
+  private planes: PlaneViews | null = null;
   private readonly sizes = new Sizes(this.root);
   private objects: readonly ObjectInput[] = [];
   private selected: string | null = null;
@@ -98,6 +100,7 @@ export class SceneView {
         const isGliding = this.glideOn();
         const isDamping = controls.update();
         this.sizes.spread(camera, height);
+        this.planes?.draw(JSON.stringify([this.display, this.selected, this.plane, this.objects.length]));
         this.cloud?.prepare(camera, heightPx);
         return isMoving || isDamping || isGliding;
       },
@@ -350,9 +353,33 @@ export class SceneView {
       model.show(display, model.id === selected, display.hidden?.includes(model.id));
     }
     this.showSizes();
+    if ((display.planes === true) !== (this.planes !== null)) this.togglePlanes();
     this.gizmo?.set(this.models.get(selected ?? "") ?? null, this.gizmoMode, this.gizmoSettings);
     stage.canvas.setAttribute("aria-label", this.label());
     stage.invalidate();
+  }
+
+  private togglePlanes(): void {
+    const surface = {
+      stage: this.stage,
+      model: () => this.models.get(this.selected ?? "") ?? null,
+      plane: () => this.plane,
+      undecorated: (draw: () => void) => this.undecorated(draw),
+      onPose: (model: Model, phase: "drag" | "end") => this.moved(model, phase),
+    };
+    this.planes?.dispose();
+    this.planes = this.planes ? null : new PlaneViews(this.host, surface);
+    // Draws at once.
+    this.stage.setShare(this.planes ? 1 - SHARE : 1);
+  }
+
+  /** Runs while points and meshes alone are visible. */
+  private undecorated(draw: () => void): void {
+    const { cloud, gizmo, mark, sizes } = this;
+    this.surroundings.show(false, false);
+    if (cloud) cloud.object.visible = this.display.cloud;
+    whileHidden([gizmo.object, mark, ...sizes.objects, ...(cloud ? [cloud.veil] : [])], draw);
+    this.update();
   }
 
   private showSizes(): void {
@@ -404,6 +431,7 @@ export class SceneView {
     this.models.clear();
     this.cloud?.dispose();
     release(this.mark);
+    this.planes?.dispose();
     this.surroundings.dispose();
     this.stage.dispose();
   }

@@ -1,5 +1,5 @@
 /** A canvas that fills its host, and its renderer. It draws on demand. */
-import type { Color, PerspectiveCamera } from "three/webgpu";
+import type { Color, OrthographicCamera, PerspectiveCamera } from "three/webgpu";
 import { isPresentable } from "./presentable.js";
 import { Scene, WebGPURenderer } from "./three.js";
 
@@ -92,6 +92,8 @@ export class Stage {
   private events: StageEvents | null = null;
   private readonly observer = new ResizeObserver(() => this.fit());
   private frame = 0;
+  /** The share of the host's width that the canvas takes. */
+  private share = 1;
   /** Time of the last loss of a graphics device (`performance.now`). */
   private lastLoss = Number.NEGATIVE_INFINITY;
   private isDisposed = false;
@@ -122,7 +124,8 @@ export class Stage {
     const graphics = (this.forceWebGL ? null : await webGpu()) ?? (await webGlWithRetries());
     if (!graphics) throw new NoGraphics();
     const { canvas } = this;
-    canvas.style.cssText = "display:block;position:absolute;inset:0;width:100%;height:100%;touch-action:none";
+    canvas.style.cssText = "display:block;position:absolute;inset:0;height:100%;touch-action:none";
+    canvas.style.width = `${100 * this.share}%`;
     canvas.setAttribute("role", "img");
     const renderer = new WebGPURenderer({
       canvas,
@@ -151,6 +154,13 @@ export class Stage {
     this.events = events;
     this.fit();
     this.observer.observe(this.host);
+  }
+
+  /** Leaves a part of the host's width to others. */
+  setShare(share: number): void {
+    this.share = share;
+    this.canvas.style.width = `${100 * share}%`;
+    this.fit();
   }
 
   fit(): void {
@@ -185,6 +195,29 @@ export class Stage {
     // The renderer requests a frame after every frame, for animations that are not used here. `render` restarts it.
     (renderer as unknown as { _animation?: { stop?(): void } })._animation?.stop?.();
     if (isMoving) this.invalidate();
+  }
+
+  /**
+   * Draws the scene as another camera sees it into a canvas of another size, at so many of its CSS pixels per metre. The next
+   * frame replaces it here.
+   */
+  copy(
+    camera: OrthographicCamera,
+    to: CanvasRenderingContext2D,
+    { width, height, pxPerM }: { width: number; height: number; pxPerM: number },
+  ): void {
+    const { canvas, renderer } = this;
+    if (!renderer || canvas.width === 0 || canvas.height === 0) return;
+    // The largest part with the sides' ratio of the other canvas.
+    const scale = Math.min(canvas.width / width, canvas.height / height);
+    const [halfWidth, halfHeight] = [canvas.width, canvas.height].map((side) => side / (2 * scale * pxPerM));
+    Object.assign(camera, { left: -(halfWidth ?? 1), right: halfWidth, top: halfHeight, bottom: -(halfHeight ?? 1) });
+    camera.updateProjectionMatrix();
+    if (this.background) renderer.setClearColor(this.background, 1);
+    renderer.render(this.scene, camera);
+    const [cutWidth, cutHeight] = [scale * width, scale * height];
+    const [left, top] = [(canvas.width - cutWidth) / 2, (canvas.height - cutHeight) / 2];
+    to.drawImage(canvas, left, top, cutWidth, cutHeight, 0, 0, width, height);
   }
 
   /** A PNG of this size, in pixels; `fit` gives the canvas its own size back. */

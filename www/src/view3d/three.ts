@@ -37,6 +37,7 @@ export {
   MeshBasicNodeMaterial,
   MeshStandardMaterial,
   NodeMaterial,
+  OrthographicCamera,
   PerspectiveCamera,
   Quaternion,
   Raycaster,

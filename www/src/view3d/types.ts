@@ -40,6 +40,8 @@ export interface Display {
   /** The width of a point in pixels of the depth map. At 1, adjacent points touch. */
   pointSize: number;
   theme: "light" | "dark";
+  /** Whether there are views from above, from the side and from the front. */
+  planes?: boolean | undefined;
   /** Whether the sizes of the objects are shown. */
   dimensions?: boolean | undefined;
   /** What lengths are shown as multiples of; by default, they are in metres. */

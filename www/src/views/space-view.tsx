@@ -6,11 +6,12 @@ import { Check, Menu, Picture } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { imageOf } from "./image.js";
 
-const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
+const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions" | "planes", title: string][] = [
   ["cloud", "Points"],
   ["mesh", "Mesh"],
   ["wireframe", "Wireframe"],
   ["dimensions", "Sizes"],
+  ["planes", "Top, side and front"],
 ];
 
 const viewpoints = [
