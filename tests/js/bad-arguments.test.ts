@@ -25,7 +25,7 @@ const refusesInputs = (changes: Refusals<object>) =>
 refusesInputs([
   [{ depth: undefined }, "INVALID_ARGUMENT depth", /found nothing, expected a Float32Array/],
   [{ depth: Array.from(depth) }, "INVALID_ARGUMENT depth", /19200.*Float32Array\.from\(depth\)/],
-  [{ depth: Float64Array.from(depth) }, "INVALID_ARGUMENT depth", /Float32Array\.from\(depth\)/],
+  [{ depth: Int32Array.from(depth) }, "INVALID_ARGUMENT depth", /Float32Array\.from\(depth\)/],
   [{ depth: new Uint8Array(pixels).fill(9) }, "EIGHT_BIT_DEPTH depth", /256 levels/],
   [{ depth: depth.slice(1) }, "WRONG_LENGTH depth", /19199 values.*160 × 120 = 19200/],
   [{ depth: new Float32Array(8193 ** 2), width: 8193, height: 8193 }, "OUT_OF_MEMORY depth", /269 MB.*268/],
@@ -240,7 +240,7 @@ for (const [entry, exported] of Object.entries(entries)) {
 
 test("an option that no helper function has is refused by name", async () => {
   const withOptions = [
-    ...["exportGlb", "exportSceneGlb", "fromBop", "fromSam3d", "orientedBoundingBox"],
+    ...["bopSymmetries", "exportGlb", "exportSceneGlb", "fromBop", "fromSam3d", "orientedBoundingBox"],
     ...["placeSplats", "toBop", "toCocoRle", "toCuboid", "toSam3d", "uprightMesh"],
     ...["simulatorScene", "applyToObject3D", "meshInputFromThree", "transformFromObject3D"],
     ...["readCamera", "readCase", "readDepth", "readFrames", "readMesh", "readSam3d", "readScene"],

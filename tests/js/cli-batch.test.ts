@@ -190,6 +190,15 @@ test("a case that has moved is resumed by its content", () => {
   assert.match(copied.stderr, /resumed: 1 of 2/);
 });
 
+test("a camera of a flag is part of the settings of a record", () => {
+  writeCase("flagged", files);
+  const flags =
+    "--depth flagged/depth.npy --mask flagged/mask.png --mesh flagged/mesh.glb --jsonl flagged.jsonl --resume";
+  succeeds(`align ${flags} --camera fov:42`, ...quick);
+  assert.match(succeeds(`align ${flags} --camera fov:42`, ...quick).stderr, /resumed: 1 of 1/);
+  refusesUsage({ [`align ${flags} --camera fov:60 --quality fast`]: /flagged\.jsonl/ });
+});
+
 test("cases that have changed since are done again, and the last line counts", () => {
   writeCase("loop", files);
   const flags = `${quick.join(" ")} --jsonl loop.jsonl --resume`;

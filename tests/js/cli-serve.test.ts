@@ -46,8 +46,8 @@ test("a folder, files and arrays have the result of align; each line has an answ
     { id: "files", ...inFolder, options },
     { id: "bytes", ...inFolder, mask: { base64: Buffer.from(files["mask.png"]).toString("base64") }, options },
     { id: "arrays", ...arrays, options },
-    ...["", "no JSON", { case: "nowhere" }, { case: "cases/blob", quality: "fast" }],
-    { id: 7, case: "cases/blob", options: { quality: "none" } },
+    ...["", "no JSON", { case: "nowhere" }, { case: "cases/blob", quality: "fast" }, { case: "cases/blob", camera }],
+    { id: 8, case: "cases/blob", options: { quality: "none" } },
   ]);
   const aligner = await createAligner();
   const expected = await aligner.align({ depth, width, height, mask, mesh, camera }, options);
@@ -56,8 +56,14 @@ test("a folder, files and arrays have the result of align; each line has an answ
     const { depthUnit: ___, ...own } = JSON.parse(JSON.stringify(expected));
     assert.deepEqual(withoutTimes(found), withoutTimes(own), id);
   }
-  const codes = [4, 5, 6, 7].map((id) => answers.get(id).error.code);
-  assert.deepEqual(codes, ["INVALID_ARGUMENT", "FILE_NOT_FOUND", "INVALID_ARGUMENT", "INVALID_OPTION"]);
+  const codes = [4, 5, 6, 7, 8].map((id) => answers.get(id).error.code);
+  assert.deepEqual(codes, [
+    "INVALID_ARGUMENT",
+    "FILE_NOT_FOUND",
+    "INVALID_ARGUMENT",
+    "INVALID_ARGUMENT",
+    "INVALID_OPTION",
+  ]);
 });
 
 const hasPython = spawnSync("python3", ["--version"]).status === 0;

@@ -82,6 +82,7 @@ const forms: Record<string, object> = {
   "camera: K": { camera: { K } },
   "camera file: text": fileOf(json),
   "camera file: ROS CameraInfo": fileOf({ ...size, k: K, d: [0, 0, 0, 0, 0], distortion_model: "" }),
+  "depth: 64-bit numbers": { depth: Float64Array.from(depth), ...size },
   "mesh: 16-bit indices": { mesh: { ...mesh, indices: Uint16Array.from(mesh.indices) } },
   "mesh: bytes of an OBJ, named": { mesh: { bytes: obj(mesh), format: "obj" } },
   "mesh: a .gltf and its buffer": {

@@ -69,6 +69,7 @@ export const helperCalls: Readonly<Record<string, Readonly<Record<string, readon
       { width: 8, height: 6 },
     ],
     stretchMesh: [mesh, { stretch: [1, 0, 0, 0, 1, 0, 0, 0, 1] }],
+    bopSymmetries: [[{ axis: [0, 1, 0], fold: 2 }], mesh, { scale: 0.01 }],
     toBop: [pose, { objId: 1 }],
     toCocoRle: [mask, { compressed: false }],
     toCuboid: [sides, { frame: "ros", front: "z", up: "y" }],

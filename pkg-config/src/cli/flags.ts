@@ -5,6 +5,7 @@ import type { CameraInput, Preset } from "../index.js";
 import { depthCodeNames, depthKindNames } from "../input/formats.js";
 import { SIMULATOR_DEFAULTS } from "../simulators/scene.js";
 import type { DepthCode, DepthKind } from "../types/inputs.js";
+import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/validation.js";
 import { statOf, UsageError } from "./files.js";
 import { number, workers } from "./parse.js";
@@ -240,7 +241,8 @@ export const settingsOf = (list: FlagList, flags: Flags, pathOf: (path: string) 
   Object.fromEntries(
     withoutTitles(list).flatMap(([flag, , { use, words, isIndifferent } = {}]) => {
       const value = flags[valueName(flag)];
-      if (!isSet(flag, flags) || use === "writes" || isIndifferent) return [];
+      // The content of files is part of each row.
+      if (!isSet(flag, flags) || use === "writes" || (isIndifferent && !isRecord(value))) return [];
       const isPath = use === "reads" && typeof value === "string" && !words?.includes(value);
       return [[nameOf(flag).slice(2), isPath ? pathOf(value) : flag.startsWith("--no-") || value]];
     }),

@@ -13,7 +13,13 @@ import { failureEntry } from "./entry.js";
 import type { Flags } from "./flags.js";
 
 /** Types of the numbers of inline arrays. */
-const arrays = { float32: Float32Array, uint16: Uint16Array, uint8: Uint8Array, uint32: Uint32Array } as const;
+const arrays = {
+  float32: Float32Array,
+  float64: Float64Array,
+  uint16: Uint16Array,
+  uint8: Uint8Array,
+  uint32: Uint32Array,
+} as const;
 
 /** Requests that are read while others are worked on. */
 const READ_AHEAD = 2;
@@ -70,7 +76,12 @@ function failureOf(error: unknown): object {
 /** The input of a request: a case folder, or files and arrays. */
 async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
   const { case: folder, depth, mask, mesh, camera, image, ...settings } = request;
-  if (typeof folder === "string") return (await readCaseFolder(folder, settings)).input;
+  if (typeof folder === "string") {
+    const others = Object.keys(withoutUndefined({ depth, mask, mesh, camera, image })).join(", ");
+    const remedy = "Pass a case, or its files one by one.";
+    if (others !== "") throw invalidArgument("request.case", `a case beside ${others}`, "one of them", remedy);
+    return (await readCaseFolder(folder, settings)).input;
+  }
   const isFile = typeof camera === "string";
   const [readDepth, readMask, readImage, cameraFile] = await Promise.all([
     ...[partOfRequest("depth", depth), partOfRequest("mask", mask), partOfRequest("image", image)],

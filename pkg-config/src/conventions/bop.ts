@@ -2,7 +2,7 @@
 import type { Sim3, Sim3Like } from "../input/sim3.js";
 import type { SymmetryAxis } from "../types/argument-types.js";
 import type { MeshArrays } from "../types/inputs.js";
-import { failure } from "../values/error.js";
+import { failure, invalidArgument } from "../values/error.js";
 import { finiteNumbers, optionsOf, positive, record, type Vector3, vector3, whole } from "../values/validation.js";
 import { meshOf } from "./mesh.js";
 import { surfaceMoments } from "./principal-axes.js";
@@ -109,7 +109,15 @@ export function bopSymmetries(
   const { scale = 0.001 } = optionsOf(options, ["scale"]);
   const millimetres = 1000 * positive("options.scale", scale);
   const offset = scaled(surfaceMoments(meshOf("mesh", mesh)).centroid, millimetres);
-  const axes = symmetry.map(({ axis, fold }, k) => ({ axis: unitAxis(`symmetry[${k}].axis`, axis), fold }));
+  const remedy = "Pass the symmetry of a result.";
+  if (!Array.isArray(symmetry)) throw invalidArgument("symmetry", symmetry, "an array of axes", remedy);
+  const axes = symmetry.map((each: unknown, k) => {
+    const { axis, fold } = record(`symmetry[${k}]`, each, "an axis { axis, fold }");
+    return {
+      axis: unitAxis(`symmetry[${k}].axis`, axis),
+      fold: fold === undefined ? fold : whole(`symmetry[${k}].fold`, fold, 1),
+    };
+  });
 
   const turns = axes.filter(({ fold }) => fold !== undefined && fold > 1);
   const rotations = group(turns.map(({ axis, fold }) => rotationAbout(axis, (2 * Math.PI) / (fold ?? 1))));

@@ -55,11 +55,13 @@ export async function readDepth(
 ): Promise<ReadDepth> {
   if (reading.depthCode !== undefined) return decoded(reading, (raw) => readDepth(depth, size, raw, readers));
   const ofArray = <T extends SizedArray<DepthArray>>(read: T) => ({ ...read, unit: unitOf(read.data, reading) });
+  if (isDoubles(depth)) return ofArray({ data: Float32Array.from(depth), ...required(size) });
   if (isDepthArray(depth)) return ofArray({ data: depth, ...required(size) });
   const mayHaveBytes = isAffineInvariant(reading.depthKind);
   if (isRecord(depth) && "data" in depth) {
     const { data } = depth;
-    const values = mayHaveBytes && isBytes(data) ? { ...depth, data: Float32Array.from(data) } : depth;
+    const isConverted = isDoubles(data) || (mayHaveBytes && isBytes(data));
+    const values = isConverted ? { ...depth, data: Float32Array.from(data) } : depth;
     return ofArray(sized("depth", values, depthForms(), isDepthArray, size));
   }
   const bytes = await fileBytes("depth", depth);
@@ -93,7 +95,7 @@ async function decoded<T extends { data: DepthArray; unit: DepthImage["unit"] }>
 
 /** Metres per unit of the depth of a view: of floats without a scale, 1. */
 export const metresPerUnit = (depth: unknown, scale: unknown): number =>
-  typeof scale === "number" ? scale : isTypedArray(depth, "Float32Array") ? 1 : DEFAULT_SCALE;
+  typeof scale === "number" ? scale : isTypedArray(depth, "Float32Array", "Float64Array") ? 1 : DEFAULT_SCALE;
 
 /** The unit of an array, in the words of the readers of files. */
 function unitOf(
@@ -168,6 +170,7 @@ export function readPointMap(pointMap: unknown, size: StatedSize): SizedArray<Fl
 }
 
 const isFloats = (value: unknown): value is Float32Array => isTypedArray(value, "Float32Array");
+const isDoubles = (value: unknown): value is Float64Array => isTypedArray(value, "Float64Array");
 const isDepthArray = (value: unknown): value is DepthArray => isTypedArray(value, "Float32Array", "Uint16Array");
 
 const required = ({ width, height }: StatedSize) => ({ width, height });

@@ -54,17 +54,20 @@ export interface DepthCoding {
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
 
+/** The numbers of a depth map. */
+export type DepthNumbers = Float32Array | Float64Array | Uint16Array;
+
 /**
  * A depth map: z-depth (along the optical axis, not along the ray), row-major. 0, negative, NaN and infinite values are
  * "no reading".
  *
- * - `Float32Array`: metres (times `depthScale`, if given); with `width` and `height` in the input;
+ * - `Float32Array` or `Float64Array`: metres (times `depthScale`, if given); with `width` and `height` in the input;
  * - `Uint16Array`: multiplied by `depthScale`; with `width` and `height` in the input;
  * - either of these as `{ data, width, height }`;
  * - the bytes of a depth file (NPY, 16-bit PNG, NPZ, EXR, TIFF or PFM); integers are multiplied by `depthScale`. A file of
  *   points (H × W × 3, or 3 × H × W) is read as their depth, with the camera that fits them.
  */
-export type DepthInput = Float32Array | Uint16Array | PixelArray<Float32Array | Uint16Array> | EncodedBytes;
+export type DepthInput = DepthNumbers | PixelArray<DepthNumbers> | EncodedBytes;
 
 /** COCO's run-length encoding, compressed (`counts` is a string) or not; `size` is [height, width]. */
 export interface CocoRle {
@@ -254,7 +257,7 @@ export type DepthView = {
             }
           | {
               /** A depth map with its own size. */
-              depth: Exclude<DepthInput, Float32Array | Uint16Array>;
+              depth: Exclude<DepthInput, DepthNumbers>;
               /** Width in pixels; must match. */
               width?: number | undefined;
               /** Height in pixels; must match. */

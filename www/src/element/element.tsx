@@ -106,7 +106,8 @@ export class Sim3AlignElement extends Base implements host.Sim3AlignElement {
     return this.#given;
   }
 
-  set scene(given: GivenInput | null) {
+  set scene(scene: GivenInput | null | undefined) {
+    const given = scene ?? null;
     // What was set for a scene that never came is not for this one.
     if (this.#given !== null) [this.#pendingPose, this.#pendingSession] = [null, null];
     this.#given = given;

@@ -112,7 +112,9 @@ function Confidence({ object }: { object: ObjectModel | null }) {
     );
   }
   const doubt = object?.doubt ?? null;
-  const level = confidence < 0.7 ? "low" : confidence < SURE || doubt !== null ? "medium" : "high";
+  // A doubt of the size or the turn has lowered the confidence, and is named as what it is.
+  const without = doubt === null ? confidence : (object?.precise?.shapeConfidence ?? confidence);
+  const level = without < 0.7 ? "low" : confidence < SURE || doubt !== null ? "medium" : "high";
   const medium = doubt === null ? "Check it" : `Check the ${doubt}`;
   const advice = { high: "Likely correct", medium, low: "Unreliable: fix it" }[level];
   return (
