@@ -1,8 +1,8 @@
 /** The publishable package, written whole to pkg/. */
 
 import { createHash } from "node:crypto";
-import { copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { dirname, join, normalize } from "node:path";
 import { bundleGlue, bundleScripts, bundleTypes } from "./bundle.mjs";
 import { cached, digest, once } from "./cache.mjs";
 import { bundleElement } from "./element.mjs";
@@ -81,11 +81,31 @@ function copyFiles() {
     copyFileSync(at(name), join(packageDir, name));
   }
   for (const name of guides) cpSync(at("docs", name), join(packageDir, "docs", name), { recursive: true });
+  linkToRepository();
   cpSync(join(skinDir, "sample"), join(packageDir, "sample"), { recursive: true });
   cpSync(glueDir, join(compiledDir, "wasm"), { recursive: true });
   // Its declarations are internal, and those of raw exports would be resolved for imports of the .wasm file.
   const isUsed = (/** @type {string} */ path) => !path.endsWith(".d.ts");
   cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isUsed });
+}
+
+/** Makes links of the documents to files that the package does not carry lead to the repository. */
+function linkToRepository() {
+  const { repository } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
+  const root = repository.url.replace(/^git\+|\.git$/g, "");
+  const files = readdirSync(packageDir, { recursive: true, encoding: "utf8" });
+  for (const file of files.filter((name) => name.endsWith(".md"))) {
+    const folder = dirname(file);
+    const text = readFileSync(join(packageDir, file), "utf8").replace(
+      /(\]\(|(?:src|href)="|^\[[^\]]+\]: )([^)"\s#:]+)(?=[)"\s#])/gm,
+      (whole, before, target) => {
+        const path = normalize(join(folder, target));
+        if (existsSync(join(packageDir, path)) || !existsSync(at(path))) return whole;
+        return `${before}${root}/blob/HEAD/${path}${/\.(png|svg|webp)$/.test(path) ? "?raw=true" : ""}`;
+      },
+    );
+    writeFileSync(join(packageDir, file), text);
+  }
 }
 
 /**
