@@ -130,7 +130,7 @@ fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &DetectionPrior) 
     chosen.pose = match known.before {
         _ if is_colored => chosen.pose,
         Some((_, before)) => rounds.search.nearest(&chosen.pose, before),
-        None => rounds.search.canonical(&chosen.pose, FACING_CAMERA).unwrap_or(chosen.pose),
+        None => rounds.search.canonical(&chosen, FACING_CAMERA).unwrap_or(chosen.pose),
     };
     let others: Vec<Candidate> =
         rounds.candidates.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();

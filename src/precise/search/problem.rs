@@ -38,9 +38,11 @@ const MIN_TURN_RAD: f64 = 0.3;
 pub const FACING_CAMERA: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 /// Rotation between two poses below which they are one, radians.
 pub const EQUAL_MAX_RAD: f64 = 0.01;
-/// Score below a pose at which the image tells its equivalent from it: one standard deviation. Symmetries are
+/// Score below a pose at which the image tells its equivalent from it. Symmetries are
 /// approximate.
-pub const EQUIVALENT_MAX_SCORE_LOSS: f32 = 3.0 * DROP as f32;
+pub const EQUIVALENT_MAX_SCORE_LOSS: f32 = 6.0 * DROP as f32;
+/// Steps of the refinement of an equivalent pose.
+const EQUIVALENT_STEPS: usize = 8;
 
 /// A search: the observation and the mesh, prepared.
 pub struct Search {
@@ -196,17 +198,19 @@ impl Search {
         refiner.refine_in_proportion(&mut Canvas::default(), pose, polish.steps, &self.mesh.surface).pose
     }
 
-    /// The equivalent of a pose whose rotation is nearest to `reference`, so that noise does not choose among them; `None` if
-    /// it is the pose itself, or the image tells them apart.
-    pub fn canonical(&self, pose: &CropPose, reference: DQuat) -> Option<CropPose> {
-        let turned = self.nearest(pose, reference);
-        if angle_between(turned.rotation, pose.rotation) < EQUAL_MAX_RAD {
+    /// The equivalent of a ranked pose whose rotation is nearest to `reference`, so that noise does not choose among them; `None`
+    /// if it is the pose itself, or the image tells them apart.
+    pub fn canonical(&self, best: &Candidate, reference: DQuat) -> Option<CropPose> {
+        let turned = self.nearest(&best.pose, reference);
+        if angle_between(turned.rotation, best.pose.rotation) < EQUAL_MAX_RAD {
             return None;
         }
 
-        let equivalent = self.nearest(&self.polished(turned), reference);
-        let loss = self.score(pose).total - self.score(&equivalent).total;
-        (loss < EQUIVALENT_MAX_SCORE_LOSS).then_some(equivalent)
+        // Scored as it was in the ranking.
+        let refiner = Refiner { objective: self.objective(FINE), lock_scale: self.settings.lock_scale };
+        let ranked = refiner.refine_in_proportion(&mut Canvas::default(), turned, EQUIVALENT_STEPS, &self.mesh.surface);
+        let is_equal = best.score.total - ranked.score.total < EQUIVALENT_MAX_SCORE_LOSS;
+        is_equal.then(|| self.nearest(&self.polished(ranked.pose), reference))
     }
 
     /// The pose, of those that the symmetry of the mesh makes equal, whose rotation is nearest to `reference`.

@@ -83,7 +83,7 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>, reference: Option<DQu
     }
     candidates.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
     if color.is_none_or(|color| color.turn.is_none())
-        && let Some(pose) = reference.and_then(|reference| search.canonical(&candidates[0].pose, reference))
+        && let Some(pose) = reference.and_then(|reference| search.canonical(&candidates[0], reference))
     {
         candidates.to_mut()[0].pose = pose;
     }
