@@ -93,6 +93,16 @@ test("the photos of frames are read, and left out with --no-image", () => {
   assert.equal(frameOf("align --quality fast --no-image").color, undefined);
 });
 
+test("check says of views what align says: without camera poses, each needs a mask", () => {
+  writeFrames("unmasked", [0, 3], { poses: false, masks: 1 });
+  const [checked, aligned] = ["check", "align"].map((command) => {
+    assert.equal(run(`${command} unmasked --json said.json`).status, 1, command);
+    return results("said.json").unmasked.error;
+  });
+  assert.deepEqual(checked, aligned);
+  succeeds("check known video unknown");
+});
+
 test("what fails in a video is reported with its file", () => {
   writeCase("spoilt", { "mesh.glb": "no mesh", "frame_00/note.txt": "" });
   writeFrames("torn", [0, 3]);

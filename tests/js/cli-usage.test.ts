@@ -15,6 +15,7 @@ writeCase("table", tableFiles());
 for (const name of ["folder", "empty", "other"]) mkdirSync(join(folder, name));
 writeFileSync(join(folder, "file"), "");
 writeFileSync(join(folder, "photo.jpg"), "");
+writeFileSync(join(folder, "file.json"), '{"normal":[1]}');
 writeFileSync(join(folder, "other", "index.html"), "mine");
 writeFileSync(join(folder, "empty.txt"), "# none\n\n");
 const parts = "--depth blob/depth.npy --mask blob/mask.png";
@@ -27,19 +28,30 @@ const usage: Record<string, Record<string, RegExp>> = {
     "align z*": /z\*: no folder matches the pattern/,
     "align [z-a]*": /\[z-a\]\*: not a pattern/,
     "track empty": /frame_/,
-    "align --list nowhere.txt": /--list nowhere\.txt: the list cannot be read: ENOENT/,
+    "align --list nowhere.txt": /--list nowhere\.txt: there is no such file/,
     "align --list empty.txt": /--list: empty\.txt names no case folder/,
     "align --depth blob/depth.npy": /belong together/,
     "align blob --depth blob/depth.npy": /but not both/,
     "align photo.jpg": /is a photo: pass its --depth, --mask and --mesh/,
     [`align photo.jpg ${parts} --mesh blob/mesh.glb --image photo.jpg`]: /one photo/,
     "align blob --image photo.jpg": /--image belongs/,
+    [`align ${parts} --mesh nope.glb`]: /--mesh nope\.glb: there is no such file/,
+    [`align ${parts} --mesh blob/mesh.glb --camera nope.json`]: /--camera nope\.json: there is no such file/,
+    [`align ${parts} --mesh blob/mesh.glb --image nope.png`]: /--image nope\.png: there is no such file/,
+    "align --depth= --mask= --mesh=": /--depth "": there is no such file/,
+    "scene table --support file.json": /--support file\.json: found \{"normal":\[1\]\}, expected a plane/,
   },
   "of options": {
     "align blob --sead 1": /unknown option '--sead'.*--seed/s,
     "align blob --guard none": /--guard.*option of preset "paper"/,
     "align blob --camera-up 0,-1,0": /--mesh-up: found --camera-up alone, expected --mesh-up as well/,
     "align blob --known-extent 0.1 --scale 1": /--known-extent: .*expected --known-extent or --scale/,
+    "align blob --known-extent-axis y": /--known-extent-axis needs --known-extent:/,
+    "align blob --depth-near 1": /--depth-near needs --depth-code:/,
+    "align blob --depth-far 1": /--depth-far needs --depth-code:/,
+    "scene table --mjcf m --parts 0": /--parts.*Expected a whole number, 1 or more/s,
+    "scene table --mjcf m --parts 2.5": /--parts.*Expected a whole number, 1 or more/s,
+    "scene table --mjcf m --density -1": /--density.*Expected a number above 0/s,
     "align blob --preset fast": /Allowed choices are precise, paper/,
     "align blob --symmetry [{axis}]": /Invalid JSON/,
     "align blob --seed one": /Not a number/,

@@ -182,10 +182,8 @@ async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun
     return alignView(aligner, task, await task.read(), flags, caseRun);
   }
   const opened = await openFrames(folder, caseSettings(flags));
-  const [only, ...others] = opened.views;
-  if (only === undefined || others.length > 0 || opened.names.length === 1) {
-    return alignFrames(aligner, task, opened, flags, caseRun);
-  }
+  const [only] = opened.views;
+  if (only === undefined || !isOneView(opened)) return alignFrames(aligner, task, opened, flags, caseRun);
   const frame = await opened.read(only);
   const { files, unread } = opened.found();
   const found = { folder, files: { ...frame.found.files, ...files }, unread };
@@ -207,13 +205,20 @@ async function alignView(
   return withFiles(alignEntry(alignment, await errorsOf(aligner, input, alignment, truth)), found);
 }
 
-/** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
-async function alignFrames(aligner: Aligner, task: CaseToDo, opened: Frames, flags: Flags, caseRun: CaseRun) {
-  const { mesh, views: names, read, found } = opened;
+/** Whether one view is aligned, as the only frame of several that has a mask. */
+export const isOneView = ({ views, names }: Frames) => views.length === 1 && names.length > 1;
+
+/** The views of a case. Without the camera poses of all frames, those of some do not help. */
+export async function framesOf({ views: names, read }: Frames) {
   const frames = await Promise.all(names.map(read));
-  caseRun.found = found();
   const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
-  const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
+  return { frames, views: frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined })) };
+}
+
+async function alignFrames(aligner: Aligner, task: CaseToDo, opened: Frames, flags: Flags, caseRun: CaseRun) {
+  const { mesh, found } = opened;
+  const { frames, views } = await framesOf(opened);
+  caseRun.found = found();
   const { preset, ...options } = await alignOptions(flags, task);
   if (preset === "paper")
     throw new UsageError(`${task.name} has several frames, for which --preset paper has no method.`);

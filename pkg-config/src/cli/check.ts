@@ -2,10 +2,12 @@
 
 import { isRaw } from "../calls/calibrate.js";
 import { withNotes } from "../calls/notes.js";
+import type { ReadCaseOptions } from "../case-folder.js";
+import { frameNames, openFrames } from "../frames-folder.js";
 import type { Aligner } from "../index.js";
 import { resolveInput } from "../input/resolve.js";
 import { fileReaders } from "../modules/readers.js";
-import { type CaseView, viewsOf } from "./align.js";
+import { type CaseView, framesOf, isOneView, viewsOf } from "./align.js";
 import { failedLines, type Job } from "./batch.js";
 import { warningLine } from "./details.js";
 import { type Entry, failureEntry, isFailure, posesIn, warningsOf, withFiles } from "./entry.js";
@@ -20,8 +22,10 @@ export async function checkJob(args: readonly string[], flags: Flags): Promise<J
     tasks,
     folders: tasks.map(({ folder }) => folder),
     async run(aligner, { folder }) {
+      const settings = caseSettings(flags);
+      await checkMasks(aligner, folder, settings);
       const frames = new Map<string, Entry>();
-      for (const view of await viewsOf(folder, caseSettings(flags))) {
+      for (const view of await viewsOf(folder, settings)) {
         const entry = await checked(aligner, view).catch((error) => failureEntry(error, view.found));
         if (view.frame === undefined) return entry;
         frames.set(view.frame, entry);
@@ -32,6 +36,17 @@ export async function checkJob(args: readonly string[], flags: Flags): Promise<J
       rows: posesIn(name, entry).flatMap((view) => linesOf(view.name, view.entry, style)),
     }),
   };
+}
+
+/** Lets views fail as they would be aligned, if masks are missing: this fails before any work. */
+async function checkMasks(aligner: Aligner, folder: string, settings: ReadCaseOptions): Promise<void> {
+  if ((await frameNames(folder)).length === 0) return;
+  const opened = await openFrames(folder, settings);
+  if (isOneView(opened)) return;
+  const { views } = await framesOf(opened);
+  const isMasked = ({ mask }: (typeof views)[number]) => mask !== undefined;
+  const isEnough = views.every((view) => isMasked(view) || view.cameraToWorld !== undefined) && views.some(isMasked);
+  if (!isEnough) await aligner.alignViews({ mesh: opened.mesh, views });
 }
 
 /** Any pose: nothing that is read depends on it. */

@@ -17,6 +17,7 @@ import {
   type FlagList,
   type Flags,
   filesOf,
+  listFlag,
   ofCase,
   pictureFlags,
   reads,
@@ -133,7 +134,7 @@ export const commands: readonly CommandRow[] = [
     description: "Reads each case without aligning it, and names what would fail or be doubted.",
     argument: folders("case"),
     flags: [
-      ["--list <file>", `a file with the path of a case folder per line; "-" is stdin`, ofCase],
+      listFlag("case"),
       ["--json <file>", 'write what was read as JSON; "-" is stdout', { ...writes, isOwn: isResults }],
       ...caseFlags,
     ],

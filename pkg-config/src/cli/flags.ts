@@ -8,12 +8,12 @@ import type { DepthCode, DepthKind } from "../types/inputs.js";
 import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/validation.js";
 import { statOf, UsageError } from "./files.js";
-import { number, workers } from "./parse.js";
+import { count, number, positive, workers } from "./parse.js";
 import { isCsv, isResults } from "./result-files.js";
 import { isExport, type NamedFile, type OutputName } from "./run-files.js";
 
 /** Settings of a flag. */
-interface FlagSettings {
+export interface FlagSettings {
   parse?: (text: string) => unknown;
   choices?: readonly string[];
   default?: string;
@@ -88,7 +88,7 @@ export const recordFlags = (noun: string): Flag[] => [
   ],
   [
     "--resume",
-    `go on: skip the ${noun}s in the file of --jsonl, and append to it`,
+    `go on: skip the ${noun}s in the file of --jsonl whose files are unchanged, and append to it`,
     { needs: { oneOf: ["jsonl"], what: "--jsonl FILE, the record of what is done" }, isIndifferent: true },
   ],
   [
@@ -98,9 +98,15 @@ export const recordFlags = (noun: string): Flag[] => [
   ],
 ];
 
+export const listFlag = (noun: string): Flag => [
+  "--list <file>",
+  `a file with the path of a ${noun} folder per line; "-" is stdin`,
+  { ...ofCase, words: ["-"] },
+];
+
 /** The flags of all commands that work on many folders. */
 export const batchFlags = (noun: string): Flag[] => [
-  ["--list <file>", `a file with the path of a ${noun} folder per line; "-" is stdin`, ofCase],
+  listFlag(noun),
   ...recordFlags(noun),
   ["--csv <file>", 'write a table of comma-separated values; "-" is stdout', { ...writes, isOwn: isCsv }],
 ];
@@ -123,13 +129,15 @@ export const pictureFlags: readonly Flag[] = [
   ],
 ];
 
+const ofCode = { needs: { oneOf: ["depthCode"], what: "--depth-code" } } as const;
+
 /** Options of reading a case. */
 export const caseFlags: readonly Flag[] = [
   ["--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", { parse: number }],
   ["--depth-kind <kind>", "what the values of the depth map are (default metric)", { choices: depthKindNames }],
   ["--depth-code <name>", "the code of the depth map, if its values are no lengths", { choices: depthCodeNames }],
-  ["--depth-near <metres>", "the near plane of a code, or the depth of its lowest value", { parse: number }],
-  ["--depth-far <metres>", "the far plane of a code, or the depth of its highest value", { parse: number }],
+  ["--depth-near <metres>", "the near plane of a code, or the depth of its lowest value", { parse: number, ...ofCode }],
+  ["--depth-far <metres>", "the far plane of a code, or the depth of its highest value", { parse: number, ...ofCode }],
   ["--image-id <id>", "image id in a BOP scene_camera.json"],
   ["--no-image", "do not read the photo: align by shape alone"],
   ["--resize-mask <how>", "resize the mask to the size of the depth map", { choices: ["nearest"] }],
@@ -149,18 +157,18 @@ export const sceneFileFlags: readonly Flag[] = [
   [
     "--urdf <folder>",
     "write the scene as URDF: a file per object, scene.json, load.py for PyBullet",
-    { ...exports, holds: ["meshes", "scene.json"] },
+    { ...exports, holds: ["meshes", "load.py", "ground.urdf", "scene.json"] },
   ],
   ["--usd <file>", "write the scene as USD with physics (.usda)", exports],
   [
     "--density <kg/m³>",
     `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`,
-    { parse: number, ...ofSimulators },
+    { parse: positive, ...ofSimulators },
   ],
   [
     "--parts <n>",
     `most convex parts of an object for simulators; 1 is its hull (default ${SIMULATOR_DEFAULTS.maxParts})`,
-    { parse: number, ...ofSimulators },
+    { parse: count, ...ofSimulators },
   ],
   ["--no-rest", "keep all objects for simulators where they were found: they are not put at rest", ofSimulators],
 ];
@@ -216,19 +224,24 @@ function isSet(flag: string, flags: Flags): boolean {
   return flag.startsWith("--no-") ? value === false : value !== undefined && value !== false;
 }
 
-/** @throws {@link UsageError} for files of the whole command that do not exist; those of a case are reported for it */
+/** @throws {@link UsageError} for files that do not exist; those of a case folder are reported for the case */
 export function checkInputs(list: FlagList, flags: Flags): void {
-  for (const [flag, , { use, words, isIndifferent } = {}] of withoutTitles(list)) {
+  for (const [flag, , { use, words } = {}] of withoutTitles(list)) {
     const path = flags[valueName(flag)];
-    if (use !== "reads" || isIndifferent || typeof path !== "string" || words?.includes(path)) continue;
-    if (statOf(path) === undefined) throw new UsageError(`${nameOf(flag)} ${path}: there is no such file or folder.`);
+    if (use !== "reads" || typeof path !== "string" || words?.includes(path)) continue;
+    if (statOf(path) === undefined)
+      throw new UsageError(`${nameOf(flag)} ${path || '""'}: there is no such file or folder.`);
   }
 }
 
 /** @throws {@link UsageError} for flags that need others */
 export function checkNeeds(list: FlagList, flags: Flags): void {
   for (const [flag, , { needs } = {}] of withoutTitles(list)) {
-    if (needs !== undefined && isSet(flag, flags) && needs.oneOf.every((name) => flags[name] === undefined))
+    if (
+      needs !== undefined &&
+      isSet(flag, flags) &&
+      needs.oneOf.every((name) => (flags[name] ?? flags.options?.[name]) === undefined)
+    )
       throw new UsageError(`${nameOf(flag)} needs ${needs.what}: without it, it does nothing.`);
   }
 }

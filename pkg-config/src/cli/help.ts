@@ -73,8 +73,9 @@ Batches
   command and the options. It is the record of a batch: after an interruption, of whatever kind, the same command with
   --resume does what is missing; other options are refused. A ${noun} is known by its path relative to the record, from
   wherever; one that has moved, by the checksum of its files. FILE.lock keeps other programs from writing the record. A line
-  that was cut off is removed. What failed counts as done; remove its lines to try again. --json and --csv are then written
-  anew from the record.`;
+  that was cut off is removed. A ${noun} whose files have changed since is done again, also if it had failed; one that
+  failed with the same files counts as done: remove its lines to try again. --json and --csv are then
+  written anew from the record.`;
 
 /** The columns of CSV files, in lines that fit the help. */
 const columns = csvHeadings.join(", ").replace(/(.{80,100}), /g, "$1,\n  ");
@@ -150,8 +151,9 @@ ${status}`;
 export const checkHelp = `${caseFolder}
 
 Output
-  A line per case, or per frame with a mask: that it can be aligned, its error, or a line for each doubt about depth, mask,
-  camera and mesh file that reading alone can tell. --json writes { "<case>": { warnings, inputs, unread } or { error } }.
+  A line per case, or per frame with a mask: that "align" takes it ("track" needs a mask in the first frame only), its error,
+  or a line for each doubt about depth, mask, camera and mesh file that reading alone can tell.
+  --json writes { "<case>": { warnings, inputs, unread } or { error } }.
 
 Examples
   sim3align check cases/mug

@@ -1,11 +1,25 @@
 /** Flags for the options in the generated option tables. */
 import { InvalidArgumentError } from "commander";
 import type { OptionRow } from "../types/options.js";
-import { type Flag, type FlagList, type Flags, nameOf, reads, valueName, withoutTitles } from "./flags.js";
+import {
+  type Flag,
+  type FlagList,
+  type FlagSettings,
+  type Flags,
+  nameOf,
+  reads,
+  valueName,
+  withoutTitles,
+} from "./flags.js";
 import { direction, guard, number, scale, symmetry } from "./parse.js";
 
 /** Flags that are shorter than their option's name. */
 const FLAG_NAMES: Readonly<Record<string, string>> = { knownExtentM: "known-extent" };
+
+/** Options that do nothing without others. `--options` has them by the names of the API. */
+const NEEDS: Readonly<Record<string, Pick<FlagSettings, "needs">>> = {
+  knownExtentAxis: { needs: { oneOf: ["knownExtent", "knownExtentM"], what: "--known-extent" } },
+};
 
 /** The flag of an option, without the dashes: `known-extent-axis` for `knownExtentAxis`. */
 const flagName = ({ name }: Pick<OptionRow, "name">) =>
@@ -30,7 +44,7 @@ export const optionFlags = (rows: readonly OptionRow[]): Flag[] =>
     const { value, parse } = kinds[row.kind];
     const file = row.kind === "transform" ? { ...reads, isReplaceable: true } : {};
     const parsed = parse === undefined ? {} : { parse: (text: string) => parse(text, row) };
-    return [`${flag}${value(row.name)}`, meaning(row, rows), { ...file, ...parsed }];
+    return [`${flag}${value(row.name)}`, meaning(row, rows), { ...file, ...parsed, ...NEEDS[row.name] }];
   });
 
 /** The values of the options whose flags are set. The value of a transform is the path of its file. */

@@ -11,6 +11,20 @@ export function number(text: string): number {
   return value;
 }
 
+/** Parses a number above 0. */
+export function positive(text: string): number {
+  const value = number(text);
+  if (value > 0 && Number.isFinite(value)) return value;
+  throw new InvalidArgumentError("Expected a number above 0.");
+}
+
+/** Parses a whole number above 0. */
+export function count(text: string): number {
+  const value = number(text);
+  if (value >= 1 && Number.isSafeInteger(value)) return value;
+  throw new InvalidArgumentError("Expected a whole number, 1 or more.");
+}
+
 /** Parses the number of workers. */
 export function workers(text: string): number | "auto" {
   if (text === "auto") return text;

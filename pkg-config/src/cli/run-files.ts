@@ -80,7 +80,8 @@ export class RunFiles {
       if (isFolder) {
         if (statOf(path)?.isDirectory() === false)
           throw new UsageError(`${flag} ${path}: the folder cannot be made: it is a file.`);
-        for (const name of holds) this.#claim({ flag, path: join(path, name), isOwn: output.isOwn });
+        for (const name of [...holds, ...(holds.includes("meshes") ? simulated(path) : [])])
+          this.#claim({ flag, path: join(path, name), isOwn: output.isOwn });
         continue;
       }
       this.#claim(output);
@@ -184,6 +185,12 @@ export class RunFiles {
     return this.#scanned;
   }
 }
+
+/** The files of a folder for simulators, whose names follow from the objects. */
+const simulated = (folder: string) => [
+  ...namesIn(folder).filter((name) => name.endsWith(".urdf")),
+  ...namesIn(join(folder, "meshes")).flatMap((name) => (name.endsWith(".obj") ? [join("meshes", name)] : [])),
+];
 
 /** Whether a file has the name of another one in its text. */
 function mentions(model: string, file: string): boolean {

@@ -4,6 +4,7 @@ import { type Aligner, type AlignInput, OPTIONS, type SceneInput, type SceneOpti
 import { read } from "../read-files.js";
 import { bopFolders, bopImageIn, readSceneFolder, type SceneSettings } from "../scene-folder.js";
 import { parsedJson } from "../values/json.js";
+import { isRecord } from "../values/kinds.js";
 import { withoutUndefined } from "../values/validation.js";
 import { errorsOf } from "./align.js";
 import { type CaseRun, failedLines, type Job } from "./batch.js";
@@ -104,8 +105,13 @@ async function alignScene(
 async function supportOf(flag: string | undefined): Promise<SceneInput["support"]> {
   if (flag === undefined || flag === "auto") return "auto";
   if (flag === "none") return null;
-  // The core checks the plane.
-  return parsedJson("support", await read("support", flag)) as SceneInput["support"];
+  const plane = parsedJson("support", await read("support", flag));
+  const { normal, d } = isRecord(plane) ? plane : {};
+  const isPlane = Array.isArray(normal) && normal.length === 3 && [...normal, d].every(Number.isFinite);
+  if (isPlane && normal.some((x) => x !== 0)) return plane as unknown as SceneInput["support"];
+  throw new UsageError(
+    `--support ${flag}: found ${JSON.stringify(plane).slice(0, 80)}, expected a plane { "normal": [x, y, z], "d": metres }.`,
+  );
 }
 
 /** The input of one object. */
