@@ -21,30 +21,33 @@ pub fn walls(mesh: &Mesh, hull: &ConvexPart, most: usize) -> Option<Vec<ConvexPa
         return None;
     }
     let size = mesh.diagonal();
-    let mut triangles: Vec<([DVec3; 3], DVec3)> = Vec::new();
-    for triangle in mesh.triangles() {
-        let corners = mesh.corners(*triangle).map(|p| p.as_dvec3());
-        triangles.push((corners, doubled_area(corners)));
-    }
-    // The largest ones decide the planes.
-    triangles.sort_by(|a, b| b.1.length_squared().total_cmp(&a.1.length_squared()));
-
+    let corners = |triangle: &[u32; 3]| mesh.corners(*triangle).map(|p| p.as_dvec3());
+    let mut left: Vec<[DVec3; 3]> = mesh.triangles().iter().map(corners).collect();
     let mut found: Vec<Wall> = Vec::new();
-    for (corners, normal) in triangles {
-        let unit = normal.normalize_or_zero();
-        let holds = |wall: &Wall| {
-            let far = corners.iter().map(|p| wall.normal.dot(*p - wall.points[0]).abs()).fold(0.0, f64::max);
-            far < FLAT * size && (unit == DVec3::ZERO || wall.normal.dot(unit).abs() > FILLED)
-        };
-        let area = 0.5 * normal.length();
-        if let Some(wall) = found.iter_mut().find(|wall| holds(wall)) {
-            wall.points.extend(corners);
-            wall.area += area;
-        } else if found.len() < most {
-            found.push(Wall { normal: unit, points: corners.to_vec(), area });
-        } else {
+    let by_area = |a: &&[DVec3; 3], b: &&[DVec3; 3]| {
+        doubled_area(**a).length_squared().total_cmp(&doubled_area(**b).length_squared())
+    };
+    // The largest ones decide the planes.
+    while let Some(&largest) = left.iter().max_by(by_area) {
+        if found.len() == most {
             return None;
         }
+        let normal = doubled_area(largest).normalize_or_zero();
+        let mut wall = Wall { normal, points: largest.to_vec(), area: 0.0 };
+        left.retain(|corners| {
+            let far = corners.iter().map(|p| normal.dot(*p - largest[0]).abs()).fold(0.0, f64::max);
+            let across = doubled_area(*corners);
+            let is_in = far < FLAT * size && normal.dot(across).abs() >= FILLED * across.length();
+            if is_in {
+                wall.points.extend(corners);
+                wall.area += 0.5 * across.length();
+            }
+            !is_in
+        });
+        if wall.area == 0.0 {
+            break;
+        }
+        found.push(wall);
     }
 
     let area: f64 = found.iter().map(|wall| wall.area).sum();
