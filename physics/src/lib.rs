@@ -12,3 +12,4 @@ pub mod part;
 pub mod rest;
 pub mod scene;
 pub mod solid;
+pub mod walls;

@@ -8,6 +8,8 @@ use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::decimate::decimate;
 use sim3align_geometry::mesh::Mesh;
 
+use super::walls::walls;
+
 /// Cells along the longest side of a mesh while it is decomposed.
 const RESOLUTION: u32 = 64;
 /// Parts that a mesh is split into, before those that fill their common hull are joined.
@@ -108,7 +110,11 @@ pub fn convex_parts(mesh: &Mesh, volume: Option<f64>, most: usize) -> Vec<Convex
     if most <= 1 || volume.is_some_and(|volume| volume > CONVEX * hull.volume()) {
         return vec![hull];
     }
-    let mut parts = decomposed(&decimate(mesh, TRIANGLES));
+    let mesh = decimate(mesh, TRIANGLES);
+    if let Some(parts) = walls(&mesh, &hull, SPLIT as usize) {
+        return joined(parts, most);
+    }
+    let mut parts = decomposed(&mesh);
     let volume: f64 = parts.iter().map(ConvexPart::volume).sum();
     if parts.is_empty() || volume > CONVEX * hull.volume() {
         return vec![hull];
@@ -185,7 +191,7 @@ fn decomposed(mesh: &Mesh) -> Vec<ConvexPart> {
 }
 
 /// The hull of points in a plane, which is made thicker by a share of `size`.
-fn thickened(points: &[DVec3], size: f64) -> Option<ConvexPart> {
+pub fn thickened(points: &[DVec3], size: f64) -> Option<ConvexPart> {
     let by = size * THICKNESS;
     let around = |p: &DVec3| [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [*p + by * axis, *p - by * axis]);
     let points: Vec<DVec3> = points.iter().flat_map(|p| around(p).into_iter().flatten()).collect();

@@ -41,7 +41,7 @@ impl Solid {
 }
 
 /// Whether the surface of a mesh is closed. Its edges are those between positions: the seams of textures double vertices.
-fn is_closed(mesh: &Mesh) -> bool {
+pub fn is_closed(mesh: &Mesh) -> bool {
     let bits = |vertex: u32| mesh.positions()[vertex as usize].to_array().map(|x| (x + 0.0).to_bits());
     let edge = |from: [u32; 3], to: [u32; 3]| {
         [from, to].as_flattened().iter().fold(0, |hash, word| mixed(hash ^ u64::from(*word)))

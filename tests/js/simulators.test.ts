@@ -147,12 +147,18 @@ test("every file, body, mesh and prim has a name of its own, which means nothing
   }
 });
 
-test("faces without area and repeated ones are not written, and the surface of a prim has its name", async () => {
-  const spoilt = { ...tower, indices: Uint32Array.from([...tower.indices, 0, 0, 1, ...tower.indices.slice(0, 3)]) };
-  const scene = await simulatorScene([{ name: "tower", mesh: spoilt, transform: over(0, 0, 0) }], hulls);
-  const faces = (toMjcf(scene)["meshes/tower.obj"] ?? "").match(/^f /gm) ?? [];
-  assert.equal(faces.length, tower.indices.length / 3);
-  assert.match(toUsd(scene), /def Xform "tower".*def Mesh "tower".*def Mesh "tower_collider_0"/s);
+test("faces without area and repeated ones are neither weighed nor written, and the surface of a prim has its name", async () => {
+  const own = [...tower.indices];
+  const [a = 0, b = 0, c = 0] = own;
+  const backward = own.map((_, i) => own[i - (i % 3) + 2 - (i % 3)] as number);
+  for (const more of [[a, a, b], [a, b, c], [b, c, a, a, b, c], [a, c, b], backward]) {
+    const spoilt = { ...tower, indices: Uint32Array.from([...more, ...own]) };
+    const scene = await simulatorScene([{ name: "tower", mesh: spoilt, transform: over(0, 0, 0) }], { support: below });
+    assertNear([scene.bodies[0]?.mass ?? 0], [0.8], `${more}`, 1e-5);
+    const faces = (toMjcf(scene)["meshes/tower.obj"] ?? "").match(/^f /gm) ?? [];
+    assert.equal(faces.length, own.length / 3, `${more}`);
+    assert.match(toUsd(scene), /def Xform "tower".*def Mesh "tower".*def Mesh "tower_collider_0"/s);
+  }
 });
 
 /** The results of the simulators after a second of physics. */

@@ -4,11 +4,11 @@ use core::f64::consts::TAU;
 use glam::{DVec3, Vec3};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_physics::body::Body;
-use sim3align_physics::part::{ConvexPart, convex_parts};
+use sim3align_physics::part::convex_parts;
 use sim3align_physics::solid::Solid;
 use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::solids::{cuboid, is_near, moved, outside, together, tray};
+use crate::solids::{Draw, cuboid, is_near, moved, outside, together, tray};
 
 const DENSITY: f64 = 500.0;
 const SIDES: usize = 48;
@@ -138,16 +138,16 @@ fn only_meshes_that_enclose_a_volume_once_are_solids() {
 
 #[wasm_bindgen_test]
 fn walls_without_thickness_have_parts() {
-    let [x, y, z] = [0.4f32, 0.25, 0.3];
-    let crate_of = |finer: u32| {
+    let crate_of = |[x, y, z]: [f32; 3], finer: u32| {
         let whole = cuboid(Vec3::ZERO, Vec3::new(x, y, z));
         // Without its top: the triangles whose corners are all up there.
         let is_top = |t: &[u32; 3]| t.iter().all(|i| whole.positions()[*i as usize].z > 0.5 * z);
         let sides = whole.triangles().iter().copied().filter(|t| !is_top(t)).collect();
         (0..finer).fold(Mesh::new(whole.positions().to_vec(), sides).unwrap(), |mesh, _| subdivided(&mesh))
     };
-    for finer in [0, 3] {
-        let mesh = crate_of(finer);
+    let sides = [[0.4, 0.25, 0.3], [0.1, 0.1, 0.1], [0.3, 0.25, 0.25], [0.5, 0.4, 0.12]];
+    for (sides, finer) in sides.into_iter().flat_map(|sides| [(sides, 0), (sides, 3)]) {
+        let mesh = crate_of(sides, finer);
         let parts = convex_parts(&mesh, None, 16);
         let cell = mesh.diagonal() / 64.0;
         let (mut near, mut count) = (0, 0);
@@ -161,9 +161,16 @@ fn walls_without_thickness_have_parts() {
                 count += 1;
             }
         }
-        assert!(near as f64 > 0.95 * count as f64, "finer {finer}: {near} of {count}, {} parts", parts.len());
-        let volume: f64 = parts.iter().map(ConvexPart::volume).sum();
-        assert!(volume < 0.25 * f64::from(x * y * z), "finer {finer}: it stays hollow: {volume} m³");
+        assert!(
+            near as f64 > 0.95 * count as f64,
+            "{sides:?}, finer {finer}: {near} of {count}, {} parts",
+            parts.len()
+        );
+        let size = Vec3::from_array(sides).as_dvec3();
+        let mut draw = Draw::new(7);
+        let inner = (0..500).map(|_| size * draw.vector(0.1, 0.9));
+        let filled = inner.filter(|p| parts.iter().any(|part| outside(part, *p) == 0.0)).count();
+        assert!(filled <= 10, "{sides:?}, finer {finer}: {filled} of 500 points inside are in parts");
     }
 }
 

@@ -71,7 +71,7 @@ function bodyOf(argument: string, value: unknown): Omit<ExportedBody, "parts"> &
     centerOfMass: vector3(at("centerOfMass"), body.centerOfMass),
     principalMoments: vector3(at("principalMoments"), body.principalMoments),
     principalAxes: quaternion(at("principalAxes"), body.principalAxes),
-    mesh: withoutInvalidFaces(surfaceOf(at("mesh"), body.mesh)) as SimulatorBody["mesh"],
+    mesh: surfaceOf(at("mesh"), body.mesh) as SimulatorBody["mesh"],
     color: vector3(at("color"), body.color),
     inside: listOf(at("inside"), body.inside, (name, index) => whole(name, index, 0)),
     parts: listOf(at("parts"), body.parts, surfaceOf) as ConvexPart[],
@@ -93,25 +93,6 @@ function surfaceOf(argument: string, value: unknown): { positions: ArrayLike<num
   if (!isTypedArray<Uint32Array>(indices, "Uint32Array"))
     throw invalidArgument(`${argument}.indices`, indices, "a Uint32Array", `Pass ${SCENE}.`);
   return { positions, indices };
-}
-
-/** A surface without triangles that have no area, and without repeated ones, of which importers warn; all if none is left. */
-function withoutInvalidFaces<T extends { positions: ArrayLike<number>; indices: ArrayLike<number> }>(surface: T): T {
-  const { positions, indices } = surface;
-  const vertices = Array.from({ length: positions.length / 3 }, (_, i) =>
-    spaced([positions[3 * i] as number, positions[3 * i + 1] as number, positions[3 * i + 2] as number]),
-  );
-  const faces = new Set<string>();
-  const kept: number[] = [];
-  for (let i = 0; i + 2 < indices.length; i += 3) {
-    const corners = [indices[i], indices[i + 1], indices[i + 2]] as [number, number, number];
-    const places = corners.map((corner) => vertices[corner] as string).sort();
-    const face = places.join();
-    if (places[0] === places[1] || places[1] === places[2] || faces.has(face)) continue;
-    faces.add(face);
-    kept.push(...corners);
-  }
-  return kept.length === 0 ? surface : { ...surface, indices: Uint32Array.from(kept) };
 }
 
 function viewOf(value: unknown): ExportedScene["camera"] {

@@ -172,7 +172,7 @@ export async function simulatorScene(
   const poses = own.map(({ transform }) => similarityOf(transform));
   const centers = poses.map(({ translation }) => translation);
   const worldFromCamera = sceneFromCamera(support, centers, "z");
-  const meshes = own.map(({ mesh }) => meshWithIndices(mesh));
+  const meshes = own.map(({ mesh }) => surfaceOf(mesh));
   const module = await physicsModule.load(wasm);
   const sent = poses.map((pose, i) => ({
     mesh: meshes[i],
@@ -234,13 +234,52 @@ function groundOf({ restsOn, transform }: SimulatorObject, count: number): "supp
   return typeof on === "number" && Number.isInteger(on) && on >= 0 && on < count ? on : null;
 }
 
-function meshWithIndices(mesh: unknown): { positions: Float32Array; indices: Uint32Array } {
+interface Surface {
+  positions: Float32Array;
+  indices: Uint32Array;
+}
+
+/**
+ * A surface without faces of fewer than three places, and without repeated ones, of which importers warn, and which leave a
+ * mesh open that else encloses a volume. Two solids that share a face keep it twice: there it closes both.
+ */
+function surfaceOf(mesh: unknown): Surface {
   const { positions, indices } = meshOf("mesh", mesh);
-  return {
-    positions,
-    indices:
-      indices === null ? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i) : Uint32Array.from(indices),
+  const all = indices ?? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i);
+  const places = Array.from({ length: positions.length / 3 }, (_, i) => positions.subarray(3 * i, 3 * i + 3).join());
+  const faces: { corners: number[]; key: string; edges: [there: string, back: string][] }[] = [];
+  const repeats = new Map<string, number>();
+  // How many more faces run along an edge than back: 0 where a surface is closed.
+  const excess = new Map<string, number>();
+  const add = (counts: Map<string, number>, key: string, by: number) => counts.set(key, (counts.get(key) ?? 0) + by);
+  const count = ({ key, edges }: (typeof faces)[number], by: number) => {
+    add(repeats, key, by);
+    for (const [there, back] of edges) {
+      add(excess, there, by);
+      add(excess, back, -by);
+    }
   };
+  for (let i = 0; i + 2 < all.length; i += 3) {
+    const corners = [...all.subarray(i, i + 3)];
+    const own = corners.map((corner) => places[corner] as string);
+    if (new Set(own).size < 3) continue;
+    const edges = own.map((from, k): [string, string] => {
+      const to = own[(k + 1) % 3] as string;
+      return [`${from} ${to}`, `${to} ${from}`];
+    });
+    const face = { corners, key: own.sort().join(" "), edges };
+    faces.push(face);
+    count(face, 1);
+  }
+
+  const isDoubled = [...repeats.values()].every((times) => times > 1);
+  const kept = faces.filter((face) => {
+    const isExtra = isDoubled || face.edges.some(([there]) => (excess.get(there) ?? 0) > 0);
+    if ((repeats.get(face.key) ?? 0) < 2 || !isExtra) return true;
+    count(face, -1);
+    return false;
+  });
+  return { positions, indices: Uint32Array.from(kept.length === 0 ? all : kept.flatMap(({ corners }) => corners)) };
 }
 
 const GREY: Vector3 = [0.7, 0.7, 0.7];
