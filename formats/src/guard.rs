@@ -70,7 +70,7 @@ impl Unknown {
         }
     }
 
-    /// Whether any of them is such a name.
+    /// Whether the predicate holds for any of the names.
     pub fn any(&self, is_such: impl Fn(&str) -> bool) -> bool {
         self.0.iter().any(|name| is_such(name))
     }

@@ -11,6 +11,7 @@ use crate::metrics::{self, Metrics};
 use crate::precise::drawing::prepared_mesh::PreparedMesh;
 use crate::precise::scoring::score::Score;
 use crate::precise::verdict::color::agreement;
+use crate::precise::verdict::confidence::with_turn;
 use crate::progress::Stopwatch;
 use crate::report::{Alternative, ColorReport, Effort, FoundSymmetry, ScoreTerms, Stretch, Warning, WarningCode};
 
@@ -123,7 +124,7 @@ impl Summary {
             warnings::retain_doubts(&mut warnings, view.shape_confidence);
             views.push(ViewPose {
                 camera_from_mesh: (&view.camera_from_mesh).into(),
-                confidence: view.shape_confidence * view.turn_confidence.unwrap_or(1.0),
+                confidence: with_turn(view.shape_confidence, view.turn_confidence),
                 role: view.role,
                 camera: CameraPose {
                     world_from_camera: (&view.world_from_camera).into(),
@@ -140,7 +141,7 @@ impl Summary {
         Ok(ViewsAlignment {
             world_from_mesh: (&self.world_from_mesh).into(),
             world: self.world,
-            confidence: self.shape_confidence * self.turn_confidence.unwrap_or(1.0),
+            confidence: with_turn(self.shape_confidence, self.turn_confidence),
             shape_confidence: self.shape_confidence,
             turn_confidence: self.turn_confidence,
             symmetry: self.symmetry.clone(),

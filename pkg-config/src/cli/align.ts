@@ -3,7 +3,7 @@ import { basename, extname, join } from "node:path";
 import { type CaseOnDisk, type ReadCaseOptions, readCaseFiles, readCaseFolder } from "../case-folder.js";
 import { partOf } from "../case-names.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
-import type { Frames } from "../frames.js";
+import type { Frame, Frames } from "../frames.js";
 import { frameNames, inputOfFrame, openFrames } from "../frames-folder.js";
 import {
   type Aligner,
@@ -168,13 +168,16 @@ export interface CaseView extends Pick<CaseOnDisk, "input" | "truth">, Partial<P
 /** The view of a case, or those of its frames with a mask. */
 export async function viewsOf(folder: string, settings: ReadCaseOptions): Promise<CaseView[]> {
   if ((await frameNames(folder)).length === 0) return [await readCaseFolder(folder, settings)];
-  const { mesh, views, read } = await openFrames(folder, settings);
-  const frames = await Promise.all(views.map(read));
-  return frames.flatMap(({ name, ...frame }) => {
+  const opened = await openFrames(folder, settings);
+  return maskedViews(opened, (await framesOf(opened)).frames);
+}
+
+/** The views of frames with a mask. */
+export const maskedViews = ({ mesh }: Frames, frames: readonly Frame[]): CaseView[] =>
+  frames.flatMap(({ name, ...frame }) => {
     const input = inputOfFrame(frame, mesh);
     return input === undefined ? [] : [{ ...frame, frame: name, input }];
   });
-}
 
 async function alignCase(aligner: Aligner, task: CaseToDo, flags: Flags, caseRun: CaseRun): Promise<Entry> {
   const { folder } = task;

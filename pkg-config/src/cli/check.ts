@@ -7,7 +7,7 @@ import { frameNames, openFrames } from "../frames-folder.js";
 import type { Aligner } from "../index.js";
 import { resolveInput } from "../input/resolve.js";
 import { fileReaders } from "../modules/readers.js";
-import { type CaseView, framesOf, isOneView, viewsOf } from "./align.js";
+import { type CaseView, framesOf, isOneView, maskedViews, viewsOf } from "./align.js";
 import { failedLines, type Job } from "./batch.js";
 import { warningLine } from "./details.js";
 import { type Entry, failureEntry, isFailure, posesIn, warningsOf, withFiles } from "./entry.js";
@@ -22,10 +22,8 @@ export async function checkJob(args: readonly string[], flags: Flags): Promise<J
     tasks,
     folders: tasks.map(({ folder }) => folder),
     async run(aligner, { folder }) {
-      const settings = caseSettings(flags);
-      await checkMasks(aligner, folder, settings);
       const frames = new Map<string, Entry>();
-      for (const view of await viewsOf(folder, settings)) {
+      for (const view of await readViews(aligner, folder, caseSettings(flags))) {
         const entry = await checked(aligner, view).catch((error) => failureEntry(error, view.found));
         if (view.frame === undefined) return entry;
         frames.set(view.frame, entry);
@@ -38,15 +36,15 @@ export async function checkJob(args: readonly string[], flags: Flags): Promise<J
   };
 }
 
-/** Lets views fail as they would be aligned, if masks are missing: this fails before any work. */
-async function checkMasks(aligner: Aligner, folder: string, settings: ReadCaseOptions): Promise<void> {
-  if ((await frameNames(folder)).length === 0) return;
+/** The views of a case. If masks are missing, they fail as they would be aligned: this fails before any work. */
+async function readViews(aligner: Aligner, folder: string, settings: ReadCaseOptions): Promise<CaseView[]> {
+  if ((await frameNames(folder)).length === 0) return viewsOf(folder, settings);
   const opened = await openFrames(folder, settings);
-  if (isOneView(opened)) return;
-  const { views } = await framesOf(opened);
+  const { frames, views } = await framesOf(opened);
   const isMasked = ({ mask }: (typeof views)[number]) => mask !== undefined;
   const isEnough = views.every((view) => isMasked(view) || view.cameraToWorld !== undefined) && views.some(isMasked);
-  if (!isEnough) await aligner.alignViews({ mesh: opened.mesh, views });
+  if (!isOneView(opened) && !isEnough) await aligner.alignViews({ mesh: opened.mesh, views });
+  return maskedViews(opened, frames);
 }
 
 /** Any pose: nothing that is read depends on it. */

@@ -94,13 +94,18 @@ const worldFrom = (argument: string, object: PlacedObject): Sim3 =>
     return toSim3(numbersOf(`${argument}.matrixWorld`, object.matrixWorld));
   });
 
-/** The inverse of what three.js renders with: whether it contains the scale of a camera's parents depends on its version. */
+/**
+ * The inverse of what three.js renders with: whether it contains the scale of a camera's parents depends on its version. Other
+ * objects stand for a camera without scale.
+ */
 function worldFromCamera(
   camera: PlacedObject & { readonly matrixWorldInverse?: PlacedObject["matrixWorld"] },
 ): Sim3Like {
   const world = worldFrom("options.camera", camera);
   const inverse = camera.matrixWorldInverse;
-  return inverse === undefined ? world : invert(numbersOf("options.camera.matrixWorldInverse", inverse));
+  return inverse === undefined
+    ? { ...world, scale: 1 }
+    : invert(numbersOf("options.camera.matrixWorldInverse", inverse));
 }
 
 const numbersOf = (argument: string, { elements }: { readonly elements: unknown }) =>

@@ -38,8 +38,7 @@ const MIN_TURN_RAD: f64 = 0.3;
 pub const FACING_CAMERA: DQuat = DQuat::from_xyzw(1.0, 0.0, 0.0, 0.0);
 /// Rotation between two poses below which they are one, radians.
 pub const EQUAL_MAX_RAD: f64 = 0.01;
-/// Score below a pose at which the image tells its equivalent from it. Symmetries are
-/// approximate.
+/// Loss of score from which on the image tells an equivalent pose from the best one: symmetries are approximate.
 pub const EQUIVALENT_MAX_SCORE_LOSS: f32 = 6.0 * DROP as f32;
 /// Steps of the refinement of an equivalent pose.
 const EQUIVALENT_STEPS: usize = 8;

@@ -40,13 +40,18 @@ pub struct Confidence {
 impl Confidence {
     /// The probability that the pose is right.
     pub fn overall(&self) -> f64 {
-        self.up_to_symmetry() * self.turn.unwrap_or(1.0)
+        with_turn(self.up_to_symmetry(), self.turn)
     }
 
     /// The probability that the pose is right up to the symmetry of the shape.
     pub fn up_to_symmetry(&self) -> f64 {
         self.shape * self.color * depth_calibration_reliability(self.relief_deviation)
     }
+}
+
+/// The probability that a pose is right, given that up to the symmetry of the shape and that of its turn, if others are possible.
+pub fn with_turn(up_to_symmetry: f64, turn: Option<f64>) -> f64 {
+    up_to_symmetry * turn.unwrap_or(1.0)
 }
 
 /// The probability that the relief of an observation is not so wrong that the pose is, given the standard deviation of its
