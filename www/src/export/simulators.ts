@@ -6,6 +6,7 @@ import { simulatorScene } from "sim3align/simulators/scene";
 import { toUrdf } from "sim3align/simulators/urdf";
 import { toUsd } from "sim3align/simulators/usd";
 import { maskFile } from "../masking/mask-file.js";
+import { boxOf } from "../pictures/box.js";
 import { keyOf } from "../session/results.js";
 import { page } from "../state/page.js";
 import { isMetric, type Scene } from "../state/scene.js";
@@ -42,14 +43,9 @@ export function cocoText(scene: Scene): string {
   const { width, height } = scene;
   const file_name = page.inputs.peek().photo?.path ?? page.inputs.peek().depth?.path ?? scene.name;
   const annotations = scene.objects.map(({ mask }, i) => {
-    let [left, top, right, bottom, area] = [width, height, -1, -1, 0];
-    for (let at = 0; at < mask.length; at++) {
-      if (mask[at] === 0) continue;
-      const [x, y] = [at % width, Math.floor(at / width)];
-      [left, top, right, bottom] = [Math.min(left, x), Math.min(top, y), Math.max(right, x), Math.max(bottom, y)];
-      area++;
-    }
-    const bbox = area === 0 ? [0, 0, 0, 0] : [left, top, right - left + 1, bottom - top + 1];
+    const box = boxOf(mask, width);
+    const bbox = box === null ? [0, 0, 0, 0] : [box.left, box.top, box.right - box.left, box.bottom - box.top];
+    const area = mask.reduce((sum, value) => sum + (value === 0 ? 0 : 1), 0);
     const segmentation = toCocoRle({ data: mask, width, height });
     return { id: i + 1, image_id: 1, category_id: i + 1, segmentation, area, bbox, iscrowd: 0 };
   });

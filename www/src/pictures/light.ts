@@ -1,4 +1,5 @@
 /** The light on an object in the photo. */
+import { lightOf } from "sim3align/input/colors";
 import type { Rgb } from "sim3align/pictures/colours";
 import type { ObjectModel } from "../state/object-model.js";
 import { rgbOf } from "./colours.js";
@@ -12,10 +13,8 @@ const LEAST_POINTS = 40;
 /** Photos that are far darker or brighter than this have other causes. */
 const [DARKEST, BRIGHTEST] = [0.35, 2.5];
 
-/** Of the bytes of sRGB, the light that they stand for. */
-const linear = Float32Array.from({ length: 256 }, (_, i) =>
-  i / 255 <= 0.04045 ? i / 255 / 12.92 : ((i / 255 + 0.055) / 1.055) ** 2.4,
-);
+/** The linear light of sRGB bytes. */
+const linear = Float32Array.from({ length: 256 }, (_, byte) => lightOf(byte / 255));
 
 /** What a mesh is drawn in: one colour, colours of its vertices, which glTF has linear, or those of textures. */
 export type Colouring = "plain" | "vertices" | "textures";
