@@ -63,7 +63,7 @@ fn read_png(bytes: &[u8]) -> Result<MaskImage> {
     let first_alpha = pixels.samples.get(..channels).map(alpha);
     let is_cut_out = pixels.has_alpha() && pixels.samples.chunks_exact(channels).any(|p| Some(alpha(p)) != first_alpha);
     let background = info.first_palette_colour.unwrap_or_default().map(u16::from);
-    // The difference to the background, as one number of three digits.
+    // The largest difference to the background, and all of them as one number of three digits.
     let color = |pixel: &[u16]| {
         let differences =
             pixel.iter().take(pixels.colours()).zip(background).map(|(sample, zero)| sample.abs_diff(zero));
@@ -71,17 +71,21 @@ fn read_png(bytes: &[u8]) -> Result<MaskImage> {
     };
     let pixel_at =
         |i: usize| pixels.samples.get(i * channels..).and_then(|rest| rest.get(..channels)).unwrap_or_default();
-    let level = |i: usize| f64::from(if is_cut_out { alpha(pixel_at(i)) } else { color(pixel_at(i)).0 });
+    let levels: Vec<u16> = (pixels.samples.chunks_exact(channels))
+        .map(|pixel| if is_cut_out { alpha(pixel) } else { color(pixel).0 })
+        .collect();
+    let level = |i: usize| levels.get(i).copied().map_or(0.0, f64::from);
     // Of a cut-out, the colours may be those of a photo.
     let key = |i: usize| if is_cut_out && alpha(pixel_at(i)) == 0 { 0.0 } else { color(pixel_at(i)).1 };
-    outlined(info.width, info.height, &Values { value: &level, key: &key, is_float: false, is_cut_out })
+    let key: Option<&dyn Fn(usize) -> f64> = if channels > 1 { Some(&key) } else { None };
+    outlined(info.width, info.height, &Values { value: &level, key, is_float: false, is_cut_out })
 }
 
 /// The values of a mask by their index, row-major.
 struct Values<'a> {
     value: &'a dyn Fn(usize) -> f64,
-    /// Differs between labels that have the same value, such as colours.
-    key: &'a dyn Fn(usize) -> f64,
+    /// Differs between labels that have the same value, such as colours; `None` where there are no such labels.
+    key: Option<&'a dyn Fn(usize) -> f64>,
     is_float: bool,
     is_cut_out: bool,
 }
@@ -89,7 +93,7 @@ struct Values<'a> {
 impl<'a> Values<'a> {
     /// Values of one channel.
     fn of(value: &'a dyn Fn(usize) -> f64, is_float: bool) -> Self {
-        Self { value, key: value, is_float, is_cut_out: false }
+        Self { value, key: None, is_float, is_cut_out: false }
     }
 }
 
@@ -105,7 +109,13 @@ fn outlined(
     let count = width * height;
     let others = (0..count).map(value).filter(|&value| value != 0.0 && !value.is_nan());
     let (mut first, mut low, mut high, mut is_binary) = (None, 0.0_f64, 0.0_f64, true);
+    let mut last = 0.0;
     for value in others {
+        // Most values are those of the pixels before.
+        if value == last {
+            continue;
+        }
+        last = value;
         (low, high, is_binary) = (low.min(value), high.max(value), is_binary && value == *first.get_or_insert(value));
     }
     // −1 may be true; −6 is no object.
@@ -116,7 +126,9 @@ fn outlined(
         (true, ..=1.0) if low >= 0.0 => 0.5,
         _ => 0.5 * high,
     };
-    let (lowest, kind) = if (is_binary || !is_cut_out) && low >= 0.0 && has_labels(width, count, key) {
+    // One value is one label, unless labels differ by more than their values.
+    let may_have_labels = if is_binary { key.is_some() } else { !is_cut_out };
+    let (lowest, kind) = if may_have_labels && low >= 0.0 && has_labels(width, count, key.unwrap_or(value)) {
         (f64::MIN_POSITIVE, ": labels")
     } else if is_binary {
         (first, "")

@@ -97,6 +97,11 @@ impl<'a> NpyArray<'a> {
     /// The element at this place of the file.
     pub fn value(&self, place: usize) -> f64 {
         let NpyHeader { kind, size, big_endian, .. } = self.header;
+        // Most depth maps, several times faster.
+        if (kind, size, big_endian) == (Kind::Float, 4, false) {
+            let element = self.data.get(place * 4..).and_then(|rest| rest.first_chunk());
+            return element.map_or(0.0, |bytes| f64::from(f32::from_le_bytes(*bytes)));
+        }
         let mut bytes = [0; 8];
         let element = self.data.get(place * size..).and_then(|rest| rest.get(..size)).unwrap_or_default();
         for (to, from) in bytes.iter_mut().zip(element) {

@@ -120,11 +120,14 @@ impl<'a> PngInfo<'a> {
                 let samples = vec![0; self.width * self.height * row.channels];
                 pixels = PngPixels { channels: row.channels, samples };
             }
-            for (i, pixel) in row.samples.chunks_exact(row.channels * row.bytes).enumerate() {
-                let place = (row.row * self.width + row.first + i * row.step) * row.channels;
-                let slots = pixels.samples.iter_mut().skip(place);
-                for (slot, sample) in slots.zip(pixel.chunks_exact(row.bytes)) {
-                    *slot = sample.iter().fold(0, |value, &byte| value << 8 | u16::from(byte));
+            let start = (row.row * self.width + row.first) * row.channels;
+            let slots = pixels.samples.get_mut(start..).unwrap_or_default();
+            let slots = slots.chunks_mut(row.step * row.channels).flat_map(|slots| &mut slots[..row.channels]);
+            match row.bytes {
+                1 => slots.zip(row.samples).for_each(|(slot, &byte)| *slot = u16::from(byte)),
+                _ => {
+                    let (samples, _) = row.samples.as_chunks();
+                    slots.zip(samples).for_each(|(slot, bytes)| *slot = u16::from_be_bytes(*bytes));
                 }
             }
         })?;

@@ -67,10 +67,14 @@ pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
 /// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
 pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn FnMut(SurfaceSample)) -> Result<()> {
     check_triangles(mesh.triangles().len())?;
-    let mut total = 0.0;
+    // Six times the enclosed volume, as by `Mesh::signed_volume6`.
+    let (mut total, mut volume) = (0.0, 0.0);
+    let origin = mesh.positions().first().map_or(DVec3::ZERO, |p| p.as_dvec3());
     let ends: Vec<f64> = (mesh.triangles().iter())
         .map(|&t| {
-            total += area_of(corners(mesh, t));
+            let [a, b, c] = corners(mesh, t);
+            volume += (a - origin).dot((b - origin).cross(c - origin));
+            total += area_of([a, b, c]);
             total
         })
         .collect();
@@ -78,7 +82,7 @@ pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn
     check_diagonal(mesh)?;
     // The last triangle with area; rounding must not select one after it.
     let last = ends.partition_point(|&end| end < total).min(ends.len() - 1);
-    let facing = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
+    let facing = if volume < 0.0 { -1.0 } else { 1.0 };
 
     let mut random = Random::new(seed, STREAM);
     let mut triangle = 0;

@@ -132,7 +132,8 @@ impl TriangleTree {
                 indices
             }
         };
-        let (mut blocks, mut extents) = (Vec::new(), Vec::new());
+        let count = indices.len().div_ceil(BLOCK);
+        let (mut blocks, mut extents) = (Vec::with_capacity(count), Vec::with_capacity(count));
         for block in indices.chunks(BLOCK) {
             // The first one fills the places of those that are missing.
             let mut triangles = [corners(mesh.triangles()[block[0] as usize]); BLOCK];
@@ -146,7 +147,8 @@ impl TriangleTree {
         }
         let mut levels = Vec::new();
         while extents.len() > 1 {
-            let (mut boxes, mut parents) = (Vec::new(), Vec::new());
+            let count = extents.len().div_ceil(CHILDREN);
+            let (mut boxes, mut parents) = (Vec::with_capacity(count), Vec::with_capacity(count));
             for children in extents.chunks(CHILDREN) {
                 boxes.push(Boxes::new(children));
                 parents.push(children.iter().fold(Extent::NOTHING, |all, child| all.union(*child)));

@@ -4,7 +4,7 @@
 //! Each part awaits a yield point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
 //! are bit-identical whether or not it yields.
 
-use core::ops::Range;
+use core::ops::{ControlFlow, Range};
 
 use glam::DQuat;
 
@@ -25,7 +25,7 @@ use crate::precise::scoring::scene_term::SceneContext;
 use crate::precise::search::efforts;
 use crate::precise::search::plate::without_invented_plate;
 use crate::precise::search::problem::FACING_CAMERA;
-use crate::precise::search::recipe::{SURE, SearchSettings};
+use crate::precise::search::recipe::{SURE, SURE_UNCUT, SearchSettings};
 use crate::precise::search::rounds::Rounds;
 use crate::precise::search::start::{self, SearchState, WarmStart};
 use crate::precise::verdict::color::{Judgment, agreement, judgment};
@@ -174,24 +174,50 @@ impl<'a> Search<'a> {
             }
             let mut rounds = self.start(previous.as_ref(), settings)?;
             self.scheduler.yield_point().await;
-            self.run(&mut rounds, efforts::share(index, efforts.len())).await;
 
-            let conclusion = conclusion::conclude(&rounds, None, self.reference());
             let is_last = index + 1 == efforts.len();
-            let is_sure = matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.up_to_symmetry() >= SURE);
-            let mut rivals = if is_sure && !is_last { start::rival_search(&rounds) } else { None };
-            if let Some(rivals) = &mut rivals {
-                self.run(rivals, efforts::share(index + 1, efforts.len() + 1)).await;
+            let mut share = efforts::share(index, efforts.len());
+            if index == 0 && !is_last && rounds.assume_uncut() {
+                let [uncut, rest] = efforts::split(share);
+                match self.attempt(rounds, uncut, Some(SURE_UNCUT)).await? {
+                    ControlFlow::Break(result) => return Ok(result),
+                    ControlFlow::Continue(unsure) => rounds = unsure.with_cuts(),
+                }
+                share = rest;
             }
-            let has_rival = rivals.is_some_and(|rivals| start::take_rivals(&mut rounds, &rivals));
-            if is_last || (is_sure && !has_rival) {
-                let (solution, verdict) = conclusion?;
-                return Ok(SearchResult { rounds, solution, verdict });
+            match self.attempt(rounds, share, (!is_last).then_some(SURE)).await? {
+                ControlFlow::Break(result) => return Ok(result),
+                ControlFlow::Continue(unsure) => previous = Some(unsure),
             }
-
-            previous = Some(rounds);
         }
         Err(precise::no_candidate())
+    }
+
+    /// Runs a search to its end. Breaks with its result if the confidence is `sure` or more and the best pose has no rival, or if
+    /// there is no such limit, because no search follows.
+    async fn attempt(
+        &mut self,
+        mut rounds: Rounds,
+        share: Range<f64>,
+        sure: Option<f64>,
+    ) -> Result<ControlFlow<SearchResult, Rounds>> {
+        let end = share.end;
+        self.run(&mut rounds, share).await;
+
+        let conclusion = conclusion::conclude(&rounds, None, self.reference());
+        let is_sure = sure.is_some_and(
+            |least| matches!(&conclusion, Ok((_, verdict)) if verdict.confidence.up_to_symmetry() >= least),
+        );
+        let mut rivals = if is_sure { start::rival_search(&rounds) } else { None };
+        if let Some(rivals) = &mut rivals {
+            self.run(rivals, end..end).await;
+        }
+        let has_rival = rivals.is_some_and(|rivals| start::take_rivals(&mut rounds, &rivals));
+        if sure.is_some() && (!is_sure || has_rival) {
+            return Ok(ControlFlow::Continue(rounds));
+        }
+        let (solution, verdict) = conclusion?;
+        Ok(ControlFlow::Break(SearchResult { rounds, solution, verdict }))
     }
 
     /// The rotation near which the result is, of poses that are equal by shape; `None` where colours choose among these.

@@ -9,9 +9,9 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::sample_surface;
 use crate::progress::{Stage, Stopwatch};
 
-/// Number of points from which metrics measure by default. On real objects, a mean over them is within half a per cent of that over
-/// twenty thousand.
-pub const MEASURED: usize = 2048;
+/// Number of points from which metrics measure by default. On real objects, a mean over them is within 1.2 % of that over twenty
+/// thousand, in the median within .4 %.
+pub const MEASURED: usize = 1024;
 
 /// Sampling of both clouds (paper §3.1): how many points represent the observation and the surface of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,6 +11,8 @@ pub mod normals;
 pub mod observation;
 pub mod photo;
 
+use glam::Vec3;
+
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::curve::along_curve;
@@ -54,11 +56,11 @@ impl Evidence {
     pub fn new(observed: Cloud, reconstructed: Cloud, normals: Normals, measured: usize) -> Self {
         let tree = KdTree::new(&observed.points);
         let step = |cloud: &Cloud| cloud.len().div_ceil(measured).max(1);
-        let of_surface = along_curve(&reconstructed.points);
-        let measured = [
-            tree.indices().step_by(step(&observed)).collect(),
-            of_surface.into_iter().step_by(step(&reconstructed)).collect(),
-        ];
+        // Samples of a surface are in the order of its triangles, by area.
+        let of_surface: Vec<u32> = (0..reconstructed.len() as u32).step_by(step(&reconstructed)).collect();
+        let points: Vec<Vec3> = of_surface.iter().map(|index| reconstructed.points[*index as usize]).collect();
+        let along = along_curve(&points).into_iter().map(|place| of_surface[place as usize]).collect();
+        let measured = [tree.indices().step_by(step(&observed)).collect(), along];
         Self { observed, normals: Normals::Measured, measured, tree, reconstructed }.with_normals(normals)
     }
 

@@ -110,7 +110,7 @@ export const OPTIONS: Readonly<Record<"align" | "paper" | "alignScene" | "alignV
     seed,
     { ...maxObservedPoints, summary: "Upper bound on the depth readings used" },
     { ...surfaceSamples, summary: "Number of points sampled on the mesh surface" },
-    { name: "measuredPoints", kind: "integer", min: 32, max: 1000000, isNullable: false, default: 2048, summary: "Number of points, evenly spread over those of each side, from which distances and normals are measured" },
+    { name: "measuredPoints", kind: "integer", min: 32, max: 1000000, isNullable: false, default: 1024, summary: "Number of points, evenly spread over those of each side, from which distances and normals are measured" },
   ],
   register: [
     { ...scale, summary: "The scale in target units per source unit: `\"free\"`, a known number (1 for rigid registration), or bounds `[min, max]`" },

@@ -216,7 +216,7 @@ export interface EvaluateOptions extends Pick<AlignOptions, "seed">, Pick<PaperO
   /**
    * Number of points, evenly spread over those of each side, from which distances and normals are measured. By
    * default, the means are within about half a per cent of those from all: 1 000 000 measures from every point. Takes
-   * a whole number from 32 to 1000000. Default `2048`.
+   * a whole number from 32 to 1000000. Default `1024`.
    */
   measuredPoints?: number | undefined;
 }

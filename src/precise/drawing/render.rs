@@ -104,6 +104,8 @@ pub struct Canvas {
     pub work: u64,
     /// Columns and rows of the box around the projected vertices: all other cells are empty.
     pub drawn: [Range<usize>; 2],
+    /// A buffer for ratios of observed and rendered depths.
+    pub(in crate::precise) ratios: Vec<f32x4>,
     vertices: Vec<Vertex>,
     /// The triangles that are seen from the side from which they are drawn.
     seen: Vec<u32>,

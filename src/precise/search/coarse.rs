@@ -53,7 +53,9 @@ impl Coarse<'_> {
     pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
         let Objective { model, grid, scoring, prior, equivalence, scene } = &self.objective;
         canvas.draw(model, &pose, grid);
-        let stretch = median_of_positive(&ratios(canvas, grid)).unwrap_or(1.0);
+        let ratios = ratios(canvas, grid);
+        let stretch = median_of_positive(&ratios).unwrap_or(1.0);
+        canvas.ratios = ratios;
         let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
         let pose = prior.bounded(distant);
         // Unlike the silhouette, the scene term depends on the distance.
@@ -96,10 +98,10 @@ impl Coarse<'_> {
     }
 }
 
-/// The ratios of observed and rendered depths, where both are known, and zeros elsewhere.
-fn ratios(canvas: &Canvas, grid: &CropGrid) -> Vec<f32x4> {
-    let [columns, rows] = &canvas.drawn;
-    let mut ratios = Vec::with_capacity(rows.len() * columns.len().div_ceil(LANES));
+/// The ratios of observed and rendered depths, where both are known, and zeros elsewhere, in the canvas's buffer.
+fn ratios(canvas: &mut Canvas, grid: &CropGrid) -> Vec<f32x4> {
+    let mut ratios = core::mem::take(&mut canvas.ratios);
+    ratios.clear();
     for (v, row) in canvas.rows(grid) {
         let end = (v + 1) * grid.width;
         for i in row.step_by(LANES) {

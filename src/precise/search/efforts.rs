@@ -5,6 +5,9 @@ use core::ops::Range;
 use super::recipe::SearchSettings;
 use crate::precise::options::AlignOptions;
 
+/// Share of its time after which a search that assumes that nothing cuts the mask has ended.
+const UNCUT_SHARE: f64 = 0.4;
+
 /// The searches for these options, with increasing effort.
 pub fn of(options: &AlignOptions) -> Vec<SearchSettings> {
     let is_fixed = options.scale.bounds().is_some_and(|[min, max]| min == max) || options.known_extent_m.is_some();
@@ -23,6 +26,12 @@ pub fn share(effort: usize, efforts: usize) -> Range<f64> {
     const BEFORE: f64 = 0.15;
     let start = SEARCH[0] + BEFORE * effort as f64;
     start..if effort + 1 < efforts { start + BEFORE } else { SEARCH[1] }
+}
+
+/// The two parts of a range of progress: the shorter one of a search that assumes that nothing cuts the mask.
+pub fn split(share: Range<f64>) -> [Range<f64>; 2] {
+    let middle = share.start + UNCUT_SHARE * (share.end - share.start);
+    [share.start..middle, middle..share.end]
 }
 
 /// Searches that together stay within a budget: the last one is scaled to what the others leave.

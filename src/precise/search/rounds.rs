@@ -13,7 +13,7 @@ use super::tasks::{RoundTasks, TaskResult};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::precise::drawing::pose::CropPose;
-use crate::precise::observation::box_fits::BoxFit;
+use crate::precise::observation::box_fits::{BoxFit, UNCUT};
 use crate::scheduler::{Boxed, Scheduler, boxed};
 
 /// Score below the best pose at which a refined turn of it is not ranked.
@@ -94,6 +94,21 @@ impl Rounds {
         let mut rounds = Self::new(search, None, true);
         rounds.rotations = rotations;
         rounds
+    }
+
+    /// Leaves out the sizes and positions by which something hides a part of the object, or the border cuts it. Returns whether
+    /// there are any: several times as many as the others, and few objects need them.
+    pub fn assume_uncut(&mut self) -> bool {
+        let is_cut = self.box_fits.len() > UNCUT;
+        self.box_fits.truncate(UNCUT);
+        is_cut
+    }
+
+    /// The search from its beginning, with all sizes and positions, and with the candidates of this one.
+    pub fn with_cuts(self) -> Self {
+        let mut again = Self::new(self.search, None, true);
+        again.add_candidates(&self.candidates);
+        again
     }
 
     /// A search that has ended with these candidates.
@@ -223,6 +238,7 @@ impl Rounds {
             task: round.task,
             grid: round.grid,
             work: round.work,
+            box_fits: self.box_fits.len(),
             best: self.best.first().map(|best| best.score.total),
             rotations: Cow::Borrowed(&self.rotations),
             poses: Cow::Borrowed(&self.poses),

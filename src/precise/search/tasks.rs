@@ -35,6 +35,8 @@ pub struct RoundTasks<'a> {
     pub grid: usize,
     /// See [`Round`](super::recipe::Round).
     pub work: usize,
+    /// Number of sizes and positions tried for each rotation.
+    pub box_fits: usize,
     /// The score of the best candidate of the last round, if any.
     pub best: Option<f32>,
     /// The rotations of [`Task::Rotate`], if they are not those of the rotation grid.
@@ -77,14 +79,15 @@ impl RoundTasks<'_> {
         let objective = search.objective(self.grid);
         let coarse = Coarse { objective, median_m: search.observation.median_m };
         let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
-        let box_fits = if self.task == Task::Rotate { search.box_fits() } else { Vec::new() };
+        let mut box_fits = if self.task == Task::Rotate { search.box_fits() } else { Vec::new() };
+        box_fits.truncate(self.box_fits);
         Run { tasks: self, search, box_fits, coarse, refiner, canvas: Canvas::default() }
     }
 
     /// Writes the tasks as numbers, without loss.
     pub fn write(&self, message: &mut Vec<f64>) {
-        let Self { view, effort, has_scene_term, task, grid, work, best, rotations, poses } = self;
-        let settings = [*view, *effort as usize, usize::from(*has_scene_term), *task as usize, *grid, *work];
+        let Self { view, effort, has_scene_term, task, grid, work, box_fits, best, rotations, poses } = self;
+        let settings = [*view, *effort as usize, usize::from(*has_scene_term), *task as usize, *grid, *work, *box_fits];
         put(message, &settings.map(|x| x as f64));
         put(message, &[best.map_or(f64::NAN, f64::from)]);
         put(message, &[rotations.len(), poses.len()].map(|x| x as f64));
@@ -100,7 +103,7 @@ impl RoundTasks<'_> {
     pub fn read(message: &[f64]) -> Option<RoundTasks<'static>> {
         const EFFORTS: [Effort; 3] = [Effort::Fast, Effort::Balanced, Effort::Best];
         const TASKS: [Task; 5] = [Task::Rotate, Task::Place, Task::Refine, Task::Turn, Task::Fit];
-        let (&[view, effort, has_scene_term, task, grid, work, best, rotations, poses], lists) =
+        let (&[view, effort, has_scene_term, task, grid, work, box_fits, best, rotations, poses], lists) =
             message.split_first_chunk()?;
         let (rotations, lists) = lists.split_at_checked(4 * rotations as usize)?;
         let (poses, _) = lists.split_at_checked(POSE * poses as usize)?;
@@ -111,6 +114,7 @@ impl RoundTasks<'_> {
             task: *TASKS.iter().find(|known| **known as usize as f64 == task)?,
             grid: grid as usize,
             work: work as usize,
+            box_fits: box_fits as usize,
             best: (!best.is_nan()).then_some(best as f32),
             rotations: rotations.as_chunks().0.iter().map(|rotation| DQuat::from_array(*rotation)).collect(),
             poses: poses.as_chunks().0.iter().map(pose_of).collect(),
