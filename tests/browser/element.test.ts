@@ -18,7 +18,7 @@ interface Element extends HTMLElement {
   options: Record<string, unknown>;
   readonly: boolean;
   session: object;
-  results: { name: string; confidence: number | null; isAccepted: boolean }[];
+  results: { name: string; confidence: number | null; isAccepted: boolean; sizeM: number[] | null }[];
 }
 
 /** Globals of the tests in the page. */
@@ -109,6 +109,7 @@ test("instances on one page are independent, and report what they do", async () 
           source: root.querySelector(".result")?.getAttribute("data-source"),
           options: [element.options.quality, element.options.seed],
           isAccepted: element.results[0]?.isAccepted,
+          sides: element.results[0]?.sizeM?.length ?? 0,
           undo,
         };
       }),
@@ -116,8 +117,8 @@ test("instances on one page are independent, and report what they do", async () 
   await page.locator("#a #accept").click();
   await told(page, "a", "accept");
   assert.deepEqual(await states(), [
-    { source: "aligned", options: ["auto", 0], isAccepted: true, undo: "false" },
-    { source: "start", options: ["fast", 7], isAccepted: false, undo: "true" },
+    { source: "aligned", options: ["auto", 0], isAccepted: true, sides: 3, undo: "false" },
+    { source: "start", options: ["fast", 7], isAccepted: false, sides: 0, undo: "true" },
   ]);
   // The other way round: undoing in one leaves the other.
   await page.locator("#b #align").click();
