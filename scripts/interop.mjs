@@ -11,7 +11,7 @@ import { step } from "./lib/step.mjs";
 
 /** @typedef {import("./interop/table.mjs").Cell} Cell */
 /** @typedef {{ program: string, version: string, kind: string, variant: string, notWritten?: string }} Written */
-/** @typedef {{ program: string, version: string, kind: string, variant: string, failed?: string, error?: number, limit: number }} Loaded */
+/** @typedef {{ program: string, version: string, kind: string, variant: string, failed?: string, error?: number, limit: number, found?: number }} Loaded */
 
 const root = at("target", "interop");
 const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
@@ -41,8 +41,10 @@ async function rowsOf(python, args, out) {
 }
 
 /** @param {Loaded} row @returns {Cell} */
-function loadedCell({ failed, error = Number.NaN, limit, ...row }) {
+function loadedCell({ failed, error = Number.NaN, limit, found, ...row }) {
   const passed = failed === undefined && error <= limit;
+  if (found !== undefined)
+    return { ...row, action: "place", passed, result: failed ?? `${Math.round(1000 * found) / 1000}` };
   const unit = /mass|relative|pixels|moved|faults|number|letters|radians|pose|metres/.test(row.variant) ? "" : "m";
   return {
     ...row,
@@ -96,7 +98,7 @@ async function interop({ only, write, verbose, python: program }) {
     for (const name of wanted) {
       await step(`${name} (${environment})`, async (say) => {
         const rows = [];
-        for (const action of ["write", "load"]) {
+        for (const action of ["write", "load", "place"]) {
           const out = join(root, "rows", `${environment}-${name}-${action}.json`);
           if (known.includes(`${action}\t${name}`)) rows.push(...(await rowsOf(python, [action, name], out)));
         }

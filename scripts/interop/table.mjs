@@ -3,12 +3,14 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync 
 import { extname, join } from "node:path";
 import { at } from "../lib/paths.mjs";
 
-/** @typedef {{ action: "write" | "load", program: string, version: string, kind: string, variant: string, passed: boolean, result: string, error?: number, unit?: string }} Cell */
+/** @typedef {{ action: "write" | "load" | "place", program: string, version: string, kind: string, variant: string, passed: boolean, result: string, error?: number, unit?: string }} Cell */
 
 const guide = at("docs", "guides", "interoperability.md");
 const list = at("docs", "record", "interop.tsv");
 /** @type {Record<string, string>} */
 const notes = JSON.parse(readFileSync(at("scripts", "interop", "notes.json"), "utf8"));
+/** What to do in the places where programs differ, by the question. @type {Record<string, string>} */
+const decisions = JSON.parse(readFileSync(at("scripts", "interop", "decisions.json"), "utf8"));
 
 /** Counts by kind: "mesh 12, depth 3". @param {readonly Cell[]} cells */
 function counts(cells) {
@@ -34,10 +36,20 @@ function largest(cells) {
         : most.toFixed(2);
 }
 
-/** Writes the table between the markers of the guide. @param {readonly Cell[]} cells @param {string} date */
+/** The table of the places where programs differ. @param {readonly Cell[]} cells */
+function placesTable(cells) {
+  const rows = Object.entries(decisions).map(([question, decision]) => {
+    const own = cells.filter(({ action, kind }) => action === "place" && kind === question);
+    const found = own.map(({ program, version, variant, result }) => `${program} ${version}, ${variant}: ${result}`);
+    return `| ${question} | ${found.join("<br>")} | ${decision} |`;
+  });
+  return `\n| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}\n\n`;
+}
+
+/** Writes the tables between the markers of the guide. @param {readonly Cell[]} cells @param {string} date */
 export function writeTable(cells, date) {
   const name = (/** @type {Cell} */ { program, version }) => `${program} ${version}`;
-  const names = [...new Set(cells.map(name))].sort((a, b) =>
+  const names = [...new Set(cells.filter(({ action }) => action !== "place").map(name))].sort((a, b) =>
     a.localeCompare(b, "en", { sensitivity: "base", numeric: true }),
   );
   const rows = names.map((each) => {
@@ -57,10 +69,12 @@ export function writeTable(cells, date) {
     "| program | what it writes, read by sim3align | what it loads of sim3align | largest difference, mm | what to know |\n|---|---|---|---|---|";
   const text = readFileSync(guide, "utf8");
   const table = `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`;
-  writeFileSync(
-    guide,
-    text.replace(/(<!-- interop -->\n)[\s\S]*(<!-- \/interop -->)/, (_, start, end) => `${start}${table}${end}`),
-  );
+  const between = (/** @type {string} */ mark, /** @type {string} */ before, /** @type {string} */ content) =>
+    before.replace(
+      new RegExp(`(<!-- ${mark} -->\n)[\\s\\S]*(<!-- \\/${mark} -->)`),
+      (_, start, end) => `${start}${content}${end}`,
+    );
+  writeFileSync(guide, between("interop", between("places", text, placesTable(cells)), table));
   const lines = cells.map(({ action, kind, variant, passed, result, ...cell }) => {
     const short = result.replace(/\s+/g, " ").replaceAll(at(), "").slice(0, 160);
     return [
