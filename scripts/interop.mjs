@@ -59,7 +59,7 @@ function loadedCell({ failed, error = Number.NaN, limit, found, ...row }) {
 /** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
 async function interop({ only, write, verbose, python: program }) {
   await buildPackage();
-  const [{ readBack }, { writeOurs }, { programs, rowsOf: rowsOfPackage }, { writeTable, writeFixtures }] =
+  const [{ readBack }, { writeOurs }, { programs, rowsOf: rowsOfPackage }, { writePlaces, writeTable, writeFixtures }] =
     await Promise.all([
       import("./interop/read.mjs"),
       import("./interop/ours.mjs"),
@@ -124,8 +124,12 @@ async function interop({ only, write, verbose, python: program }) {
   }
   const misses = cells.filter(({ passed }) => !passed).length;
   console.log(`${cells.length} cells, ${misses} misses.`);
-  if (write) writeFixtures(read.filter(({ file }) => file !== undefined));
-  if (write) writeTable(cells, new Date().toISOString().slice(0, 10));
+  if (write) writePlaces(cells);
+  // Some programs are not the whole table.
+  if (write && only === undefined) {
+    writeFixtures(read.filter(({ file }) => file !== undefined));
+    writeTable(cells, new Date().toISOString().slice(0, 10));
+  }
   if (misses > 0) process.exitCode = 1;
 }
 
@@ -135,7 +139,7 @@ await command("interop", (program) =>
       "Runs some forty programs: our readers read what they write, and they load what we write. Takes about ten minutes, the first time more.",
     )
     .option("--only <program...>", "some programs, by the names in scripts/interop/packages.json")
-    .option("--write", "write the table of docs/guides/interoperability.md", false)
+    .option("--write", "write the tables of docs/guides/interoperability.md; with --only, that of places", false)
     .option("--verbose", "print every cell", false)
     .option("--python <program>", "the Python (3.11) that installs the packages", "python3")
     .action(interop),

@@ -36,17 +36,24 @@ function largest(cells) {
         : most.toFixed(2);
 }
 
-/** The table of the places where programs differ. @param {readonly Cell[]} cells */
-function placesTable(cells) {
+/** Puts content between the markers of the guide. @param {string} mark @param {string} content */
+function writeBetween(mark, content) {
+  const marked = new RegExp(`(<!-- ${mark} -->\\n)[\\s\\S]*(<!-- /${mark} -->)`);
+  const text = readFileSync(guide, "utf8").replace(marked, (_, start, end) => `${start}${content}${end}`);
+  writeFileSync(guide, text);
+}
+
+/** Writes the table of the places where programs differ. @param {readonly Cell[]} cells */
+export function writePlaces(cells) {
   const rows = Object.entries(decisions).map(([question, decision]) => {
     const own = cells.filter(({ action, kind }) => action === "place" && kind === question);
     const found = own.map(({ program, version, variant, result }) => `${program} ${version}, ${variant}: ${result}`);
     return `| ${question} | ${found.join("<br>")} | ${decision} |`;
   });
-  return `\n| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}\n\n`;
+  writeBetween("places", `\n| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}\n\n`);
 }
 
-/** Writes the tables between the markers of the guide. @param {readonly Cell[]} cells @param {string} date */
+/** Writes the table of programs. @param {readonly Cell[]} cells @param {string} date */
 export function writeTable(cells, date) {
   const name = (/** @type {Cell} */ { program, version }) => `${program} ${version}`;
   const names = [...new Set(cells.filter(({ action }) => action !== "place").map(name))].sort((a, b) =>
@@ -67,14 +74,7 @@ export function writeTable(cells, date) {
   const total = `Measured on ${date}: ${cells.length} cells, ${misses === 0 ? "all as stated" : `${misses} not as stated`}; [every cell](../record/interop.tsv).`;
   const head =
     "| program | what it writes, read by sim3align | what it loads of sim3align | largest difference, mm | what to know |\n|---|---|---|---|---|";
-  const text = readFileSync(guide, "utf8");
-  const table = `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`;
-  const between = (/** @type {string} */ mark, /** @type {string} */ before, /** @type {string} */ content) =>
-    before.replace(
-      new RegExp(`(<!-- ${mark} -->\n)[\\s\\S]*(<!-- \\/${mark} -->)`),
-      (_, start, end) => `${start}${content}${end}`,
-    );
-  writeFileSync(guide, between("interop", between("places", text, placesTable(cells)), table));
+  writeBetween("interop", `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`);
   const lines = cells.map(({ action, kind, variant, passed, result, ...cell }) => {
     const short = result.replace(/\s+/g, " ").replaceAll(at(), "").slice(0, 160);
     return [
