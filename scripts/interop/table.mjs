@@ -47,8 +47,15 @@ function writeBetween(mark, content) {
 export function writePlaces(cells) {
   const rows = Object.entries(decisions).map(([question, decision]) => {
     const own = cells.filter(({ action, kind }) => action === "place" && kind === question);
-    const found = own.map(({ program, version, variant, result }) => `${program} ${version}, ${variant}: ${result}`);
-    return `| ${question} | ${found.join("<br>")} | ${decision} |`;
+    // Versions with the same answer are in one line.
+    /** @type {Map<string, string[]>} */
+    const versions = new Map();
+    for (const { program, version, variant, result } of own) {
+      const answer = `${program}|, ${variant}: ${result}`;
+      versions.set(answer, [...(versions.get(answer) ?? []), version]);
+    }
+    const lines = Array.from(versions, ([answer, all]) => answer.replace("|", ` ${all.join(" and ")}`));
+    return `| ${question} | ${lines.join("<br>")} | ${decision} |`;
   });
   writeBetween("places", `\n| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}\n\n`);
 }
