@@ -11,7 +11,7 @@ import { step } from "./lib/step.mjs";
 
 /** @typedef {import("./interop/table.mjs").Cell} Cell */
 /** @typedef {{ program: string, version: string, kind: string, variant: string, notWritten?: string }} Written */
-/** @typedef {{ program: string, version: string, kind: string, variant: string, failed?: string, error?: number, limit: number }} Loaded */
+/** @typedef {{ program: string, version: string, kind: string, variant: string, failed?: string, error?: number, limit: number, found?: number }} Loaded */
 
 const root = at("target", "interop");
 const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
@@ -41,8 +41,10 @@ async function rowsOf(python, args, out) {
 }
 
 /** @param {Loaded} row @returns {Cell} */
-function loadedCell({ failed, error = Number.NaN, limit, ...row }) {
+function loadedCell({ failed, error = Number.NaN, limit, found, ...row }) {
   const passed = failed === undefined && error <= limit;
+  if (found !== undefined)
+    return { ...row, action: "place", passed, result: failed ?? `${Math.round(1000 * found) / 1000}` };
   const unit = /mass|relative|pixels|moved|faults|number|letters|radians|pose|metres/.test(row.variant) ? "" : "m";
   return {
     ...row,
@@ -57,7 +59,7 @@ function loadedCell({ failed, error = Number.NaN, limit, ...row }) {
 /** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
 async function interop({ only, write, verbose, python: program }) {
   await buildPackage();
-  const [{ readBack }, { writeOurs }, { programs, rowsOf: rowsOfPackage }, { writeTable, writeFixtures }] =
+  const [{ readBack }, { writeOurs }, { programs, rowsOf: rowsOfPackage }, { writePlaces, writeTable, writeFixtures }] =
     await Promise.all([
       import("./interop/read.mjs"),
       import("./interop/ours.mjs"),
@@ -96,7 +98,7 @@ async function interop({ only, write, verbose, python: program }) {
     for (const name of wanted) {
       await step(`${name} (${environment})`, async (say) => {
         const rows = [];
-        for (const action of ["write", "load"]) {
+        for (const action of ["write", "load", "place"]) {
           const out = join(root, "rows", `${environment}-${name}-${action}.json`);
           if (known.includes(`${action}\t${name}`)) rows.push(...(await rowsOf(python, [action, name], out)));
         }
@@ -122,8 +124,12 @@ async function interop({ only, write, verbose, python: program }) {
   }
   const misses = cells.filter(({ passed }) => !passed).length;
   console.log(`${cells.length} cells, ${misses} misses.`);
-  if (write) writeFixtures(read.filter(({ file }) => file !== undefined));
-  if (write) writeTable(cells, new Date().toISOString().slice(0, 10));
+  if (write) writePlaces(cells);
+  // Some programs are not the whole table.
+  if (write && only === undefined) {
+    writeFixtures(read.filter(({ file }) => file !== undefined));
+    writeTable(cells, new Date().toISOString().slice(0, 10));
+  }
   if (misses > 0) process.exitCode = 1;
 }
 
@@ -133,7 +139,7 @@ await command("interop", (program) =>
       "Runs some forty programs: our readers read what they write, and they load what we write. Takes about ten minutes, the first time more.",
     )
     .option("--only <program...>", "some programs, by the names in scripts/interop/packages.json")
-    .option("--write", "write the table of docs/guides/interoperability.md", false)
+    .option("--write", "write the tables of docs/guides/interoperability.md; with --only, that of places", false)
     .option("--verbose", "print every cell", false)
     .option("--python <program>", "the Python (3.11) that installs the packages", "python3")
     .action(interop),

@@ -81,6 +81,22 @@ pub fn read_depth_image(bytes: &[u8], options: &DepthReadOptions, kind: DepthKin
             "Pass the bytes from the 13th on for 16UC1. For 32FC1, decode them: a / (v - b), a and b being the floats at the bytes 4 and 8.",
         ));
     }
+    if is_rvl(bytes) {
+        return Err(unsupported(
+            "depth",
+            "RVL: the data of a compressedDepth message of ROS",
+            "a PNG, or the decoded pixels",
+            "Decode it, and save the depth with numpy.save; or set the format of compressed_depth_image_transport to png.",
+        ));
+    }
+    if RECORDINGS.iter().any(|magic| bytes.starts_with(magic)) {
+        return Err(unsupported(
+            "depth",
+            "a recording of ROS (MCAP, bag or SQLite)",
+            "one depth image",
+            "Save the image of one message with numpy.save: the Python packages mcap and rosbags read recordings.",
+        ));
+    }
     Err(unsupported(
         "depth",
         beginning(bytes),
@@ -91,6 +107,23 @@ pub fn read_depth_image(bytes: &[u8], options: &DepthReadOptions, kind: DepthKin
 
 /// The configuration that compressed_depth_image_transport puts before the image; whether its numbers are used, it doesn't say.
 const ROS_HEADER_BYTES: usize = 12;
+
+/// The beginnings of recordings.
+const RECORDINGS: [&[u8]; 3] = [b"\x89MCAP0\r\n", b"#ROSBAG V", b"SQLite format 3\0"];
+
+/// Whether bytes may be an image in RVL behind that configuration: its sides, and words of differences, at most one a pixel.
+fn is_rvl(bytes: &[u8]) -> bool {
+    let side = |at: usize| {
+        bytes.get(at..at + 4).map(|word| word.iter().rev().fold(0, |all, byte| all << 8 | usize::from(*byte)))
+    };
+    let sides = side(ROS_HEADER_BYTES).zip(side(ROS_HEADER_BYTES + 4));
+    let (words, rest) = (bytes.len().saturating_sub(ROS_HEADER_BYTES + 8) / 4, bytes.len() % 4);
+    let fits = |(width, height): (usize, usize)| {
+        let is_size = [width, height].iter().all(|side| (8..=16_384).contains(side));
+        is_size && rest == 0 && (1..=width * height).contains(&words)
+    };
+    sides.is_some_and(fits)
+}
 
 fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {
     let info = PngInfo::read("depth", bytes)?;

@@ -6,7 +6,7 @@ use sim3align_geometry::similarity::Similarity;
 
 use super::columns::Columns;
 use super::mass::Mass;
-use super::part::{ConvexPart, convex_parts};
+use super::part::{ConvexPart, convex_parts, wall_count};
 use super::solid::Solid;
 
 /// A rigid body.
@@ -14,6 +14,8 @@ use super::solid::Solid;
 pub struct Body {
     /// Its parts, in its frame: that of the mesh, in metres.
     pub parts: Vec<ConvexPart>,
+    /// The number of its walls without thickness, if it is more than that of its parts, which then close its openings.
+    pub walls_joined: Option<usize>,
     /// Its mass, in its frame.
     pub mass: Mass,
     /// World from body.
@@ -44,6 +46,8 @@ impl Body {
         let volume = solid.as_ref().map(|solid| solid.volume);
         let parts: Vec<ConvexPart> =
             convex_parts(mesh, volume, most_parts).iter().map(|part| part.mapped(|p| scale * p)).collect();
+        let is_full = solid.is_none() && parts.len() == most_parts;
+        let walls_joined = is_full.then(|| wall_count(mesh)).filter(|walls| *walls > most_parts);
         // The parts of a mesh that encloses a volume only approximate it.
         let mass = match &solid {
             Some(solid) => Mass::inside(solid.corners.iter().map(|corners| corners.map(|p| scale * p)), density),
@@ -52,7 +56,7 @@ impl Body {
         let rotation = DMat3::from_cols_slice(world_from_mesh.rotation.matrix().as_slice());
         let translation = DVec3::from_slice(world_from_mesh.translation.as_slice());
         let pose = Pose { rotation: DQuat::from_mat3(&rotation).normalize(), translation };
-        Self { mass, parts, pose }
+        Self { mass, parts, walls_joined, pose }
     }
 
     /// The vertices of its parts at a pose.

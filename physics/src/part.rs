@@ -123,6 +123,13 @@ pub fn convex_parts(mesh: &Mesh, volume: Option<f64>, most: usize) -> Vec<Convex
     joined(parts, most)
 }
 
+/// The number of walls without thickness that an open mesh consists of; 0 for others.
+pub fn wall_count(mesh: &Mesh) -> usize {
+    let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
+    let hull = ConvexPart::hull(&points);
+    hull.and_then(|hull| walls(&decimate(mesh, TRIANGLES), &hull, SPLIT as usize)).map_or(0, |walls| walls.len())
+}
+
 /// Joins pairs of parts to their common hull: those that it adds little to, and the next best until there are few enough.
 /// Parts that do not touch are joined only if nothing else makes them few enough.
 fn joined(parts: Vec<ConvexPart>, most: usize) -> Vec<ConvexPart> {

@@ -215,7 +215,7 @@ fn cut_to_rest(settled: &Settled, below: Option<&[Columns]>, cell: f64, most_m: 
     for cut_m in (0..=steps).map(|k| sunk + k as f64 * CUT_STEP_M).filter(|cut_m| *cut_m > 0.0) {
         let height = low + cut_m - found.translation.z;
         let parts = body.parts.iter().filter_map(|part| part.above(up, height)).collect();
-        let mut cut = Body { parts, mass: body.mass, pose: *found };
+        let mut cut = Body { parts, walls_joined: body.walls_joined, mass: body.mass, pose: *found };
         let mut pose = *found;
         pose.translation.z -= lowest(&cut);
         let center = pose.apply(body.mass.center);

@@ -69,7 +69,7 @@ async function readBop(folder: string, { models, imageId, sam3d: _, ...settings 
   const id = scene.imageId(imageId);
   const modelFolder = models ?? (await bopModels(folder, modelPlaces));
   const modelOf = readOncePerKey((objectId: string) => readBopModel(modelFolder, objectId));
-  const { resizeMask, image: withImage = true, ...view } = settings;
+  const { resizeMask, maskIndex, image: withImage = true, ...view } = settings;
   const objects: SceneObjectInput[] = [];
   const truths: (KnownPose | null)[] = [];
   const poses = scene.posesIn(id);
@@ -77,7 +77,7 @@ async function readBop(folder: string, { models, imageId, sam3d: _, ...settings 
     const entry = poses[place] as (typeof poses)[number];
     const mesh = await modelOf(`${entry.obj_id}`);
     const object = { name: `${entry.obj_id}-${place}`, mask: await scene.mask(id, place), mesh };
-    objects.push({ ...object, ...withoutUndefined({ resizeMask }) } as SceneObjectInput);
+    objects.push({ ...object, ...withoutUndefined({ resizeMask, maskIndex }) } as SceneObjectInput);
     truths.push({ transform: fromBop(entry), symmetry: "auto" });
   }
   const input = { ...(await scene.image(id, withImage)), objects, ...view } as SceneInput;

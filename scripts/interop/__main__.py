@@ -11,7 +11,7 @@ import sys
 
 from . import cells, checks, truth
 
-for module in ("meshes", "depths", "masks", "cameras", "loads"):
+for module in ("meshes", "depths", "masks", "cameras", "loads", "places"):
     importlib.import_module(f".{module}", __package__)
 
 if sys.argv[1] == "list":

@@ -148,6 +148,36 @@ def rosbags_(c, t):
 
         c.write("depth", f"compressedDepth of {name}", "depth.png", depth, refused="UNSUPPORTED_FORMAT", says="compressedDepth")
 
+    def bag(path):
+        from rosbags import rosbag1
+
+        store = get_typestore(Stores.ROS1_NOETIC)
+        with rosbag1.Writer(path) as recording:
+            text = store.types["std_msgs/msg/String"](data="depth")
+            topic = recording.add_connection("/depth", text.__msgtype__, typestore=store)
+            recording.write(topic, 1, store.serialize_ros1(text, text.__msgtype__))
+
+    c.write("depth", "a bag of ROS 1", "depth.bag", bag, **RECORDING)
+
+
+RECORDING = {"refused": "UNSUPPORTED_FORMAT", "says": "a recording of ROS"}
+
+
+@program("MCAP", distribution="mcap")
+def mcap_(c, t):
+    from mcap.writer import Writer
+
+    def save(path):
+        with open(path, "wb") as file:
+            writer = Writer(file)
+            writer.start()
+            schema = writer.register_schema(name="sensor_msgs/msg/Image", encoding="ros2msg", data=b"uint32 height")
+            channel = writer.register_channel(topic="/depth", message_encoding="cdr", schema_id=schema)
+            writer.add_message(channel, log_time=0, publish_time=0, data=t.mm.tobytes())
+            writer.finish()
+
+    c.write("depth", "a recording", "depth.mcap", save, **RECORDING)
+
 
 @program("DepthAI", distribution="depthai")
 def depthai_(c, t):

@@ -9,7 +9,7 @@ import numpy as np
 
 from .truth import light
 
-# Programs by what they do: (`write` or `load`, name) -> (distribution, function).
+# Programs by what they do: (`write`, `load` or `place`, name) -> (distribution, function).
 PROGRAMS = {}
 
 
@@ -87,6 +87,12 @@ class Cells:
         except Exception as error:
             row["failed"] = f"{type(error).__name__}: {error}"[:300]
         self.rows.append(row)
+
+    def place(self, question, what, action, expected, limit=1e-6):
+        """What a program does in a place where programs differ: a number, which is to be the expected one."""
+        found = []
+        self.measure(question, what, lambda: found.append(float(action())) or found[0] - expected, limit)
+        self.rows[-1]["found"] = (found or [None])[0]
 
 
 def farthest(points, others):

@@ -3,12 +3,14 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync 
 import { extname, join } from "node:path";
 import { at } from "../lib/paths.mjs";
 
-/** @typedef {{ action: "write" | "load", program: string, version: string, kind: string, variant: string, passed: boolean, result: string, error?: number, unit?: string }} Cell */
+/** @typedef {{ action: "write" | "load" | "place", program: string, version: string, kind: string, variant: string, passed: boolean, result: string, error?: number, unit?: string }} Cell */
 
 const guide = at("docs", "guides", "interoperability.md");
 const list = at("docs", "record", "interop.tsv");
 /** @type {Record<string, string>} */
 const notes = JSON.parse(readFileSync(at("scripts", "interop", "notes.json"), "utf8"));
+/** What to do in the places where programs differ, by the question. @type {Record<string, string>} */
+const decisions = JSON.parse(readFileSync(at("scripts", "interop", "decisions.json"), "utf8"));
 
 /** Counts by kind: "mesh 12, depth 3". @param {readonly Cell[]} cells */
 function counts(cells) {
@@ -34,10 +36,34 @@ function largest(cells) {
         : most.toFixed(2);
 }
 
-/** Writes the table between the markers of the guide. @param {readonly Cell[]} cells @param {string} date */
+/** Puts content between the markers of the guide. @param {string} mark @param {string} content */
+function writeBetween(mark, content) {
+  const marked = new RegExp(`(<!-- ${mark} -->\\n)[\\s\\S]*(<!-- /${mark} -->)`);
+  const text = readFileSync(guide, "utf8").replace(marked, (_, start, end) => `${start}${content}${end}`);
+  writeFileSync(guide, text);
+}
+
+/** Writes the table of the places where programs differ. @param {readonly Cell[]} cells */
+export function writePlaces(cells) {
+  const rows = Object.entries(decisions).map(([question, decision]) => {
+    const own = cells.filter(({ action, kind }) => action === "place" && kind === question);
+    // Versions with the same answer are in one line.
+    /** @type {Map<string, string[]>} */
+    const versions = new Map();
+    for (const { program, version, variant, result } of own) {
+      const answer = `${program}|, ${variant}: ${result}`;
+      versions.set(answer, [...(versions.get(answer) ?? []), version]);
+    }
+    const lines = Array.from(versions, ([answer, all]) => answer.replace("|", ` ${all.join(" and ")}`));
+    return `| ${question} | ${lines.join("<br>")} | ${decision} |`;
+  });
+  writeBetween("places", `\n| question | answers | what to do |\n|---|---|---|\n${rows.join("\n")}\n\n`);
+}
+
+/** Writes the table of programs. @param {readonly Cell[]} cells @param {string} date */
 export function writeTable(cells, date) {
   const name = (/** @type {Cell} */ { program, version }) => `${program} ${version}`;
-  const names = [...new Set(cells.map(name))].sort((a, b) =>
+  const names = [...new Set(cells.filter(({ action }) => action !== "place").map(name))].sort((a, b) =>
     a.localeCompare(b, "en", { sensitivity: "base", numeric: true }),
   );
   const rows = names.map((each) => {
@@ -55,12 +81,7 @@ export function writeTable(cells, date) {
   const total = `Measured on ${date}: ${cells.length} cells, ${misses === 0 ? "all as stated" : `${misses} not as stated`}; [every cell](../record/interop.tsv).`;
   const head =
     "| program | what it writes, read by sim3align | what it loads of sim3align | largest difference, mm | what to know |\n|---|---|---|---|---|";
-  const text = readFileSync(guide, "utf8");
-  const table = `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`;
-  writeFileSync(
-    guide,
-    text.replace(/(<!-- interop -->\n)[\s\S]*(<!-- \/interop -->)/, (_, start, end) => `${start}${table}${end}`),
-  );
+  writeBetween("interop", `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`);
   const lines = cells.map(({ action, kind, variant, passed, result, ...cell }) => {
     const short = result.replace(/\s+/g, " ").replaceAll(at(), "").slice(0, 160);
     return [

@@ -27,8 +27,12 @@ const threeBeside = /** @type {import("esbuild").Plugin} */ ({
   },
 });
 
-/** The package's files, style sheets as texts, and addresses of files beside the bundle instead of beside their source. */
-const ownFiles = /** @type {import("esbuild").Plugin} */ ({
+/**
+ * The package's files, style sheets as texts, and addresses of files beside the bundle instead of beside their source.
+ * @param {(name: string) => string} scriptOf the script of a worker
+ * @returns {import("esbuild").Plugin}
+ */
+const ownFiles = (scriptOf) => ({
   name: "own-files",
   setup(build) {
     build.onResolve({ filter: /^sim3align(\/|$)/ }, ({ path }) => ({ path: join(compiledDir, ownModule(path)) }));
@@ -66,7 +70,7 @@ const ownFiles = /** @type {import("esbuild").Plugin} */ ({
       if (path.includes("node_modules")) return undefined;
       // Browsers lack the modules of Node, and bundlers would warn of these imports.
       const ofBrowsers = text.replaceAll(/import\(\s*\/\* webpackIgnore: true \*\/[^)]*\)/g, "Promise.reject()");
-      const contents = withAddresses(ofBrowsers, path, fromBundle);
+      const contents = withAddresses(ofBrowsers, path, (file) => fromBundle(file, scriptOf));
       return { contents, loader: path.endsWith(".ts") ? "ts" : "js" };
     });
   },
@@ -78,10 +82,11 @@ const ownModule = (specifier) => `${specifier.slice("sim3align/".length) || "ind
 /**
  * A file as seen from the bundle. The scripts of workers are in it.
  * @param {string} file
+ * @param {(name: string) => string} scriptOf
  */
-function fromBundle(file) {
+function fromBundle(file, scriptOf) {
   const isWorker = /worker\.[jt]s$/.test(file);
-  if (isWorker) return `./${basename(file).replace(/ts$/, "js")}`;
+  if (isWorker) return `./${scriptOf(basename(file).replace(/ts$/, "js"))}`;
   return fromFolder("element", file);
 }
 
@@ -108,10 +113,11 @@ export async function bundleElement() {
     },
     // Parts that the first alignment does not need are files of their own.
     ...{ splitting: true, chunkNames: "part-[hash]", metafile: true },
-    plugins: [ownFiles],
+    plugins: [ownFiles((name) => name)],
   });
-  // For hosts that would rather load one script than many small ones.
-  await build({ ...common, entryPoints: { single: entries["sim3-align"] }, plugins: [threeBeside, ownFiles] });
+  // For hosts that would rather load one script than many small ones; it is that of the workers, too.
+  const entryPoints = { single: join(sources, "element", "single.ts") };
+  await build({ ...common, entryPoints, plugins: [threeBeside, ownFiles(() => "single.js")] });
   allowBundled(metafile);
   const page = readFileSync(at("www", "frame.html"), "utf8");
   writeFileSync(join(folder, "frame.html"), page.replace("./src/element/frame.ts", "./frame.js"));

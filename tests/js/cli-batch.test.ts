@@ -1,7 +1,7 @@
 /** Many cases on the command line: which they are, tables and records of their results, and batches that end early. */
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, renameSync, symlinkSync, utimesSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, renameSync, symlinkSync, truncateSync, utimesSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { test } from "node:test";
 import {
@@ -113,7 +113,7 @@ test("--jsonl has a line for each case, the entry of --json; --csv its numbers",
     const { case: name, path, files, content, ...entry } = JSON.parse(line);
     assert.deepEqual([{ path, ...entry }, path], [json[name], name]);
     assert.equal(typeof content, name.startsWith("x") ? "undefined" : "string");
-    assert.equal(files?.includes("depth.npy") ?? false, typeof content === "string");
+    assert.equal("depth.npy" in (files ?? {}), typeof content === "string");
   }
   const [head = [], ...rows] = linesOf("whole.csv").map((line) => line.split(","));
   assert.match(read("whole.csv"), /^case,error,confidence,.*\n(.*\n)*"x, ""y""",FILE_NOT_FOUND,/);
@@ -208,6 +208,8 @@ test("cases that have changed since are done again, and the last line counts", (
   const changes: Record<string, object> = {
     "another mesh": doubled,
     "a photo that was added": { ...doubled, "rgb.png": maskPng(new Uint8Array(160 * 120), 160, 120) },
+    "a true pose that was added": { ...doubled, "gt.json": poseJson(truth) },
+    "another true pose": { ...doubled, "gt.json": poseJson({ ...truth, scale: 2 * truth.scale }) },
   };
   for (const [what, changed] of Object.entries(changes)) {
     writeCase("loop", { ...files, ...changed });
@@ -215,6 +217,27 @@ test("cases that have changed since are done again, and the last line counts", (
     assert.match(succeeds(`align loop ${flags} --json loop.json`).stderr, /resumed: 1 of 1 cases are in loop\.jsonl\n/);
   }
   assert.ok(Math.abs(results("loop.json").loop.scale / truth.scale - 0.5) < 0.02);
+  const withoutPhoto = `align loop ${quick.join(" ")} --no-image --jsonl plain.jsonl --resume`;
+  succeeds(withoutPhoto);
+  assert.match(succeeds(withoutPhoto).stderr, /resumed: 1 of 1 cases are in plain\.jsonl\n/);
+});
+
+test("the pose of another mesh is refused, and rows of any length are read or refused", () => {
+  writeCase("remade", complete);
+  succeeds(`align remade ${quick.join(" ")} --jsonl remade.jsonl`);
+  succeeds("evaluate remade --transform remade.jsonl");
+  writeCase("remade", { ...complete, "mesh.glb": glb({ ...mesh, positions: mesh.positions.map((x) => 2 * x) }) });
+  for (const command of ["evaluate remade --transform", "align remade --quality fast --initial"]) {
+    const { status, stdout, stderr } = run(...`${command} remade.jsonl`.split(" "));
+    assert.equal(status, 1);
+    assert.match(stdout + stderr, /INVALID_TRANSFORM.*a pose of another mesh for remade/, command);
+  }
+
+  writeFileSync(inFolder("endless.jsonl"), `${linesOf("remade.jsonl")[0]}\n{"case":"remade`);
+  truncateSync(inFolder("endless.jsonl"), 1 << 29);
+  const { stdout } = run("evaluate", "remade", "--transform", "endless.jsonl");
+  assert.match(stdout, /FILE_TOO_LARGE.*endless\.jsonl: line 2 has more than/);
+  refusesUsage({ "align remade --quality fast --jsonl endless.jsonl --resume": /line 2 has more than/ });
 });
 
 test("check reads cases without aligning them", () => {

@@ -19,12 +19,12 @@ const inline = (array: Float32Array | Uint8Array | Uint32Array, shape?: number[]
   shape,
 });
 
-function served(lines: readonly (object | string)[]) {
+function served(lines: readonly (object | string)[], expectedStatus = 0) {
   const input = lines.map((line) => (typeof line === "string" ? line : JSON.stringify(line))).join("\n");
   const { status, stdout } = spawnSync(process.execPath, [commandLine, "serve", "--workers", "2"], {
     ...{ cwd: folder, input, encoding: "utf8", maxBuffer: 1 << 26 },
   });
-  assert.equal(status, 0);
+  assert.equal(status, expectedStatus);
   const answers = stdout
     .trimEnd()
     .split("\n")
@@ -39,30 +39,51 @@ test("a folder, files and arrays have the result of align; each line has an answ
     mesh: { positions: inline(mesh.positions), indices: inline(mesh.indices) },
     camera,
   };
+  const points = Float32Array.from({ length: 3 * width * height }, (_, i) => {
+    const [k, axis] = [Math.floor(i / 3), i % 3];
+    const z = depth[k] ?? 0;
+    const [x, y] = [((k % width) - camera.cx) / camera.fx, (Math.floor(k / width) - camera.cy) / camera.fy];
+    return [x * z, y * z, z][axis] ?? 0;
+  });
   const paths = { depth: "depth.npy", mask: "mask.png", mesh: "mesh.glb", camera: "camera.json" };
   const inFolder = Object.fromEntries(Object.entries(paths).map(([part, name]) => [part, `cases/blob/${name}`]));
-  const answers = served([
-    { id: "folder", case: "cases/blob", options },
-    { id: "files", ...inFolder, options },
-    { id: "bytes", ...inFolder, mask: { base64: Buffer.from(files["mask.png"]).toString("base64") }, options },
-    { id: "arrays", ...arrays, options },
-    ...["", "no JSON", { case: "nowhere" }, { case: "cases/blob", quality: "fast" }, { case: "cases/blob", camera }],
-    { id: 8, case: "cases/blob", options: { quality: "none" } },
-  ]);
+  const answers = served(
+    [
+      { id: "folder", case: "cases/blob", options },
+      { id: "files", ...inFolder, options },
+      { id: "bytes", ...inFolder, mask: { base64: Buffer.from(files["mask.png"]).toString("base64") }, options },
+      { id: "arrays", ...arrays, options },
+      { id: "camera file", ...inFolder, camera: undefined, cameraFile: inFolder.camera, options },
+      {
+        id: "points",
+        ...arrays,
+        depth: undefined,
+        camera: undefined,
+        pointMap: inline(points, [height, width, 3]),
+        options,
+      },
+      ...["", "no JSON", { case: "nowhere" }, { case: "cases/blob", quality: "fast" }, { case: "cases/blob", camera }],
+      { id: "option", case: "cases/blob", options: { quality: "none" } },
+      { id: "width", case: "cases/blob", width },
+    ],
+    1,
+  );
   const aligner = await createAligner();
   const expected = await aligner.align({ depth, width, height, mask, mesh, camera }, options);
-  for (const id of ["folder", "files", "bytes", "arrays"]) {
+  for (const id of ["folder", "files", "bytes", "arrays", "camera file"]) {
     const { depthUnit: _, maskReading: __, ...found } = answers.get(id).result;
     const { depthUnit: ___, ...own } = JSON.parse(JSON.stringify(expected));
     assert.deepEqual(withoutTimes(found), withoutTimes(own), id);
   }
-  const codes = [4, 5, 6, 7, 8].map((id) => answers.get(id).error.code);
+  assert.ok(Math.abs(answers.get("points").result.scale / expected.scale - 1) < 0.01);
+  const codes = [6, 7, 8, 9, "option", "width"].map((id) => answers.get(id).error.code);
   assert.deepEqual(codes, [
     "INVALID_ARGUMENT",
     "FILE_NOT_FOUND",
     "INVALID_ARGUMENT",
     "INVALID_ARGUMENT",
     "INVALID_OPTION",
+    "INVALID_ARGUMENT",
   ]);
 });
 

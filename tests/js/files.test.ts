@@ -158,6 +158,17 @@ test("meshes and splats in other formats are named, with a way to convert them",
   await rejectsWith(() => placeSplats(compressed, placed), "UNSUPPORTED_FORMAT splats", /in\.compressed\.ply out\.ply/);
 });
 
+test("recordings, and depth in RVL, are named", async () => {
+  const rvl = new Uint32Array([0, 0, 0, 64, 48, 0x0001_8000, 7]);
+  const files: readonly (readonly [Uint8Array, RegExp])[] = [
+    [Buffer.from("\x89MCAP0\r\n", "latin1"), /a recording of ROS/],
+    [Buffer.from("#ROSBAG V2.0\n"), /a recording of ROS/],
+    [Buffer.from("SQLite format 3\0"), /a recording of ROS/],
+    [new Uint8Array(rvl.buffer), /RVL.*compressedDepth/],
+  ];
+  for (const [bytes, found] of files) await rejectsWith(() => readDepth(bytes), "UNSUPPORTED_FORMAT depth", found);
+});
+
 test("a mesh in a folder is read with the files beside it: the texture of a PLY, buffers that a decoder replaces", async () => {
   const rows = ["0 0 0 0 0", "1 0 0 1 0", "0 1 0 0 1"];
   const header = ["ply", "format ascii 1.0", "comment TextureFile t.png", "element vertex 3"];

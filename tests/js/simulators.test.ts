@@ -44,6 +44,13 @@ const over = (x: number, y: number, z: number, tiltDeg = 0) => {
 };
 const tower = box(0.1, 0.1, 0.2);
 
+test("walls of an open box that parts join are named", async () => {
+  const open = { ...tower, indices: tower.indices.slice(6) };
+  const joined = async (maxParts?: number) =>
+    (await simulatorScene([{ mesh: open, transform: over(0, 0, 0) }], { maxParts })).bodies[0]?.wallsJoined;
+  assert.deepEqual([await joined(), await joined(5), await joined(4)], [null, null, 5]);
+});
+
 test("a body that leans is put at rest, with its pose before in every file; one that falls or hangs stays, fixed", async () => {
   const objects: SimulatorObject[] = [
     { name: "leans", mesh: tower, transform: over(-0.5, 0, 0.001, 0.5) },

@@ -74,6 +74,7 @@ fn body(settled: &Settled) -> JsValue {
         ("rest", rest.map_or(JsValue::NULL, motion)),
         ("cutM", (*cut_m).into()),
         ("inside", inside.into()),
+        ("wallsJoined", body.walls_joined.map_or(JsValue::NULL, |walls| JsValue::from(walls as f64))),
     ])
 }
 

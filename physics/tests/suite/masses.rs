@@ -169,6 +169,8 @@ fn walls_without_thickness_have_parts() {
         let size = Vec3::from_array(sides).as_dvec3();
         let mut draw = Draw::new(7);
         let inner = (0..500).map(|_| size * draw.vector(0.1, 0.9));
+        let joined = |most| Body::new(&mesh, &moved(0.0, 0.0, 0.0), most, DENSITY).walls_joined;
+        assert_eq!([joined(5), joined(4), joined(1)], [None, Some(5), Some(5)], "{sides:?}, finer {finer}");
         let filled = inner.filter(|p| parts.iter().any(|part| outside(part, *p) == 0.0)).count();
         assert!(filled <= 10, "{sides:?}, finer {finer}: {filled} of 500 points inside are in parts");
     }

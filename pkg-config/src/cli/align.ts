@@ -202,7 +202,7 @@ async function alignView(
   caseRun: CaseRun,
 ): Promise<Entry> {
   caseRun.found = found;
-  const options = await alignOptions(flags, task);
+  const options = await alignOptions(flags, task, input.mesh);
   const settings = withoutUndefined({ ...options, onProgress: caseRun.onProgress });
   const alignment = await aligner.align<Preset, boolean>(input, settings);
   return withFiles(alignEntry(alignment, await errorsOf(aligner, input, alignment, truth)), found);
@@ -222,7 +222,7 @@ async function alignFrames(aligner: Aligner, task: CaseToDo, opened: Frames, fla
   const { mesh, found } = opened;
   const { frames, views } = await framesOf(opened);
   caseRun.found = found();
-  const { preset, ...options } = await alignOptions(flags, task);
+  const { preset, ...options } = await alignOptions(flags, task, mesh);
   if (preset === "paper")
     throw new UsageError(`${task.name} has several frames, for which --preset paper has no method.`);
   const { onProgress } = caseRun;
@@ -251,12 +251,16 @@ export async function errorsOf(
 }
 
 /** The options set by `--options` and by flags. */
-async function alignOptions(flags: Flags, key: Pick<CaseKey, "name" | "path">): Promise<OptionsOf<Preset, boolean>> {
+async function alignOptions(
+  flags: Flags,
+  key: Pick<CaseKey, "name" | "path">,
+  mesh: unknown,
+): Promise<OptionsOf<Preset, boolean>> {
   const options: Record<string, unknown> = {
     ...flags.options,
     ...optionValues(flags, [...shared, ...precise, ...paper]),
     ...withoutUndefined({ preset: flags.preset }),
   };
-  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, key);
+  if (typeof options.initial === "string") options.initial = await readTransform("initial", options.initial, key, mesh);
   return options as unknown as OptionsOf<Preset, boolean>;
 }

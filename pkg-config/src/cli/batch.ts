@@ -7,7 +7,8 @@ import { type Aligner, type AlignInput, createAligner, type Progress } from "../
 import { type Checksums, withChecksums } from "../read-files.js";
 import { type Entry, errorsIn, failureEntry, intakeLines, isFailure } from "./entry.js";
 import { UsageError } from "./files.js";
-import type { Flags } from "./flags.js";
+import { caseSettings, type Flags } from "./flags.js";
+import { flagName } from "./option-flags.js";
 import { Output } from "./output.js";
 import { OutputError } from "./output-file.js";
 import { Pictures } from "./pictures.js";
@@ -215,9 +216,14 @@ class Batch<T extends CaseKey> {
 
     show("reading");
     const read: Checksums = new Map();
-    const work = withChecksums(read, () => job.run(aligner, task, caseRun)).catch((error) =>
-      failureEntry(error, caseRun.found),
-    );
+    const work = withChecksums(read, () => job.run(aligner, task, caseRun)).catch((error) => {
+      // Of one case, a flag that is wrong or does nothing is known to be so.
+      if (this.#isOnly && error.argument in caseSettings(this.flags)) {
+        const { argument, message } = error;
+        throw new UsageError(message.replace(argument, `--${flagName({ name: argument })}`));
+      }
+      return failureEntry(error, caseRun.found);
+    });
     const entry = await work.finally(() => line?.clear());
     // Before the record: a case that is there has all its files.
     if (!(await this.#draw(task, entry, false))) isComplete = false;

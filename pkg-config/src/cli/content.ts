@@ -5,29 +5,22 @@ import { partOf } from "../case-names.js";
 import { type Checksums, checksumOf } from "../read-files.js";
 import { absolutePath, namesIn, partsOf, realPath } from "./files.js";
 
-/** The files of a case, relative to a folder, and a checksum of their names and bytes. */
+/** The checksums of the files of a case by their paths relative to a folder, and one of all of them. */
 export interface Content {
-  files: readonly string[];
+  files: Readonly<Record<string, string>>;
   content: string;
 }
 
 /** The content of a case whose files were read; `undefined` if none was. */
 export function contentOf(read: Checksums, folder: string): Content | undefined {
-  const files = new Map<string, string>();
   const place = realPath(folder);
-  for (const [path, checksum] of read) {
-    const name = relative(place, absolutePath(path)).split(sep).join("/");
-    // A true pose only measures errors.
-    if (partOf(basename(path)) !== "truth") files.set(name, checksum);
-  }
-  const names = [...files.keys()].sort();
-  return names.length === 0
-    ? undefined
-    : { files: names, content: total(names.map((name) => [name, files.get(name)])) };
+  const nameOf = (path: string) => relative(place, absolutePath(path)).split(sep).join("/");
+  const files = [...read].map(([path, checksum]) => [nameOf(path), checksum] as const);
+  return read.size === 0 ? undefined : total(files.sort(([a], [b]) => (a < b ? -1 : 1)));
 }
 
-/** The checksum of these files as they are now; `undefined` if one of them is gone. */
-export function contentNow(folder: string, files: readonly string[]): string | undefined {
+/** The content of these files as they are now; `undefined` if one of them is gone. */
+export function contentNow(folder: string, files: readonly string[]): Content | undefined {
   try {
     return total(files.map((name) => [name, checksumOf(readFileSync(join(folder, name)))]));
   } catch {
@@ -35,20 +28,21 @@ export function contentNow(folder: string, files: readonly string[]): string | u
   }
 }
 
-const total = (files: readonly (readonly [string, string | undefined])[]) =>
-  checksumOf(files.map(([name, checksum]) => `${name} ${checksum}\n`).join(""));
+const total = (files: readonly (readonly [string, string])[]): Content => ({
+  files: Object.fromEntries(files),
+  content: checksumOf(files.map(([name, checksum]) => `${name} ${checksum}\n`).join("")),
+});
 
-/** The files of parts in the folder of a case, but that of a true pose; relative to it. */
+/** The files of parts in the folder of a case, relative to it. */
 export function partFiles(folder: string): string[] {
   const paths = partsOf(folder).flatMap((place) => namesIn(place).map((name) => join(place, name)));
   return paths
-    .filter((path) => ![undefined, "truth"].includes(partOf(basename(path))))
+    .filter((path) => partOf(basename(path)) !== undefined)
     .map((path) => relative(folder, path).split(sep).join("/"));
 }
 
 /** The content of a case that failed: all its parts, though they were not read. */
 export function contentOfFailure(folder: string): Content | undefined {
   const files = partFiles(folder).sort();
-  const content = contentNow(folder, files);
-  return files.length === 0 || content === undefined ? undefined : { files, content };
+  return files.length === 0 ? undefined : contentNow(folder, files);
 }

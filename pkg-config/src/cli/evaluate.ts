@@ -38,7 +38,7 @@ export async function evaluateJob(args: readonly string[], flags: Flags): Promis
           const matrix =
             transform === "gt"
               ? truth?.transform.matrix
-              : await readTransform("transform", transform, { name, path }, frame);
+              : await readTransform("transform", transform, { name, path }, input.mesh, frame);
           const evaluation = await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...options, ...target });
           return withFiles({ ...evaluation }, found);
         };

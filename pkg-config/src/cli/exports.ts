@@ -127,12 +127,13 @@ export async function writeSceneFiles(
 function linesOf({ bodies, supportHeightM }: SimulatorScene): string[] {
   const ground = `ground: ${fixed(-1000 * supportHeightM, 1)} mm above the support, where most objects stand`;
   const motion = (moveM: number, turnDeg: number) => `${fixed(1000 * moveM, 1)} mm and turned ${fixed(turnDeg, 1)}°`;
-  const lines = bodies.map(({ name, isFixed, mass, movedM, turnedDeg, rest, cutM, parts }) => {
+  const lines = bodies.map(({ name, isFixed, mass, movedM, turnedDeg, rest, cutM, parts, wallsJoined }) => {
     const moved = movedM === 0 && turnedDeg === 0 ? "where it was found" : `moved ${motion(movedM, turnedDeg)} to rest`;
     const cut = cutM > 0 ? `, its parts cut by ${fixed(1000 * cutM, 1)} mm from below` : "";
     const needed = isFixed && rest !== null ? `, as rest needs it moved ${motion(rest.moveM, rest.turnDeg)}` : "";
     const state = isFixed ? `fixed where it was found${needed}` : `free, ${moved}${cut}`;
-    return `${name}: ${fixed(mass, 3)} kg, ${parts.length} convex parts, ${state}`;
+    const joined = wallsJoined === null ? "" : ` for ${wallsJoined} walls, so that openings are closed (--parts)`;
+    return `${name}: ${fixed(mass, 3)} kg, ${parts.length} convex parts${joined}, ${state}`;
   });
   return supportHeightM === 0 ? lines : [ground, ...lines];
 }

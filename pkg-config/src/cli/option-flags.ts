@@ -22,7 +22,7 @@ const NEEDS: Readonly<Record<string, Pick<FlagSettings, "needs">>> = {
 };
 
 /** The flag of an option, without the dashes: `known-extent-axis` for `knownExtentAxis`. */
-const flagName = ({ name }: Pick<OptionRow, "name">) =>
+export const flagName = ({ name }: Pick<OptionRow, "name">) =>
   FLAG_NAMES[name] ?? name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
 
 /** A message about options, with the flags that the command has for them: `--mesh-up` for `options.meshUp`. */

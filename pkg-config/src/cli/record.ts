@@ -1,13 +1,15 @@
 /** The record of a batch, from which it can be resumed: a line with its settings, and a line of JSON for each case. */
-import { appendFileSync, createReadStream, existsSync, readFileSync, truncateSync } from "node:fs";
-import { dirname, join, relative, sep } from "node:path";
-import { createInterface } from "node:readline";
+import { appendFileSync, existsSync, readFileSync, truncateSync } from "node:fs";
+import { basename, dirname, join, relative, sep } from "node:path";
 import { isDeepStrictEqual } from "node:util";
+import { partOf } from "../case-names.js";
 import type { Checksums } from "../read-files.js";
 import { isRecord } from "../values/kinds.js";
+import { stringsIn } from "../values/validation.js";
 import { type Content, contentNow, contentOf, contentOfFailure, partFiles } from "./content.js";
 import { type Entry, isFailure } from "./entry.js";
-import { absolutePath, bytesOf, isOrdinary, realPath, statOf, UsageError } from "./files.js";
+import { absolutePath, isOrdinary, realPath, statOf, UsageError } from "./files.js";
+import { linesIn } from "./lines.js";
 import { OutputFile } from "./output-file.js";
 import { lockRecord, type RecordLock } from "./record-lock.js";
 
@@ -50,12 +52,14 @@ export type RecordHeader = (pathOf: (path: string) => string) => { command: stri
 
 /** The first bytes of the lines of cases, and of the first line. */
 const STARTS = ['{"case":', '{"sim3align":'];
-const NEWLINE = 0x0a;
+
+/** Whether a text begins as a record does. */
+export const isRecordText = (text: string): boolean => STARTS.some((start) => text.startsWith(start));
 
 /**
  * A line with `sim3align`, the version, `command` and `options`, and a line for each case: its entry, preceded by `case`, its
- * name, `path`, its path relative to the record, `files`, those that it was computed from, relative to the case or, of files, to the
- * record, and `content`, their checksum. Of several lines of a case, the last one counts.
+ * name, `path`, its path relative to the record, `files`, the checksums of those that it was computed from, by their paths relative
+ * to the case or, of files, to the record, and `content`, the checksum of all. Of several lines of a case, the last one counts.
  */
 export class JsonlFile {
   /** The folder to which paths are relative; that of stdout is the current one. */
@@ -63,6 +67,7 @@ export class JsonlFile {
   readonly #relative: (path: string) => string;
   readonly #file: OutputFile;
   readonly #header: Readonly<Record<string, unknown>>;
+  readonly #isWithoutPhotos: boolean;
   #isBegun = false;
   readonly #lock: RecordLock | undefined;
   /** The keys of the cases that are done. */
@@ -81,7 +86,9 @@ export class JsonlFile {
     if (isResumed && !ordinary) throw new UsageError(`--resume needs a file: --jsonl ${path} is none.`);
     this.#folder = folderOf(path);
     this.#relative = relativeTo(path);
-    this.#header = { sim3align: version, ...header((file) => this.#relative(absolutePath(file))) };
+    const settings = header((file) => this.#relative(absolutePath(file)));
+    this.#header = { sim3align: version, ...settings };
+    this.#isWithoutPhotos = settings.options["no-image"] === true;
     if (ordinary) this.#lock = lockRecord("--jsonl", path);
     if (ordinary && !isResumed && sizeOf(path) > 0) {
       throw new UsageError(`--jsonl ${path}: the file has content. Pass --resume to go on, or remove the file.`);
@@ -113,26 +120,22 @@ export class JsonlFile {
    * @throws {@link UsageError} for a file with other content, which stays as it is
    */
   async *#entries(): AsyncGenerator<RecordedEntry, void, undefined> {
-    const size = sizeOf(this.path);
-    if (size === 0) return;
-    const isCutOff = bytesOf(this.path, size - 1, 1)[0] !== NEWLINE;
-    let number = 0;
-    // A character of Latin-1 is a byte: the last line may end within a longer one.
-    const bytes = createReadStream(this.path, { encoding: "latin1", end: size - 1 });
-    for await (const { line, isLast } of withLast(createInterface({ input: bytes, crlfDelay: Infinity }))) {
-      number += 1;
+    if (sizeOf(this.path) === 0) return;
+    const tooLong = (problem: string) => new UsageError(`--jsonl ${this.path}: ${problem}. Pass another file.`);
+    for await (const { bytes, start, number, isEnded } of linesIn(this.path, tooLong)) {
+      // The last line may end within a character.
+      const line = bytes.toString();
       if (line.trim() === "") continue;
-      const isTorn = isCutOff && isLast;
       const found = parsed(line);
-      if (found === undefined && isTorn && STARTS.some((start) => line.startsWith(start.slice(0, line.length)))) {
-        truncateSync(this.path, size - line.length);
+      if (found === undefined && !isEnded && STARTS.some((known) => line.startsWith(known.slice(0, line.length)))) {
+        truncateSync(this.path, start);
         return;
       }
       // Records that were joined have several such lines.
       if (number === 1 || found?.sim3align !== undefined) this.#checkHeader(found ?? {});
       else if (typeof found?.case !== "string") throw this.#foreign(number);
       // Only the line break is missing.
-      if (isTorn) appendFileSync(this.path, "\n");
+      if (!isEnded) appendFileSync(this.path, "\n");
       this.#isBegun = true;
       if (found?.sim3align !== undefined) continue;
       yield this.#entry(found as Entry);
@@ -179,7 +182,7 @@ export class JsonlFile {
       if (last.get(key) !== number) continue;
       const task = byKey.get(keyOf(recorded)) ?? moved.get(key);
       if (task !== undefined && !isSame(task, content, this.#folder)) continue;
-      if (task !== undefined && hasChanged(task, content, entry, this.#folder)) {
+      if (task !== undefined && this.#hasChanged(task, content, entry)) {
         changed(task);
         continue;
       }
@@ -217,6 +220,15 @@ export class JsonlFile {
     return { last, moved };
   }
 
+  /** Whether the files of a case have changed since, or some were added. */
+  #hasChanged({ folder }: CaseKey, content: Content | undefined, { unread }: Entry): boolean {
+    const files = Object.keys(content?.files ?? {});
+    if (content !== undefined && contentNow(folder ?? this.#folder, files)?.content !== content.content) return true;
+    const known = new Set([...files, ...stringsIn(unread)]);
+    const isRead = (file: string) => !this.#isWithoutPhotos || partOf(basename(file)) !== "image";
+    return folder !== undefined && partFiles(folder).some((file) => !known.has(file) && isRead(file));
+  }
+
   #foreign(line: number): UsageError {
     const expected = 'an object with "case", as --jsonl writes them';
     return new UsageError(
@@ -228,7 +240,8 @@ export class JsonlFile {
     return {
       name: String(name),
       path: typeof path === "string" ? join(this.#folder, path) : undefined,
-      content: typeof content === "string" && Array.isArray(files) ? { content, files: files.map(String) } : undefined,
+      content:
+        typeof content === "string" && isRecord(files) ? { content, files: files as Content["files"] } : undefined,
       entry,
     };
   }
@@ -240,9 +253,10 @@ class LostRows {
 
   constructor(rows: ReadonlyMap<string, Content>) {
     for (const [key, { files, content }] of rows) {
-      const list = files.join("\n");
+      const names = Object.keys(files);
+      const list = names.join("\n");
       const { keys } = this.#lists.get(list) ?? { keys: new Map<string, string[]>() };
-      this.#lists.set(list, { files, keys });
+      this.#lists.set(list, { files: names, keys });
       keys.set(content, [...(keys.get(content) ?? []), key]);
     }
   }
@@ -250,7 +264,7 @@ class LostRows {
   /** Removes the first row with the content of a folder, and returns its key. */
   take(folder: string): string | undefined {
     for (const { files, keys } of this.#lists.values()) {
-      const key = keys.get(contentNow(folder, files) ?? "")?.shift();
+      const key = keys.get(contentNow(folder, files)?.content ?? "")?.shift();
       if (key !== undefined) return key;
     }
     return undefined;
@@ -259,28 +273,21 @@ class LostRows {
 
 /** The key of a row: cases of files are several of one path, that of the mask. */
 function rowKey(recorded: RecordedEntry, folder: string): string {
-  const { path, content } = recorded;
-  const isOfFiles = content?.files.some((file) => join(folder, file) === path) === true;
-  return isOfFiles ? content.files.join("\n") : keyOf(recorded);
+  const files = Object.keys(recorded.content?.files ?? {});
+  const isOfFiles = files.some((file) => join(folder, file) === recorded.path);
+  return isOfFiles ? files.join("\n") : keyOf(recorded);
 }
 
 /** Whether a row is of the files of a case; any row, if this is a folder. */
 function isSame({ files = [] }: CaseKey, content: Content | undefined, folder: string): boolean {
-  const recorded = content?.files.map((file) => join(folder, file));
-  return files.every((file) => recorded?.includes(file));
+  const recorded = Object.keys(content?.files ?? {}).map((file) => join(folder, file));
+  return files.every((file) => recorded.includes(file));
 }
 
-/** Whether the files of a case have changed since, or some were added. */
-function hasChanged({ folder }: CaseKey, content: Content | undefined, { unread }: Entry, record: string): boolean {
-  if (content !== undefined && contentNow(folder ?? record, content.files) !== content.content) return true;
-  const known = new Set([...(content?.files ?? []), ...(Array.isArray(unread) ? unread.map(String) : [])]);
-  return folder !== undefined && partFiles(folder).some((file) => !known.has(file));
-}
-
-/** The object in a line of bytes. */
+/** The object in a line. */
 function parsed(line: string): Entry | undefined {
   try {
-    const json: unknown = JSON.parse(Buffer.from(line, "latin1").toString());
+    const json: unknown = JSON.parse(line);
     return isRecord(json) ? json : undefined;
   } catch {
     return undefined;
@@ -297,13 +304,3 @@ export function relativeTo(output: string): (path: string) => string {
 }
 
 const sizeOf = (path: string) => statOf(path)?.size ?? 0;
-
-/** Lines, and whether each is the last one. */
-async function* withLast(lines: AsyncIterable<string>) {
-  let line: string | undefined;
-  for await (const next of lines) {
-    if (line !== undefined) yield { line, isLast: false };
-    line = next;
-  }
-  if (line !== undefined) yield { line, isLast: true };
-}

@@ -31,6 +31,8 @@ export async function sceneJob(args: readonly string[], flags: Flags, files: Run
   const { models, sam3d } = flags;
   const tasks = await scenesIn(await foldersToDo(sam3d ? sam3dKind : sceneKind, args, flags.list), flags.imageId);
   checkSceneFiles(flags, tasks.length);
+  if (models !== undefined && tasks.every(({ folder }) => folder !== undefined))
+    throw new UsageError("--models needs a scene of BOP: without one, it does nothing.");
   const support = await supportOf(flags.support);
   const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models, sam3d });
   return {

@@ -18,24 +18,30 @@ const arrays = {
   float64: Float64Array,
   uint16: Uint16Array,
   uint8: Uint8Array,
+  bool: Uint8Array,
   uint32: Uint32Array,
 } as const;
+
+/** What a request has instead of a case: files and arrays, and their size. */
+const parts = ["depth", "pointMap", "mask", "mesh", "camera", "cameraFile", "image", "width", "height"];
 
 /** Requests that are read while others are worked on. */
 const READ_AHEAD = 2;
 
-/** Answers the requests on standard input until it ends. */
+/** Answers the requests on standard input until it ends. Returns whether all have a result. */
 export async function serve({ workers = "auto" }: Flags): Promise<boolean> {
   const size = workers === "auto" ? autoWorkers(availableParallelism()) : workers;
   const aligner = await createAligner({ workers: size });
   const running = new Set<Promise<void>>();
+  let isWhole = true;
   try {
     let number = 0;
     for await (const line of createInterface({ input: process.stdin, crlfDelay: Infinity })) {
       if (line.trim() === "") continue;
-      const answering: Promise<void> = answer(aligner, line, number++).then((text) => {
+      const answering: Promise<void> = answer(aligner, line, number++).then((entry) => {
         running.delete(answering);
-        process.stdout.write(`${text}\n`);
+        isWhole &&= "result" in entry;
+        process.stdout.write(`${JSON.stringify(entry)}\n`);
       });
       running.add(answering);
       if (running.size >= size + READ_AHEAD) await Promise.race(running);
@@ -44,11 +50,11 @@ export async function serve({ workers = "auto" }: Flags): Promise<boolean> {
   } finally {
     aligner.dispose();
   }
-  return true;
+  return isWhole;
 }
 
-/** The line for a request: its id, or its number from 0, with the result of `align` or the error. */
-async function answer(aligner: Aligner, line: string, number: number): Promise<string> {
+/** The answer to a request: its id, or its number from 0, with the result of `align` or the error. */
+async function answer(aligner: Aligner, line: string, number: number): Promise<object> {
   let id: unknown = number;
   try {
     const request: unknown = JSON.parse(line);
@@ -56,11 +62,11 @@ async function answer(aligner: Aligner, line: string, number: number): Promise<s
     id = request.id ?? number;
     const { id: _, options = {}, ...more } = request;
     checkNames("request.", more, ["case", ...inputProperties], "Options of align() belong in options.");
-    return JSON.stringify({ id, result: await aligner.align(await inputOf(more), options as object) });
+    return { id, result: await aligner.align(await inputOf(more), options as object) };
   } catch (error) {
     const isSyntax = error instanceof SyntaxError;
     const thrown = isSyntax ? invalidArgument("request", line.slice(0, 60), "JSON in one line", error.message) : error;
-    return JSON.stringify({ id, ...failureOf(thrown) });
+    return { id, ...failureOf(thrown) };
   }
 }
 
@@ -75,20 +81,20 @@ function failureOf(error: unknown): object {
 
 /** The input of a request: a case folder, or files and arrays. */
 async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
-  const { case: folder, depth, mask, mesh, camera, image, ...settings } = request;
+  const { case: folder, ...own } = request;
   if (typeof folder === "string") {
-    const others = Object.keys(withoutUndefined({ depth, mask, mesh, camera, image })).join(", ");
+    const others = parts.filter((name) => name in own).join(", ");
     const remedy = "Pass a case, or its files one by one.";
     if (others !== "") throw invalidArgument("request.case", `a case beside ${others}`, "one of them", remedy);
-    return (await readCaseFolder(folder, settings)).input;
+    return (await readCaseFolder(folder, own)).input;
   }
-  const isFile = typeof camera === "string";
-  const [readDepth, readMask, readImage, cameraFile] = await Promise.all([
-    ...[partOfRequest("depth", depth), partOfRequest("mask", mask), partOfRequest("image", image)],
-    isFile ? read("camera", camera) : undefined,
-  ]);
-  const parts = { depth: readDepth, mask: readMask, image: readImage, mesh: await meshOf(mesh) };
-  return withoutUndefined({ ...parts, cameraFile, camera: isFile ? undefined : camera, ...settings }) as AlignInput;
+  const isFile = typeof own.camera === "string";
+  const { camera, cameraFile = isFile ? camera : undefined, mesh, ...others } = own;
+  const files = { ...others, cameraFile, camera: isFile ? undefined : camera };
+  const names = Object.keys(files).filter((name) => parts.includes(name));
+  const values = await Promise.all(names.map((name) => partOfRequest(name, files[name as keyof typeof files])));
+  const read = Object.fromEntries(names.map((name, k) => [name, values[k]]));
+  return withoutUndefined({ ...files, ...read, mesh: await meshOf(mesh) }) as unknown as AlignInput;
 }
 
 /** A file by its path, an inline array `{ base64, dtype, shape }`, or the bytes of a file, `{ base64 }`. */
@@ -110,9 +116,6 @@ async function partOfRequest(argument: string, value: unknown): Promise<unknown>
 async function meshOf(mesh: unknown): Promise<unknown> {
   if (typeof mesh === "string") return readMeshFile(mesh);
   if (!isRecord(mesh) || !isRecord(mesh.positions)) return partOfRequest("mesh", mesh);
-  const [positions, indices] = [
-    await partOfRequest("mesh.positions", mesh.positions),
-    await partOfRequest("mesh.indices", mesh.indices),
-  ];
-  return withoutUndefined({ positions, indices });
+  const arrays = Object.entries(mesh).map(async ([name, array]) => [name, await partOfRequest(`mesh.${name}`, array)]);
+  return Object.fromEntries(await Promise.all(arrays));
 }

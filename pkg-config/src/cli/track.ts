@@ -39,7 +39,7 @@ async function trackVideo(
   const { mesh, names, read, found } = await openFrames(folder, caseSettings(flags));
   const options = optionValues(flags, OPTIONS.track);
   if (typeof options.initial === "string")
-    options.initial = await readTransform("initial", options.initial, { name, path });
+    options.initial = await readTransform("initial", options.initial, { name, path }, mesh);
   caseRun.found = found();
   const tracker = await aligner.track(mesh, options as TrackOptions);
   try {

@@ -53,7 +53,11 @@ export const intrinsics: readonly string[] = ["fx", "fy", "cx", "cy", "K", "fovY
 
 /** The camera of an input, which has `camera`, `cameraFile`, or neither. */
 export async function cameraOf({ camera, cameraFile, imageId }: Record<string, unknown>): Promise<Camera> {
-  if (cameraFile === undefined) return statedCamera(camera === undefined ? {} : camera);
+  if (cameraFile === undefined) {
+    const idRemedy = "It names one of several cameras of a file.";
+    if (imageId !== undefined) throw invalidArgument("imageId", imageId, "nothing without a camera file", idRemedy);
+    return statedCamera(camera === undefined ? {} : camera);
+  }
   if (camera === undefined) return fileCamera(cameraFile, imageId);
   const remedy = "Omit one of the two.";
   throw invalidArgument("cameraFile", cameraFile, "a camera or a camera file, but not both", remedy);

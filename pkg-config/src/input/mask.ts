@@ -56,7 +56,18 @@ export async function readMask(
   index?: unknown,
 ): Promise<ReadMask> {
   const pixels = size.width * size.height;
-  if (isJson(mask)) return readJsonMask("mask", mask, index, size, formats);
+  const bytes = isJson(mask) ? null : await fileBytes("mask", mask);
+  const isImage = bytes !== null && beginsLikeImage(bytes);
+  const isText = bytes !== null && !isImage && bytes.length !== pixels && beginsLikeJson(bytes);
+  if (isJson(mask) || isText) return readJsonMask("mask", isText ? bytes : (mask as object), index, size, formats);
+  if (index !== undefined) {
+    throw invalidArgument(
+      "maskIndex",
+      index,
+      "nothing beside a mask of its own",
+      "It is for JSON files of several masks.",
+    );
+  }
   if (isRecord(mask)) {
     if ("counts" in mask) return (await import("./coco-rle.js")).decodedRle("mask", mask);
     if ("data" in mask) {
@@ -75,14 +86,11 @@ export async function readMask(
     return bare(mask);
   }
   if (isKind(mask, "ImageData")) throw invalidArgument("mask", mask, kinds(), "Pass one channel of its data.");
-  const bytes = await fileBytes("mask", mask);
   if (bytes === null) throw wrongKind("mask", mask, kinds(), "Uint8Array");
-  const isImage = beginsLikeImage(bytes);
-  if (!isImage && (bytes.length === pixels || (mask === bytes && !beginsLikeJson(bytes)))) {
+  if (!isImage && (bytes.length === pixels || mask === bytes)) {
     checkChannels("mask", bytes, pixels);
     return bare(bytes);
   }
-  if (!isImage && beginsLikeJson(bytes)) return readJsonMask("mask", bytes, index, size, formats);
   return callReader(formats, "mask", bytes, (readers) => readers.readMask(bytes));
 }
 

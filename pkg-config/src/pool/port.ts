@@ -114,9 +114,10 @@ const importing = oncePerKey((address: string) =>
  * Starts a worker. Browsers start workers from their own origin only, but these may import from elsewhere.
  * @param start starts it directly
  * @param script the address of its script
+ * @param name its name, if the script depends on it
  */
-export function startedFromAnywhere(start: () => Worker, script: () => URL): Worker {
+export function startedFromAnywhere(start: () => Worker, script: () => URL, name = ""): Worker {
   const { href, origin, protocol } = script();
   if (!protocol.startsWith("http") || origin === globalThis.location?.origin) return start();
-  return new Worker(importing(href), { type: "module" });
+  return new Worker(importing(href), { type: "module", name });
 }

@@ -40,7 +40,7 @@ export interface SimulatorOptions {
   camera?: SceneCamera | undefined;
   /** Mass per volume that a mesh encloses, or of the convex parts of an open one, kg/m³. Default {@link SIMULATOR_DEFAULTS}: household things are mostly hollow. */
   density?: number | undefined;
-  /** Most convex parts of a body; 1 is the convex hull. */
+  /** Most convex parts of a body; 1 is the convex hull. See `wallsJoined` of the bodies. */
   maxParts?: number | undefined;
   /** Largest angle by which a body is turned so that it rests, degrees. */
   maxTurnDeg?: number | undefined;
@@ -110,6 +110,11 @@ export interface SimulatorBody extends SimulatorPose {
    * is whole, and sinks into what it stands on by at most as much.
    */
   cutM: number;
+  /**
+   * The number of walls of an open box or shelf without thickness, if `maxParts` is smaller: its parts then join walls and close
+   * its openings. Otherwise `null`.
+   */
+  wallsJoined: number | null;
   /** Indices of the bodies that it is partly inside of: collisions with these are left out where a format can say so. */
   inside: number[];
 }
@@ -136,7 +141,10 @@ interface Physics {
     objects: readonly object[],
     settings: object,
   ): {
-    bodies: (Pick<SimulatorBody, "parts" | "mass" | "movedM" | "turnedDeg" | "rest" | "cutM" | "inside"> &
+    bodies: (Pick<
+      SimulatorBody,
+      "parts" | "mass" | "movedM" | "turnedDeg" | "rest" | "cutM" | "inside" | "wallsJoined"
+    > &
       Record<"pose" | "found", BodyPose> &
       Record<"center" | "moments" | "axes", Float64Array> & { isFree: boolean })[];
     supportHeightM: number;

@@ -17,11 +17,12 @@ export const poseOf = ({ pose }: ObjectModel): Sim3 => structuredClone(pose.peek
 export function resultOf({ scene }: Workspace, object: ObjectModel): ObjectResult {
   const whole = scene.peek();
   const { source } = object.pose.peek();
+  const isPosed = source !== "start";
   return {
     name: object.name,
-    pose: source === "start" ? null : poseOf(object),
+    pose: isPosed ? poseOf(object) : null,
     source,
-    sizeM: [...object.box.peek().sizeM],
+    sizeM: isPosed ? [...object.box.peek().sizeM] : null,
     isMetric: whole === null || isMetric(whole),
     confidence: object.confidence,
     isAccepted: object.isAccepted.peek(),

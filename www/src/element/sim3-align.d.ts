@@ -53,8 +53,8 @@ export interface ObjectResult {
   /** OpenCV camera from mesh, in metres if `isMetric`; null before the first alignment. */
   pose: Sim3 | null;
   source: "start" | "aligned" | "alternative" | "refined" | "hand" | "tracked";
-  /** Sides of the smallest box around the object, named after the nearest axes x, y and z of the mesh. */
-  sizeM: number[];
+  /** Sides of the smallest box around the object, named after the nearest axes x, y and z of the mesh; null without a pose. */
+  sizeM: number[] | null;
   /** Whether lengths are metres. Otherwise, the unit of all lengths is unknown, but the same for all objects. */
   isMetric: boolean;
   /** Of an aligned pose only. */

@@ -29,8 +29,9 @@ const pending = new Map<number, Pending>();
 function started(): Worker {
   if (worker !== null) return worker;
   const own = startedFromAnywhere(
-    () => new Worker(new URL("./reader-worker.ts", import.meta.url), { type: "module" }),
+    () => new Worker(new URL("./reader-worker.ts", import.meta.url), { type: "module", name: "reader" }),
     () => new URL("./reader-worker.ts", String(import.meta.url)),
+    "reader",
   );
   own.addEventListener("message", ({ data }: MessageEvent<ReaderAnswer>) => {
     const call = pending.get(data.id);
