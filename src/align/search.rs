@@ -177,7 +177,8 @@ impl<'a> Search<'a> {
 
             let is_last = index + 1 == efforts.len();
             let mut share = efforts::share(index, efforts.len());
-            if index == 0 && !is_last && rounds.assume_uncut() {
+            let is_first = index == 0 && !is_last && self.request.options.initial.is_none();
+            if is_first && rounds.assume_uncut() {
                 let [uncut, rest] = efforts::split(share);
                 match self.attempt(rounds, uncut, Some(SURE_UNCUT)).await? {
                     ControlFlow::Break(result) => return Ok(result),

@@ -131,6 +131,22 @@ fn an_occluder_hides_and_does_not_shrink() {
 }
 
 #[wasm_bindgen_test]
+fn what_only_touches_an_object_takes_few_images() {
+    let mesh = body();
+    let whole = observe(&mesh, &truth());
+    let [_, [_, last]] = bounds_of(whole.mask().data(), WIDTH, |m| *m != 0);
+    let is_object = |u, v| whole.mask().get(u, v) != Some(0);
+    // A table that rises towards the camera right below the object, where it could hide a part.
+    let depth = |u, v| if v > last { 0.4 } else { whole.depth().get(u, v).unwrap() };
+    let touched = view(camera(), [WIDTH, HEIGHT], is_object, depth).unwrap();
+    let found = |quality| align(&touched, &mesh, &AlignOptions { quality, ..quick() }, &mut Silent).unwrap();
+    let [all, auto] = [Quality::Fast, Quality::Auto].map(found);
+    assert!(turn_deg(&pose(&auto), &truth()) < 4.0, "{}°", turn_deg(&pose(&auto), &truth()));
+    let [all, auto] = [all, auto].map(|result| result.diagnostics.counts.renders);
+    assert!(2 * auto < all, "{auto} of {all} images");
+}
+
+#[wasm_bindgen_test]
 fn pauses_and_a_prepared_mesh_change_nothing() {
     let mesh = body();
     let prepared = PreparedMesh::new(mesh.clone());

@@ -104,11 +104,10 @@ impl Rounds {
         is_cut
     }
 
-    /// The search from its beginning, with all sizes and positions, and with the candidates of this one.
+    /// The search from its beginning, with all sizes and positions. Without its candidates: refined already, they would hide that a
+    /// pose elsewhere comes close.
     pub fn with_cuts(self) -> Self {
-        let mut again = Self::new(self.search, None, true);
-        again.add_candidates(&self.candidates);
-        again
+        Self::new(self.search, None, true)
     }
 
     /// A search that has ended with these candidates.
