@@ -19,7 +19,7 @@ async function choose(sample: Sample): Promise<void> {
 const isOwn = () => scene.value !== null && scene.value.sample === null;
 
 export const StartPanel = () => (
-  <section class="panel start" style={{ gridArea: "start" }} aria-label="Open" data-own={isOwn()}>
+  <section class="stack panel start" style={{ gridArea: "start" }} aria-label="Open" data-own={isOwn()}>
     <div class="row">
       <FileButton id="files" look={isOwn() ? "" : "primary"} multiple onFiles={openFiles}>
         {isOwn() ? "Open files" : "Drop or choose files"}
