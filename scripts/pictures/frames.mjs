@@ -54,6 +54,7 @@ ${arrows.join("\n")}
       `<marker id="${axis}" viewBox="0 0 8 8" refX="6" refY="4" markerWidth="4" markerHeight="4" orient="auto"><path d="M0 0L8 4L0 8z" fill="${colour}" /></marker>`,
   );
   return `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1000 230" font-family="system-ui, sans-serif" font-size="13">
+<title>The axes of camera frames</title>
 <rect width="1000" height="230" fill="#ffffff" />
 <defs>${heads.join("")}</defs>
 ${drawn.join("\n")}

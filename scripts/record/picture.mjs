@@ -64,6 +64,7 @@ export const recordPicture = (
   sets,
   confidences,
 ) => `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 720 330" font-family="system-ui, sans-serif" font-size="13">
+<title>How often poses are right</title>
 <rect width="720" height="330" fill="#ffffff" />
 <g transform="translate(50 40)">
 ${reliability(confidences)}
