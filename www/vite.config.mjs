@@ -25,20 +25,26 @@ const later =
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);
 
+/** Modules of WebAssembly, and scripts, that the first alignment loads one after the other. */
+const first =
+  /(core|formats)_bg[^/]*\.wasm$|^assets\/(formats|camera-file|compressed-gltf|own-decoders|meshopt)-[^/]*\.js$/;
+
 /**
- * The modules that the first alignment needs are downloaded beside the script, not after it.
+ * What the first alignment needs is downloaded beside the script, not after it.
  * @type {import("vite").Plugin}
  */
-const preloadedModules = {
-  name: "preloaded-modules",
+const preloads = {
+  name: "preloads",
   transformIndexHtml: {
     order: "post",
     handler: (_, { bundle = {} }) =>
       Object.keys(bundle)
-        .filter((name) => /(core|formats)_bg[^/]*\.wasm$/.test(name))
+        .filter((name) => first.test(name))
         .map((name) => ({
           tag: "link",
-          attrs: { rel: "preload", as: "fetch", href: `./${name}`, crossorigin: true },
+          attrs: name.endsWith(".js")
+            ? { rel: "modulepreload", href: `./${name}` }
+            : { rel: "preload", as: "fetch", href: `./${name}`, crossorigin: true },
           injectTo: "head",
         })),
   },
@@ -65,7 +71,7 @@ export default defineConfig({
   // What workers load later has names of its own.
   worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
-  plugins: [preloadedModules, documentation(www, guides), serviceWorker(www)],
+  plugins: [preloads, documentation(www, guides), serviceWorker(www)],
   build: {
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,

@@ -1,11 +1,13 @@
 /** The figures of the record in documents: rows of tables with its columns, by their first cell, and the table of confidences. */
-import { existsSync, readFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { filesBelow } from "../lib/cache.mjs";
 import { at } from "../lib/paths.mjs";
 import { holdUpToDate, rewrite } from "../lib/rewrite.mjs";
+import { recordPicture } from "./picture.mjs";
 
-/** The page of the record. */
+/** The page of the record, and its picture. */
 export const recordFile = at("docs", "record.md");
+const pictureFile = at("docs", "record", "accuracy.svg");
 
 const files = () => [
   ...[at("README.md"), at("docs", "benchmark.md")],
@@ -44,7 +46,31 @@ function update() {
       .replace(confidences, () => trusted);
 }
 
-export const writeFigures = async () => rewrite(files(), update());
+/** The picture of the figures in the page of the record. */
+function picture() {
+  const rows = readFileSync(recordFile, "utf8")
+    .split("\n")
+    .filter((line) => /^\|.*\d/.test(line))
+    .map((line) =>
+      line
+        .slice(1, -1)
+        .split("|")
+        .map((cell) => cell.trim()),
+    );
+  const confidences = rows.filter(([first = ""]) => /^[\d.]+ to/.test(first));
+  return recordPicture(
+    rows.filter((row) => !confidences.includes(row)),
+    confidences,
+  );
+}
 
-/** @throws if a document disagrees with the record */
-export const checkFigures = async () => holdUpToDate(files(), update(), "docs/record.md");
+export async function writeFigures() {
+  rewrite(files(), update());
+  if (existsSync(recordFile)) writeFileSync(pictureFile, picture());
+}
+
+/** @throws if a document or the picture disagrees with the record */
+export async function checkFigures() {
+  holdUpToDate(files(), update(), "docs/record.md");
+  holdUpToDate([pictureFile], picture, "docs/record.md");
+}

@@ -14,14 +14,14 @@ const error = (results, i, unit = 1) => fixed(unit * median(results.flatMap(({ e
 
 /** @type {readonly (readonly [head: string, cell: (results: readonly ResultRow[]) => string | number])[]} */
 const columns = [
-  ["n", (results) => results.length],
+  ["cases", (results) => results.length],
   ["strict %", (results) => percent(share(results.map(({ strict }) => strict === true)))],
   ["loose %", (results) => percent(share(results.map(({ loose }) => loose === true)))],
-  ["scale %", (results) => error(results, 0, 100)],
-  ["rotation °", (results) => error(results, 1)],
-  ["place %", (results) => error(results, 2, 100)],
-  ["≥ 0.9: right of", (results) => rightOf(confident(results))],
-  ["size held %", (results) => percent(mean(confident(results).flatMap(isSizeHeld)))],
+  ["scale error %", (results) => error(results, 0, 100)],
+  ["rotation error °", (results) => error(results, 1)],
+  ["translation error %", (results) => error(results, 2, 100)],
+  ["believed: right of", (results) => rightOf(confident(results))],
+  ["size in interval %", (results) => percent(mean(confident(results).flatMap(isSizeHeld)))],
   ["ms", (results) => fixed(median(results.flatMap(({ ms }) => ms ?? [])))],
 ];
 

@@ -2,7 +2,8 @@
 import assert from "node:assert/strict";
 import { readdirSync } from "node:fs";
 import { join } from "node:path";
-import { pageTests, siteDir } from "../support/site.js";
+import { violations } from "../support/browser.js";
+import { PATIENCE, pageTests, siteDir } from "../support/site.js";
 
 const test = pageTests();
 
@@ -55,4 +56,24 @@ test("the help opens documents as pages, and each of their links leads somewhere
     ];
   });
   assert.deepEqual(dead, []);
+});
+
+test("documents have no accessibility violations, find words, and let code be copied", async (_, page) => {
+  const names = readdirSync(join(siteDir, "docs")).filter((name) => name.endsWith(".html"));
+  for (const name of names) {
+    await page.goto(new URL(`docs/${name}`, page.url().replace(/docs\/.*|index.html.*/, "")).href);
+    await page.locator("#search input").waitFor(PATIENCE);
+    assert.deepEqual(await violations(page), [], name);
+  }
+  await page.getByRole("textbox", { name: "Search" }).fill("half pixel");
+  const found = page.locator(".pagefind-ui__result-link", { hasText: "Conventions that differ" });
+  await found.click(PATIENCE);
+  await page.locator("h2#conventions-that-differ").waitFor(PATIENCE);
+  assert.match(page.url(), /docs\/interoperability\.html/);
+
+  await page.goto(new URL("first-alignment.html", page.url()).href);
+  await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
+  await page.locator(".code", { hasText: "npm install sim3align" }).getByRole("button", { name: "Copy" }).click();
+  await page.getByRole("button", { name: "Copied" }).waitFor(PATIENCE);
+  assert.match(await page.evaluate(() => navigator.clipboard.readText()), /^mkdir first && cd first\n/);
 });

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
+import { glbFrom, meshoptGltf } from "../support/compressed.js";
 import { columnMajor } from "../support/scene.js";
 import {
   host,
@@ -76,6 +77,20 @@ test("glTF node transforms are applied, and an invalid GLB leaves the view uncha
   );
   assert.match(said, /Error/);
   await check();
+  assert.deepEqual(errors, []);
+});
+
+test("a mesh that meshopt compressed and quantised is drawn as its file has it", async () => {
+  const ends = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [2.5 + (i & 1), ((i >> 1) & 1) - 0.5, (i >> 2) - 0.5]);
+  const sides = [
+    0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5,
+  ];
+  const cube = { positions: Float32Array.from(ends), indices: Uint32Array.from(sides) };
+  const glb = glbFrom(meshoptGltf(cube, "EXT_meshopt_compression", true));
+  const { errors, facts, colours } = await openCube(webGl, false, [...glb]);
+  const at = (x: number) => placeOf(facts, ...pixelOf(facts, x, 0, 0.75));
+  const [inside, outside] = await colours([at(0), at(0.056)]);
+  assert.ok(isGreen(inside) && !isGreen(outside), `${inside}; ${outside}`);
   assert.deepEqual(errors, []);
 });
 

@@ -38,8 +38,9 @@ function cube([x, y, z], side = 1) {
   return { positions: Float32Array.from(attributes.position.array), indices: Uint32Array.from(index.array) };
 }
 
-/** A cube around (3, 0, 0): as arrays, or as a GLB whose node translates and scales it. */
+/** A cube around (3, 0, 0): as arrays, or as a GLB whose node translates and scales it; or the GLB of these bytes. */
 function mesh(kind) {
+  if (typeof kind !== "string") return { glb: Uint8Array.from(kind) };
   if (kind === "arrays") return cube([3, 0, 0]);
   if (kind === "broken") return { glb: new TextEncoder().encode("glTF, but not really") };
   const moved = { scale: 2, rotation: [0, 0, 0, 1], translation: [1, 0, 0] };

@@ -22,7 +22,7 @@ interface Harness {
   width: number;
   height: number;
   quarters: [number, number, number][];
-  object(id: string, colour: string, kind?: string): object;
+  object(id: string, colour: string, kind?: string | number[]): object;
   start(width: number, height: number, forceWebGL?: boolean): Promise<"webgpu" | "webgl">;
   show(display?: object): void;
   colours(places: Place[]): Promise<[number, number, number][]>;
@@ -58,6 +58,7 @@ before(async () => {
     ...{ bundle: true, format: "esm", outfile: join(folder, "harness.js"), logLevel: "error" },
     alias: {
       "sim3align/conventions": join(repository, "target", "compiled", "conventions"),
+      "sim3align/input": join(repository, "target", "compiled", "input"),
       "sim3align/three": join(repository, "pkg", "three.js"),
     },
   });
@@ -98,17 +99,17 @@ export async function open(browser: PageTest): Promise<{ page: Page; errors: str
   return { page, errors, facts };
 }
 
-/** Opens a view of the wall from the camera, with a green cube. */
-export async function openCube(browser: PageTest, forceWebGL = false, kind = "arrays") {
+/** Opens a view of the wall from the camera, with a green cube: of one kind, or the bytes of a GLB. */
+export async function openCube(browser: PageTest, forceWebGL = false, kind: string | number[] = "arrays") {
   const opened = await open(browser);
   const start = ([size, isForced]: [typeof host, boolean]) => harness.start(size.width, size.height, isForced);
   const backend = await opened.page.evaluate(start, [host, forceWebGL] as [typeof host, boolean]);
-  const show = async ([kind, pose]: [string, number[]]) => {
+  const show = async ([kind, pose]: [string | number[], number[]]) => {
     harness.show();
     await harness.view.setObjects([harness.object("cube", "#00c040", kind)]);
     await harness.view.setPose("cube", pose);
   };
-  await opened.page.evaluate(show, [kind, pose(0, 0)] as [string, number[]]);
+  await opened.page.evaluate(show, [kind, pose(0, 0)] as [string | number[], number[]]);
   const colours = (places: Place[]) => opened.page.evaluate((places) => harness.colours(places), places);
   return { ...opened, backend, colours };
 }

@@ -108,7 +108,7 @@ body { margin: 0; } h1 { font-size: 17px; margin: 12px 16px; }
 table { border-collapse: collapse; background: #fff; font-variant-numeric: tabular-nums; }
 thead th { position: sticky; top: 0; background: #eef1f4; white-space: nowrap; }
 th, td { padding: 4px 8px; border-bottom: 1px solid #dfe3e8; text-align: left; vertical-align: top; font-weight: 400; }
-tbody th { font-weight: 600; max-width: 16em; overflow-wrap: anywhere; } img { display: block; border-radius: 3px; }
+tbody th { font-weight: 600; min-width: 8em; max-width: 16em; overflow-wrap: anywhere; } img { display: block; border-radius: 3px; }
 thead button { all: unset; cursor: pointer; font-weight: 600; } :focus-visible { outline: 2px solid #1660c4; }
 [aria-sort="ascending"] button::after { content: " ▲" / ""; } [aria-sort="descending"] button::after { content: " ▼" / ""; }
 details { max-width: 22em; font-size: 12px; color: #6a4a00; } .failed { color: #a3211b; }

@@ -4,7 +4,7 @@ import { toSim3 } from "sim3align/conventions/similarity";
 import { inCalibration } from "../state/calibration.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
 import type { Pose, PoseSource } from "../state/pose.js";
-import { isResult } from "../state/pose.js";
+import { isResult, tightBoundsOf } from "../state/pose.js";
 import type { Status } from "../state/running.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
@@ -51,7 +51,10 @@ export async function alignEach(workspace: Workspace): Promise<void> {
   const whole = workspace.scene.peek();
   const objects = whole?.objects ?? [];
   if (objects.length < 2 || whole?.raw != null) return alignAll(workspace);
-  await run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
+  const running = run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
+  // This thread is idle now, and results show the sizes of these boxes.
+  for (const { mesh } of objects) setTimeout(() => tightBoundsOf(mesh));
+  await running;
 }
 
 type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;

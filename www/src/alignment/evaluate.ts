@@ -11,17 +11,18 @@ import { aligner, inputOf } from "./aligner.js";
 const DEBOUNCE_MS = 120;
 
 /** Observes the poses of all objects of the current scene. Call the returned function to stop. */
-export function observePoses({ scene }: Workspace): () => void {
+export function observePoses({ controller, scene }: Workspace): () => void {
+  const isAligning = () => controller.peek() !== null;
   return effect(() => {
     const whole = scene.value;
-    const stops = whole === null ? [] : whole.objects.map((object) => observe(whole, object));
+    const stops = whole === null ? [] : whole.objects.map((object) => observe(whole, object, isAligning));
     return () => {
       for (const stop of stops) stop();
     };
   });
 }
 
-function observe(whole: Scene, object: ObjectModel): () => void {
+function observe(whole: Scene, object: ObjectModel, isAligning: () => boolean): () => void {
   let abort = new AbortController();
   let timer: ReturnType<typeof setTimeout> | undefined;
   const stop = effect(() => {
@@ -37,7 +38,13 @@ function observe(whole: Scene, object: ObjectModel): () => void {
     object.metrics.value = isSame ? alignment.metrics : null;
     object.errors.value = null;
     if (pose.source === "start" || (isSame && object.truth === null)) return;
-    timer = setTimeout(() => evaluate(whole, object, abort.signal), DEBOUNCE_MS);
+    const { signal } = abort;
+    // Errors of a result are of less interest than the results of the other objects.
+    const start = () => (isSame && isAligning() ? wait() : evaluate(whole, object, signal));
+    const wait = () => {
+      timer = setTimeout(start, DEBOUNCE_MS);
+    };
+    wait();
   });
   return () => {
     stop();

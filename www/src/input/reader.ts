@@ -86,9 +86,9 @@ export const readDepth = reader("readDepth", formats.readDepth);
 export const readMask = reader("readMask", formats.readMask);
 export const readMesh = reader("readMesh", formats.readMesh);
 
-/** A mesh file if it is a binary glTF that the 3D view can load as it is: it holds its buffers and images, and is not compressed. */
+/** A mesh file if it is a binary glTF that the 3D view can load as it is: it holds its buffers and images, and is not compressed by Draco. */
 export function shownGlb(bytes: Uint8Array): Uint8Array | null {
   const json = gltfText(bytes);
   const isBinary = json !== "" && bytes[0] === 0x67;
-  return isBinary && !/_meshopt_|_draco_|"uri"\s*:\s*"(?!data:)/.test(json) ? bytes : null;
+  return isBinary && !/_draco_|"uri"\s*:\s*"(?!data:)/.test(json) ? bytes : null;
 }

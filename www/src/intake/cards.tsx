@@ -29,7 +29,7 @@ function Card({ field, title, chosen, accept, children }: CardProps) {
   const isWrong = problemsFor(field).some(({ kind }) => kind === "error");
   return (
     <div class="card" data-field={field} data-wrong={isWrong}>
-      <div class="card-head">
+      <div class="row card-head">
         <h3>{title}</h3>
         <FieldFiles field={field} title={title} accept={accept} isWrong={isWrong} />
       </div>

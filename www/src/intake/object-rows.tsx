@@ -30,7 +30,7 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
   const isWrong = (field: "mask" | "mesh") => problemsFor(field).some(({ kind }) => kind === "error");
   return (
     <section class="pairs" aria-labelledby="pairs-title">
-      <div class="card-head">
+      <div class="row card-head">
         <h3 id="pairs-title">Objects: mask and mesh</h3>
         {files.map(({ field, title, beside }) => (
           <span class="field-inline" key={field}>
@@ -52,7 +52,7 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
       <div data-field="mesh" data-wrong={isWrong("mesh")}>
         <Problems field="mesh" general />
       </div>
-      <ul>
+      <ul class="stack">
         {inputs.objects.map((object, i) => (
           <Row
             key={`${i} ${object.mask?.file.path}`}
@@ -121,7 +121,7 @@ function Row({ inputs, object, read, i, ground, width }: RowProps) {
       }}
     >
       <Picture image={seen} label={`Mask of ${object.name}`} />
-      <div class="pair-mask">
+      <div class="stack pair-mask">
         <input
           aria-label={`Name of object ${i + 1}`}
           value={object.name}
@@ -144,14 +144,14 @@ function Row({ inputs, object, read, i, ground, width }: RowProps) {
       >
         <Picture image={shape} label={`Mesh for ${object.name}`} />
       </fieldset>
-      <div class="pair-mask">
+      <div class="stack pair-mask">
         <MeshSelect inputs={inputs} object={object} i={i} />
         <span class="quiet">{triangles !== null && `${triangles.toLocaleString("en-GB")} triangles`}</span>
       </div>
       <button type="button" aria-label={`Leave out ${object.name}`} onClick={() => change(withoutObject(i))}>
         ×
       </button>
-      <div class="pair-problems">
+      <div class="stack pair-problems">
         <Problems field="mask" object={i} />
         <Problems field="mesh" object={i} />
         <Problems field="depth" object={i} />

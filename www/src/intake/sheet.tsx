@@ -43,7 +43,7 @@ export function Sheet() {
         dismiss();
       }}
     >
-      <header>
+      <header class="row">
         <h2 id="intake-title">{open.isEdit ? "Files" : "New scene"}</h2>
         <input
           class="scene-name"
@@ -69,7 +69,7 @@ export function Sheet() {
         <ObjectRows open={open} ground={shown} />
         <FileRoles inputs={inputs} />
       </div>
-      <footer>
+      <footer class="row">
         <FileButton id="more-files" multiple onFiles={propose}>
           <span>Add files</span>
         </FileButton>
@@ -170,7 +170,7 @@ function FileRoles({ inputs: { files } }: { inputs: Inputs }) {
       </summary>
       <ul>
         {[...new Set([...asked, ...files])].slice(0, 200).map(({ file, role }) => (
-          <li key={file.path}>
+          <li class="row" key={file.path}>
             <span class="path" title={file.path}>
               {file.path}
             </span>

@@ -79,7 +79,7 @@ export function MaskEditor({ name, view, colour, before, marks: first, ...on }: 
         on.onCancel();
       }}
     >
-      <header>
+      <header class="row">
         <h2 id="mask-title">Mark {name}</h2>
         <Brush
           {...{ brush, width, height }}
@@ -96,7 +96,7 @@ export function MaskEditor({ name, view, colour, before, marks: first, ...on }: 
         </button>
       </header>
       <Stage {...{ name, view, colour, mask, marks, cross, brush }} onCross={setCross} onMark={put} />
-      <footer>
+      <footer class="row">
         <p class="quiet" id="mask-keys">
           Click the object. Strokes add to it or remove from it; with Alt, a stroke does the other one. The wheel or two
           fingers zoom and move the photo.

@@ -22,7 +22,7 @@ export function Advised({ object }: OfObject) {
   const hasFiles = fileActions.value !== null;
   const offered = isReadonly.value ? [] : remedies.filter(({ needsFiles }) => hasFiles || !needsFiles);
   return (
-    <div class="advice" role="status" data-cause={cause}>
+    <div class="stack note advice" role="status" data-cause={cause}>
       <p>{text}</p>
       {offered.length > 0 && (
         <p class="row">
@@ -47,7 +47,7 @@ export function Warnings({ object }: OfObject) {
     <>
       {contact !== null && <p class="quiet contact">{contact}</p>}
       {warnings.length > 0 && (
-        <ul class="warnings">
+        <ul class="stack warnings">
           {warnings.map((warning) => (
             <li key={warning}>{warning}</li>
           ))}

@@ -19,7 +19,7 @@ export function Alternatives({ object }: { object: ObjectModel | null }) {
   if (alternatives.length === 0) return <p class="quiet">No plausible alternatives.</p>;
   const shown = shownAlternative(object);
   return (
-    <fieldset class="alternatives">
+    <fieldset class="row alternatives">
       <legend>Alternatives, by their rotation from the best</legend>
       {[best, ...alternatives].map((pose, i) => (
         <button

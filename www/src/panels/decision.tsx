@@ -12,7 +12,7 @@ export function Decision() {
   const verdict = object?.verdict.value ?? null;
   const hasNext = (scene.value?.objects.length ?? 0) > 1 || list.value.length > 1;
   return (
-    <fieldset class="decision" part="decision" disabled={object === null}>
+    <fieldset class="row decision" part="decision" disabled={object === null}>
       <legend class="visually-hidden">Decision</legend>
       <button
         type="button"

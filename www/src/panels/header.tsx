@@ -42,7 +42,7 @@ async function copyCode(title: string, name: (typeof codes)[number][1]): Promise
 }
 
 export const Header = () => (
-  <header class="head">
+  <header class="row head">
     <h1>sim3align</h1>
     <p class="claim">
       In: depth map, mask, 3D model. Out: <b>its real size and place</b>.
@@ -54,7 +54,7 @@ export const Header = () => (
 export function Tools() {
   const hasScene = page.scene.value !== null;
   return (
-    <nav class="tools" aria-label="Project">
+    <nav class="row tools" aria-label="Project">
       {links.map(([title, address]) => (
         <a key={title} href={address} target="_blank" rel="noreferrer">
           {title}

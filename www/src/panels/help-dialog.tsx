@@ -35,7 +35,7 @@ export function HelpDialog() {
         isHelpOpen.value = false;
       }}
     >
-      <header>
+      <header class="row">
         <h2 id="help-title">Help</h2>
         <label class="field-inline" for="theme">
           <span>Theme</span>

@@ -97,7 +97,7 @@ function Change({ object, trial, onDecide }: ChangeProps) {
     typeof before === "number" && (after ?? 0) < before - NOTABLE;
   const isWorse = falls(iou, trial.iou) || falls(confidence, trial.confidence);
   return (
-    <fieldset class="trial">
+    <fieldset class="stack note trial">
       <legend class="visually-hidden">The known size compared</legend>
       <table>
         <thead>

@@ -28,7 +28,7 @@ export function ObjectsPanel({ children }: { children?: ComponentChildren }) {
   if (objects.length + awaited.length < 2) return null;
   return (
     <section class="panel objects-panel" style={{ gridArea: "objects" }} part="objects" aria-labelledby="objects-title">
-      <div class="panel-head">
+      <div class="row panel-head">
         <h2 id="objects-title">
           Objects <span class="quiet">{unit.value === null && "cm"}</span>
         </h2>
@@ -37,7 +37,7 @@ export function ObjectsPanel({ children }: { children?: ComponentChildren }) {
         </span>
         {children}
       </div>
-      <ul class="objects">
+      <ul class="stack objects">
         {objects.map((object) => (
           <Row key={object.id} object={object} />
         ))}

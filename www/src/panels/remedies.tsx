@@ -23,7 +23,7 @@ export function Remedies({ object }: { object: ObjectModel | null }) {
     alignSelected(workspace);
   };
   return (
-    <div class="remedies">
+    <div class="stack note remedies">
       <p>Not sure. {alternatives > 0 ? "Choose a pose below, or say what you know:" : "Say what you know:"}</p>
       <KnownSize object={object} id="remedy-size" />
       <fieldset class="row" disabled={isRunning.value}>

@@ -25,7 +25,7 @@ export function ResultPanel() {
       aria-labelledby="result-title"
       data-source={chosen?.pose.value.source ?? "none"}
     >
-      <h2 id="result-title">
+      <h2 class="row" id="result-title">
         {chosen === null ? (
           "Result"
         ) : (

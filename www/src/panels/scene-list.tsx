@@ -34,7 +34,7 @@ export function ScenesPanel() {
   const count = (of: SceneKind) => all.filter((one) => isOfKind(one, of)).length;
   return (
     <section class="panel scenes-panel" style={{ gridArea: "scenes" }} aria-labelledby="scenes-title">
-      <div class="panel-head">
+      <div class="row panel-head">
         <h2 id="scenes-title">Scenes</h2>
         <span class="quiet">
           {all.length - count("open")} of {all.length} decided
@@ -61,7 +61,7 @@ export function ScenesPanel() {
           />
         </div>
       )}
-      <ul class="scenes" ref={rows} aria-labelledby="scenes-title">
+      <ul class="stack scenes" ref={rows} aria-labelledby="scenes-title">
         {orderedList()
           .filter((one) => isShown(one) || isOfKind(one, kind))
           .map((one) => (

@@ -7,7 +7,7 @@ import { type Sample, samples, sampleUrl } from "../opening/samples.js";
 import { page } from "../state/page.js";
 import { FileButton, Menu } from "../ui/controls.js";
 
-const { inputs, scene } = page;
+const { inputs, isSettled, scene } = page;
 
 const offlineTexts = { unknown: "", stored: " Works offline.", newer: " Reload for a new version." };
 
@@ -19,7 +19,7 @@ async function choose(sample: Sample): Promise<void> {
 const isOwn = () => scene.value !== null && scene.value.sample === null;
 
 export const StartPanel = () => (
-  <section class="panel start" style={{ gridArea: "start" }} aria-label="Open" data-own={isOwn()}>
+  <section class="stack panel start" style={{ gridArea: "start" }} aria-label="Open" data-own={isOwn()}>
     <div class="row">
       <FileButton id="files" look={isOwn() ? "" : "primary"} multiple onFiles={openFiles}>
         {isOwn() ? "Open files" : "Drop or choose files"}
@@ -56,6 +56,7 @@ function Gallery() {
   const shown = scene.value?.sample ?? inputs.value.sample;
   return (
     <ul class="samples">
+      {/* Pictures come after the first result. */}
       {samples.map((sample) => (
         <li key={sample.id}>
           <button
@@ -65,7 +66,7 @@ function Gallery() {
             title={sample.about}
             onClick={() => choose(sample)}
           >
-            <img src={sampleUrl(sample.picture)} alt="" width="160" height="120" loading="lazy" />
+            <img src={isSettled.value ? sampleUrl(sample.picture) : undefined} alt="" width="160" height="120" />
             <span>{sample.title}</span>
           </button>
         </li>

@@ -42,7 +42,7 @@ export function TimePanel() {
   const source = selected.value?.pose.value.source;
   const canCorrect = !isTracking.value && poses[index] != null && source !== "tracked" && source !== "start";
   return (
-    <section class="panel time" aria-label="Frames">
+    <section class="row panel time" aria-label="Frames">
       <button
         type="button"
         id="previous-frame"

@@ -1,5 +1,7 @@
 /** A mesh in the view, with its materials and its pose. */
 
+import { ownDecoders } from "sim3align/input/own-decoders";
+import { gltfText } from "sim3align/input/webp";
 import { applyToObject3D } from "sim3align/three";
 import type { Intersection, Material, Object3D, Raycaster } from "three/webgpu";
 import type { Colouring } from "../pictures/light.js";
@@ -50,6 +52,7 @@ export class Model {
   readonly colour: Color;
   private readonly outlines = new Group();
   private readonly materials: Material[] = [];
+  private readonly outlineMaterials = new Map<number, Material>();
   private readonly box: readonly Vector3[];
   private isPlaced = false;
   colouring: Colouring = "textures";
@@ -77,8 +80,11 @@ export class Model {
   static async load(object: ObjectInput): Promise<Model> {
     const { id, mesh } = object;
     if ("glb" in mesh) {
+      const { meshoptDecoder } = await ownDecoders(gltfText(mesh.glb), {}, () => Promise.reject());
       // A copy, because the loader keeps views of the buffer.
-      const { scene } = await new GLTFLoader().parseAsync(mesh.glb.slice().buffer, "");
+      const { scene } = await new GLTFLoader()
+        .setMeshoptDecoder(meshoptDecoder as Parameters<GLTFLoader["setMeshoptDecoder"]>[0])
+        .parseAsync(mesh.glb.slice().buffer, "");
       return new Model(id, new Group().add(scene), object);
     }
     const geometry = new BufferGeometry();
@@ -103,20 +109,26 @@ export class Model {
 
   /** Adds normals, materials for the lights of this view, and outlines. */
   private prepare(): void {
-    const width = uniform(2 * this.radius * outlineWidth);
-    const outline = new MeshBasicNodeMaterial({ side: BackSide, color: this.colour.clone().lerp(white, 0.7) });
-    // In the frame of each node's mesh, so the width ignores the scale of nodes.
-    outline.positionNode = positionLocal.add(normalLocal.mul(width));
-    this.materials.push(outline);
     for (const mesh of this.meshes()) {
       if (!mesh.geometry.attributes.normal) mesh.geometry.computeVertexNormals();
       const given = Array.isArray(mesh.material) ? mesh.material[0] : mesh.material;
       mesh.material = this.materialFor(given, mesh.geometry);
-      const hull = new Mesh(mesh.geometry, outline);
+      const hull = new Mesh(mesh.geometry, this.outlineAt(mesh.matrixWorld.getMaxScaleOnAxis()));
       hull.applyMatrix4(mesh.matrixWorld);
       this.outlines.add(hull);
     }
     this.outlines.visible = false;
+  }
+
+  /** The material of outlines of meshes whose node has this scale: quantised positions are large. */
+  private outlineAt(scale: number): Material {
+    const known = this.outlineMaterials.get(scale);
+    if (known !== undefined) return known;
+    const outline = new MeshBasicNodeMaterial({ side: BackSide, color: this.colour.clone().lerp(white, 0.7) });
+    outline.positionNode = positionLocal.add(normalLocal.mul(uniform((2 * this.radius * outlineWidth) / scale)));
+    this.outlineMaterials.set(scale, outline);
+    this.materials.push(outline);
+    return outline;
   }
 
   /** The given material or, for a mesh without colours, one in the colour of the object. */

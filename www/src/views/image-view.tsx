@@ -59,7 +59,7 @@ export function ImageView() {
   const limit = selected.value && small(differenceLimit(selected.value.visible.value.sizeM), unit.value);
   return (
     <section class="view image" part="image" aria-labelledby="image-title">
-      <div class="view-head">
+      <div class="row view-head">
         <h2 id="image-title">Image</h2>
         <Menu title="Layers" label="Layers of the image">
           <label class="field-inline">
@@ -103,8 +103,8 @@ export function ImageView() {
           <Cross />
         </div>
       </div>
-      <div class="image-foot">
-        <label class="wipe">
+      <div class="row image-foot">
+        <label class="row wipe">
           <span>{wipe <= 0 ? "Result" : wipe >= 1 ? "Before" : "Before | result"}</span>
           <input
             id="wipe"
@@ -119,7 +119,7 @@ export function ImageView() {
           />
         </label>
         {difference && limit !== null ? (
-          <p class="legend">
+          <p class="row legend">
             <span>{limit} nearer</span>
             <span class="legend-bar" />
             <span>{limit} farther</span>
@@ -156,7 +156,7 @@ function DepthLegend() {
   if (workspace.layers.value.base !== "depth" || range === null) return null;
   const unit = workspace.unit.value;
   return (
-    <p class="legend" id="depth-legend">
+    <p class="row legend" id="depth-legend">
       <span>{depth(range.nearM, unit)}</span>
       <span class="legend-bar" style={{ background: depthGradient }} />
       <span>{depth(range.farM, unit)}</span>

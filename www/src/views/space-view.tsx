@@ -55,7 +55,7 @@ export function SpaceView() {
   );
   return (
     <section class="view space" part="space" aria-labelledby="space-title" data-state={state.kind}>
-      <div class="view-head">
+      <div class="row view-head">
         <h2 id="space-title">3D</h2>
         <Menu title="View" label="View of the 3D scene">
           <fieldset disabled={state.kind !== "ready"}>
