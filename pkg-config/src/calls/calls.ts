@@ -29,6 +29,7 @@ import { isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/validation.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
+import { withInversionChecked } from "./inverted-depth.js";
 import { DOUBT, sourcesOf, withDoubts, withNotes } from "./notes.js";
 import { fromOrigin, toOrigin } from "./origin.js";
 
@@ -90,7 +91,8 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
     module: "core",
     run: (job, context) =>
       aligned(job, context, job.options, async (input, context, options) => {
-        const found = await context.search("align", input, options);
+        const searched = await context.search("align", input, options);
+        const found = await withInversionChecked(searched, input, options, context, { alone: true });
         if (found.shapeConfidence >= DOUBT && (found.diagnostics.color?.agreement ?? 1) >= DOUBT) return found;
         const { lookedAtAgain } = await import("./second-look.js");
         return lookedAtAgain(found, input, options, context);
@@ -169,12 +171,14 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const isColored = data.image !== undefined;
       const read = await readCoreMesh(data.mesh, context.modules, isColored, meshId);
       const { fileOrigin: origin } = read.mesh;
-      const found = await context.search("place", { ...data, mesh: read.mesh }, toOrigin(options, origin));
+      const [input, known] = [{ ...data, mesh: read.mesh }, toOrigin(options, origin)];
+      const found = await context.search("place", input, known);
       const placed = { ...found, ...withoutUndefined({ origin }) };
       if (placed.alignment === undefined) return placed;
+      const alignment = await withInversionChecked(placed.alignment, input, known, context, { alone: false });
       // The view belongs to the scene, which reports what its files say.
       const notes = withMesh({ core: data, notes: { warnings: [], unread: [], colors: [] } }, read);
-      return { ...placed, alignment: withNotes(placed.alignment, notes) };
+      return { ...placed, alignment: withNotes(alignment, notes) };
     },
   },
   openTracker: {
