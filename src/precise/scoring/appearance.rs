@@ -59,12 +59,17 @@ pub struct Appearance {
 }
 
 impl PhotoCells {
-    /// The means of the photo on the cells of a grid, registered to the outline of the mask. `image` is the size in pixels of the
-    /// depth map, which shows this region of the photo.
+    /// The means of the photo on the cells of a grid. `image` is the size in pixels of the depth map, which shows this
+    /// region of the photo.
     pub fn new(photo: &Photo, region: &PhotoRegion, image: [f64; 2], grid: &CropGrid) -> Self {
-        let as_it_is = Self::shifted(photo, region, image, grid, [0.0; 2]);
+        Self::shifted(photo, region, image, grid, [0.0; 2])
+    }
+
+    /// The same, of a whole photo that is registered to the outline of the mask.
+    pub fn registered(photo: &Photo, image: [f64; 2], grid: &CropGrid) -> Self {
+        let as_it_is = Self::new(photo, &PhotoRegion::WHOLE, image, grid);
         match as_it_is.offset(image, grid) {
-            Some(offset) => Self::shifted(photo, region, image, grid, offset),
+            Some(offset) => Self::shifted(photo, &PhotoRegion::WHOLE, image, grid, offset),
             None => as_it_is,
         }
     }
