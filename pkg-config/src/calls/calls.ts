@@ -1,6 +1,6 @@
 /** The calls as data, so that the same code runs them on the calling thread or in a worker. */
 
-import type { CorrectedFrame, Warning } from "../generated/types.js";
+import type { Alignment, CorrectedFrame, Warning } from "../generated/types.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
 import { resolveFrame, resolveInput, resolveViews, withMesh } from "../input/resolve.js";
 import type { CoreFrame, CoreInput, CoreView } from "../modules/core-input.js";
@@ -29,7 +29,6 @@ import { isTypedArray } from "../values/kinds.js";
 import { withoutUndefined, wrongKind } from "../values/validation.js";
 import { checkMeasurable, inCalibration, isRaw, mayBeRaw } from "./calibrate.js";
 import type { JobContext } from "./context.js";
-import { withInversionChecked } from "./inverted-depth.js";
 import { DOUBT, sourcesOf, withDoubts, withNotes } from "./notes.js";
 import { fromOrigin, toOrigin } from "./origin.js";
 
@@ -84,6 +83,13 @@ interface CallOf<M extends Method> {
   /** The module without which it cannot be run, and which caches its prepared mesh. */
   module: ModuleName;
   run(job: Job<M>, context: JobContext): Promise<ResultOf<M>>;
+}
+
+/** An alignment whose warning of inverted depth has been checked, if it has one: what checks it is loaded then. */
+async function withInversionChecked(found: Alignment, ...about: [CoreInput, object, JobContext, { alone: boolean }]) {
+  if (found.warnings.every(({ code }) => code !== "DEPTH_LOOKS_INVERTED")) return found;
+  const { checkInversion } = await import("./inverted-depth.js");
+  return checkInversion(found, ...about);
 }
 
 const calls: { readonly [M in Method]: CallOf<M> } = {

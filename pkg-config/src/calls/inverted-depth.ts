@@ -12,14 +12,14 @@ const looksInverted = ({ code }: Warning): boolean => code === "DEPTH_LOOKS_INVE
  * real objects, it fits worse so by 0.01 to 0.7; of depth that is inverted, better.
  * @param alone the alignment is of the object alone, so that its score compares with that of another search
  */
-export async function withInversionChecked(
+export async function checkInversion(
   found: Alignment,
   input: CoreInput,
   options: object,
   context: JobContext,
   { alone }: { alone: boolean },
 ): Promise<Alignment> {
-  if (!found.warnings.some(looksInverted) || input.depth === undefined) return found;
+  if (input.depth === undefined) return found;
   const scoreOf = (of: CoreInput) =>
     context
       .quiet()
