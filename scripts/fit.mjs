@@ -69,7 +69,7 @@ function featuresOf({ features }, { noise, scale, rotationDeg, misfit, minMisfit
   const log = (/** @type {number} */ x, /** @type {Limits} */ [low, high]) =>
     Math.log(Math.min(Math.max(x, low), high));
   // The confidence takes the deviation of the curvature alone.
-  const curvature = uncertainty[0] / (misfit * (2 - terms[1] - terms[2] + minMisfit));
+  const curvature = uncertainty[0] / (misfit * (2 - (terms[1] ?? 0) - (terms[2] ?? 0) + minMisfit));
   return [...terms, Math.max(margin, 0) / noise, log(curvature, scale), log(uncertainty[1], rotationDeg)];
 }
 
@@ -177,7 +177,7 @@ async function generated(name, cases, seed, options) {
   const all = [];
   for (const [kind, { set, part, suffix }] of Object.entries(SETS)) {
     const count = ["--count", `${Math.ceil(cases * part)}`, "--seed", `${seed}`];
-    all.push(...(await samplesOf(`${name}-${kind}`, ["--set", set, ...count], options, suffix)));
+    all.push(await samplesOf(`${name}-${kind}`, ["--set", set, ...count], options, suffix));
   }
   return all;
 }
@@ -225,10 +225,9 @@ function reliabilityTable(all, line) {
 
 /** @param {FitOptions} options */
 async function fit(options) {
-  const training = await generated("training", options.cases, options.seed, options);
-  const test = await generated("test", options.testCases, options.testSeed, options);
-  const sets = [...new Set(training.map(({ result }) => result.set))];
-  const groups = sets.map((set) => training.filter(({ result }) => result.set === set));
+  const groups = await generated("training", options.cases, options.seed, options);
+  const training = groups.flat();
+  const test = (await generated("test", options.testCases, options.testSeed, options)).flat();
   /** @type {Sample[][]} */
   const real = [];
   for (const [k, folder] of (options.real ?? []).entries()) {
