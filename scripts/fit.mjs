@@ -1,7 +1,8 @@
 /**
  * `npm run fit`: fits the regression behind `confidence` to generated cases, prints its constants as
- * `src/precise/verdict/confidence.rs` declares them, and how reliable they are on other cases, real ones among them where their
- * folders are given: nothing is fitted to these.
+ * `src/precise/verdict/confidence.rs` declares them, and how reliable they are on other cases. Where folders of real cases are
+ * given, the intercept is fitted to these, too: each folder is a sensor, and weighs as much as a generated set. How reliable it is on
+ * a folder is told by the intercept that the others give.
  */
 import { mkdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
@@ -15,10 +16,12 @@ import { reliability, reliabilityHeads } from "./record/summary.mjs";
 /** @typedef {import("./bench/results.mjs").ResultRow} ResultRow */
 /** @typedef {{ intercept: number, slopes: readonly number[] }} Line in the space of the features */
 /** @typedef {[low: number, high: number]} Limits */
-/** @typedef {Line & { noise: number, scale: Limits, rotationDeg: Limits }} Model */
+/** @typedef {Line & { noise: number, scale: Limits, rotationDeg: Limits, misfit: number, minMisfit: number }} Model */
 /** @typedef {{ result: ResultRow, features: number[], isRight: boolean }} Sample */
 /** @typedef {{ cases: number, seed: number, testCases: number, testSeed: number, real?: string[], threads?: number, keep: string }} FitOptions */
 
+/** The index of the margin among the features. */
+const MARGIN = 3;
 /** Weight of the penalty on slopes, which keeps them finite where the features separate right from wrong. */
 const PENALTY = 1e-3;
 const MAX_STEPS = 100;
@@ -40,6 +43,7 @@ function currentModel() {
     return value.split(",").map(Number);
   };
   const [confidence, score] = [read("verdict/confidence.rs"), read("scoring/score.rs")];
+  const conditioning = read("scoring/conditioning.rs");
   const limits = (/** @type {string} */ name) => /** @type {Limits} */ (numbers(confidence, name));
   return {
     intercept: numbers(confidence, "INTERCEPT")[0] ?? Number.NaN,
@@ -48,6 +52,8 @@ function currentModel() {
     noise: Math.fround(numbers(score, "NOISE")[0] ?? Number.NaN),
     scale: limits("SCALE"),
     rotationDeg: limits("ROTATION_DEG"),
+    misfit: numbers(conditioning, "MISFIT")[0] ?? Number.NaN,
+    minMisfit: numbers(conditioning, "MIN_MISFIT")[0] ?? Number.NaN,
   };
 }
 
@@ -56,13 +62,15 @@ function currentModel() {
  * @param {ResultRow} result
  * @param {Model} model
  */
-function featuresOf({ features }, { noise, scale, rotationDeg }) {
+function featuresOf({ features }, { noise, scale, rotationDeg, misfit, minMisfit }) {
   if (!features?.uncertainty) return null;
   const { score, terms, alternatives, uncertainty } = features;
   const margin = Math.min(noise, ...alternatives.map((other) => score - other));
   const log = (/** @type {number} */ x, /** @type {Limits} */ [low, high]) =>
     Math.log(Math.min(Math.max(x, low), high));
-  return [...terms, Math.max(margin, 0) / noise, log(uncertainty[0], scale), log(uncertainty[1], rotationDeg)];
+  // The confidence takes the deviation of the curvature alone.
+  const curvature = uncertainty[0] / (misfit * (2 - (terms[1] ?? 0) - (terms[2] ?? 0) + minMisfit));
+  return [...terms, Math.max(margin, 0) / noise, log(curvature, scale), log(uncertainty[1], rotationDeg)];
 }
 
 /** @param {readonly number[]} a @param {readonly number[]} b */
@@ -169,10 +177,34 @@ async function generated(name, cases, seed, options) {
   const all = [];
   for (const [kind, { set, part, suffix }] of Object.entries(SETS)) {
     const count = ["--count", `${Math.ceil(cases * part)}`, "--seed", `${seed}`];
-    all.push(...(await samplesOf(`${name}-${kind}`, ["--set", set, ...count], options, suffix)));
+    all.push(await samplesOf(`${name}-${kind}`, ["--set", set, ...count], options, suffix));
   }
   return all;
 }
+
+/**
+ * The line with the intercept that fits best to groups of samples, each of which weighs the same: by Newton's method.
+ * @param {Line} line
+ * @param {readonly (readonly Sample[])[]} groups
+ * @returns {Line}
+ */
+function withIntercept({ intercept, slopes }, groups) {
+  for (let step = 0; step < MAX_STEPS; step++) {
+    const line = { intercept, slopes };
+    const sums = groups.map((samples) => {
+      const all = samples.map(({ features, isRight }) => ({ p: probability(features, line), isRight }));
+      return [mean(all.map(({ p, isRight }) => Number(isRight) - p)), mean(all.map(({ p }) => p * (1 - p)))];
+    });
+    const change = mean(sums.map(([slope]) => slope ?? 0)) / mean(sums.map(([, curvature]) => curvature ?? 1));
+    intercept += Math.min(Math.max(change, -1), 1);
+    if (Math.abs(change) < 1e-9) break;
+  }
+  return { intercept, slopes };
+}
+
+/** The samples of a folder whose truth is beyond doubt, and of which shape alone decides the turn. @param {readonly Sample[]} samples */
+const decided = (samples) =>
+  samples.filter(({ result, features }) => features[MARGIN] === 1 && (result.strict === true || result.loose !== true));
 
 /** The Brier score and the logarithmic loss of a line: lower is better. @param {readonly Sample[]} all @param {Line} line */
 function losses(all, line) {
@@ -193,10 +225,16 @@ function reliabilityTable(all, line) {
 
 /** @param {FitOptions} options */
 async function fit(options) {
-  const training = await generated("training", options.cases, options.seed, options);
-  const test = await generated("test", options.testCases, options.testSeed, options);
-  const real = options.real ? await samplesOf("real", ["--cases", ...options.real], options) : [];
-  const line = fitLogistic(training);
+  const groups = await generated("training", options.cases, options.seed, options);
+  const training = groups.flat();
+  const test = (await generated("test", options.testCases, options.testSeed, options)).flat();
+  /** @type {Sample[][]} */
+  const real = [];
+  for (const [k, folder] of (options.real ?? []).entries()) {
+    real.push(decided(await samplesOf(`real-${k}`, ["--cases", folder], options)));
+  }
+  const ofGenerated = fitLogistic(training);
+  const line = real.length > 0 ? withIntercept(ofGenerated, [...groups, ...real]) : ofGenerated;
   // As many digits as the code has: what is measured is what can be copied.
   const digits = (/** @type {number} */ x) => x.toFixed(3);
   const fitted = { intercept: Number(digits(line.intercept)), slopes: line.slopes.map((x) => Number(digits(x))) };
@@ -211,7 +249,11 @@ const SLOPES: [f64; ${fitted.slopes.length}] = [${fitted.slopes.map(digits).join
   for (const [name, each] of Object.entries(lines)) {
     console.log(`\nTest cases, constants ${name}\n\n${reliabilityTable(test, each)}`);
   }
-  if (real.length > 0) console.log(`\nReal cases, constants fitted\n\n${reliabilityTable(real, fitted)}`);
+  for (const [k, folder] of (options.real ?? []).entries()) {
+    const others = real.filter((_, other) => other !== k);
+    const table = reliabilityTable(real[k] ?? [], withIntercept(ofGenerated, [...groups, ...others]));
+    console.log(`\n${folder}, intercept of all others\n\n${table}`);
+  }
 }
 
 await command("fit", (program) =>
@@ -221,7 +263,10 @@ await command("fit", (program) =>
     .option("--seed <s>", "their seed", Number, 5)
     .option("--test-cases <n>", "generated cases of the test", count, 240)
     .option("--test-seed <s>", "their seed", Number, 1)
-    .option("--real <folders...>", "case folders with a truth, or folders of them, to test on as well")
+    .option(
+      "--real <folders...>",
+      "folders of case folders with a truth, one for each sensor, to fit the intercept to as well",
+    )
     .option("--threads <n>", "all by default", count)
     .option("--keep <folder>", "keep all results here; cases that are there are not run again", "target/bench/fit")
     .action(fit),

@@ -126,6 +126,8 @@ pub struct Class {
     pub has_wrong_colors: bool,
     /// Whether the photo is grey.
     pub is_grey: bool,
+    /// Whether the photo is blown out or too dark in up to half of the object, with reflections, and farther off the depth map.
+    pub is_harsh: bool,
 }
 
 const STEREO: DepthSource = DepthSource::ActiveStereo;
@@ -154,6 +156,7 @@ pub const PLAIN: Class = Class {
     needs_color: false,
     has_wrong_colors: false,
     is_grey: false,
+    is_harsh: false,
 };
 const OCCLUDED: Class = Class { name: "occluded", framing: Framing::Occluded, ..PLAIN };
 const BORDER_CUT: Class = Class { name: "border-cut", framing: Framing::BorderCut, ..PLAIN };
@@ -224,6 +227,8 @@ pub const COLORS: &[Class] = &[
     Class { name: "one-color", print: Some(PrintKind::Uniform), needs_color: false, ..PRINTED },
     Class { name: "grey-photo", is_grey: true, ..PRINTED },
     PRINTED,
+    Class { name: "harsh-photo", is_harsh: true, ..PRINTED },
+    Class { name: "repeated-print", print: Some(PrintKind::Repeated), ..PRINTED },
     Class { name: "wrong-colors", has_wrong_colors: true, needs_color: false, ..PRINTED },
 ];
 /// A tier and a class.

@@ -33,6 +33,22 @@ test("depth that continues the plane around the mask is named", async () => {
   }
 });
 
+test("depth that is inverted is named; that of an object among taller ones is not", async () => {
+  const { depth: seen, mask } = input;
+  // Noise, so that the pose is not beyond doubt: otherwise, nothing is looked at.
+  const noisy = (z: number, i: number) => z * (1 + 0.02 * Math.sin(i * i));
+  const among = Float32Array.from(seen, (z, i) => (mask[i] !== 0 ? noisy(z, i) : 0.3));
+  const inverted = Float32Array.from(seen, (z, i) => (mask[i] !== 0 ? noisy(1 / z, i) : 0.3));
+  for (const [depth, isNamed] of [
+    [among, false],
+    [inverted, true],
+  ] as const) {
+    const { shapeConfidence, warnings } = await aligner.align({ ...input, depth }, { quality: "fast" });
+    assert.ok(shapeConfidence < 0.8, `${shapeConfidence}`);
+    assert.equal(codesOf(warnings).includes("DEPTH_LOOKS_INVERTED"), isNamed);
+  }
+});
+
 test("an abort at any time ends the call, also during the second look", async () => {
   const positions = mesh.positions.map((x, i) => (i % 3 === 0 ? -x : x));
   const ofMirrored = { ...input, mesh: { ...mesh, positions } };

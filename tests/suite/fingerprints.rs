@@ -81,16 +81,16 @@ pub fn alignments_have_these_bits() {
     let request = Request::new(quick()).unwrap();
     let (scan, paper) = (shapes::observe(&shapes::body()), PaperOptions::default());
     check(&[
-        ("by shape", 0x61f0_71b1_e8e5_23c8, of(Ok(solve(&AlignOptions::default())))),
-        ("noise and an occluder", 0x732e_3a44_1fcd_8f1e, of(align(&noisy(), &body(), &quick(), &mut Silent))),
-        ("a pose, bounds and up", 0x75d6_9dac_2856_dd43, of(Ok(solve(&given)))),
-        ("a large image", 0x55f1_37cb_97b7_fc78, of(align(&large, &body(), &quick(), &mut Silent))),
-        ("a doubtful pose", 0xfbc6_0bf7_6aa8_cd42, of(align(&seen, &carton(), &quick(), &mut Silent))),
-        ("an inner shell", 0x4d3d_a52c_fef7_6b2e, of(align(&seen, &hollow, &quick(), &mut Silent))),
-        ("proportions", 0x4cd9_4cc6_e218_8490, of(Ok(solve(&stretched)))),
-        ("a symmetric mesh", 0xbb5a_8f2a_4a3c_e114, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
-        ("colour", 0x7b68_4a6e_57f4_a8fc, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
-        ("paper", 0x391b_6ce3_9790_62c5, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
+        ("by shape", 0x54cb_59b4_4110_2802, of(Ok(solve(&AlignOptions::default())))),
+        ("noise and an occluder", 0xd212_378c_8a92_4811, of(align(&noisy(), &body(), &quick(), &mut Silent))),
+        ("a pose, bounds and up", 0x2005_cca7_9677_1bfa, of(Ok(solve(&given)))),
+        ("a large image", 0x880d_9958_f571_ec8f, of(align(&large, &body(), &quick(), &mut Silent))),
+        ("a doubtful pose", 0xb08c_b47c_43d7_f448, of(align(&seen, &carton(), &quick(), &mut Silent))),
+        ("an inner shell", 0xb069_66e9_c382_82a0, of(align(&seen, &hollow, &quick(), &mut Silent))),
+        ("proportions", 0xc35c_149a_2187_c465, of(Ok(solve(&stretched)))),
+        ("a symmetric mesh", 0x8450_787b_648f_ca34, of(align(&observe(&can, &truth()), &can, &symmetric, &mut Silent))),
+        ("colour", 0x0de9_448a_84eb_a959, of(align_prepared(&photo, &printed_mesh(), request, &mut Silent))),
+        ("paper", 0x2917_7a90_187b_87ba, of(align_paper(&scan, &shapes::body(), &paper, &mut Silent))),
     ]);
 }
 
@@ -103,8 +103,8 @@ pub fn errors_have_these_bits() {
     let (seen, lemon) = (observe(&mesh, &truth()), ellipsoid(Vec3::new(0.5, 0.5, 0.9), 24));
     let options = EvaluateOptions::against(Some(&against));
     check(&[
-        ("evaluate", 0xb668_80a5_2778_2ba8, of(evaluate(&seen, &mesh, &pose, &options))),
-        ("evaluate, a lemon", 0x4c97_480b_416f_c351, of(evaluate(&observe(&lemon, &truth()), &lemon, &pose, &options))),
+        ("evaluate", 0x1271_ac63_a52b_7001, of(evaluate(&seen, &mesh, &pose, &options))),
+        ("evaluate, a lemon", 0x9486_4f91_163b_08b4, of(evaluate(&observe(&lemon, &truth()), &lemon, &pose, &options))),
     ]);
 }
 
@@ -153,11 +153,11 @@ pub fn scenes_views_and_videos_have_these_bits() {
     let wide = PreparedMesh::new(mapped(&body(), |p| p * Vec3::new(1.06, 0.97, 0.97)));
     let stretched = ViewsOptions { proportions: Proportions::Full, ..crate::views::options() };
     check(&[
-        ("alignScene", 0x3304_538e_f29f_b5c6, of(align_scene(&scene::scene_of(&scene, &[], true), &mut Silent))),
-        ("alignViews", 0x9a2c_3f86_a14f_ce07, of(views(seen, &PreparedMesh::borrowed(&body())))),
-        ("alignViews, proportions", 0xedef_7483_9592_04a6, of(align_views(around, &wide, &stretched, &mut Silent))),
-        ("alignViews, unknown cameras and colour", 0x8c55_985a_416c_70af, of(views(printed, &printed_mesh()))),
-        ("track", 0xa6be_753a_02b8_8d49, of(frames.collect::<Result<Vec<_>>>())),
+        ("alignScene", 0x31aa_7d33_8843_5489, of(align_scene(&scene::scene_of(&scene, &[], true), &mut Silent))),
+        ("alignViews", 0x400a_966a_3213_554b, of(views(seen, &PreparedMesh::borrowed(&body())))),
+        ("alignViews, proportions", 0xba33_9d47_2aa1_3a07, of(align_views(around, &wide, &stretched, &mut Silent))),
+        ("alignViews, unknown cameras and colour", 0xd92f_a819_ed24_a7b8, of(views(printed, &printed_mesh()))),
+        ("track", 0x4469_0f03_c0ea_6e89, of(frames.collect::<Result<Vec<_>>>())),
         ("calibration", 0xfe4b_9b23_b207_4a72, of(calibrations.into_iter().collect::<Result<Vec<_>>>())),
     ]);
 }

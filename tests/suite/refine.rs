@@ -6,6 +6,7 @@ use sim3align::precise::drawing::equivalence::Equivalence;
 use sim3align::precise::scoring::conditioning::{Conditioning, at_known, gradient_of_scale};
 use sim3align::precise::scoring::objective::Objective;
 use sim3align::precise::scoring::prior::Prior;
+use sim3align::precise::scoring::score::Score;
 use sim3align::precise::search::refine::Refiner;
 
 use crate::prelude::*;
@@ -218,4 +219,18 @@ fn deviations_are_those_of_the_widest_direction_and_of_a_known_scale() {
     let fixed = Conditioning::new(&at_known(&covariance, &gradient_of_scale(&pose)), &pose);
     assert!(fixed.scale < 1e-9 && free.scale > 1e-3, "{fixed:?}, free {free:?}");
     assert!(fixed.distance_m < free.distance_m && fixed.lateral_m == free.lateral_m, "{fixed:?}, free {free:?}");
+}
+
+#[wasm_bindgen_test]
+fn a_size_is_as_uncertain_as_its_fit_is_inexact() {
+    let pose = pose(&mut Draw::new(6), 2.0);
+    let mut covariance = [[0.0; 7]; 7];
+    (0..7).for_each(|k| covariance[k][k] = 1e-4);
+    let free = Conditioning::new(&covariance, &pose);
+    let of = |depth, outline| free.with_misfit(&Score { depth, outline, ..Score::default() });
+    let [exact, typical, poor] = [of(1.0, 1.0), of(0.85, 0.95), of(0.7, 0.8)];
+    assert!(exact.scale < typical.scale && typical.scale < poor.scale, "{exact:?} {typical:?} {poor:?}");
+    assert!(exact.scale > 0.0 && poor.scale / typical.scale > 2.0, "{exact:?} {typical:?} {poor:?}");
+    assert_eq!((typical.rotation, typical.lateral_m), (free.rotation, free.lateral_m));
+    assert!((typical.distance_m / free.distance_m - typical.scale / free.scale).abs() < 1e-12);
 }

@@ -10,6 +10,13 @@ use crate::world::unit;
 use crate::world::view::Rendering;
 use sim3align_formats::photo::read_photo;
 
+/// Of a harsh photo: the share of the object that is blown out or black, at most, the reflections, and the offset in pixels.
+const HARSH_SHARE: f64 = 0.5;
+const HARSH_HIGHLIGHT: [f64; 2] = [0.3, 1.2];
+const HARSH_SHIFT: f64 = 8.0;
+/// Linear values from which on a pixel is blown out, and below which it is black.
+const RANGE: [f64; 2] = [0.004, 1.0];
+
 /// Sizes of photos relative to the depth map; the field of view is the same.
 const SIZES: [f64; 3] = [0.5, 1.5, 2.0];
 
@@ -33,18 +40,19 @@ struct PhotoStyle {
 }
 
 impl PhotoStyle {
-    fn draw(random: &mut Random, tier: Tier, resolution: f64) -> Self {
+    fn draw(random: &mut Random, tier: Tier, resolution: f64, is_harsh: bool) -> Self {
         let light = unit(TAU * random.uniform()).extend(between(random, 0.3, 2.0)).normalize();
         let warmth = between(random, -1.0, 1.0) * tier.pick(0.08, 0.2, 0.35);
         let exposure = libm::exp(between(random, -1.0, 1.0) * tier.pick(0.2, 0.4, 0.7));
         let tint = between(random, -1.0, 1.0) * tier.pick(0.03, 0.06, 0.1);
         let angle = TAU * random.uniform();
         let depth = if chance(random, tier.pick(0.0, 0.3, 0.5)) { between(random, 0.3, 0.8) } else { 1.0 };
-        let shift = tier.pick(1.0, 3.0, 6.0) * resolution;
+        let shift = if is_harsh { HARSH_SHIFT } else { tier.pick(1.0, 3.0, 6.0) * resolution };
+        let [dull, bright] = if is_harsh { HARSH_HIGHLIGHT } else { [0.0, tier.pick(0.05, 0.2, 0.4)] };
         Self {
             light,
             ambient: between(random, 0.35, 0.8),
-            highlight: between(random, 0.0, tier.pick(0.05, 0.2, 0.4)),
+            highlight: between(random, dull, bright),
             gain: exposure * DVec3::new(1.0 + warmth, 1.0 + tint, 1.0 - warmth),
             shadow: (unit(angle).extend(0.0), between(random, -0.5, 0.5), depth),
             noise: between(random, 0.2, 1.0) * tier.pick(0.01, 0.02, 0.035),
@@ -65,7 +73,8 @@ pub fn take(
     random: &mut Random,
 ) -> Result<Photo> {
     let (tier, is_grey) = (conditions.tier, conditions.class.is_grey);
-    let style = PhotoStyle::draw(random, tier, rendering.view.resolution());
+    let is_harsh = conditions.class.is_harsh;
+    let style = PhotoStyle::draw(random, tier, rendering.view.resolution(), is_harsh);
     let [width, height] =
         [rendering.view.width, rendering.view.height].map(|side| (style.size * side as f64).round() as usize);
     let camera = resized(&rendering.view.camera, style.size);
@@ -83,6 +92,7 @@ pub fn take(
         (albedo * (style.ambient + (1.0 - style.ambient) * diffuse) + highlight) * shade * style.gain
     };
     let mut linear = Vec::with_capacity(width * height);
+    let mut of_object = Vec::new();
     for v in 0..height {
         for u in 0..width {
             let i = v * width + u;
@@ -100,12 +110,17 @@ pub fn take(
             linear.push(if is_object {
                 let normal = face(placed, triangle as usize).normalize_or_zero();
                 let normal = if normal.dot(eye - point) < 0.0 { -normal } else { normal };
+                of_object.push(i);
                 lit(print.at(point, normal), point, normal, at)
             } else {
                 let albedo = if point.z < 0.002 { ground } else { other };
                 lit(albedo, point, DVec3::Z, at)
             });
         }
+    }
+    if is_harsh {
+        let gain = harsh_gain(of_object.iter().map(|&i| linear[i].max_element()), random);
+        linear.iter_mut().for_each(|value| *value *= gain);
     }
     let blurred = blurred(linear, width, height, style.blur);
     let mut pixels = Vec::with_capacity(width * height);
@@ -129,6 +144,17 @@ pub fn take(
         Some((quality, is_halved)) => read_photo(&rgb_jpeg(&pixels, width, height, quality, is_halved)?),
         None => Image::new("photo", width, height, pixels),
     }
+}
+
+/// The exposure with which a share of the pixels with these values is blown out, or black.
+fn harsh_gain(values: impl Iterator<Item = f64>, random: &mut Random) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let share = between(random, 0.1, HARSH_SHARE);
+    let is_bright = chance(random, 0.7);
+    let place = (if is_bright { 1.0 - share } else { share }) * values.len() as f64;
+    let limit = values.get(place as usize).copied().unwrap_or(1.0).max(1e-3);
+    RANGE[usize::from(is_bright)] / limit
 }
 
 /// The camera of the same field of view with another number of pixels.

@@ -14,6 +14,8 @@ const SIDES: usize = 6;
 pub enum PrintKind {
     /// Patches of colour on every side, as on packages.
     Label,
+    /// The same patches on opposite sides, one of which has another patch.
+    Repeated,
     Uniform,
 }
 
@@ -83,7 +85,10 @@ impl Print {
             let count = if least == 0 { 0 } else { least + random.below(6) };
             (0..count).map(|_| Patch::draw(random, is_round, base)).collect()
         };
-        let sides = (0..count).map(patches).collect();
+        let mut sides: Vec<Vec<Patch>> = (0..count).map(patches).collect();
+        if kind == PrintKind::Repeated {
+            repeat(&mut sides, random);
+        }
         Self { axes, center: 0.5 * (low + high), half, is_round, base, sides }
     }
 
@@ -102,6 +107,29 @@ impl Print {
         }
         let axis = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
         (2 * axis + usize::from(normal[axis] > 0.0), [p[(axis + 1) % 3], p[(axis + 2) % 3]])
+    }
+}
+
+/// Repeats the patches of one side on the opposite one. Those of the other side are gone but for one, on top.
+fn repeat(sides: &mut [Vec<Patch>], random: &mut Random) {
+    for pair in sides.chunks_mut(2) {
+        match pair {
+            [one, other] => {
+                let last = other.pop();
+                other.clone_from(one);
+                other.extend(last);
+            }
+            // Half a turn round the object.
+            [round] => {
+                let opposite =
+                    |patch: &Patch| Patch { center: [patch.center[0] - 1.0, patch.center[1]], ..patch.clone() };
+                let own = random.below(round.len().max(1));
+                let copies: Vec<Patch> =
+                    round.iter().enumerate().filter(|(k, _)| *k != own).map(|(_, p)| opposite(p)).collect();
+                round.extend(copies);
+            }
+            _ => {}
+        }
     }
 }
 

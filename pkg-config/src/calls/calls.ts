@@ -1,6 +1,6 @@
 /** The calls as data, so that the same code runs them on the calling thread or in a worker. */
 
-import type { CorrectedFrame, Warning } from "../generated/types.js";
+import type { Alignment, CorrectedFrame, Warning } from "../generated/types.js";
 import { type MeshAndWarnings, readCoreMesh, readMesh } from "../input/mesh.js";
 import { resolveFrame, resolveInput, resolveViews, withMesh } from "../input/resolve.js";
 import type { CoreFrame, CoreInput, CoreView } from "../modules/core-input.js";
@@ -85,12 +85,20 @@ interface CallOf<M extends Method> {
   run(job: Job<M>, context: JobContext): Promise<ResultOf<M>>;
 }
 
+/** An alignment whose warning of inverted depth has been checked, if it has one: what checks it is loaded then. */
+async function withInversionChecked(found: Alignment, ...about: [CoreInput, object, JobContext, { alone: boolean }]) {
+  if (found.warnings.every(({ code }) => code !== "DEPTH_LOOKS_INVERTED")) return found;
+  const { checkInversion } = await import("./inverted-depth.js");
+  return checkInversion(found, ...about);
+}
+
 const calls: { readonly [M in Method]: CallOf<M> } = {
   align: {
     module: "core",
     run: (job, context) =>
       aligned(job, context, job.options, async (input, context, options) => {
-        const found = await context.search("align", input, options);
+        const searched = await context.search("align", input, options);
+        const found = await withInversionChecked(searched, input, options, context, { alone: true });
         if (found.shapeConfidence >= DOUBT && (found.diagnostics.color?.agreement ?? 1) >= DOUBT) return found;
         const { lookedAtAgain } = await import("./second-look.js");
         return lookedAtAgain(found, input, options, context);
@@ -169,12 +177,14 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const isColored = data.image !== undefined;
       const read = await readCoreMesh(data.mesh, context.modules, isColored, meshId);
       const { fileOrigin: origin } = read.mesh;
-      const found = await context.search("place", { ...data, mesh: read.mesh }, toOrigin(options, origin));
+      const [input, known] = [{ ...data, mesh: read.mesh }, toOrigin(options, origin)];
+      const found = await context.search("place", input, known);
       const placed = { ...found, ...withoutUndefined({ origin }) };
       if (placed.alignment === undefined) return placed;
+      const alignment = await withInversionChecked(placed.alignment, input, known, context, { alone: false });
       // The view belongs to the scene, which reports what its files say.
       const notes = withMesh({ core: data, notes: { warnings: [], unread: [], colors: [] } }, read);
-      return { ...placed, alignment: withNotes(placed.alignment, notes) };
+      return { ...placed, alignment: withNotes(alignment, notes) };
     },
   },
   openTracker: {

@@ -4,7 +4,7 @@
 //! correlation. Luminance is compared after the part that is linear in the normal has been subtracted from both images:
 //! the shading of a matt surface under distant light. Chroma hardly depends on shading.
 
-use glam::{DMat4, DVec4, Vec3};
+use glam::{DMat4, DVec4, Vec2, Vec3};
 
 use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::surface_colors::SurfaceColors;
@@ -29,6 +29,19 @@ const GREY: f32 = 0.01;
 /// Regularisation of the fit of the shading, relative to the number of cells: a flat surface has one normal.
 const RIDGE: f64 = 1e-3;
 
+/// Values of a channel from which on all of a pixel is blown out, and up to which it is black: it has no colour that compares.
+const CLIPPED: [u8; 2] = [5, 250];
+/// Largest offset of a photo from the depth map, relative to the width of the image, and in cells.
+const MAX_SHIFT: f64 = 0.016;
+const MAX_SHIFT_CELLS: i32 = 6;
+/// Distance of a cell from the outline, in cells, up to which it is on it.
+const ON_OUTLINE: f32 = 0.75;
+/// Difference of colour that halves the credit of an edge.
+const EDGE: f32 = 0.1;
+/// The cost of the largest offset, and the least gain of one, in credits of edges.
+const SHIFT_COST: f64 = 0.03;
+const MIN_SHIFT_GAIN: f64 = 0.03;
+
 /// The photo on the cells of a grid: luminance and two opponent colours, sRGB-encoded.
 #[derive(Debug, Clone)]
 pub struct PhotoCells {
@@ -49,6 +62,70 @@ impl PhotoCells {
     /// The means of the photo on the cells of a grid. `image` is the size in pixels of the depth map, which shows this
     /// region of the photo.
     pub fn new(photo: &Photo, region: &PhotoRegion, image: [f64; 2], grid: &CropGrid) -> Self {
+        Self::shifted(photo, region, image, grid, [0.0; 2])
+    }
+
+    /// The same, of a whole photo that is registered to the outline of the mask.
+    pub fn registered(photo: &Photo, image: [f64; 2], grid: &CropGrid) -> Self {
+        let as_it_is = Self::new(photo, &PhotoRegion::WHOLE, image, grid);
+        match as_it_is.offset(image, grid) {
+            Some(offset) => Self::shifted(photo, &PhotoRegion::WHOLE, image, grid, offset),
+            None => as_it_is,
+        }
+    }
+
+    /// How far the photo is off the outline of the mask, in cells: where its edges along the outline are strongest. `None` where
+    /// they are hardly stronger than in place. It is the same for all poses, so that it favours none.
+    fn offset(&self, image: [f64; 2], grid: &CropGrid) -> Option<[f64; 2]> {
+        let reach = ((MAX_SHIFT * image[0] / grid.cell[0]).ceil() as i32).clamp(1, MAX_SHIFT_CELLS);
+        let outline = outline(grid);
+        let strength = |[i, j]: [i32; 2]| {
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (cell, normal) in &outline {
+                if let Some(edge) = self.edge([cell[0] + i, cell[1] + j], *normal, grid) {
+                    sum += f64::from(edge);
+                    count += 1.0;
+                }
+            }
+            let far = f64::from(i * i + j * j) / f64::from(reach * reach);
+            sum / f64::max(count, 1.0) - SHIFT_COST * far
+        };
+
+        let here = strength([0, 0]);
+        let (mut best, mut most) = ([0, 0], here + MIN_SHIFT_GAIN);
+        for j in -reach..=reach {
+            for i in -reach..=reach {
+                let there = strength([i, j]);
+                if there > most {
+                    (best, most) = ([i, j], there);
+                }
+            }
+        }
+        // The peak of a parabola through the neighbours.
+        let peak = |axis: usize| {
+            let beside =
+                [-1, 1].map(|step| strength([best[0] + step * (1 - axis as i32), best[1] + step * axis as i32]));
+            let bend = beside[0] - 2.0 * most + beside[1];
+            let part = if bend < 0.0 { (0.5 * (beside[0] - beside[1]) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+            f64::from(best[axis]) + part
+        };
+        (best != [0, 0]).then(|| [peak(0), peak(1)])
+    }
+
+    /// The credit of the edge at a cell across the direction `normal`, 0 to 1; `None` where the photo has no colour.
+    fn edge(&self, [u, v]: [i32; 2], normal: Vec2, grid: &CropGrid) -> Option<f32> {
+        let (width, height) = (grid.width as i32, grid.height as i32);
+        if u < 1 || v < 1 || u >= width - 1 || v >= height - 1 {
+            return None;
+        }
+        let at = |x: i32, y: i32| self.colors[((v + y) * width + u + x) as usize];
+        let across = (at(1, 0) - at(-1, 0)) * normal.x + (at(0, 1) - at(0, -1)) * normal.y;
+        let strength = across.length();
+        (!strength.is_nan()).then(|| strength / (strength + EDGE))
+    }
+
+    /// The means on cells that are moved by `offset`, in cells. A cell of which most is clipped has none.
+    fn shifted(photo: &Photo, region: &PhotoRegion, image: [f64; 2], grid: &CropGrid, offset: [f64; 2]) -> Self {
         let sizes = [photo.width(), photo.height()];
         let ratio: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.size[k] / image[k]);
         let corner: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.corner[k]);
@@ -57,20 +134,26 @@ impl PhotoCells {
         // The pixel at a sample of a cell.
         let at = |i: usize, k: usize, axis: usize| {
             let within = (k as f64 + 0.5) / samples[axis] as f64;
-            let x = (grid.corner[axis] + (i as f64 + within) * grid.cell[axis]) * ratio[axis] + corner[axis];
+            let x =
+                (grid.corner[axis] + (i as f64 + within + offset[axis]) * grid.cell[axis]) * ratio[axis] + corner[axis];
             (x >= 0.0 && x < sizes[axis] as f64).then_some(x as usize)
         };
         let mut colors = Vec::with_capacity(grid.width * grid.height);
         let (mut chroma, mut known) = (0.0f32, 0.0f32);
         for v in 0..grid.height {
             for u in 0..grid.width {
-                let mut mean = Mean::default();
+                let (mut mean, mut clipped) = (Mean::default(), 0.0);
                 for y in (0..samples[1]).filter_map(|k| at(v, k, 1)) {
                     for x in (0..samples[0]).filter_map(|k| at(u, k, 0)) {
-                        mean.add(photo.data()[y * photo.width() + x]);
+                        let pixel = photo.data()[y * photo.width() + x];
+                        if is_clipped(pixel) {
+                            clipped += 1.0;
+                        } else {
+                            mean.add(pixel);
+                        }
                     }
                 }
-                let color = mean.color();
+                let color = if clipped > mean.count { Vec3::NAN } else { mean.color() };
                 if !color.is_nan() {
                     known += 2.0;
                     chroma += color.y.abs() + color.z.abs();
@@ -144,6 +227,26 @@ impl Appearance {
         }
         sum / (count.max(1.0) * NOISE)
     }
+}
+
+/// The cells on the outline of the mask, inside the border of the grid, and the direction across it.
+fn outline(grid: &CropGrid) -> Vec<([i32; 2], Vec2)> {
+    let mut cells = Vec::new();
+    for v in 1..grid.height.saturating_sub(1) {
+        for u in 1..grid.width.saturating_sub(1) {
+            let i = v * grid.width + u;
+            if grid.outline[i].abs() < ON_OUTLINE {
+                let across = grid.outline[i + 1] - grid.outline[i - 1];
+                let down = grid.outline[i + grid.width] - grid.outline[i - grid.width];
+                cells.push(([u as i32, v as i32], Vec2::new(across, down).normalize_or_zero()));
+            }
+        }
+    }
+    cells
+}
+
+fn is_clipped([r, g, b]: [u8; 3]) -> bool {
+    r.max(g).max(b) <= CLIPPED[0] || r.min(g).min(b) >= CLIPPED[1]
 }
 
 struct Cell {

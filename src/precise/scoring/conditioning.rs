@@ -5,12 +5,18 @@ use glam::{DMat3, DVec3};
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 use crate::precise::drawing::pose::CropPose;
+use crate::precise::scoring::score::Score;
 
 /// Score decrease at one standard deviation, calibrated so that the errors of correct poses on generated cases have the
 /// reported size.
 pub const DROP: f64 = 0.01;
 /// Regularisation, so that unconstrained directions remain finite.
 pub const DAMPING: f64 = 1e-9;
+/// Deviation of a size, relative to that of the curvature, per unit of what depths and outline miss together, and what they always
+/// miss. Fitted to generated objects, objects of scenes and real objects, each kind weighing the same: of their right poses, 83 to 92 %
+/// of the sizes are within 1.645 deviations, and the median error is 0.56 to 0.65 of one.
+const MISFIT: f64 = 4.4;
+const MIN_MISFIT: f64 = 0.01;
 /// Standard deviation of a roll that a symmetry makes meaningless, radians.
 const FIXED: f64 = 1e-3;
 
@@ -47,6 +53,16 @@ impl Conditioning {
             distance_m: scale * deviation(covariance[6][6]),
             position_m: scale * widest(covariance, 4).0,
         }
+    }
+}
+
+impl Conditioning {
+    /// With the size as uncertain as the fit is inexact: what depths and outlines miss, wrong proportions of the mesh and biases of the
+    /// sensor cause, and these change the size.
+    pub fn with_misfit(self, score: &Score) -> Self {
+        let missing = 2.0 - f64::from(score.depth) - f64::from(score.outline);
+        let factor = MISFIT * (missing + MIN_MISFIT);
+        Self { scale: factor * self.scale, distance_m: factor * self.distance_m, ..self }
     }
 }
 

@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3};
 use super::choice::{CORRELATION_PER_SCORE, Choice, ColorScore, HIDDEN, UNMATCHED_PROBABILITY, best_roll};
 use super::lookalikes::{Likeness, Lookalike, lookalikes};
 use crate::evidence::observation::Observation;
-use crate::evidence::photo::{Photo, PhotoRegion};
+use crate::evidence::photo::Photo;
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
@@ -258,7 +258,7 @@ pub fn agreement_at(search: &Search, photo: &PhotoCells, colors: &SurfaceColors,
     Some(photo.compare(&canvas, colors, &search.mesh.frame, search.grid(FINE))?.agreement)
 }
 
-/// The photo on the fine grid of a search in the whole depth map.
+/// The photo on the fine grid of a search in the whole depth map, registered to its mask.
 pub fn cells(photo: &Photo, search: &Search) -> PhotoCells {
-    PhotoCells::new(photo, &PhotoRegion::WHOLE, search.observation.image, search.grid(FINE))
+    PhotoCells::registered(photo, search.observation.image, search.grid(FINE))
 }

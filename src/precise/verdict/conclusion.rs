@@ -99,6 +99,7 @@ pub fn conclude(rounds: &Rounds, color: Option<&Judgment>, reference: Option<DQu
     // wrong; it is evidence of which of several poses is the better one.
     let by_image = if search.has_scene_term() { search.conditioning_by_image(&best.pose) } else { conditioning };
     let as_fixed = if search.settings.lock_scale { search.conditioning_as_fixed(&best.pose) } else { conditioning };
+    let as_fixed = as_fixed.map(|own| own.with_misfit(&best.score));
     let Reliability { confidence, alternatives } = reliability(&candidates, color, by_image.as_ref(), search)?;
     let verdict = Verdict {
         confidence,
