@@ -117,9 +117,9 @@ const SCALING: [f64; 2] = [0.02, 20.0];
 pub const MIN_ROTATIONS: usize = 60;
 
 /// Confidence from which on a search with little effort is not followed by one with more.
-pub const SURE: f64 = 0.9;
+pub const SURE: f64 = 0.93;
 /// The same, of a search that assumes that nothing cuts the mask: it leaves out poses that may be better.
-pub const SURE_UNCUT: f64 = 0.95;
+pub const SURE_UNCUT: f64 = 0.965;
 
 /// Cost of a rotation, of a step on the middle grid and of one on the fine grid, in units of the work budget: about a
 /// millisecond of WebAssembly each on a 2020 laptop.
