@@ -15,7 +15,10 @@ import { step } from "./lib/step.mjs";
 
 const root = at("target", "interop");
 const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
-/** @type {{ python: Record<string, { programs: string[], packages: string[] }>, npm: Record<string, string> }} */
+/**
+ * Of each environment of Python, the packages of its programs, the first in the version that is run, and what they need `also`.
+ * @type {{ python: Record<string, Record<string, string>>, npm: Record<string, string> }}
+ */
 const packages = JSON.parse(readFileSync(at("scripts", "interop", "packages.json"), "utf8"));
 
 /** Installs npm packages that the repository does not have. */
@@ -32,11 +35,12 @@ async function npm() {
   });
 }
 
-/** The rows of a Python program. @param {string} python @param {string[]} args @param {string} out */
-async function rowsOf(python, args, out) {
+/** The rows of a Python program. @param {string} python @param {string} name @param {string} version */
+async function rowsOf(python, name, version) {
+  const out = join(root, "rows", `${name}-${version}.json`);
   rmSync(out, { force: true });
-  const { reason, output } = await attempt(python, ["-m", "interop", ...args, root, out], { env });
-  if (reason !== "") throw new Error(`${args.join(" ")}: ${reason}\n${output.slice(-2000)}`);
+  const { reason, output } = await attempt(python, ["-m", "interop", "run", root, name, version, out], { env });
+  if (reason !== "") throw new Error(`${name}: ${reason}\n${output.slice(-2000)}`);
   return JSON.parse(readFileSync(out, "utf8"));
 }
 
@@ -69,7 +73,7 @@ async function interop({ only, write, verbose, python: program }) {
   rmSync(join(root, "files"), { recursive: true, force: true });
   mkdirSync(join(root, "rows"), { recursive: true });
   const pythonIn = (/** @type {string} */ name) => {
-    const list = packages.python[name]?.packages ?? [];
+    const list = [...new Set(Object.values(packages.python[name] ?? {}).flatMap((each) => each.split(" ")))];
     return step(`Python packages: ${name}`, () => pythonOf(join(root, name), digest([], list), list, program));
   };
   const main = await pythonIn("main");
@@ -90,20 +94,13 @@ async function interop({ only, write, verbose, python: program }) {
     return `${rows.length} cells`;
   };
   const isWanted = (/** @type {string} */ name) => only === undefined || only.includes(name);
-  for (const [environment, { programs: names }] of Object.entries(packages.python)) {
-    const wanted = names.filter(isWanted);
+  for (const [environment, { also, ...versions }] of Object.entries(packages.python)) {
+    const wanted = Object.entries(versions).filter(([name]) => isWanted(name));
     if (wanted.length === 0) continue;
     const python = await pythonIn(environment);
-    const known = (await run(python, ["-m", "interop", "list"], { env })).trim().split("\n");
-    for (const name of wanted) {
-      await step(`${name} (${environment})`, async (say) => {
-        const rows = [];
-        for (const action of ["write", "load", "place"]) {
-          const out = join(root, "rows", `${environment}-${name}-${action}.json`);
-          if (known.includes(`${action}\t${name}`)) rows.push(...(await rowsOf(python, [action, name], out)));
-        }
-        say(await add(rows));
-      });
+    for (const [name, requirements] of wanted) {
+      const version = /==(\S+)/.exec(requirements)?.[1] ?? "";
+      await step(`${name} ${version}`, async (say) => say(await add(await rowsOf(python, name, version))));
     }
   }
   await step("npm packages", npm);
