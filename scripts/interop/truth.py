@@ -75,7 +75,7 @@ def write(root):
     colors = np.round(colours(points))
     uv = MARGIN + (1 - 2 * MARGIN) * (points - CORNER)[:, :2] / SIZE[:2]
     volume = trimesh.Trimesh(points, triangles, process=False).volume
-    known = {"points": points, "triangles": triangles, "colors": colors, "uv": uv, "corner": CORNER}
+    known = {"points": points, "triangles": triangles, "colors": colors, "lights": light(colors), "uv": uv, "corner": CORNER}
     known = {name: each.tolist() for name, each in known.items()} | {"volume": float(volume), "camera": CAMERA}
     known["pose"] = {"scale": 1, "rotation": QUATERNION.tolist(), "translation": TRANSLATION.tolist()}
     with open(os.path.join(folder, "truth.json"), "w") as file:
@@ -97,8 +97,8 @@ def write(root):
     textured.export(os.path.join(folder, "texture.glb"))
 
     # trimesh writes colours as bytes: as an attribute of its own they are floats of light.
-    light_ = light(colors).astype(np.float32)
-    lit = trimesh.Trimesh(points, triangles, process=False, vertex_attributes={"_COLOR_0": light_})
+    lights = light(colors).astype(np.float32)
+    lit = trimesh.Trimesh(points, triangles, process=False, vertex_attributes={"_COLOR_0": lights})
 
     def rename(tree):
         attributes = tree["meshes"][0]["primitives"][0]["attributes"]
