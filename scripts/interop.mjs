@@ -11,7 +11,6 @@ import { step } from "./lib/step.mjs";
 
 /** @typedef {import("./interop/table.mjs").Cell} Cell */
 /** @typedef {{ program: string, version: string, kind: string, variant: string, notWritten?: string }} Written */
-/** @typedef {{ program: string, version: string, kind: string, variant: string, failed?: string, error?: number, limit: number, found?: number }} Loaded */
 
 const root = at("target", "interop");
 const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
@@ -44,22 +43,6 @@ async function rowsOf(python, name, version) {
   return JSON.parse(readFileSync(out, "utf8"));
 }
 
-/** @param {Loaded} row @returns {Cell} */
-function loadedCell({ failed, error = Number.NaN, limit, found, ...row }) {
-  const passed = failed === undefined && error <= limit;
-  if (found !== undefined)
-    return { ...row, action: "place", passed, result: failed ?? `${Math.round(1000 * found) / 1000}` };
-  const unit = /mass|relative|pixels|moved|faults|number|letters|radians|pose|metres/.test(row.variant) ? "" : "m";
-  return {
-    ...row,
-    action: "load",
-    passed,
-    error,
-    unit,
-    result: failed ?? `${error.toPrecision(2)}${passed ? "" : `, more than ${limit}`}`,
-  };
-}
-
 /** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
 async function interop({ only, write, verbose, python: program }) {
   await buildPackage();
@@ -88,7 +71,7 @@ async function interop({ only, write, verbose, python: program }) {
   const add = async (/** @type {any[]} */ rows) => {
     for (const row of rows) {
       if (row.notWritten !== undefined) unwritten.push(row);
-      else if (row.limit !== undefined) cells.push(loadedCell(row));
+      else if (row.passed !== undefined) cells.push(row);
       else read.push(row.read === undefined ? await readBack(row) : row);
     }
     return `${rows.length} cells`;

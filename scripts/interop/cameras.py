@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 
-from .cells import dump, farthest, program, rotation
+from .cells import dump, program, rotation
 from .places import PIXEL
 
 REFUSED = {"refused": "UNSUPPORTED_FORMAT"}
@@ -62,7 +62,7 @@ def pycolmap_(c, t):
     ours = t.read("poses.json")["opencv"]
     turn, position = pycolmap.Rotation3d(np.array(ours["rotation"])), np.array(ours["translation"])
     moved = [pycolmap.Sim3d(ours["scale"], turn, position) * each for each in t.points / 0.25]
-    c.measure("pose", "Sim3d of x, y, z, w", farthest(moved, t.placed))
+    c.points("pose", "Sim3d of x, y, z, w", moved, t.placed)
     new = pycolmap.Camera.create_from_model_name(1, "PINHOLE", t.fx, t.width, t.height)
     c.place(PIXEL, "the principal point of a new `Camera`", new.principal_point_x - (t.width - 1) / 2, 0.5)
 

@@ -60,6 +60,11 @@ def farthest(points, others):
     return max(nearest(points, others), nearest(others, points))
 
 
+def outcome(error, limit, unit):
+    passed = bool(error <= limit)
+    return {"passed": passed, "error": float(error), "unit": unit, "result": f"{error:.2g} {unit}, at most {limit}"}
+
+
 class Truth:
     def __init__(self, root):
         folder = os.path.join(root, "truth")
@@ -132,29 +137,34 @@ class Cells:
 
         self.write("mask", variant, "mask.json", write, against="expected.npy", limitPixels=limit)
 
-    def measure(self, kind, variant, difference, limit=LIMIT, **more):
+    def measure(self, kind, variant, difference, limit=LIMIT, unit=""):
         """How far what a program loaded is from the truth: a number, or several, in the unit of the limit."""
-        error = float(np.max(np.abs(np.asarray(difference, float))))
-        self.rows.append(self.named | {"kind": kind, "variant": variant, "limit": limit, "error": error} | more)
+        row = self.named | {"action": "load", "kind": kind, "variant": variant}
+        self.rows.append(row | outcome(np.max(np.abs(np.asarray(difference, float))), limit, unit))
+
+    def points(self, kind, variant, found, wanted, limit=LIMIT, distance=farthest):
+        """How far points that a program loaded are from those of the truth."""
+        self.measure(kind, variant, distance(found, wanted), limit, "m")
 
     def place(self, question, what, found, expected, limit=1e-6):
         """What a program does in a place where programs differ: a number, which is to be the expected one."""
-        self.measure(question, what, found - expected, limit, found=float(found))
+        self.measure(question, what, found - expected, limit)
+        self.rows[-1] |= {"action": "place", "result": f"{round(float(found), 3) + 0:g}"}
 
     def meshes(self, t, load):
         """Our files of meshes by `load(path)`, which returns the vertices in the world of the file."""
         wanted = dict.fromkeys(("node", "baked", "textured", "scene-camera"), apply(FLIP, t.placed))
         for name, points in (wanted | {"node-opencv": t.placed}).items():
-            self.measure("GLB", f"{name}.glb", farthest(load(t.ours(f"{name}.glb")), points))
+            self.points("GLB", f"{name}.glb", load(t.ours(f"{name}.glb")), points)
         # With a support, the world is the scene's with y up; z up in the files for simulators.
         upright = Scene(t).points[:, [0, 2, 1]] * [1, 1, -1]
-        self.measure("GLB", "scene.glb: the body above y = 0", nearest(upright, load(t.ours("scene.glb"))))
-        self.measure("PLY", "exportPly", farthest(load(t.ours("placed.ply")), t.placed))
+        self.points("GLB", "scene.glb: the body above y = 0", upright, load(t.ours("scene.glb")), distance=nearest)
+        self.points("PLY", "exportPly", load(t.ours("placed.ply")), t.placed)
 
     def run(self, t):
         """All of a program. Where it fails, its other cells are missing, and one says why."""
         try:
             PROGRAMS[self.named["program"]](self, t)
         except Exception as error:
-            why = f"{type(error).__name__}: {error}"[:300]
-            self.rows.append(self.named | {"kind": "program", "variant": "all of it", "limit": 0, "failed": why})
+            why = {"passed": False, "result": f"{type(error).__name__}: {error}"[:300]}
+            self.rows.append(self.named | {"action": "load", "kind": "program", "variant": "all of it"} | why)

@@ -10,7 +10,7 @@ import re
 
 import numpy as np
 
-from .cells import FLIP, LIMIT, Truth, apply, dump, farthest, read
+from .cells import FLIP, LIMIT, Truth, apply, dump, farthest, outcome, read
 from .truth import colours, light
 
 # To the body's axes from those of the file.
@@ -86,10 +86,9 @@ def cell(t, row):
     if "against" in expect:
         expect["against"] = os.path.join(os.path.dirname(row["file"]), expect["against"])
     try:
-        error, limit, unit = globals()[row["kind"].lower()](t, found, expect)
+        return row | outcome(*globals()[row["kind"].lower()](t, found, expect))
     except AssertionError as error:
         return row | {"passed": False, "result": str(error)}
-    return row | {"passed": bool(error <= limit), "error": float(error), "unit": unit, "result": f"{error:.2g} {unit}, at most {limit}"}
 
 
 def check(root):

@@ -4,7 +4,7 @@ import os
 
 import numpy as np
 
-from .cells import FLIP, apply, dump, farthest, program, rigid
+from .cells import FLIP, apply, dump, program, rigid
 from .masks import coco_of
 from .places import EDGE, PIXEL, mixed
 
@@ -237,11 +237,11 @@ def numpy_(c, t):
 
     entry = t.read("scene_gt.json")["0"][0]
     bop = rigid(np.reshape(entry["cam_R_m2c"], (3, 3)), np.array(entry["cam_t_m2c"]) / 1000)
-    c.measure("BOP", "scene_gt.json, rows and millimetres", farthest(apply(bop, t.points), t.placed))
+    c.points("BOP", "scene_gt.json, rows and millimetres", apply(bop, t.points), t.placed)
     ros = np.array([[0.0, -1, 0, 0], [0, 0, -1, 0], [1, 0, 0, 0], [0, 0, 0, 1]])
     frames = {"opencv": np.eye(4), "opengl": FLIP, "pytorch3d": np.diag([-1.0, -1, 1, 1]), "ros": ros}
     for frame, to_camera in frames.items():
         given = t.read("poses.json")[frame]
         rows, columns = np.reshape(given["rows"], (4, 4)), np.reshape(given["matrix"], (4, 4))
-        c.measure("pose", f"{frame}: rows", farthest(apply(to_camera @ rows, t.points / 0.25), t.placed))
+        c.points("pose", f"{frame}: rows", apply(to_camera @ rows, t.points / 0.25), t.placed)
         c.measure("pose", f"{frame}: columns are its transpose", columns.T - rows, 0)

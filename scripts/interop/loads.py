@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from .cells import FLIP, Scene, apply, farthest, program, rigid, rotation
+from .cells import FLIP, Scene, apply, program, rigid, rotation
 
 
 @program("MuJoCo")
@@ -38,8 +38,8 @@ def mujoco_(c, t):
     frame = rigid(data.geom_xmat[visual].reshape(3, 3), data.geom_xpos[visual])
     surface = apply(frame, model.mesh_vert[first : first + count])
     eye = rigid(data.cam_xmat[0].reshape(3, 3), data.cam_xpos[0])
-    c.measure("MJCF", "surface of the body", farthest(surface, scene.points))
-    c.measure("MJCF", "the body seen by its camera", farthest(apply(FLIP @ np.linalg.inv(eye), surface), t.placed))
+    c.points("MJCF", "surface of the body", surface, scene.points)
+    c.points("MJCF", "the body seen by its camera", apply(FLIP @ np.linalg.inv(eye), surface), t.placed)
     c.measure("MJCF", "mass, kg", model.body_mass[1] - scene.mass)
     c.measure("MJCF", "centre of mass", data.xipos[1] - scene.center)
     c.measure("MJCF", "moments of inertia, relative", np.sort(model.body_inertia[1]) / scene.moments - 1, 1e-5)
@@ -119,7 +119,7 @@ def yourdfpy_(c, t):
     import yourdfpy
 
     robot = yourdfpy.URDF.load(t.ours("found", "urdf", "body.urdf"))
-    c.measure("URDF", "surface", farthest(robot.scene.to_mesh().vertices, t.points))
+    c.points("URDF", "surface", robot.scene.to_mesh().vertices, t.points)
     c.measure("URDF", "mass, kg", robot.link_map["body"].inertial.mass - Scene(t).mass)
     c.measure("URDF", "faults found by validate()", not robot.validate(), 0)
 

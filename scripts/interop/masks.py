@@ -6,7 +6,7 @@ import tempfile
 
 import numpy as np
 
-from .cells import apply, dump, farthest, program, rotation
+from .cells import apply, dump, program, rotation
 
 
 def coco_of(t, segmentation, crowd=0):
@@ -68,7 +68,7 @@ def cvat_(c, t):
     x, y, z = (rotation([*np.sin(angle / 2) * axis, np.cos(angle / 2)]) for angle, axis in zip(angles, np.eye(3)))
     box = (np.indices((2, 2, 2)).reshape(3, -1).T - 0.5) * size @ (x @ y @ z).T + center
     corners = apply(np.reshape(ours["toCamera"], (4, 4)).T, box)
-    c.measure("cuboid", "points of a shape", farthest(corners, np.reshape(ours["corners"], (-1, 3))))
+    c.points("cuboid", "points of a shape", corners, np.reshape(ours["corners"], (-1, 3)))
 
 
 @program("Label Studio")

@@ -5,7 +5,7 @@ import tempfile
 
 import numpy as np
 
-from .cells import FLIP, Scene, apply, farthest, nearest, program, rotation
+from .cells import FLIP, Scene, apply, nearest, program, rotation
 from .places import BOX, GREY, PIXEL, RAY, grey, turned
 
 # Converted by another program first, as our error says.
@@ -126,7 +126,7 @@ def open3d_(c, t):
     # Rows, as `toRowMajor` returns them; the extrinsic of a camera.
     matrix = np.reshape(t.read("poses.json")["opencv"]["rows"], (4, 4))
     cloud = o3d.geometry.PointCloud(o3d.utility.Vector3dVector(t.points / 0.25)).transform(matrix)
-    c.measure("pose", "toRowMajor with PointCloud.transform", farthest(np.asarray(cloud.points), t.placed))
+    c.points("pose", "toRowMajor with PointCloud.transform", np.asarray(cloud.points), t.placed)
 
     rays = o3d.t.geometry.RaycastingScene.create_rays_pinhole(t.K, np.eye(4), t.width, t.height).numpy()
     c.place(PIXEL, "`create_rays_pinhole`", rays[0, 0, 3] / rays[0, 0, 5] * t.fx + t.cx, 0.5, 1e-3)
@@ -203,9 +203,9 @@ def meshio_(c, t):
     c.write("mesh", "stl, text", "mesh.stl", lambda p: plain.write(p, binary=False))
     for format in ("off", "vtk", "vtu"):
         c.write("mesh", format, f"mesh.{format}", plain.write, **REFUSED)
-    c.measure("PLY", "exportPly", farthest(meshio.read(t.ours("placed.ply")).points, t.placed))
+    c.points("PLY", "exportPly", meshio.read(t.ours("placed.ply")).points, t.placed)
     surface = meshio.read(t.ours("found", "urdf", "meshes", "body.obj"))
-    c.measure("URDF", "OBJ of the surface", farthest(surface.points, t.points))
+    c.points("URDF", "OBJ of the surface", surface.points, t.points)
 
 
 @program("plyfile")
@@ -241,7 +241,7 @@ def plyfile_(c, t):
     places = lambda rows: np.c_[rows["x"], rows["y"], rows["z"]]
     grown = [after[f"scale_{k}"] - before[f"scale_{k}"] - np.log(source["scale"]) for k in range(3)]
     moved = apply(t.matrix, places(before) * source["scale"]) - places(after)
-    c.measure("splats", "places, and logarithms of sizes", np.r_[moved.ravel(), np.ravel(grown)], 2e-6)
+    c.measure("splats", "places, and logarithms of sizes", np.r_[moved.ravel(), np.ravel(grown)], 2e-6, "m")
 
 
 @program("numpy-stl")
@@ -292,8 +292,8 @@ def usd_(c, t):
     turn = np.array(Gf.Matrix3d(Gf.Quatd(*map(float, np.roll(t.quaternion, 1))))).T
     unit = [UsdGeom.GetStageMetersPerUnit(stage) - 1, UsdGeom.GetStageUpAxis(stage) != "Z"]
     seen = apply(FLIP @ np.linalg.inv(matrix(eye)), surface)
-    c.measure("USD", "surface of the body", farthest(surface, scene.points))
-    c.measure("USD", "the body seen by its camera", farthest(seen, t.placed))
+    c.points("USD", "surface of the body", surface, scene.points)
+    c.points("USD", "the body seen by its camera", seen, t.placed)
     c.measure("USD", "focal lengths and principal point, pixels", lens, 1e-3)
     c.measure("USD", "mass, kg", UsdPhysics.MassAPI(body).GetMassAttr().Get() - scene.mass)
     c.measure("USD", "metres, z up", unit, 0)
@@ -394,10 +394,10 @@ def blender_(c, t):
 
     c.meshes(t, load)
     wanted = Scene(t).points
-    c.measure("USD", "surface of the body", nearest(wanted, load(t.ours("found", "usd", "scene.usda"))))
+    c.points("USD", "surface of the body", wanted, load(t.ours("found", "usd", "scene.usda")), distance=nearest)
     eye = next(each for each in bpy.context.scene.objects if each.type == "CAMERA")
     seen = apply(FLIP @ np.linalg.inv(np.array(eye.matrix_world)), wanted)
-    c.measure("USD", "the body seen by its camera", farthest(seen, t.placed))
+    c.points("USD", "the body seen by its camera", seen, t.placed)
     c.measure("USD", "focal length, pixels", eye.data.lens / eye.data.sensor_width * t.width - t.fx, 1e-3)
     turn = np.array(Quaternion(np.roll(t.quaternion, 1).tolist()).to_matrix())
     c.measure("pose", "quaternion as w, x, y, z", turn - rotation(t.quaternion))
@@ -410,4 +410,4 @@ def blender_(c, t):
     body.matrix_world = eye.matrix_world @ Matrix(opengl.tolist())
     bpy.context.view_layer.update()
     inside = np.array(eye.matrix_world.inverted() @ body.matrix_world)
-    c.measure("pose", "toFrame(…, opengl) below the camera", farthest(apply(FLIP @ inside, t.points / 0.25), t.placed), 2e-6)
+    c.points("pose", "toFrame(…, opengl) below the camera", apply(FLIP @ inside, t.points / 0.25), t.placed, 2e-6)
