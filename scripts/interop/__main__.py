@@ -17,4 +17,4 @@ else:
     name, version, out = rest
     found = cells.Cells(name, version, root)
     found.run(cells.Truth(root))
-    cells.dump(found.rows)(out)
+    cells.dump(out, found.rows)

@@ -1,6 +1,7 @@
 """Programs of cameras, poses and recordings."""
 
 import os
+from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +15,7 @@ HALF_PIXEL = np.array([[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]])
 
 
 def pose_of(t, turn):
-    return {"scale": 1.0, "rotation": np.asarray(turn, float).tolist(), "translation": t.translation.tolist()}
+    return {"scale": 1.0, "rotation": turn, "translation": t.translation}
 
 
 @program("pycolmap")
@@ -27,14 +28,11 @@ def pycolmap_(c, t):
     def camera(model, parameters):
         return pycolmap.Camera(model=model, width=t.width, height=t.height, params=parameters, camera_id=1)
 
-    def save(model, parameters):
-        def write(path):
-            reconstruction = pycolmap.Reconstruction()
-            reconstruction.add_camera_with_trivial_rig(camera(model, parameters))
-            reconstruction.write_text(os.path.dirname(path))
-            reconstruction.write_binary(os.path.dirname(path))
-
-        return write
+    def save(path, model, parameters):
+        reconstruction = pycolmap.Reconstruction()
+        reconstruction.add_camera_with_trivial_rig(camera(model, parameters))
+        reconstruction.write_text(os.path.dirname(path))
+        reconstruction.write_binary(os.path.dirname(path))
 
     square = {"camera": {"fy": t.fx}}
     distorted, fisheye = {"warns": "distortion"}, {"warns": "fisheye"}
@@ -48,16 +46,16 @@ def pycolmap_(c, t):
         ("OPENCV_FISHEYE", [*four, 0.1, 0, 0, 0], fisheye),
         ("SIMPLE_RADIAL_FISHEYE", [*one, 0.1], fisheye | square),
     ):
-        c.write("camera", f"cameras.txt, {model}", "cameras.txt", save(model, parameters), **expect)
-    c.write("camera", "cameras.bin", "cameras.bin", save("PINHOLE", four), **REFUSED)
+        c.write("camera", f"cameras.txt, {model}", "cameras.txt", expect, save, model, parameters)
+    c.write("camera", "cameras.bin", "cameras.bin", REFUSED, save, "PINHOLE", four)
     # Its matrix counts from the corner, too; a matrix alone does not say so.
     matrix = camera("PINHOLE", four).calibration_matrix() - HALF_PIXEL
-    c.write("camera", "calibration_matrix() less half a pixel", "K.txt", lambda p: np.savetxt(p, matrix))
+    c.write("camera", "calibration_matrix() less half a pixel", "K.txt", {}, np.savetxt, matrix)
     turn = pycolmap.Rotation3d(t.quaternion)
     rigid = pycolmap.Rigid3d(turn, t.translation)
-    c.write("pose", "Rigid3d: quat and translation", "gt.json", dump(pose_of(t, rigid.rotation.quat)))
+    c.write("pose", "Rigid3d: quat and translation", "gt.json", {}, dump, pose_of(t, rigid.rotation.quat))
     similar = np.vstack([pycolmap.Sim3d(1.0, turn, t.translation).matrix(), [0, 0, 0, 1]])
-    c.write("pose", "Sim3d.matrix()", "gt.txt", lambda p: np.savetxt(p, similar))
+    c.write("pose", "Sim3d.matrix()", "gt.txt", {}, np.savetxt, similar)
 
     ours = t.read("poses.json")["opencv"]
     turn, position = pycolmap.Rotation3d(np.array(ours["rotation"])), np.array(ours["translation"])
@@ -76,32 +74,25 @@ def open3d_(c, t):
     parameters.intrinsic, parameters.extrinsic = intrinsic, t.matrix
     trajectory = o3d.camera.PinholeCameraTrajectory()
     trajectory.parameters = [parameters]
-    for name, write, what in (
-        ("PinholeCameraIntrinsic", o3d.io.write_pinhole_camera_intrinsic, intrinsic),
-        ("PinholeCameraParameters", o3d.io.write_pinhole_camera_parameters, parameters),
-        ("PinholeCameraTrajectory", o3d.io.write_pinhole_camera_trajectory, trajectory),
-    ):
-        c.write("camera", name, "camera.json", lambda p: write(p, what))
+    io = o3d.io
+    c.write("camera", "PinholeCameraIntrinsic", "camera.json", {}, io.write_pinhole_camera_intrinsic, intrinsic)
+    c.write("camera", "PinholeCameraParameters", "camera.json", {}, io.write_pinhole_camera_parameters, parameters)
+    c.write("camera", "PinholeCameraTrajectory", "camera.json", {}, io.write_pinhole_camera_trajectory, trajectory)
     metadata = o3d.t.io.RGBDVideoMetadata()
     metadata.intrinsics, metadata.width, metadata.height = intrinsic, t.width, t.height
     metadata.depth_scale = 1000.0
-
-    def video(path):
-        with open(path, "w") as file:
-            # What RSBagReader.save_frames writes.
-            file.write(str(metadata))
-
-    millimetres = o3d.geometry.Image(t.mm)
-    c.write("camera", "RGBDVideoMetadata", "intrinsic.json", video)
-    c.write("depth", "Image of millimetres, PNG", "depth.png", lambda p: o3d.io.write_image(p, millimetres), limitM=0.0005001)
+    # What RSBagReader.save_frames writes.
+    c.write("camera", "RGBDVideoMetadata", "intrinsic.json", {}, lambda p: Path(p).write_text(str(metadata)))
+    image = o3d.geometry.Image(t.mm)
+    c.write("depth", "Image of millimetres, PNG", "depth.png", {"limitM": 0.0005001}, io.write_image, image)
     scene = o3d.t.geometry.RaycastingScene()
     scene.add_triangles(t.points.astype(np.float32), t.triangles.astype(np.uint32))
     # Rays go through (u + .5, v + .5) in the numbers of K.
     rays = o3d.t.geometry.RaycastingScene.create_rays_pinhole(t.K + HALF_PIXEL, t.matrix, t.width, t.height)
     hit = scene.cast_rays(rays)["t_hit"].numpy()
     limits = {"only": "mask", "share": 0.995, "limitM": 1e-5}
-    c.write("depth", "t_hit of RaycastingScene, K with half a pixel more", "depth.npy", lambda p: np.save(p, hit), **limits)
-    c.write("mask", "t_hit of RaycastingScene", "mask.npy", lambda p: np.save(p, np.isfinite(hit)), limitPixels=4)
+    c.write("depth", "t_hit of RaycastingScene, K with half a pixel more", "depth.npy", limits, np.save, hit)
+    c.write("mask", "t_hit of RaycastingScene", "mask.npy", {"limitPixels": 4}, np.save, np.isfinite(hit))
 
 
 @program("rosbags")
@@ -112,44 +103,30 @@ def rosbags_(c, t):
     from rosbags import rosbag1
     from rosbags.typesys import Stores, get_typestore
 
-    def plain(value):
-        if dataclasses.is_dataclass(value):
-            names = [field.name for field in dataclasses.fields(value) if not field.name.startswith("__")]
-            return {name: plain(getattr(value, name)) for name in names}
-        return value.tolist() if isinstance(value, np.ndarray) else value
-
-    def message(types, cropped):
+    def info(types, size, crop):
+        """A message of a camera whose pictures have this size, and are cropped to x, y, height and width."""
         is_first = "seq" in types["std_msgs/msg/Header"].__dataclass_fields__
-        left, top = (30, 20) if cropped else (0, 0)
-        matrix = t.K + [[0, 0, left], [0, 0, top], [0, 0, 0]]
-        numbers = {"d": np.zeros(5), "k": matrix.ravel(), "r": np.eye(3).ravel(), "p": np.c_[matrix, np.zeros(3)].ravel()}
         stamp = types["builtin_interfaces/msg/Time"](sec=1, nanosec=2)
-        return types["sensor_msgs/msg/CameraInfo"](
-            header=types["std_msgs/msg/Header"](stamp=stamp, frame_id="camera", **({"seq": 0} if is_first else {})),
-            height=t.height + (50 if cropped else 0),
-            width=t.width + (70 if cropped else 0),
-            distortion_model="plumb_bob",
-            binning_x=0,
-            binning_y=0,
-            roi=types["sensor_msgs/msg/RegionOfInterest"](
-                x_offset=left,
-                y_offset=top,
-                height=t.height if cropped else 0,
-                width=t.width if cropped else 0,
-                do_rectify=False,
-            ),
-            **{key.upper() if is_first else key: each for key, each in numbers.items()},
-        )
+        header = types["std_msgs/msg/Header"](stamp=stamp, frame_id="camera", **({"seq": 0} if is_first else {}))
+        roi = types["sensor_msgs/msg/RegionOfInterest"](*crop, do_rectify=False)
+        matrix = t.K + [[0, 0, crop[0]], [0, 0, crop[1]], [0, 0, 0]]
+        numbers = {"d": np.zeros(5), "k": matrix.ravel(), "r": np.eye(3).ravel(), "p": np.c_[matrix, np.zeros(3)].ravel()}
+        numbers = {key.upper() if is_first else key: each for key, each in numbers.items()}
+        bins = {"binning_x": 0, "binning_y": 0}
+        make = types["sensor_msgs/msg/CameraInfo"]
+        message = make(header, *size, distortion_model="plumb_bob", roi=roi, **bins, **numbers)
+        return dataclasses.asdict(message)
 
     # image_transport: twelve bytes of the configuration, then the PNG.
     compressed = bytes(12) + cv2.imencode(".png", t.mm)[1].tobytes()
     for name, store in {"ROS 1": Stores.ROS1_NOETIC, "ROS 2": Stores.ROS2_HUMBLE}.items():
         types = get_typestore(store).types
-        info = f"CameraInfo of {name}"
-        c.write("camera", f"{info}, JSON", "camera_info.json", dump(plain(message(types, False))))
-        c.write("camera", f"{info}, region of interest, JSON", "camera_info.json", dump(plain(message(types, True))))
-        write = lambda p: np.frombuffer(compressed, np.uint8).tofile(p)
-        c.write("depth", f"compressedDepth of {name}", "depth.png", write, says="compressedDepth", **REFUSED)
+        whole = info(types, (t.height, t.width), (0, 0, 0, 0))
+        part = info(types, (t.height + 50, t.width + 70), (30, 20, t.height, t.width))
+        c.write("camera", f"CameraInfo of {name}, JSON", "camera_info.json", {}, dump, whole)
+        c.write("camera", f"CameraInfo of {name}, region of interest, JSON", "camera_info.json", {}, dump, part)
+        write = lambda p: Path(p).write_bytes(compressed)
+        c.write("depth", f"compressedDepth of {name}", "depth.png", REFUSED | {"says": "compressedDepth"}, write)
 
     def bag(path):
         store = get_typestore(Stores.ROS1_NOETIC)
@@ -158,7 +135,7 @@ def rosbags_(c, t):
             topic = recording.add_connection("/depth", text.__msgtype__, typestore=store)
             recording.write(topic, 1, store.serialize_ros1(text, text.__msgtype__))
 
-    c.write("depth", "a bag of ROS 1", "depth.bag", bag, **RECORDING)
+    c.write("depth", "a bag of ROS 1", "depth.bag", RECORDING, bag)
 
 
 @program("MCAP")
@@ -174,7 +151,7 @@ def mcap_(c, t):
             writer.add_message(channel, log_time=0, publish_time=0, data=t.mm.tobytes())
             writer.finish()
 
-    c.write("depth", "a recording", "depth.mcap", save, **RECORDING)
+    c.write("depth", "a recording", "depth.mcap", RECORDING, save)
 
 
 @program("DepthAI")
@@ -184,8 +161,8 @@ def depthai_(c, t):
     handler, socket = depthai.CalibrationHandler(), depthai.CameraBoardSocket.CAM_A
     handler.setCameraIntrinsics(socket, t.K.tolist(), t.width, t.height)
     handler.setDistortionCoefficients(socket, [0.0] * 14)
-    c.write("camera", "eepromToJson", "calib.json", dump(handler.eepromToJson()))
-    c.write("camera", "getCameraIntrinsics", "K.json", dump(handler.getCameraIntrinsics(socket, t.width, t.height)))
+    c.write("camera", "eepromToJson", "calib.json", {}, dump, handler.eepromToJson())
+    c.write("camera", "getCameraIntrinsics", "K.json", {}, dump, handler.getCameraIntrinsics(socket, t.width, t.height))
 
 
 @program("RealSense")
@@ -197,11 +174,11 @@ def realsense_(c, t):
     for name, number in numbers.items():
         setattr(lens, name, number)
     fields = lambda: numbers | {"coeffs": lens.coeffs, "model": str(lens.model)}
-    c.write("camera", "fields of rs.intrinsics", "intrinsics.json", dump(fields()))
+    c.write("camera", "fields of rs.intrinsics", "intrinsics.json", {}, dump, fields())
     first = rs.rs2_deproject_pixel_to_point(lens, [0, 0], 1.0)[0] * t.fx + t.cx
     c.place(PIXEL, "`rs2_deproject_pixel_to_point`", first, 0, 1e-4)
     lens.model, lens.coeffs = rs.distortion.brown_conrady, [0.1, -0.2, 0.001, 0.0, 0.0]
-    c.write("camera", "fields of rs.intrinsics, distorted", "intrinsics.json", dump(fields()), warns="distortion")
+    c.write("camera", "fields of rs.intrinsics, distorted", "intrinsics.json", {"warns": "distortion"}, dump, fields())
 
 
 @program("SciPy")
@@ -210,9 +187,9 @@ def scipy_(c, t):
 
     turn = Rotation.from_quat(t.quaternion)
     reordered = np.roll(turn.as_quat(scalar_first=True), -1)
-    c.write("pose", "as_quat()", "gt.json", dump(pose_of(t, turn.as_quat())))
-    c.write("pose", "as_matrix()", "gt.json", dump(pose_of(t, turn.as_matrix())))
-    c.write("pose", "as_quat(scalar_first=True), reordered", "gt.json", dump(pose_of(t, reordered)))
+    c.write("pose", "as_quat()", "gt.json", {}, dump, pose_of(t, turn.as_quat()))
+    c.write("pose", "as_matrix()", "gt.json", {}, dump, pose_of(t, turn.as_matrix()))
+    c.write("pose", "as_quat(scalar_first=True), reordered", "gt.json", {}, dump, pose_of(t, reordered))
     ours = Rotation.from_quat(t.read("poses.json")["opencv"]["rotation"])
     c.measure("pose", "from_quat", ours.as_matrix() - rotation(t.quaternion), 1e-9)
     cuboid = t.read("cuboid.json")

@@ -29,12 +29,9 @@ def read(*path):
         return json.load(file)
 
 
-def dump(content):
-    def write(path):
-        with open(path, "w") as file:
-            json.dump(content, file)
-
-    return write
+def dump(path, content):
+    with open(path, "w") as file:
+        json.dump(content, file, default=lambda each: each.tolist())
 
 
 def apply(matrix, points):
@@ -115,27 +112,27 @@ class Cells:
         self.version = version
         self.folder = os.path.join(root, "files", f"{name}-{version}".replace(" ", "-"))
 
-    def write(self, kind, variant, file, action, **expect):
-        """A file that `action(path)` writes. What a program cannot write is a row of its own, and no cell."""
+    def write(self, kind, variant, file, expect, action, /, *args, **options):
+        """A file that `action(path, …)` writes. What a program cannot write is a row of its own, and no cell."""
         folder = os.path.join(self.folder, re.sub(r"\W+", "-", f"{kind} {variant}"))
         os.makedirs(folder, exist_ok=True)
         path = os.path.join(folder, file)
         row = self.named | {"action": "write", "kind": kind, "variant": variant, "file": path}
         try:
-            action(path)
+            action(path, *args, **options)
             row["expect"] = expect
         except Exception as error:
             row["notWritten"] = f"{type(error).__name__}: {error}"[:300]
         self.rows.append(row)
 
-    def against(self, variant, action, drawn, limit):
-        """A mask of another shape, against what its program draws: differing pixels at most."""
+    def against(self, variant, content, drawn, limit):
+        """A mask of another shape as JSON, against what its program draws: differing pixels at most."""
 
         def write(path):
-            action(path)
-            np.save(path.replace("mask.json", "expected.npy"), drawn.astype(np.uint8))
+            dump(path, content)
+            np.save(os.path.join(os.path.dirname(path), "expected.npy"), drawn.astype(np.uint8))
 
-        self.write("mask", variant, "mask.json", write, against="expected.npy", limitPixels=limit)
+        self.write("mask", variant, "mask.json", {"against": "expected.npy", "limitPixels": limit}, write)
 
     def measure(self, kind, variant, difference, limit=LIMIT, unit=""):
         """How far what a program loaded is from the truth: a number, or several, in the unit of the limit."""

@@ -94,4 +94,4 @@ def cell(t, row):
 def check(root):
     path = os.path.join(root, "rows", "read.json")
     t = Truth(root)
-    dump([cell(t, row) for row in read(path)])(path)
+    dump(path, [cell(t, row) for row in read(path)])

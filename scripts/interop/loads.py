@@ -1,6 +1,7 @@
 """Simulators and renderers, and readers of their files: they load our scenes."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 
@@ -20,10 +21,10 @@ def mujoco_(c, t):
         # A compiled mesh lies in the frame of its inertia.
         vertices = apply(rigid(np.roll(model.mesh_quat[0], -1), model.mesh_pos[0]), model.mesh_vert)
         with open(path, "w") as file:
-            file.writelines("v {:.9g} {:.9g} {:.9g}\n".format(*v) for v in vertices)
-            file.writelines("f {} {} {}\n".format(*(f + 1)) for f in model.mesh_face)
+            np.savetxt(file, vertices, "v %.9g %.9g %.9g")
+            np.savetxt(file, model.mesh_face + 1, "f %d %d %d")
 
-    c.write("mesh", "mesh_vert with mesh_pos and mesh_quat", "mesh.obj", save, limitM=1e-6)
+    c.write("mesh", "mesh_vert with mesh_pos and mesh_quat", "mesh.obj", {"limitM": 1e-6}, save)
 
     def load(*path):
         model = mujoco.MjModel.from_xml_path(t.ours(*path))
@@ -87,8 +88,8 @@ def pybullet_(c, t):
     code = {"depthCode": "z-buffer", "depthNear": near, "depthFar": far}
     # Outlines are drawn a pixel wider.
     limits = {"options": code, "limitM": 1e-4, "only": "mask", "share": 0.97}
-    c.write("depth", "z-buffer of getCameraImage", "depth.npy", lambda p: np.save(p, buffer), **limits)
-    c.write("mask", "segmentation of getCameraImage", "mask.npy", lambda p: np.save(p, seen), limitPixels=260)
+    c.write("depth", "z-buffer of getCameraImage", "depth.npy", limits, np.save, buffer)
+    c.write("mask", "segmentation of getCameraImage", "mask.npy", {"limitPixels": 260}, np.save, seen)
     pybullet.resetSimulation()
 
     scene = Scene(t)
@@ -168,12 +169,11 @@ def sapien_(c, t):
     scene = Scene(t)
     world = sapien.Scene([sapien.physx.PhysxCpuSystem()])
     # Its visuals need a graphics card.
-    with open(t.ours("found", "urdf", "body.urdf")) as file:
-        text = re.sub("<visual>.*?</visual>", "", file.read())
-    with open(t.ours("found", "urdf", "body-bare.urdf"), "w") as file:
-        file.write(text)
+    text = Path(t.ours("found", "urdf", "body.urdf")).read_text()
+    bare = Path(t.ours("found", "urdf", "body-bare.urdf"))
+    bare.write_text(re.sub("<visual>.*?</visual>", "", text))
     # One link is an actor, which `load` refuses.
-    _, [actor] = world.create_urdf_loader().load_multiple(file.name)
+    _, [actor] = world.create_urdf_loader().load_multiple(str(bare))
     actor.set_pose(sapien.Pose(scene.body["position"], np.roll(scene.body["rotation"], 1)))
     body = actor.find_component_by_type(sapien.physx.PhysxRigidDynamicComponent)
     c.measure("URDF", "pose of the link, matrix", actor.pose.to_transformation_matrix() - scene.world_from_body, 1e-5)
@@ -192,7 +192,7 @@ def mitsuba_(c, t):
     parameters["vertex_positions"], parameters["faces"] = vertices.ravel(), faces.ravel()
     parameters.update()
     metres, millimetres = mitsuba.Bitmap(t.depth[..., None]), mitsuba.Bitmap(t.mm[..., None])
-    c.write("mesh", "write_ply", "mesh.ply", mesh.write_ply)
-    c.write("depth", "EXR of a Bitmap", "depth.exr", metres.write)
-    c.write("depth", "PFM of a Bitmap", "depth.pfm", metres.write)
-    c.write("depth", "PNG of a Bitmap of 16 bits", "depth.png", millimetres.write, limitM=0.0005001)
+    c.write("mesh", "write_ply", "mesh.ply", {}, mesh.write_ply)
+    c.write("depth", "EXR of a Bitmap", "depth.exr", {}, metres.write)
+    c.write("depth", "PFM of a Bitmap", "depth.pfm", {}, metres.write)
+    c.write("depth", "PNG of a Bitmap of 16 bits", "depth.png", {"limitM": 0.0005001}, millimetres.write)

@@ -33,12 +33,12 @@ def pycocotools_(c, t):
     ends = np.flatnonzero(np.diff(t.mask.ravel(order="F"), prepend=0)).tolist()
     plain = {"size": [t.height, t.width], "counts": np.diff([0, *ends, t.mask.size]).tolist()}
     sam = {"segmentation": rle, "area": int(t.mask.sum()), "predicted_iou": 0.9, "stability_score": 0.95}
-    c.write("mask", "encode", "mask.json", dump(rle))
-    c.write("mask", "runs as numbers", "mask.json", dump(plain))
-    c.write("mask", "annotation with encode", "mask.json", dump(coco_of(t, rle)))
-    c.write("mask", "crowd annotation", "mask.json", dump(coco_of(t, plain, 1)))
-    c.write("mask", "SAM's list of masks", "mask.json", dump([sam]))
-    c.write("mask", "encode of an array with an axis", "mask.json", dump([rle]))
+    c.write("mask", "encode", "mask.json", {}, dump, rle)
+    c.write("mask", "runs as numbers", "mask.json", {}, dump, plain)
+    c.write("mask", "annotation with encode", "mask.json", {}, dump, coco_of(t, rle))
+    c.write("mask", "crowd annotation", "mask.json", {}, dump, coco_of(t, plain, 1))
+    c.write("mask", "SAM's list of masks", "mask.json", {}, dump, [sam])
+    c.write("mask", "encode of an array with an axis", "mask.json", {}, dump, [rle])
 
     def annotation(name):
         coco = COCO(t.ours(name))
@@ -58,8 +58,8 @@ def cvat_(c, t):
     left, top, right, bottom = box_of(t)
     whole = masks.encode_mask(t.mask.astype(bool))
     boxed = masks.encode_mask(t.mask.astype(bool), [left, top, right + 1, bottom + 1])
-    c.write("mask", "encode_mask", "mask.json", dump(list(map(float, whole))), rle="cvat")
-    c.write("mask", "encode_mask with a box", "mask.json", dump(list(map(float, boxed))), rle="cvat")
+    c.write("mask", "encode_mask", "mask.json", {"rle": "cvat"}, dump, whole)
+    c.write("mask", "encode_mask with a box", "mask.json", {"rle": "cvat"}, dump, boxed)
 
     # CVAT draws with three.js: a box of this size, turned by Euler angles x, y, z of its default order.
     ours = t.read("cuboid.json")
@@ -78,7 +78,7 @@ def label_studio(c, t):
     rgba = np.repeat(t.mask.ravel() * 255, 4).astype(np.uint8)
     rle = {"mask2rle": brush.mask2rle(t.mask * 255), "encode_rle": brush.encode_rle(rgba)}
     for name, numbers in rle.items():
-        c.write("mask", name, "mask.json", dump(list(map(int, numbers))), rle="label-studio")
+        c.write("mask", name, "mask.json", {"rle": "label-studio"}, dump, numbers)
 
 
 @program("LabelMe")
@@ -93,11 +93,10 @@ def labelme_(c, t):
     triangle = common | {"points": [[20.5, 30.5], [130.0, 40.0], [60.0, 100.0]], "shape_type": "polygon"}
     size = {"imageHeight": t.height, "imageWidth": t.width}
     document = {"version": c.version, "flags": {}, "imagePath": "rgb.png", "imageData": None, **size}
-    c.write("mask", "shape of a mask", "mask.json", dump(document | {"shapes": [shape]}))
+    c.write("mask", "shape of a mask", "mask.json", {}, dump, document | {"shapes": [shape]})
     # LabelMe fills with Pillow, which takes the outline for inside.
     drawn = utils.shape_to_mask((t.height, t.width), triangle["points"], "polygon")
-    polygon = dump(document | {"shapes": [triangle]})
-    c.against("polygon, against shape_to_mask", polygon, drawn, 320)
+    c.against("polygon, against shape_to_mask", document | {"shapes": [triangle]}, drawn, 320)
 
 
 @program("Datumaro")
@@ -108,24 +107,21 @@ def datumaro_(c, t):
     item = dm.DatasetItem("rgb", media=image, annotations=[dm.Mask(t.mask.astype(bool), label=0, id=1)])
     dataset = dm.Dataset.from_iterable([item], categories=["body"])
 
-    def save(format, pattern):
-        def write(path):
-            with tempfile.TemporaryDirectory() as folder:
-                dataset.export(folder, format, save_media=True)
-                found = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
-                shutil.copy(next(each for each in sorted(found) if pattern in each), path)
+    def save(path, format, pattern):
+        with tempfile.TemporaryDirectory() as folder:
+            dataset.export(folder, format, save_media=True)
+            found = [os.path.join(at, name) for at, _, names in os.walk(folder) for name in names]
+            shutil.copy(next(each for each in sorted(found) if pattern in each), path)
 
-        return write
-
-    c.write("mask", "COCO's instances", "mask.json", save("coco_instances", "instances"))
-    c.write("mask", "VOC's segmentation of classes", "mask.png", save("voc_segmentation", "SegmentationClass/"))
-    c.write("mask", "VOC's segmentation of objects", "mask.png", save("voc_segmentation", "SegmentationObject/"))
-    c.write("mask", "Cityscapes, labelIds", "mask.png", save("cityscapes", "labelIds"))
-    c.write("mask", "CVAT's XML", "mask.xml", save("cvat", ".xml"), refused="UNSUPPORTED_FORMAT")
-    c.write("mask", "Datumaro's own JSON", "mask.json", save("datumaro", "annotations/"))
-    c.write("mask", "CamVid", "mask.png", save("camvid", "annot/"))
-    c.write("mask", "KITTI's instances", "mask.png", save("kitti_segmentation", "instance/"))
-    c.write("mask", "MOTS's PNG", "mask.png", save("mots_png", "instances/"))
+    c.write("mask", "COCO's instances", "mask.json", {}, save, "coco_instances", "instances")
+    c.write("mask", "VOC's segmentation of classes", "mask.png", {}, save, "voc_segmentation", "SegmentationClass/")
+    c.write("mask", "VOC's segmentation of objects", "mask.png", {}, save, "voc_segmentation", "SegmentationObject/")
+    c.write("mask", "Cityscapes, labelIds", "mask.png", {}, save, "cityscapes", "labelIds")
+    c.write("mask", "CVAT's XML", "mask.xml", {"refused": "UNSUPPORTED_FORMAT"}, save, "cvat", ".xml")
+    c.write("mask", "Datumaro's own JSON", "mask.json", {}, save, "datumaro", "annotations/")
+    c.write("mask", "CamVid", "mask.png", {}, save, "camvid", "annot/")
+    c.write("mask", "KITTI's instances", "mask.png", {}, save, "kitti_segmentation", "instance/")
+    c.write("mask", "MOTS's PNG", "mask.png", {}, save, "mots_png", "instances/")
 
     for variant, name in (("COCO, compressed, pixels", "coco.json"), ("COCO, crowd, pixels", "coco-crowd.json")):
         with tempfile.TemporaryDirectory() as folder:
@@ -140,12 +136,12 @@ def datumaro_(c, t):
 def supervisely_(c, t):
     import supervisely as sly
 
-    def save(shape):
+    def document(shape):
         label = sly.Label(shape, sly.ObjClass("body", type(shape)))
-        return dump(sly.Annotation((t.height, t.width), [label]).to_json())
+        return sly.Annotation((t.height, t.width), [label]).to_json()
 
-    c.write("mask", "Bitmap", "mask.json", save(sly.Bitmap(t.mask.astype(bool))))
+    c.write("mask", "Bitmap", "mask.json", {}, dump, document(sly.Bitmap(t.mask.astype(bool))))
     exterior = [sly.PointLocation(*each) for each in [(20, 30), (60, 130), (110, 40)]]
     polygon, canvas = sly.Polygon(exterior, []), np.zeros((t.height, t.width, 3), np.uint8)
     polygon.draw(canvas, color=[255, 255, 255])
-    c.against("Polygon, against its own drawing", save(polygon), canvas[..., 0] > 0, 320)
+    c.against("Polygon, against its own drawing", document(polygon), canvas[..., 0] > 0, 320)

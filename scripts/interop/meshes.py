@@ -37,8 +37,8 @@ def trimesh_(c, t):
     material = trimesh.visual.material.PBRMaterial(baseColorTexture=image, metallicFactor=0.0)
     pbr = body(TextureVisuals(uv=t.uv, material=material))
     halves = trimesh.Scene([body().submesh([half])[0] for half in np.arange(256).reshape(2, 128)])
-    c.write("mesh", "STL, text", "mesh.stl", lambda p: plain.export(p, file_type="stl_ascii"))
-    c.write("mesh", "PLY, text", "mesh.ply", lambda p: printed.export(p, encoding="ascii"), **VERTEX)
+    c.write("mesh", "STL, text", "mesh.stl", {}, plain.export, file_type="stl_ascii")
+    c.write("mesh", "PLY, text", "mesh.ply", VERTEX, printed.export, encoding="ascii")
     # The grey of a default material, 0.4, becomes a factor of the texture in glTF.
     grey_factor = {"colors": "texture", "colorFactor": 0.4}
     for what, mesh, expect, formats in (
@@ -55,7 +55,7 @@ def trimesh_(c, t):
         ("", plain, REFUSED, "off dae 3mf"),
     ):
         for format in formats.split():
-            c.write("mesh", f"{format}{what}", f"mesh.{format}", mesh.export, **expect)
+            c.write("mesh", f"{format}{what}", f"mesh.{format}", expect, mesh.export)
     turn = trimesh.transformations.rotation_matrix(1.0, [1, 2, 3], [0.1, 0.2, 0.3])
     for name, matrix in (
         ("node in millimetres", np.diag([0.001, 0.001, 0.001, 1])),
@@ -67,7 +67,7 @@ def trimesh_(c, t):
         inner = body(printed.visual.copy()).apply_transform(np.linalg.inv(matrix))
         placed = trimesh.Scene()
         placed.add_geometry(inner, transform=matrix)
-        c.write("mesh", f"glb, {name}", "mesh.glb", placed.export, limitM=2e-6, **VERTEX)
+        c.write("mesh", f"glb, {name}", "mesh.glb", VERTEX | {"limitM": 2e-6}, placed.export)
 
     def load(path):
         # Its Scene joins the geometry with the transforms of the nodes.
@@ -101,26 +101,23 @@ def open3d_(c, t):
         mesh.compute_vertex_normals()
         return mesh
 
-    def save(kind, **options):
-        def write(path):
-            assert o3d.io.write_triangle_mesh(path, body(kind), **options), "refused"
-
-        return write
+    def save(path, kind, **options):
+        assert o3d.io.write_triangle_mesh(path, body(kind), **options), "refused"
 
     def tensor(path):
         assert o3d.t.io.write_triangle_mesh(path, o3d.t.geometry.TriangleMesh.from_legacy(body("vertex"))), "refused"
 
     for format in ("glb", "gltf", "obj", "ply"):
-        c.write("mesh", f"{format}, colours of vertices", f"mesh.{format}", save("vertex"), **VERTEX)
+        c.write("mesh", f"{format}, colours of vertices", f"mesh.{format}", VERTEX, save, "vertex")
     for format in ("glb", "obj", "ply", "stl"):
-        c.write("mesh", f"{format}, tensor", f"mesh.{format}", tensor, **({} if format == "stl" else VERTEX))
-    c.write("mesh", "ply, text", "mesh.ply", save("vertex", write_ascii=True), **VERTEX)
-    c.write("mesh", "ply, compressed=True", "mesh.ply", save("vertex", compressed=True), **VERTEX)
-    c.write("mesh", "stl", "mesh.stl", save("plain"))
-    c.write("mesh", "obj, texture", "mesh.obj", save("texture"), **TEXTURE)
+        c.write("mesh", f"{format}, tensor", f"mesh.{format}", {} if format == "stl" else VERTEX, tensor)
+    c.write("mesh", "ply, text", "mesh.ply", VERTEX, save, "vertex", write_ascii=True)
+    c.write("mesh", "ply, compressed=True", "mesh.ply", VERTEX, save, "vertex", compressed=True)
+    c.write("mesh", "stl", "mesh.stl", {}, save, "plain")
+    c.write("mesh", "obj, texture", "mesh.obj", TEXTURE, save, "texture")
     # Its GLB has neither the texture nor its coordinates.
-    c.write("mesh", "glb, texture", "mesh.glb", save("texture"))
-    c.write("mesh", "off", "mesh.off", save("plain"), **REFUSED)
+    c.write("mesh", "glb, texture", "mesh.glb", {}, save, "texture")
+    c.write("mesh", "off", "mesh.off", REFUSED, save, "plain")
 
     c.meshes(t, lambda path: np.asarray(o3d.io.read_triangle_mesh(path).vertices))
     # Rows, as `toRowMajor` returns them; the extrinsic of a camera.
@@ -161,25 +158,22 @@ def pymeshlab_(c, t):
         "face": {"f_color_matrix": with_alpha(t.face_colors) / 255.0},
     }
 
-    def save(kind, **options):
-        def write(path):
-            meshes = pymeshlab.MeshSet()
-            meshes.add_mesh(pymeshlab.Mesh(t.points, t.triangles, **colors[kind]), "body")
-            meshes.save_current_mesh(path, **options)
+    def save(path, kind, **options):
+        meshes = pymeshlab.MeshSet()
+        meshes.add_mesh(pymeshlab.Mesh(t.points, t.triangles, **colors[kind]), "body")
+        meshes.save_current_mesh(path, **options)
 
-        return write
-
-    faces = save("face", save_face_color=True, save_vertex_color=False)
-    c.write("mesh", "ply", "mesh.ply", save("vertex"), **VERTEX)
-    c.write("mesh", "ply, text", "mesh.ply", save("vertex", binary=False), **VERTEX)
-    c.write("mesh", "ply, colours of faces", "mesh.ply", faces, **FACE)
-    c.write("mesh", "obj", "mesh.obj", save("vertex", save_vertex_color=True), **VERTEX)
-    c.write("mesh", "obj, colours of faces", "mesh.obj", faces, **FACE)
-    c.write("mesh", "stl", "mesh.stl", save("plain"))
-    c.write("mesh", "stl, colours of faces", "mesh.stl", save("face", save_face_color=True), colorLimit=14, **FACE)
-    c.write("mesh", "stl, text", "mesh.stl", save("plain", binary=False))
+    faces = {"save_face_color": True, "save_vertex_color": False}
+    c.write("mesh", "ply", "mesh.ply", VERTEX, save, "vertex")
+    c.write("mesh", "ply, text", "mesh.ply", VERTEX, save, "vertex", binary=False)
+    c.write("mesh", "ply, colours of faces", "mesh.ply", FACE, save, "face", **faces)
+    c.write("mesh", "obj", "mesh.obj", VERTEX, save, "vertex", save_vertex_color=True)
+    c.write("mesh", "obj, colours of faces", "mesh.obj", FACE, save, "face", **faces)
+    c.write("mesh", "stl", "mesh.stl", {}, save, "plain")
+    c.write("mesh", "stl, colours of faces", "mesh.stl", FACE | {"colorLimit": 14}, save, "face", save_face_color=True)
+    c.write("mesh", "stl, text", "mesh.stl", {}, save, "plain", binary=False)
     for format in ("off", "3mf", "dae", "wrl", "x3d", "ctm"):
-        c.write("mesh", format, f"mesh.{format}", save("plain"), **REFUSED)
+        c.write("mesh", format, f"mesh.{format}", REFUSED, save, "plain")
 
     def load(path):
         meshes = pymeshlab.MeshSet()
@@ -196,13 +190,13 @@ def meshio_(c, t):
     colors = dict(zip(("red", "green", "blue"), t.colors.T))
     plain = meshio.Mesh(t.points, [("triangle", t.triangles)])
     printed = meshio.Mesh(t.points, [("triangle", t.triangles)], point_data=colors)
-    c.write("mesh", "obj", "mesh.obj", plain.write)
-    c.write("mesh", "ply", "mesh.ply", printed.write, **VERTEX)
-    c.write("mesh", "ply, text", "mesh.ply", lambda p: printed.write(p, binary=False), **VERTEX)
-    c.write("mesh", "stl", "mesh.stl", lambda p: plain.write(p, binary=True))
-    c.write("mesh", "stl, text", "mesh.stl", lambda p: plain.write(p, binary=False))
+    c.write("mesh", "obj", "mesh.obj", {}, plain.write)
+    c.write("mesh", "ply", "mesh.ply", VERTEX, printed.write)
+    c.write("mesh", "ply, text", "mesh.ply", VERTEX, printed.write, binary=False)
+    c.write("mesh", "stl", "mesh.stl", {}, plain.write, binary=True)
+    c.write("mesh", "stl, text", "mesh.stl", {}, plain.write, binary=False)
     for format in ("off", "vtk", "vtu"):
-        c.write("mesh", format, f"mesh.{format}", plain.write, **REFUSED)
+        c.write("mesh", format, f"mesh.{format}", REFUSED, plain.write)
     c.points("PLY", "exportPly", meshio.read(t.ours("placed.ply")).points, t.placed)
     surface = meshio.read(t.ours("found", "urdf", "meshes", "body.obj"))
     c.points("URDF", "OBJ of the surface", surface.points, t.points)
@@ -212,29 +206,23 @@ def meshio_(c, t):
 def plyfile_(c, t):
     from plyfile import PlyData, PlyElement
 
-    def save(text=False, order="<", number="f4", wide="u1", faces="i4"):
-        def write(path):
-            # 16-bit colours have the whole range, floats 0 to 1.
-            factor = {"u1": 1, "u2": 257, "f4": 1 / 255.0}[wide]
-            names = [(axis, number) for axis in "xyz"] + [(each, wide) for each in ("red", "green", "blue")]
-            rows = [(*point, *color) for point, color in zip(t.points, t.colors.astype(int) * factor)]
-            vertex = PlyElement.describe(np.array(rows, dtype=names), "vertex")
-            face = np.empty(len(t.triangles), dtype=[("vertex_indices", faces, (3,))])
-            face["vertex_indices"] = t.triangles
-            described = PlyElement.describe(face, "face", len_types={"vertex_indices": "u1"})
-            PlyData([vertex, described], text=text, byte_order=order).write(path)
+    def save(path, text=False, order="<", number="f4", wide="u1", faces="i4"):
+        # 16-bit colours have the whole range, floats 0 to 1.
+        factor = {"u1": 1, "u2": 257, "f4": 1 / 255.0}[wide]
+        names = [(axis, number) for axis in "xyz"] + [(each, wide) for each in ("red", "green", "blue")]
+        rows = [(*point, *color) for point, color in zip(t.points, t.colors.astype(int) * factor)]
+        vertex = PlyElement.describe(np.array(rows, dtype=names), "vertex")
+        face = np.empty(len(t.triangles), dtype=[("vertex_indices", faces, (3,))])
+        face["vertex_indices"] = t.triangles
+        described = PlyElement.describe(face, "face", len_types={"vertex_indices": "u1"})
+        PlyData([vertex, described], text=text, byte_order=order).write(path)
 
-        return write
-
-    for variant, options in {
-        "ply": {},
-        "ply, text": {"text": True},
-        "ply, big-endian": {"order": ">"},
-        "ply, doubles": {"number": "f8", "faces": "u4"},
-        "ply, colours of 16 bits": {"wide": "u2"},
-        "ply, colours as floats": {"wide": "f4"},
-    }.items():
-        c.write("mesh", variant, "mesh.ply", save(**options), **VERTEX)
+    c.write("mesh", "ply", "mesh.ply", VERTEX, save)
+    c.write("mesh", "ply, text", "mesh.ply", VERTEX, save, text=True)
+    c.write("mesh", "ply, big-endian", "mesh.ply", VERTEX, save, order=">")
+    c.write("mesh", "ply, doubles", "mesh.ply", VERTEX, save, number="f8", faces="u4")
+    c.write("mesh", "ply, colours of 16 bits", "mesh.ply", VERTEX, save, wide="u2")
+    c.write("mesh", "ply, colours as floats", "mesh.ply", VERTEX, save, wide="f4")
 
     source = t.read("splats.json")
     before, after = (PlyData.read(each)["vertex"] for each in (source["source"], t.ours("splats.ply")))
@@ -250,8 +238,8 @@ def numpy_stl(c, t):
 
     body = mesh.Mesh(np.zeros(len(t.triangles), dtype=mesh.Mesh.dtype))
     body.vectors[:] = t.points[t.triangles]
-    c.write("mesh", "stl", "mesh.stl", lambda p: body.save(p, mode=Mode.BINARY))
-    c.write("mesh", "stl, text", "mesh.stl", lambda p: body.save(p, mode=Mode.ASCII), limitM=1e-6)
+    c.write("mesh", "stl", "mesh.stl", {}, body.save, mode=Mode.BINARY)
+    c.write("mesh", "stl, text", "mesh.stl", {"limitM": 1e-6}, body.save, mode=Mode.ASCII)
 
 
 @program("usd-core")
@@ -272,9 +260,9 @@ def usd_(c, t):
         assert UsdUtils.CreateNewUsdzPackage(inner, path)
         os.remove(inner)
 
-    c.write("mesh", "usda", "mesh.usda", save, **USD)
-    c.write("mesh", "usdc", "mesh.usdc", save, **USD)
-    c.write("mesh", "usdz", "mesh.usdz", pack, **USD)
+    c.write("mesh", "usda", "mesh.usda", USD, save)
+    c.write("mesh", "usdc", "mesh.usdc", USD, save)
+    c.write("mesh", "usdz", "mesh.usdz", USD, pack)
 
     scene = Scene(t)
     stage = Usd.Stage.Open(t.ours("found", "usd", "scene.usda"))
@@ -310,7 +298,7 @@ def blender_(c, t):
         bpy.context.collection.objects.link(made)
         return made
 
-    def operate(operator, path, **options):
+    def operate(path, operator, **options):
         folder, name = operator.split(".")
         getattr(getattr(bpy.ops, folder), name)(filepath=path, **options)
 
@@ -348,44 +336,41 @@ def blender_(c, t):
         bpy.context.view_layer.objects.active = body
         body.select_set(True)
 
-    def save(operator, kind="plain", parent=False, **options):
-        def write(path):
-            scene(kind, parent)
-            operate(operator, path, **options)
-
-        return write
+    def save(path, operator, kind="plain", parent=False, **options):
+        scene(kind, parent)
+        operate(path, operator, **options)
 
     glb, obj, ply, stl = "export_scene.gltf", "wm.obj_export", "wm.ply_export", "wm.stl_export"
-    separate = {"export_format": "GLTF_SEPARATE"}
+    separate, srgb = {"export_format": "GLTF_SEPARATE"}, {"export_colors": "SRGB"}
     lossy = {"colorLimit": 6, **YUP}
     draco = {"export_draco_mesh_compression_enable": True, "export_draco_position_quantization": 16}
     for kind in ("BYTE_COLOR", "FLOAT_COLOR"):
-        c.write("mesh", f"GLB, {kind}", "mesh.glb", save(glb, kind), **YUP, **VERTEX)
-        c.write("mesh", f"GLTF_SEPARATE, {kind}", "mesh.gltf", save(glb, kind, **separate), **YUP, **VERTEX)
-        c.write("mesh", f"PLY, {kind}", "mesh.ply", save(ply, kind, export_colors="SRGB"), **VERTEX)
-        text = save(ply, kind, ascii_format=True, export_colors="SRGB")
-        c.write("mesh", f"PLY, text, {kind}", "mesh.ply", text, **VERTEX)
-    c.write("mesh", "GLB, texture", "mesh.glb", save(glb, "texture"), **YUP, **TEXTURE)
-    c.write("mesh", "glTF, texture", "mesh.gltf", save(glb, "texture", **separate), **YUP, **TEXTURE)
-    c.write("mesh", "GLB, JPEG", "mesh.glb", save(glb, "texture", export_image_format="JPEG"), **lossy, **TEXTURE)
-    c.write("mesh", "GLB, WebP", "mesh.glb", save(glb, "texture", export_image_format="WEBP"), **lossy, **TEXTURE)
-    c.write("mesh", "GLB, z up", "mesh.glb", save(glb, "FLOAT_COLOR", export_yup=False), **VERTEX)
-    c.write("mesh", "GLB below a scaled empty", "mesh.glb", save(glb, "FLOAT_COLOR", True), limitM=1e-6, **YUP, **VERTEX)
-    c.write("mesh", "GLB, Draco", "mesh.glb", save(glb, "FLOAT_COLOR", **draco), limitM=1e-5, **lossy, **VERTEX)
-    c.write("mesh", "OBJ", "mesh.obj", save(obj), **YUP)
-    c.write("mesh", "OBJ, colours of vertices", "mesh.obj", save(obj, "FLOAT_COLOR", export_colors=True), **YUP, **VERTEX)
-    c.write("mesh", "OBJ, texture", "mesh.obj", save(obj, "texture", path_mode="COPY"), **YUP, **TEXTURE)
-    c.write("mesh", "OBJ, z up", "mesh.obj", save(obj, forward_axis="Y", up_axis="Z"))
-    c.write("mesh", "OBJ in millimetres", "mesh.obj", save(obj, global_scale=1000.0), unit=1000, **YUP)
-    c.write("mesh", "PLY", "mesh.ply", save(ply))
-    c.write("mesh", "STL", "mesh.stl", save(stl))
-    c.write("mesh", "STL, text", "mesh.stl", save(stl, ascii_format=True), limitM=1e-6)
-    c.write("mesh", "FBX", "mesh.fbx", save("export_scene.fbx"), says="FBX", **REFUSED)
-    c.write("mesh", "USD", "mesh.usdc", save("wm.usd_export"), **USD)
+        c.write("mesh", f"GLB, {kind}", "mesh.glb", YUP | VERTEX, save, glb, kind)
+        c.write("mesh", f"GLTF_SEPARATE, {kind}", "mesh.gltf", YUP | VERTEX, save, glb, kind, **separate)
+        c.write("mesh", f"PLY, {kind}", "mesh.ply", VERTEX, save, ply, kind, **srgb)
+        c.write("mesh", f"PLY, text, {kind}", "mesh.ply", VERTEX, save, ply, kind, ascii_format=True, **srgb)
+    c.write("mesh", "GLB, texture", "mesh.glb", YUP | TEXTURE, save, glb, "texture")
+    c.write("mesh", "glTF, texture", "mesh.gltf", YUP | TEXTURE, save, glb, "texture", **separate)
+    c.write("mesh", "GLB, JPEG", "mesh.glb", lossy | TEXTURE, save, glb, "texture", export_image_format="JPEG")
+    c.write("mesh", "GLB, WebP", "mesh.glb", lossy | TEXTURE, save, glb, "texture", export_image_format="WEBP")
+    c.write("mesh", "GLB, z up", "mesh.glb", VERTEX, save, glb, "FLOAT_COLOR", export_yup=False)
+    c.write("mesh", "GLB below a scaled empty", "mesh.glb", YUP | VERTEX | {"limitM": 1e-6}, save, glb, "FLOAT_COLOR", True)
+    c.write("mesh", "GLB, Draco", "mesh.glb", lossy | VERTEX | {"limitM": 1e-5}, save, glb, "FLOAT_COLOR", **draco)
+    c.write("mesh", "OBJ", "mesh.obj", YUP, save, obj)
+    c.write("mesh", "OBJ, colours of vertices", "mesh.obj", YUP | VERTEX, save, obj, "FLOAT_COLOR", export_colors=True)
+    c.write("mesh", "OBJ, texture", "mesh.obj", YUP | TEXTURE, save, obj, "texture", path_mode="COPY")
+    c.write("mesh", "OBJ, z up", "mesh.obj", {}, save, obj, forward_axis="Y", up_axis="Z")
+    c.write("mesh", "OBJ in millimetres", "mesh.obj", YUP | {"unit": 1000}, save, obj, global_scale=1000.0)
+    c.write("mesh", "PLY", "mesh.ply", {}, save, ply)
+    c.write("mesh", "STL", "mesh.stl", {}, save, stl)
+    c.write("mesh", "STL, text", "mesh.stl", {"limitM": 1e-6}, save, stl, ascii_format=True)
+    c.write("mesh", "FBX", "mesh.fbx", REFUSED | {"says": "FBX"}, save, "export_scene.fbx")
+    c.write("mesh", "USD", "mesh.usdc", USD, save, "wm.usd_export")
 
     def load(path):
         bpy.ops.wm.read_factory_settings(use_empty=True)
-        operate({"glb": "import_scene.gltf", "ply": "wm.ply_import", "usda": "wm.usd_import"}[path.split(".")[-1]], path)
+        imports = {"glb": "import_scene.gltf", "ply": "wm.ply_import", "usda": "wm.usd_import"}
+        operate(path, imports[path.split(".")[-1]])
         bpy.context.view_layer.update()
         meshes = [each for each in bpy.context.scene.objects if each.type == "MESH" and "ground" not in each.name.lower()]
         points = np.array([each.matrix_world @ v.co for each in meshes for v in each.data.vertices])
