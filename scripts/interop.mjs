@@ -2,6 +2,7 @@
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { command } from "./bench/command.mjs";
+import { writeFixtures, writePlaces, writeTable } from "./interop/table.mjs";
 import { cached, digest } from "./lib/cache.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { at } from "./lib/paths.mjs";
@@ -46,13 +47,9 @@ async function rowsOf(python, name, version) {
 /** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
 async function interop({ only, write, verbose, python: program }) {
   await buildPackage();
-  const [{ readBack }, { writeOurs }, { programs, rowsOf: rowsOfPackage }, { writePlaces, writeTable, writeFixtures }] =
-    await Promise.all([
-      import("./interop/read.mjs"),
-      import("./interop/ours.mjs"),
-      import("./interop/programs.mjs"),
-      import("./interop/table.mjs"),
-    ]);
+  const { readBack } = await import("./interop/read.mjs");
+  const { writeOurs } = await import("./interop/ours.mjs");
+  const { programs, rowsOf: rowsOfPackage } = await import("./interop/programs.mjs");
   rmSync(join(root, "files"), { recursive: true, force: true });
   mkdirSync(join(root, "rows"), { recursive: true });
   const pythonIn = (/** @type {string} */ name) => {
@@ -98,19 +95,18 @@ async function interop({ only, write, verbose, python: program }) {
   for (const { program, version, variant, notWritten } of unwritten) {
     console.log(`not written: ${program} ${version}, ${variant}: ${notWritten?.split("\n")[0]}`);
   }
-  for (const { program, version, kind, variant, result, passed } of cells) {
-    if (verbose || !passed)
-      console.log(`${passed ? "as stated" : "MISS"}: ${program} ${version}, ${kind}, ${variant}: ${result}`);
+  const misses = cells.filter(({ passed }) => !passed);
+  for (const { program, version, kind, variant, result, passed } of verbose ? cells : misses) {
+    console.log(`${passed ? "as stated" : "MISS"}: ${program} ${version}, ${kind}, ${variant}: ${result}`);
   }
-  const misses = cells.filter(({ passed }) => !passed).length;
-  console.log(`${cells.length} cells, ${misses} misses.`);
+  console.log(`${cells.length} cells, ${misses.length} misses.`);
   if (write) writePlaces(cells);
   // Some programs are not the whole table.
   if (write && only === undefined) {
     writeFixtures(read.filter(({ file }) => file !== undefined));
     writeTable(cells, new Date().toISOString().slice(0, 10));
   }
-  if (misses > 0) process.exitCode = 1;
+  if (misses.length > 0) process.exitCode = 1;
 }
 
 await command("interop", (program) =>
