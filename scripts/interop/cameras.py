@@ -5,10 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .cells import dump, program, rotation
+from .cells import MM, REFUSED, dump, program, rotation
 from .places import PIXEL
 
-REFUSED = {"refused": "UNSUPPORTED_FORMAT"}
 RECORDING = REFUSED | {"says": "a recording of ROS"}
 # COLMAP counts from the outer corner of the first pixel: half a pixel more than OpenCV.
 HALF_PIXEL = np.array([[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]])
@@ -84,7 +83,7 @@ def open3d_(c, t):
     # What RSBagReader.save_frames writes.
     c.write("camera", "RGBDVideoMetadata", "intrinsic.json", {}, lambda p: Path(p).write_text(str(metadata)))
     image = o3d.geometry.Image(t.mm)
-    c.write("depth", "Image of millimetres, PNG", "depth.png", {"limitM": 0.0005001}, io.write_image, image)
+    c.write("depth", "Image of millimetres, PNG", "depth.png", MM, io.write_image, image)
     scene = o3d.t.geometry.RaycastingScene()
     scene.add_triangles(t.points.astype(np.float32), t.triangles.astype(np.uint32))
     # Rays go through (u + .5, v + .5) in the numbers of K.

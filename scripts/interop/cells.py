@@ -14,6 +14,10 @@ PROGRAMS = {}
 FLIP = np.diag([1.0, -1, -1, 1])
 # Floats of 32 bits, and numbers of 7 digits, at half a metre.
 LIMIT = 1e-6
+# Of depth that is rounded to millimetres.
+MM = {"limitM": 0.0005001}
+# Converted by another program first, as our error says.
+REFUSED = {"refused": "UNSUPPORTED_FORMAT"}
 
 
 def program(name):

@@ -1,17 +1,16 @@
-"""Programs of images and arrays: depth maps, as floats of metres or integers of millimetres, masks and cameras in each of their formats."""
+"""Programs of images and arrays: depth maps, in metres as floats or in whole millimetres, masks and cameras."""
 
 import os
 
 import numpy as np
 
-from .cells import FLIP, apply, dump, program, rigid
+from .cells import FLIP, MM, REFUSED, apply, dump, program, rigid
 from .masks import coco_of
 from .places import EDGE, PIXEL, mixed
 
-# Rounded to millimetres; to half floats; to the 24 bits of PXR24.
-MM, HALF, BITS_24 = {"limitM": 0.0005001}, {"limitM": 0.0005}, {"limitM": 2e-5}
+# Rounded to half floats; to the 24 bits of PXR24.
+HALF, BITS_24 = {"limitM": 0.0005}, {"limitM": 2e-5}
 EIGHT_BIT = {"refused": "EIGHT_BIT_DEPTH"}
-REFUSED = {"refused": "UNSUPPORTED_FORMAT"}
 
 
 @program("OpenCV")
@@ -27,7 +26,7 @@ def opencv_(c, t):
     # with a high range.
     v, u = np.mgrid[: t.height, : t.width]
     points = np.stack([t.depth, (v - t.cy) / t.fy * t.depth, (u - t.cx) / t.fx * t.depth], 2).astype(np.float32)
-    lossy = {**REFUSED, "says": "LogLuv"} if c.version.startswith("4") else {"limitM": 1e-6}
+    lossy = REFUSED | {"says": "LogLuv"} if c.version.startswith("4") else {"limitM": 1e-6}
     c.write("depth", "PNG of millimetres", "depth.png", MM, save, t.mm)
     c.write("depth", "PNG, compression 0", "depth.png", MM, save, t.mm, "PNG_COMPRESSION", 0)
     c.write("depth", "PNG of floats", "depth.png", EIGHT_BIT, save, t.depth)

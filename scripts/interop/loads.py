@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .cells import FLIP, Scene, apply, program, rigid, rotation
+from .cells import FLIP, MM, Scene, apply, program, rigid, rotation
 
 
 @program("MuJoCo")
@@ -195,4 +195,4 @@ def mitsuba_(c, t):
     c.write("mesh", "write_ply", "mesh.ply", {}, mesh.write_ply)
     c.write("depth", "EXR of a Bitmap", "depth.exr", {}, metres.write)
     c.write("depth", "PFM of a Bitmap", "depth.pfm", {}, metres.write)
-    c.write("depth", "PNG of a Bitmap of 16 bits", "depth.png", {"limitM": 0.0005001}, millimetres.write)
+    c.write("depth", "PNG of a Bitmap of 16 bits", "depth.png", MM, millimetres.write)

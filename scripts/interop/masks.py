@@ -6,7 +6,7 @@ import tempfile
 
 import numpy as np
 
-from .cells import apply, dump, program, rotation
+from .cells import REFUSED, apply, dump, program, rotation
 
 
 def coco_of(t, segmentation, crowd=0):
@@ -117,7 +117,7 @@ def datumaro_(c, t):
     c.write("mask", "VOC's segmentation of classes", "mask.png", {}, save, "voc_segmentation", "SegmentationClass/")
     c.write("mask", "VOC's segmentation of objects", "mask.png", {}, save, "voc_segmentation", "SegmentationObject/")
     c.write("mask", "Cityscapes, labelIds", "mask.png", {}, save, "cityscapes", "labelIds")
-    c.write("mask", "CVAT's XML", "mask.xml", {"refused": "UNSUPPORTED_FORMAT"}, save, "cvat", ".xml")
+    c.write("mask", "CVAT's XML", "mask.xml", REFUSED, save, "cvat", ".xml")
     c.write("mask", "Datumaro's own JSON", "mask.json", {}, save, "datumaro", "annotations/")
     c.write("mask", "CamVid", "mask.png", {}, save, "camvid", "annot/")
     c.write("mask", "KITTI's instances", "mask.png", {}, save, "kitti_segmentation", "instance/")

@@ -5,11 +5,9 @@ import tempfile
 
 import numpy as np
 
-from .cells import FLIP, Scene, apply, nearest, program, rotation
+from .cells import FLIP, REFUSED, Scene, apply, nearest, program, rotation
 from .places import BOX, GREY, PIXEL, RAY, grey, turned
 
-# Converted by another program first, as our error says.
-REFUSED = {"refused": "UNSUPPORTED_FORMAT"}
 USD = REFUSED | {"says": "USD"}
 VERTEX, TEXTURE, FACE = ({"colors": each} for each in ("vertex", "texture", "face"))
 # A quarter turn about x: z up becomes y up.
