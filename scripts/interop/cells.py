@@ -62,8 +62,8 @@ def farthest(points, others):
 
 
 def outcome(error, limit, unit):
-    passed = bool(error <= limit)
-    return {"passed": passed, "error": float(error), "unit": unit, "result": f"{error:.2g} {unit}, at most {limit}"}
+    found = f"{error:.2g} {unit}".strip()
+    return {"passed": bool(error <= limit), "error": float(error), "unit": unit, "result": f"{found}, at most {limit}"}
 
 
 class Truth:
