@@ -2,6 +2,7 @@
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { command } from "./bench/command.mjs";
+import { writeFixtures, writePlaces, writeTable } from "./interop/table.mjs";
 import { cached, digest } from "./lib/cache.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { at } from "./lib/paths.mjs";
@@ -11,11 +12,13 @@ import { step } from "./lib/step.mjs";
 
 /** @typedef {import("./interop/table.mjs").Cell} Cell */
 /** @typedef {{ program: string, version: string, kind: string, variant: string, notWritten?: string }} Written */
-/** @typedef {{ program: string, version: string, kind: string, variant: string, failed?: string, error?: number, limit: number, found?: number }} Loaded */
 
 const root = at("target", "interop");
 const env = { PYTHONPATH: at("scripts"), PYTHONDONTWRITEBYTECODE: "1" };
-/** @type {{ python: Record<string, { programs: string[], packages: string[] }>, npm: Record<string, string> }} */
+/**
+ * Of each environment of Python, the packages of its programs, the first in the version that is run, and what they need `also`.
+ * @type {{ python: Record<string, Record<string, string>>, npm: Record<string, string> }}
+ */
 const packages = JSON.parse(readFileSync(at("scripts", "interop", "packages.json"), "utf8"));
 
 /** Installs npm packages that the repository does not have. */
@@ -32,44 +35,25 @@ async function npm() {
   });
 }
 
-/** The rows of a Python program. @param {string} python @param {string[]} args @param {string} out */
-async function rowsOf(python, args, out) {
+/** The rows of a Python program. @param {string} python @param {string} name @param {string} version */
+async function rowsOf(python, name, version) {
+  const out = join(root, "rows", `${name}-${version}.json`);
   rmSync(out, { force: true });
-  const { reason, output } = await attempt(python, ["-m", "interop", ...args, root, out], { env });
-  if (reason !== "") throw new Error(`${args.join(" ")}: ${reason}\n${output.slice(-2000)}`);
+  const { reason, output } = await attempt(python, ["-m", "interop", "run", root, name, version, out], { env });
+  if (reason !== "") throw new Error(`${name}: ${reason}\n${output.slice(-2000)}`);
   return JSON.parse(readFileSync(out, "utf8"));
-}
-
-/** @param {Loaded} row @returns {Cell} */
-function loadedCell({ failed, error = Number.NaN, limit, found, ...row }) {
-  const passed = failed === undefined && error <= limit;
-  if (found !== undefined)
-    return { ...row, action: "place", passed, result: failed ?? `${Math.round(1000 * found) / 1000}` };
-  const unit = /mass|relative|pixels|moved|faults|number|letters|radians|pose|metres/.test(row.variant) ? "" : "m";
-  return {
-    ...row,
-    action: "load",
-    passed,
-    error,
-    unit,
-    result: failed ?? `${error.toPrecision(2)}${passed ? "" : `, more than ${limit}`}`,
-  };
 }
 
 /** @param {{ only?: string[], write: boolean, verbose: boolean, python: string }} options */
 async function interop({ only, write, verbose, python: program }) {
   await buildPackage();
-  const [{ readBack }, { writeOurs }, { programs, rowsOf: rowsOfPackage }, { writePlaces, writeTable, writeFixtures }] =
-    await Promise.all([
-      import("./interop/read.mjs"),
-      import("./interop/ours.mjs"),
-      import("./interop/programs.mjs"),
-      import("./interop/table.mjs"),
-    ]);
+  const { readBack } = await import("./interop/read.mjs");
+  const { writeOurs } = await import("./interop/ours.mjs");
+  const { programs, rowsOf: rowsOfPackage } = await import("./interop/programs.mjs");
   rmSync(join(root, "files"), { recursive: true, force: true });
   mkdirSync(join(root, "rows"), { recursive: true });
   const pythonIn = (/** @type {string} */ name) => {
-    const list = packages.python[name]?.packages ?? [];
+    const list = [...new Set(Object.values(packages.python[name] ?? {}).flatMap((each) => each.split(" ")))];
     return step(`Python packages: ${name}`, () => pythonOf(join(root, name), digest([], list), list, program));
   };
   const main = await pythonIn("main");
@@ -84,26 +68,19 @@ async function interop({ only, write, verbose, python: program }) {
   const add = async (/** @type {any[]} */ rows) => {
     for (const row of rows) {
       if (row.notWritten !== undefined) unwritten.push(row);
-      else if (row.limit !== undefined) cells.push(loadedCell(row));
+      else if (row.passed !== undefined) cells.push(row);
       else read.push(row.read === undefined ? await readBack(row) : row);
     }
     return `${rows.length} cells`;
   };
   const isWanted = (/** @type {string} */ name) => only === undefined || only.includes(name);
-  for (const [environment, { programs: names }] of Object.entries(packages.python)) {
-    const wanted = names.filter(isWanted);
+  for (const [environment, { also, ...versions }] of Object.entries(packages.python)) {
+    const wanted = Object.entries(versions).filter(([name]) => isWanted(name));
     if (wanted.length === 0) continue;
     const python = await pythonIn(environment);
-    const known = (await run(python, ["-m", "interop", "list"], { env })).trim().split("\n");
-    for (const name of wanted) {
-      await step(`${name} (${environment})`, async (say) => {
-        const rows = [];
-        for (const action of ["write", "load", "place"]) {
-          const out = join(root, "rows", `${environment}-${name}-${action}.json`);
-          if (known.includes(`${action}\t${name}`)) rows.push(...(await rowsOf(python, [action, name], out)));
-        }
-        say(await add(rows));
-      });
+    for (const [name, requirements] of wanted) {
+      const version = /==(\S+)/.exec(requirements)?.[1] ?? "";
+      await step(`${name} ${version}`, async (say) => say(await add(await rowsOf(python, name, version))));
     }
   }
   await step("npm packages", npm);
@@ -118,19 +95,18 @@ async function interop({ only, write, verbose, python: program }) {
   for (const { program, version, variant, notWritten } of unwritten) {
     console.log(`not written: ${program} ${version}, ${variant}: ${notWritten?.split("\n")[0]}`);
   }
-  for (const { program, version, kind, variant, result, passed } of cells) {
-    if (verbose || !passed)
-      console.log(`${passed ? "as stated" : "MISS"}: ${program} ${version}, ${kind}, ${variant}: ${result}`);
+  const misses = cells.filter(({ passed }) => !passed);
+  for (const { program, version, kind, variant, result, passed } of verbose ? cells : misses) {
+    console.log(`${passed ? "as stated" : "MISS"}: ${program} ${version}, ${kind}, ${variant}: ${result}`);
   }
-  const misses = cells.filter(({ passed }) => !passed).length;
-  console.log(`${cells.length} cells, ${misses} misses.`);
+  console.log(`${cells.length} cells, ${misses.length} misses.`);
   if (write) writePlaces(cells);
   // Some programs are not the whole table.
   if (write && only === undefined) {
     writeFixtures(read.filter(({ file }) => file !== undefined));
     writeTable(cells, new Date().toISOString().slice(0, 10));
   }
-  if (misses > 0) process.exitCode = 1;
+  if (misses.length > 0) process.exitCode = 1;
 }
 
 await command("interop", (program) =>

@@ -16,12 +16,14 @@ const DENSITY = 400;
 
 /** Writes every kind of file. @param {string} folder @param {string} truth the folder of the known object */
 export async function writeOurs(folder, truth) {
-  const write = (/** @type {string} */ name, /** @type {string | Uint8Array} */ content) => {
+  const array = (/** @type {string} */ _, /** @type {any} */ each) =>
+    ArrayBuffer.isView(each) ? Array.from(/** @type {any} */ (each)) : each;
+  const write = (/** @type {string} */ name, /** @type {string | object} */ content) => {
     const path = join(folder, name);
     mkdirSync(dirname(path), { recursive: true });
-    writeFileSync(path, content);
+    const isFile = typeof content === "string" || content instanceof Uint8Array;
+    writeFileSync(path, isFile ? content : JSON.stringify(content, array));
   };
-  /** @type {any} */
   const known = JSON.parse(readFileSync(join(truth, "truth.json"), "utf8"));
   const { pose, camera } = known;
   const mesh = {
@@ -29,32 +31,27 @@ export async function writeOurs(folder, truth) {
     indices: Uint32Array.from(known.triangles.flat()),
   };
   const transform = { ...pose, scale: SCALE };
+  // This GLB of the body is in metres.
   const glb = readFileSync(join(truth, "texture.glb"));
   write("node.glb", conventions.exportGlb(mesh, transform));
   write("baked.glb", conventions.exportGlb(mesh, transform, { mode: "baked" }));
   write("node-opencv.glb", conventions.exportGlb(mesh, transform, { frame: "opencv" }));
-  // The GLB of the body is in metres.
   write("textured.glb", conventions.exportGlb(glb, pose));
   write("placed.ply", conventions.exportPly(mesh, transform));
 
   // The plane below the body, in the frame of the camera.
-  const place = (/** @type {number[]} */ point) =>
-    Array.from(conventions.applyToPoints(pose, Float64Array.from(point)));
-  const [origin, above] = [place([0, 0, known.corner[2]]), place([0, 0, known.corner[2] + 1])];
-  const normal = /** @type {[number, number, number]} */ (above.map((each, k) => each - (origin[k] ?? 0)));
-  const support = { normal, d: -normal.reduce((sum, each, k) => sum + each * (origin[k] ?? 0), 0) };
-  write("scene.glb", conventions.exportSceneGlb([{ name: "body", mesh: glb, transform: pose }], { support, camera }));
-  write("scene-camera.glb", conventions.exportSceneGlb([{ name: "body", mesh: glb, transform: pose }], { camera }));
+  const plane = Float64Array.of(0, 0, known.corner[2], 0, 0, known.corner[2] + 1);
+  const [x = 0, y = 0, z = 0, ...above] = conventions.applyToPoints(pose, plane);
+  const normal = /** @type {const} */ ([(above[0] ?? 0) - x, (above[1] ?? 0) - y, (above[2] ?? 0) - z]);
+  const support = { normal, d: -(normal[0] * x + normal[1] * y + normal[2] * z) };
+  const placed = [{ name: "body", mesh: glb, transform: pose }];
+  write("scene.glb", conventions.exportSceneGlb(placed, { support, camera }));
+  write("scene-camera.glb", conventions.exportSceneGlb(placed, { camera }));
 
-  const colored = await readMesh(glb);
-  for (const rest of [false, true]) {
-    const name = rest ? "rest" : "found";
-    const scene = await simulators.simulatorScene([{ name: "body", mesh: colored, transform: pose }], {
-      support,
-      camera,
-      rest,
-      density: DENSITY,
-    });
+  const bodies = [{ name: "body", mesh: await readMesh(glb), transform: pose }];
+  for (const name of ["found", "rest"]) {
+    const options = { support, camera, rest: name === "rest", density: DENSITY };
+    const scene = await simulators.simulatorScene(bodies, options);
     const files = {
       mjcf: simulators.toMjcf(scene),
       urdf: simulators.toUrdf(scene),
@@ -64,59 +61,37 @@ export async function writeOurs(folder, truth) {
       for (const [path, text] of Object.entries(texts)) write(`${name}/${format}/${path}`, text);
     }
     const [body] = scene.bodies;
-    write(
-      `${name}/scene.json`,
-      JSON.stringify({ ...body, mesh: undefined, parts: body?.parts.length, camera: scene.camera }),
-    );
+    write(`${name}/scene.json`, { ...body, mesh: undefined, parts: body?.parts.length, camera: scene.camera });
   }
 
-  const { entry } = conventions.toBop(transform, { objId: 1 });
-  write("scene_gt.json", JSON.stringify({ 0: [entry] }));
-  const mask = {
-    data: new Uint8Array(readFileSync(join(truth, "mask.u8"))),
-    width: camera.width,
-    height: camera.height,
-  };
-  write("mask.json", JSON.stringify(conventions.toCocoRle(mask)));
-  write("mask-plain.json", JSON.stringify(conventions.toCocoRle(mask, { compressed: false })));
-  const image = { id: 1, file_name: "rgb.png", width: camera.width, height: camera.height };
-  const coco = (/** @type {object} */ segmentation, iscrowd = 0) => {
-    const annotation = { id: 1, image_id: 1, category_id: 1, iscrowd, segmentation, bbox: [0, 0, 1, 1], area: 1 };
-    return JSON.stringify({ images: [image], annotations: [annotation], categories: [{ id: 1, name: "body" }] });
-  };
+  const { width, height } = camera;
+  const mask = { data: new Uint8Array(readFileSync(join(truth, "mask.u8"))), width, height };
+  const coco = (/** @type {object} */ segmentation, iscrowd = 0) => ({
+    images: [{ id: 1, file_name: "rgb.png", width, height }],
+    annotations: [{ id: 1, image_id: 1, category_id: 1, iscrowd, segmentation, bbox: [0, 0, 1, 1], area: 1 }],
+    categories: [{ id: 1, name: "body" }],
+  });
+  write("mask.json", conventions.toCocoRle(mask));
   write("coco.json", coco(conventions.toCocoRle(mask)));
   write("coco-crowd.json", coco(conventions.toCocoRle(mask, { compressed: false }), 1));
 
   const box = conventions.orientedBoundingBox(mesh, transform);
   const cuboid = conventions.toCuboid(box);
-  write(
-    "cuboid.json",
-    JSON.stringify({
-      cuboid,
-      corners: Array.from(box.corners),
-      points: conventions.toCvatCuboid(cuboid),
-      toCamera: conventions.fromFrame({ scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] }, "ros").matrix,
-    }),
+  const { matrix: toCamera } = conventions.fromFrame(
+    { ...pose, rotation: [0, 0, 0, 1], translation: [0, 0, 0] },
+    "ros",
   );
+  write("cuboid.json", { cuboid, corners: box.corners, points: conventions.toCvatCuboid(cuboid), toCamera });
+  write("scene_gt.json", { 0: [conventions.toBop(transform, { objId: 1 }).entry] });
   const forms = {
     opencv: conventions.toSim3(transform),
     opengl: conventions.toFrame(transform, "opengl"),
     pytorch3d: conventions.toFrame(transform, "pytorch3d"),
     ros: conventions.toFrame(transform, "ros"),
   };
-  const poses = Object.entries(forms).map(([frame, form]) => [
-    frame,
-    {
-      scale: form.scale,
-      rotation: form.rotation,
-      translation: form.translation,
-      matrix: Array.from(form.matrix),
-      rows: Array.from(conventions.toRowMajor(form)),
-    },
-  ]);
-  write("poses.json", JSON.stringify(Object.fromEntries(poses)));
-  const splats = readFileSync(at("tests", "fixtures", "splat.ply"));
-  write("splats.ply", conventions.placeSplats(splats, transform));
-  write("splats.json", JSON.stringify({ scale: SCALE, source: at("tests", "fixtures", "splat.ply") }));
-  write("splats.splat", conventions.placeSplats(readFileSync(at("tests", "fixtures", "mesh.splat")), transform));
+  const poses = Object.entries(forms).map(([frame, form]) => [frame, { ...form, rows: conventions.toRowMajor(form) }]);
+  write("poses.json", Object.fromEntries(poses));
+  const splats = at("tests", "fixtures", "splat.ply");
+  write("splats.ply", conventions.placeSplats(readFileSync(splats), transform));
+  write("splats.json", { scale: SCALE, source: splats });
 }

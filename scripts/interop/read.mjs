@@ -19,21 +19,10 @@ const SIZE = { width: 160, height: 120 };
 const readers = {
   async mesh(bytes, { file, expect }) {
     const beside = readdirSync(dirname(file)).filter((name) => name !== basename(file));
-    const named = beside.map((name) => [name, readFileSync(join(dirname(file), name))]);
-    const resources = Object.fromEntries(
-      named.flatMap(([name, each]) => [
-        [name, each],
-        [`./${name}`, each],
-      ]),
-    );
-    const {
-      positions,
-      indices,
-      origin = [0, 0, 0],
-      samples,
-      warnings,
-      unread = [],
-    } = await formats.readMesh(bytes, { resources, ...expect.options });
+    const names = beside.flatMap((name) => [name, `./${name}`]);
+    const resources = Object.fromEntries(names.map((name) => [name, readFileSync(join(dirname(file), name))]));
+    const mesh = await formats.readMesh(bytes, { resources, ...expect.options });
+    const { positions, indices, origin = [0, 0, 0], samples, warnings, unread = [] } = mesh;
     const some = (/** @type {ArrayLike<number>} */ all) =>
       Array.from(all).filter((_, i) => Math.floor(i / 3) % EVERY === 0);
     const places = Array.from(positions, (each, i) => each + (origin[i % 3] ?? 0));
@@ -45,10 +34,8 @@ const readers = {
     return { data: Array.from(data), width, height };
   },
   async mask(bytes, { expect: { rle } }) {
-    const read =
-      rle === undefined
-        ? await formats.readMask(bytes)
-        : fromRle(JSON.parse(new TextDecoder().decode(bytes)), rle, SIZE);
+    const text = () => JSON.parse(new TextDecoder().decode(bytes));
+    const read = rle === undefined ? await formats.readMask(bytes) : fromRle(text(), rle, SIZE);
     return { ...read, data: Array.from(read.data, (each) => (each === 0 ? 0 : 1)) };
   },
   async camera(bytes) {

@@ -7,10 +7,7 @@ import { at } from "../lib/paths.mjs";
 
 const guide = at("docs", "guides", "interoperability.md");
 const list = at("docs", "record", "interop.tsv");
-/** @type {Record<string, string>} */
-const notes = JSON.parse(readFileSync(at("scripts", "interop", "notes.json"), "utf8"));
-/** What to do in the places where programs differ, by the question. @type {Record<string, string>} */
-const decisions = JSON.parse(readFileSync(at("scripts", "interop", "decisions.json"), "utf8"));
+const data = (/** @type {string} */ name) => JSON.parse(readFileSync(at("scripts", "interop", name), "utf8"));
 
 /** Counts by kind: "mesh 12, depth 3". @param {readonly Cell[]} cells */
 function counts(cells) {
@@ -27,13 +24,9 @@ function counts(cells) {
 function largest(cells) {
   const errors = cells.flatMap(({ error, unit }) => (unit === "m" && error !== undefined ? [1000 * error] : []));
   const most = Math.max(...errors);
-  return errors.length === 0
-    ? ""
-    : most < 1e-4
-      ? "< 0.0001"
-      : most < 0.01
-        ? `${Number(most.toPrecision(1))}`
-        : most.toFixed(2);
+  if (errors.length === 0) return "";
+  if (most < 1e-4) return "< 0.0001";
+  return most < 0.01 ? `${Number(most.toPrecision(1))}` : most.toFixed(2);
 }
 
 /** Puts content between the markers of the guide. @param {string} mark @param {string} content */
@@ -45,7 +38,7 @@ function writeBetween(mark, content) {
 
 /** Writes the table of the places where programs differ. @param {readonly Cell[]} cells */
 export function writePlaces(cells) {
-  const rows = Object.entries(decisions).map(([question, decision]) => {
+  const rows = Object.entries(data("decisions.json")).map(([question, decision]) => {
     const own = cells.filter(({ action, kind }) => action === "place" && kind === question);
     // Versions with the same answer are in one line.
     /** @type {Map<string, string[]>} */
@@ -62,6 +55,7 @@ export function writePlaces(cells) {
 
 /** Writes the table of programs. @param {readonly Cell[]} cells @param {string} date */
 export function writeTable(cells, date) {
+  const notes = data("notes.json");
   const name = (/** @type {Cell} */ { program, version }) => `${program} ${version}`;
   const names = [...new Set(cells.filter(({ action }) => action !== "place").map(name))].sort((a, b) =>
     a.localeCompare(b, "en", { sensitivity: "base", numeric: true }),
@@ -82,16 +76,9 @@ export function writeTable(cells, date) {
   const head =
     "| program | what it writes, read by sim3align | what it loads of sim3align | largest difference, mm | what to know |\n|---|---|---|---|---|";
   writeBetween("interop", `\n${total}\n\n${head}\n${rows.join("\n")}\n\n`);
-  const lines = cells.map(({ action, kind, variant, passed, result, ...cell }) => {
-    const short = result.replace(/\s+/g, " ").replaceAll(at(), "").slice(0, 160);
-    return [
-      name(/** @type {Cell} */ ({ action, kind, variant, passed, result, ...cell })),
-      action,
-      kind,
-      variant,
-      passed ? "as stated" : "MISS",
-      short,
-    ].join("\t");
+  const lines = cells.map((cell) => {
+    const short = cell.result.replace(/\s+/g, " ").replaceAll(at(), "").slice(0, 160);
+    return [name(cell), cell.action, cell.kind, cell.variant, cell.passed ? "as stated" : "MISS", short].join("\t");
   });
   writeFileSync(list, `program\taction\tkind\tvariant\toutcome\tdifference\n${lines.sort().join("\n")}\n`);
 }
@@ -102,11 +89,9 @@ const MOST = 20_480;
 /** Copies some of the written files to the tests, with what is expected of them. @param {readonly any[]} rows */
 export function writeFixtures(rows) {
   const folder = at("tests", "fixtures", "interop");
-  /** @type {string[]} */
-  const wanted = JSON.parse(readFileSync(at("scripts", "interop", "fixtures.json"), "utf8"));
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  const index = wanted.map((title) => {
+  const index = data("fixtures.json").map((/** @type {string} */ title) => {
     const row = rows.find(({ program, version, variant }) => title === `${program} ${version}: ${variant}`);
     if (row === undefined) throw new Error(`No program wrote the fixture ${title}`);
     const { program, version, kind, variant, file, expect } = row;

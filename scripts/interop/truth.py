@@ -2,7 +2,6 @@
 
 import json
 import os
-import struct
 
 import numpy as np
 
@@ -17,9 +16,15 @@ TRANSLATION = np.array([-0.1, 0.01, 0.35])
 CAMERA = {"fx": 150, "fy": 152, "cx": 78.5, "cy": 60.25, "width": 160, "height": 120}
 
 
+def rotation(xyzw):
+    x, y, z, w = np.asarray(xyzw, float) / np.linalg.norm(xyzw)
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + 2 * w * cross + 2 * cross @ cross
+
+
 def colours(points):
     """The print, sRGB: red grows along x, green along y."""
-    share = (np.asarray(points) - CORNER)[:, :2] / SIZE[:2]
+    share = (np.asarray(points)[:, :2] - CORNER[:2]) / SIZE[:2]
     return np.c_[40 + 170 * share, np.full(len(share), 160.0)]
 
 
@@ -30,6 +35,8 @@ def light(srgb):
 
 def body():
     """Triangles that were halved twice along each side, so that colours of vertices show the print."""
+    from trimesh.remesh import subdivide
+
     points = [*(CORNER + OUTLINE * [1, 1, 0]), *(CORNER + OUTLINE)]
     triangles, ring = [], len(OUTLINE)
     for i in range(ring):
@@ -37,33 +44,19 @@ def body():
         triangles += [(i, j, ring + j), (i, ring + j, ring + i)]
         if i > 0 and j > 0:
             triangles += [(0, j, i), (ring, ring + i, ring + j)]
-    for _ in range(2):
-        middles = {}
-
-        def middle(a, b):
-            key = min(a, b), max(a, b)
-            if key not in middles:
-                middles[key] = len(points)
-                points.append((points[a] + points[b]) / 2)
-            return middles[key]
-
-        halves = [((a, b, c), middle(a, b), middle(b, c), middle(c, a)) for a, b, c in triangles]
-        triangles = [each for (a, b, c), ab, bc, ca in halves for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-    return np.array(points), np.array(triangles)
+    return subdivide(*subdivide(np.array(points), np.array(triangles)))
 
 
 def picture(points, triangles):
     """Depth and mask: rays through the centres of pixels meet the body, or a slanted wall; a hole has no reading."""
-    width, height = CAMERA["width"], CAMERA["height"]
-    u, v = np.meshgrid(np.arange(width), np.arange(height))
+    v, u = np.mgrid[: CAMERA["height"], : CAMERA["width"]]
     rays = np.stack([(u - CAMERA["cx"]) / CAMERA["fx"], (v - CAMERA["cy"]) / CAMERA["fy"], np.ones(u.shape)], 2)
-    depth = 0.9 + 0.0005 * u
-    wall = depth.copy()
+    wall = depth = 0.9 + 0.0005 * u
     for a, b, c in points[triangles]:
-        p, q, side = b - a, c - a, np.cross(rays, c - a)
+        p, q = b - a, c - a
+        side, other = np.cross(rays, q), np.cross(-a, p)
         with np.errstate(divide="ignore", invalid="ignore"):
             area = side @ p
-            other = np.cross(-a, p)
             s, t, z = side @ -a / area, rays @ other / area, q @ other / area
         depth = np.where((s >= 0) & (t >= 0) & (s + t <= 1) & (z < depth), z, depth)
     mask = depth < wall
@@ -71,64 +64,44 @@ def picture(points, triangles):
     return depth.astype(np.float32), mask.astype(np.uint8)
 
 
-def glb(points, triangles, print_, texture=b""):
-    """The body as a GLB, with light as colours of vertices, or with a texture."""
-    parts = [points.astype(np.float32).tobytes(), triangles.astype(np.uint32).tobytes(), print_.astype(np.float32).tobytes(), texture]
-    parts = [part + b"\0" * (-len(part) % 4) for part in parts]
-    starts, sizes = np.cumsum([0, *map(len, parts)]).tolist(), list(map(len, parts))
-    p = points.astype(np.float32)
-    bounds = {"min": p.min(0).tolist(), "max": p.max(0).tolist()}
-    name, kind = ("TEXCOORD_0", "VEC2") if texture else ("COLOR_0", "VEC3")
-    material = {"metallicFactor": 0} | ({"baseColorTexture": {"index": 0}} if texture else {})
-    document = {
-        "asset": {"version": "2.0"},
-        "scene": 0,
-        "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0, "name": "body"}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, name: 2}, "indices": 1, "material": 0}]}],
-        "materials": [{"pbrMetallicRoughness": material}],
-        "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": len(points), "type": "VEC3", **bounds},
-            {"bufferView": 1, "componentType": 5125, "count": triangles.size, "type": "SCALAR"},
-            {"bufferView": 2, "componentType": 5126, "count": len(points), "type": kind},
-        ],
-        "bufferViews": [{"buffer": 0, "byteOffset": starts[i], "byteLength": sizes[i]} for i in range(4 if texture else 3)],
-        "buffers": [{"byteLength": starts[-1]}],
-    }
-    if texture:
-        document |= {"textures": [{"source": 0}], "images": [{"bufferView": 3, "mimeType": "image/png"}]}
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<2I", len(text), 0x4E4F534A) + text + struct.pack("<2I", starts[-1], 0x004E4942) + b"".join(parts)
-    return struct.pack("<3I", 0x46546C67, 2, 12 + len(chunks)) + chunks
-
-
-def write(folder):
+def write(root):
     """What the programs read: `truth.json`, a texture, two GLB files, and the bare numbers of depth and mask."""
+    import trimesh
     from PIL import Image
 
-    from .cells import rotation
-
+    folder = os.path.join(root, "truth")
     os.makedirs(folder, exist_ok=True)
     points, triangles = body()
     colors = np.round(colours(points))
     uv = MARGIN + (1 - 2 * MARGIN) * (points - CORNER)[:, :2] / SIZE[:2]
-    a, b, c = points[triangles].transpose(1, 0, 2)
-    known = {"points": points, "triangles": triangles, "colors": colors, "uv": uv, "corner": CORNER, "size": SIZE}
-    known = {name: each.tolist() for name, each in known.items()}
-    known |= {"volume": float((a * np.cross(b, c)).sum() / 6), "camera": CAMERA}
+    volume = trimesh.Trimesh(points, triangles, process=False).volume
+    known = {"points": points, "triangles": triangles, "colors": colors, "lights": light(colors), "uv": uv, "corner": CORNER}
+    known = {name: each.tolist() for name, each in known.items()} | {"volume": float(volume), "camera": CAMERA}
     known["pose"] = {"scale": 1, "rotation": QUATERNION.tolist(), "translation": TRANSLATION.tolist()}
     with open(os.path.join(folder, "truth.json"), "w") as file:
         json.dump(known, file)
+
     depth, mask = picture(points @ rotation(QUATERNION).T + TRANSLATION, triangles)
     depth.tofile(os.path.join(folder, "depth.f32"))
     mask.tofile(os.path.join(folder, "mask.u8"))
-    u, v = np.meshgrid((np.arange(68) + 0.5) / 68, 1 - (np.arange(36) + 0.5) / 36)
-    share = (np.stack([u, v], 2) - MARGIN) / (1 - 2 * MARGIN)
-    places = np.concatenate([CORNER[:2] + SIZE[:2] * share, np.zeros((36, 68, 1))], 2).reshape(-1, 3)
-    Image.fromarray(np.round(colours(places)).astype(np.uint8).reshape(36, 68, 3)).save(os.path.join(folder, "texture.png"))
-    with open(os.path.join(folder, "texture.png"), "rb") as file:
-        texture = file.read()
-    for name, data in (("vertex", glb(points, triangles, light(colors))), ("texture", glb(points, triangles, uv * [1, -1] + [0, 1], texture))):
-        with open(os.path.join(folder, f"{name}.glb"), "wb") as file:
-            file.write(data)
+
+    row, column = np.mgrid[:36, :68] + 0.5
+    share = (np.c_[column.ravel() / 68, 1 - row.ravel() / 36] - MARGIN) / (1 - 2 * MARGIN)
+    print_ = np.round(colours(CORNER[:2] + SIZE[:2] * share)).astype(np.uint8)
+    image = Image.fromarray(print_.reshape(36, 68, 3))
+    image.save(os.path.join(folder, "texture.png"))
+
+    material = trimesh.visual.material.PBRMaterial(baseColorTexture=image, metallicFactor=0.0)
+    textured = trimesh.Trimesh(points, triangles, process=False)
+    textured.visual = trimesh.visual.TextureVisuals(uv, material)
+    textured.export(os.path.join(folder, "texture.glb"))
+
+    # trimesh writes colours as bytes: as an attribute of its own they are floats of light.
+    lights = light(colors).astype(np.float32)
+    lit = trimesh.Trimesh(points, triangles, process=False, vertex_attributes={"_COLOR_0": lights})
+
+    def rename(tree):
+        attributes = tree["meshes"][0]["primitives"][0]["attributes"]
+        attributes["COLOR_0"] = attributes.pop("_COLOR_0")
+
+    lit.export(os.path.join(folder, "vertex.glb"), tree_postprocessor=rename)
