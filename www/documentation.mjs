@@ -103,6 +103,11 @@ async function rendered({ path, source }, pages, pictures) {
         const inner = isKnown ? highlighter.highlight(text, { language }).value : escaped(text);
         return `<pre tabindex="0"><code>${inner}</code></pre>\n`;
       },
+      // A flag does not break after its hyphens.
+      codespan({ text }) {
+        const inner = escaped(text).replace(/(?<!\S)-[\w-]+/g, (flag) => `<span class="flag">${flag}</span>`);
+        return `<code>${inner}</code>`;
+      },
       table(token) {
         return `<div class="table" tabindex="0">${Renderer.prototype.table.call(this, token)}</div>\n`;
       },

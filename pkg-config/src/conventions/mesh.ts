@@ -1,9 +1,10 @@
 /** Validation of meshes in arrays. */
 
+import { isBytes } from "../input/bytes.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { checkAttached } from "../values/border.js";
-import { describe, failure } from "../values/error.js";
-import { isTypedArray } from "../values/kinds.js";
+import { describe, failure, invalidArgument } from "../values/error.js";
+import { isBuffer, isRecord, isTypedArray } from "../values/kinds.js";
 import { record, type Vector3, wrongKind } from "../values/validation.js";
 
 /** A triangle mesh whose indices are in range. */
@@ -16,6 +17,12 @@ export interface Mesh {
 
 /** The arrays of a mesh, validated. */
 export function meshOf(argument: string, mesh: unknown): Mesh {
+  const content = isRecord(mesh) ? mesh.bytes : mesh;
+  if (isBytes(content) || isBuffer(content)) {
+    const remedy = "Pass what readMesh of sim3align/formats makes of it or, where a GLB is taken, its bytes.";
+    throw invalidArgument(argument, mesh, "{ positions, indices? }", remedy);
+  }
+
   const { positions, indices } = record(argument, mesh, "{ positions, indices? }") as {
     [K in keyof MeshArrays]: unknown;
   };
