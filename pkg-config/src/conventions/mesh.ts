@@ -1,6 +1,5 @@
 /** Validation of meshes in arrays. */
 
-import { isBytes } from "../input/bytes.js";
 import type { MeshArrays } from "../types/inputs.js";
 import { checkAttached } from "../values/border.js";
 import { describe, failure, invalidArgument } from "../values/error.js";
@@ -18,9 +17,13 @@ export interface Mesh {
 /** The arrays of a mesh, validated. */
 export function meshOf(argument: string, mesh: unknown): Mesh {
   const content = isRecord(mesh) ? mesh.bytes : mesh;
-  if (isBytes(content) || isBuffer(content)) {
-    const remedy = "Pass what readMesh of sim3align/formats makes of it or, where a GLB is taken, its bytes.";
-    throw invalidArgument(argument, mesh, "{ positions, indices? }", remedy);
+  if (isTypedArray(content, "Uint8Array") || isBuffer(content)) {
+    throw invalidArgument(
+      argument,
+      mesh,
+      "{ positions, indices? }",
+      "Pass the result of readMesh, or a GLB's bytes alone.",
+    );
   }
 
   const { positions, indices } = record(argument, mesh, "{ positions, indices? }") as {
