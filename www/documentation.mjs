@@ -103,6 +103,11 @@ async function rendered({ path, source }, pages, pictures) {
         const inner = isKnown ? highlighter.highlight(text, { language }).value : escaped(text);
         return `<pre tabindex="0"><code>${inner}</code></pre>\n`;
       },
+      // A flag does not break after its hyphens.
+      codespan({ text }) {
+        const inner = escaped(text).replace(/(?<!\S)-[\w-]+/g, (flag) => `<span class="flag">${flag}</span>`);
+        return `<code>${inner}</code>`;
+      },
       table(token) {
         return `<div class="table" tabindex="0">${Renderer.prototype.table.call(this, token)}</div>\n`;
       },
@@ -143,11 +148,13 @@ const linkList = (links, current = "") =>
  * @param {Awaited<ReturnType<typeof rendered>>} content
  * @param {readonly Document[]} listed
  */
-function pageFor({ title, fileName }, { body, headings }, listed) {
+function pageFor({ path, title, fileName }, { body, headings }, listed) {
   const links = listed.map((one) => /** @type {const} */ ([basename(one.fileName), escaped(one.title)]));
   const current = basename(fileName);
   const sections = headings.filter(({ level }) => level === 2 || level === 3);
   const next = links[links.findIndex(([address]) => address === current) + 1];
+  // A search finds how something is used before its figures and its history.
+  const weight = basename(dirname(path)) === "guides" ? 4 : 1;
   const onward = next === undefined || !links.some(([address]) => address === current) ? "" : next;
   return `<!doctype html>
 <html lang="en">
@@ -163,7 +170,7 @@ function pageFor({ title, fileName }, { body, headings }, listed) {
 <body>
 <header><a href="../">sim3align</a><div id="search"></div></header>
 <nav class="documents" aria-label="Documentation"><ul>${linkList(links, current)}</ul></nav>
-<main data-pagefind-body>${body}${onward && `<p class="next" data-pagefind-ignore>Next: <a href="${onward[0]}">${onward[1]}</a></p>`}</main>
+<main data-pagefind-body data-pagefind-weight="${weight}">${body}${onward && `<p class="next" data-pagefind-ignore>Next: <a href="${onward[0]}">${onward[1]}</a></p>`}</main>
 ${
   sections.length < 2
     ? ""

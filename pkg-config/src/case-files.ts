@@ -45,7 +45,7 @@ export interface Case {
   files: Record<"depth" | "mask" | "mesh", string> & { camera?: string; image?: string; truth?: string };
   /** The names of files that were not read, in order. */
   unread: string[];
-  /** The true pose; `null` if unknown. */
+  /** The true pose; `null` if unknown. Its `transform` is the option `truth` of `evaluate`. */
   truth: KnownPose | null;
 }
 

@@ -17,6 +17,8 @@ export interface FolderKind {
   noun: string;
   /** The mark of such a folder, for errors. */
   mark: string;
+  /** The command that takes it. */
+  command: string;
   /** Whether a folder is one. */
   is(folder: string): boolean;
 }
@@ -27,12 +29,22 @@ const hasMesh = (folder: string) => {
   return names.some((name) => partOf(name) === "mesh") || (names.includes("mesh") && names.includes("depth"));
 };
 
-export const caseKind: FolderKind = { noun: "case", mark: "a mesh", is: hasMesh };
-export const videoKind: FolderKind = { noun: "video", mark: "a mesh", is: hasMesh };
+export const caseKind: FolderKind = { noun: "case", mark: "a mesh", command: "align", is: hasMesh };
+export const videoKind: FolderKind = { noun: "video", mark: "a mesh", command: "track", is: hasMesh };
 const hasObjects = (names: readonly string[]) => names.includes("objects") || isBopScene(names);
-export const sceneKind: FolderKind = { noun: "scene", mark: "objects", is: (folder) => hasObjects(namesIn(folder)) };
+export const sceneKind: FolderKind = {
+  noun: "scene",
+  mark: "objects",
+  command: "scene",
+  is: (folder) => hasObjects(namesIn(folder)),
+};
 const hasView = (folder: string) => namesIn(folder).some(isView);
-export const sam3dKind: FolderKind = { noun: "scene", mark: "a point map or depth", is: hasView };
+export const sam3dKind: FolderKind = {
+  noun: "scene",
+  mark: "a point map or depth",
+  command: "scene --sam3d",
+  is: hasView,
+};
 
 /** A folder to work on. */
 export interface FolderToDo extends CaseKey {
@@ -61,7 +73,7 @@ export async function foldersToDo(
   const files = paths.filter(isFile);
   const folders = unique(paths.filter((path) => !isFile(path)));
   if (folders.length === 0) throw new UsageError(`No ${kind.noun} folder among ${paths.join(", ")}.`);
-  for (const { folder } of folders) refuseParent(kind, folder);
+  for (const { folder } of folders) refuseOther(kind, folder);
   if (files.length > 0) note(`skipped, not a folder: ${files.join(", ")}`);
   const nameOf = (folder: string) => basename(resolve(folder));
   const counts = new Map<string, number>();
@@ -85,9 +97,13 @@ function unique(folders: readonly string[]): { folder: string; path: string }[] 
   return [...first].map(([path, folder]) => ({ folder, path }));
 }
 
-/** @throws {@link UsageError} for a folder that is above of what is meant */
-function refuseParent({ noun, is }: FolderKind, folder: string): void {
+/** @throws {@link UsageError} for a folder of another kind, and one that is above of what is meant */
+function refuseOther({ noun, is }: FolderKind, folder: string): void {
   if (is(folder)) return;
+  const other = [sceneKind, caseKind].find((kind) => kind.noun !== noun && kind.is(folder));
+  if (other !== undefined) {
+    throw new UsageError(`${folder} is a ${other.noun}, not a ${noun}: pass it to "sim3align ${other.command}".`);
+  }
   if (namesIn(folder).some((name) => partOf(name) !== undefined)) return;
   const inside = (path: string, depth: number): boolean =>
     namesIn(path).some((name) => is(join(path, name)) || (depth > 1 && inside(join(path, name), depth - 1)));

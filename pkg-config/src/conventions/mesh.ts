@@ -2,8 +2,8 @@
 
 import type { MeshArrays } from "../types/inputs.js";
 import { checkAttached } from "../values/border.js";
-import { describe, failure } from "../values/error.js";
-import { isTypedArray } from "../values/kinds.js";
+import { describe, failure, invalidArgument } from "../values/error.js";
+import { isBuffer, isRecord, isTypedArray } from "../values/kinds.js";
 import { record, type Vector3, wrongKind } from "../values/validation.js";
 
 /** A triangle mesh whose indices are in range. */
@@ -16,6 +16,16 @@ export interface Mesh {
 
 /** The arrays of a mesh, validated. */
 export function meshOf(argument: string, mesh: unknown): Mesh {
+  const content = isRecord(mesh) ? mesh.bytes : mesh;
+  if (isTypedArray(content, "Uint8Array") || isBuffer(content)) {
+    throw invalidArgument(
+      argument,
+      mesh,
+      "{ positions, indices? }",
+      "Pass the result of readMesh, or a GLB's bytes alone.",
+    );
+  }
+
   const { positions, indices } = record(argument, mesh, "{ positions, indices? }") as {
     [K in keyof MeshArrays]: unknown;
   };

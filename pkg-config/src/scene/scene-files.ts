@@ -1,7 +1,8 @@
 /** A scene from files: one view, and the mask and the mesh of each object. */
-import { type CaseFiles, fileNotFound, filesOf, meshFile, type ReadCaseOptions } from "../case-files.js";
+import { type CaseFiles, filesOf, meshFile, type ReadCaseOptions } from "../case-files.js";
 import { type KnownPose, parsePoseFile } from "../conventions/pose-file.js";
 import type { SceneInput, SceneObjectInput } from "../types/scene.js";
+import { failure } from "../values/error.js";
 import { naturally } from "../values/order.js";
 import { withoutUndefined } from "../values/validation.js";
 
@@ -57,7 +58,10 @@ export async function sceneFrom(
     for (const [part, file] of Object.entries(parts)) found[`${folder}${part}`] = file && `${folder}${file}`;
     unread.push(...own.unread().map((path) => `${folder}${path}`));
   }
-  if (objects.length === 0) throw fileNotFound("scene", `no objects in ${place}`, "objects/NAME/ with mask and mesh");
+  if (objects.length === 0) {
+    const remedy = 'See "sim3align scene --help" for the layout of a scene folder.';
+    throw failure("FILE_NOT_FOUND", "scene", `no objects in ${place}`, "objects/NAME/ with mask and mesh", remedy);
+  }
   const { image: _, ...more } = settings;
   const [cameraFile, image] = [await ofView.optional(view.camera), await ofView.optional(view.image)];
   const input = withoutUndefined({ depth, cameraFile, objects, image, ...more }) as SceneInput;

@@ -220,7 +220,7 @@ function summary(
   });
   if (failed.length > 0) return { text: failed.join(" "), kind: "failed" };
   const what = objects.length > 1 ? `${objects.length} objects ` : "";
-  return { text: `Aligned ${what}in ${(ms / 1000).toFixed(2)} s.`, kind: "done" };
+  return { text: `Aligned ${what}in ${(ms / 1000).toFixed(2)}\u00a0s.`, kind: "done" };
 }
 
 /** Sets the pose to an alternative, or with −1 to the result. */
