@@ -25,7 +25,7 @@ interface BatchEntry {
 /** The content of a transform file: a pose, or the entries of a batch. */
 type TransformFile = { pose: object } | { entries: readonly BatchEntry[] };
 
-/** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
+/** Each file is read once, for all cases. */
 const contents = { transform: contentsOf("transform"), initial: contentsOf("initial") };
 
 function contentsOf(argument: "transform" | "initial") {
