@@ -50,6 +50,9 @@ async function interop({ only, write, verbose, python: program }) {
   const { readBack } = await import("./interop/read.mjs");
   const { writeOurs } = await import("./interop/ours.mjs");
   const { programs, rowsOf: rowsOfPackage } = await import("./interop/programs.mjs");
+  const ofPython = Object.values(packages.python).flatMap(({ also, ...versions }) => Object.keys(versions));
+  const unknown = only?.find((name) => ![...ofPython, ...Object.keys(programs)].includes(name));
+  if (unknown !== undefined) throw new Error(`--only: no program is called ${unknown}.`);
   rmSync(join(root, "files"), { recursive: true, force: true });
   mkdirSync(join(root, "rows"), { recursive: true });
   const pythonIn = (/** @type {string} */ name) => {
@@ -114,7 +117,7 @@ await command("interop", (program) =>
     .description(
       "Runs some forty programs: our readers read what they write, and they load what we write. Takes about ten minutes, the first time more.",
     )
-    .option("--only <program...>", "some programs, by the names in scripts/interop/packages.json")
+    .option("--only <program...>", "some programs, by their names in packages.json and programs.mjs of scripts/interop")
     .option("--write", "write the tables of docs/guides/interoperability.md; with --only, that of places", false)
     .option("--verbose", "print every cell", false)
     .option("--python <program>", "the Python (3.11) that installs the packages", "python3")

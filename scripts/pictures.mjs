@@ -1,6 +1,7 @@
 /**
  * `node scripts/pictures.mjs`: the pictures of the samples, of links to the page and of the guides, as the page, the element, the
- * command line and the package draw them. Samples are of the gallery's size at twice the density, links of that of previews.
+ * command line and the package draw them. Pictures of samples have the gallery's size at twice the density, those of links the size
+ * of previews.
  */
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";

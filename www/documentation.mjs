@@ -184,13 +184,19 @@ ${
 /** The files of the search, by their names. @param {ReadonlyMap<string, string>} texts pages by their names */
 async function searchFiles(texts) {
   const { close, createIndex } = await import("pagefind");
-  const { errors, index } = await createIndex();
-  if (index === undefined) throw new Error(errors.join(" "));
-  for (const [url, content] of texts) await index.addHTMLFile({ url, content });
-  const { files } = await index.getFiles();
-  await close();
-  // Those of other interfaces are not used.
-  return files.filter(({ path }) => !/modular-ui|component-ui|highlight/.test(path));
+  try {
+    const { errors, index } = await createIndex();
+    if (index === undefined) throw new Error(errors.join(" "));
+    for (const [url, content] of texts) {
+      const { errors } = await index.addHTMLFile({ url, content });
+      if (errors.length > 0) throw new Error(`${url}: ${errors.join(" ")}`);
+    }
+    const { files } = await index.getFiles();
+    // Those of other interfaces are not used.
+    return files.filter(({ path }) => !/modular-ui|component-ui|highlight/.test(path));
+  } finally {
+    await close();
+  }
 }
 
 /**

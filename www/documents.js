@@ -11,8 +11,13 @@ for (const block of document.querySelectorAll("main pre")) {
   frame.className = "code";
   button.textContent = "Copy";
   button.addEventListener("click", async () => {
-    await navigator.clipboard.writeText(block.textContent);
-    button.textContent = "Copied";
+    try {
+      await navigator.clipboard.writeText(block.textContent);
+      button.textContent = "Copied";
+    } catch {
+      // The browser may forbid it.
+      button.textContent = "Not copied";
+    }
     setTimeout(() => {
       button.textContent = "Copy";
     }, 1500);

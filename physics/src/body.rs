@@ -14,7 +14,7 @@ use super::solid::Solid;
 pub struct Body {
     /// Its parts, in its frame: that of the mesh, in metres.
     pub parts: Vec<ConvexPart>,
-    /// The number of its walls without thickness, if it is more than that of its parts, which then close its openings.
+    /// The number of its walls without thickness, if its parts are fewer: these then close its openings.
     pub walls_joined: Option<usize>,
     /// Its mass, in its frame.
     pub mass: Mass,

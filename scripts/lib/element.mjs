@@ -80,9 +80,9 @@ const ownFiles = (scriptOf) => ({
 const ownModule = (specifier) => `${specifier.slice("sim3align/".length) || "index"}.js`;
 
 /**
- * A file as seen from the bundle. The scripts of workers are in it.
+ * A file as seen from the bundle, which has the scripts of workers.
  * @param {string} file
- * @param {(name: string) => string} scriptOf
+ * @param {(name: string) => string} scriptOf the script of a worker
  */
 function fromBundle(file, scriptOf) {
   const isWorker = /worker\.[jt]s$/.test(file);

@@ -10,7 +10,7 @@ use crate::geometry::surface::sample_surface;
 use crate::progress::{Stage, Stopwatch};
 
 /// Number of points from which metrics measure by default. On real objects, a mean over them is within 1.2 % of that over twenty
-/// thousand, in the median within .4 %.
+/// thousand, in the median within 0.4 %.
 pub const MEASURED: usize = 1024;
 
 /// Sampling of both clouds (paper §3.1): how many points represent the observation and the surface of the mesh.

@@ -65,6 +65,8 @@ test("a folder, files and arrays have the result of align; each line has an answ
       ...["", "no JSON", { case: "nowhere" }, { case: "cases/blob", quality: "fast" }, { case: "cases/blob", camera }],
       { id: "option", case: "cases/blob", options: { quality: "none" } },
       { id: "width", case: "cases/blob", width },
+      { id: "number", case: 5 },
+      { id: "two cameras", ...inFolder, cameraFile: inFolder.camera },
     ],
     1,
   );
@@ -76,15 +78,19 @@ test("a folder, files and arrays have the result of align; each line has an answ
     assert.deepEqual(withoutTimes(found), withoutTimes(own), id);
   }
   assert.ok(Math.abs(answers.get("points").result.scale / expected.scale - 1) < 0.01);
-  const codes = [6, 7, 8, 9, "option", "width"].map((id) => answers.get(id).error.code);
-  assert.deepEqual(codes, [
-    "INVALID_ARGUMENT",
-    "FILE_NOT_FOUND",
-    "INVALID_ARGUMENT",
-    "INVALID_ARGUMENT",
-    "INVALID_OPTION",
-    "INVALID_ARGUMENT",
-  ]);
+  const codes = {
+    6: "INVALID_ARGUMENT",
+    7: "FILE_NOT_FOUND",
+    8: "INVALID_ARGUMENT",
+    9: "INVALID_ARGUMENT",
+    option: "INVALID_OPTION",
+    width: "INVALID_ARGUMENT",
+    number: "INVALID_ARGUMENT",
+    "two cameras": "INVALID_ARGUMENT",
+  };
+  for (const [id, code] of Object.entries(codes)) {
+    assert.equal(answers.get(Number.isNaN(Number(id)) ? id : Number(id)).error.code, code, id);
+  }
 });
 
 const hasPython = spawnSync("python3", ["--version"]).status === 0;

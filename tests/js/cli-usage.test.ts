@@ -52,11 +52,11 @@ const usage: Record<string, Record<string, RegExp>> = {
     "align blob --known-extent 0.1 --scale 1": /--known-extent: .*expected --known-extent or --scale/,
     "align blob --known-extent-axis y": /--known-extent-axis needs --known-extent:/,
     "align blob --depth-near 1": /--depth-near needs --depth-code:/,
+    "align blob --depth-far 1": /--depth-far needs --depth-code:/,
     "align blob --mask-index 1": /--mask-index: found number 1, expected nothing beside a mask of its own/,
     [`align ${parts} --mesh blob/mesh.glb --camera 300,300,80,60 --image-id 4`]:
       /--image-id: found .*4.*, expected nothing/,
     "scene table --models folder": /--models needs a scene of BOP/,
-    "align blob --depth-far 1": /--depth-far needs --depth-code:/,
     "scene table --mjcf m --parts 0": /--parts.*Expected a whole number, 1 or more/s,
     "scene table --mjcf m --parts 2.5": /--parts.*Expected a whole number, 1 or more/s,
     "scene table --mjcf m --density -1": /--density.*Expected a number above 0/s,

@@ -177,7 +177,8 @@ const calls: { readonly [M in Method]: CallOf<M> } = {
       const isColored = data.image !== undefined;
       const read = await readCoreMesh(data.mesh, context.modules, isColored, meshId);
       const { fileOrigin: origin } = read.mesh;
-      const [input, known] = [{ ...data, mesh: read.mesh }, toOrigin(options, origin)];
+      const input = { ...data, mesh: read.mesh };
+      const known = toOrigin(options, origin);
       const found = await context.search("place", input, known);
       const placed = { ...found, ...withoutUndefined({ origin }) };
       if (placed.alignment === undefined) return placed;

@@ -20,7 +20,7 @@ const BETTER_SHAPE = 0.2;
 /**
  * The agreement of the colours with the photo below which the textures are in doubt; and that of textures that explain it better,
  * and by how much they must. Of 31 real objects, also with wrong textures and with photos that are too bright, too dark or some
- * pixels off, none agrees by more than 0.39 with textures upside down that are right; of those that were upside down, half do.
+ * pixels off, none whose textures were not upside down agrees by more than 0.39 once they are; of those whose were, half do.
  */
 const DOUBTFUL_COLORS = 0.45;
 const GOOD_COLORS = 0.45;

@@ -217,8 +217,8 @@ class Batch<T extends CaseKey> {
     show("reading");
     const read: Checksums = new Map();
     const work = withChecksums(read, () => job.run(aligner, task, caseRun)).catch((error) => {
-      // Of one case, a flag that is wrong or does nothing is known to be so.
-      if (this.#isOnly && error.argument in caseSettings(this.flags)) {
+      // An error about a flag is one of usage; of several cases, the flag may be right for others.
+      if (this.#isOnly && Object.hasOwn(caseSettings(this.flags), error.argument)) {
         const { argument, message } = error;
         throw new UsageError(message.replace(argument, `--${flagName({ name: argument })}`));
       }

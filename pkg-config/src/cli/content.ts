@@ -16,7 +16,7 @@ export function contentOf(read: Checksums, folder: string): Content | undefined 
   const place = realPath(folder);
   const nameOf = (path: string) => relative(place, absolutePath(path)).split(sep).join("/");
   const files = [...read].map(([path, checksum]) => [nameOf(path), checksum] as const);
-  return read.size === 0 ? undefined : total(files.sort(([a], [b]) => (a < b ? -1 : 1)));
+  return files.length === 0 ? undefined : total(files);
 }
 
 /** The content of these files as they are now; `undefined` if one of them is gone. */
@@ -28,10 +28,12 @@ export function contentNow(folder: string, files: readonly string[]): Content | 
   }
 }
 
-const total = (files: readonly (readonly [string, string])[]): Content => ({
-  files: Object.fromEntries(files),
-  content: checksumOf(files.map(([name, checksum]) => `${name} ${checksum}\n`).join("")),
-});
+/** The content of files. Its checksum depends neither on their order nor on a file that was read by two paths. */
+function total(files: readonly (readonly [string, string])[]): Content {
+  const sorted = [...new Map(files)].sort(([a], [b]) => (a < b ? -1 : 1));
+  const lines = sorted.map(([name, checksum]) => `${name} ${checksum}\n`);
+  return { files: Object.fromEntries(sorted), content: checksumOf(lines.join("")) };
+}
 
 /** The files of parts in the folder of a case, relative to it. */
 export function partFiles(folder: string): string[] {
@@ -43,6 +45,6 @@ export function partFiles(folder: string): string[] {
 
 /** The content of a case that failed: all its parts, though they were not read. */
 export function contentOfFailure(folder: string): Content | undefined {
-  const files = partFiles(folder).sort();
+  const files = partFiles(folder);
   return files.length === 0 ? undefined : contentNow(folder, files);
 }

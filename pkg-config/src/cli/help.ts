@@ -165,9 +165,10 @@ export const serveHelp = `
 Requests
   A line of JSON each: { "id": …, "case": "cases/mug" }, or { "id": …, "depth", "mask", "mesh", "camera", "image" } with paths, or
   with arrays as { "base64", "dtype": "float32" | "float64" | "uint16" | "uint8" | "bool" | "uint32", "shape": [height, width] },
-  or with the bytes of a file as { "base64" }; a mesh in memory is { "positions", "indices" } of these, a camera { "fx", "fy", "cx", "cy" }.
-  "pointMap", an array of height × width × 3, replaces "depth". Further fields: "depthScale", "depthKind", "depthCode",
-  "depthNear", "depthFar", "imageId", "resizeMask", "maskIndex", and "options" of align(). Paths are relative to the current folder.
+  or with the bytes of a file as { "base64" }; a mesh in memory is { "positions", "indices" } of these, a camera in memory
+  { "fx", "fy", "cx", "cy" }. "pointMap", an array of height × width × 3, replaces "depth". Further fields: "depthScale",
+  "depthKind", "depthCode", "depthNear", "depthFar", "imageId", "resizeMask", "maskIndex", and "options" of align(). Paths are
+  relative to the current folder.
 
 Output
   { "id": …, "result": the result of align() of the API } or { "id": …, "error": { code, message, … } }, in the order in which they

@@ -82,19 +82,21 @@ function failureOf(error: unknown): object {
 /** The input of a request: a case folder, or files and arrays. */
 async function inputOf(request: Record<string, unknown>): Promise<AlignInput> {
   const { case: folder, ...own } = request;
-  if (typeof folder === "string") {
+  if (folder != null) {
     const others = parts.filter((name) => name in own).join(", ");
     const remedy = "Pass a case, or its files one by one.";
     if (others !== "") throw invalidArgument("request.case", `a case beside ${others}`, "one of them", remedy);
+    if (typeof folder !== "string") throw invalidArgument("request.case", folder, "the path of a folder", remedy);
     return (await readCaseFolder(folder, own)).input;
   }
-  const isFile = typeof own.camera === "string";
+  // Both together are refused as the input of align() is.
+  const isFile = typeof own.camera === "string" && own.cameraFile === undefined;
   const { camera, cameraFile = isFile ? camera : undefined, mesh, ...others } = own;
   const files = { ...others, cameraFile, camera: isFile ? undefined : camera };
   const names = Object.keys(files).filter((name) => parts.includes(name));
   const values = await Promise.all(names.map((name) => partOfRequest(name, files[name as keyof typeof files])));
-  const read = Object.fromEntries(names.map((name, k) => [name, values[k]]));
-  return withoutUndefined({ ...files, ...read, mesh: await meshOf(mesh) }) as unknown as AlignInput;
+  const filled = Object.fromEntries(names.map((name, k) => [name, values[k]]));
+  return withoutUndefined({ ...files, ...filled, mesh: await meshOf(mesh) }) as unknown as AlignInput;
 }
 
 /** A file by its path, an inline array `{ base64, dtype, shape }`, or the bytes of a file, `{ base64 }`. */
@@ -116,6 +118,6 @@ async function partOfRequest(argument: string, value: unknown): Promise<unknown>
 async function meshOf(mesh: unknown): Promise<unknown> {
   if (typeof mesh === "string") return readMeshFile(mesh);
   if (!isRecord(mesh) || !isRecord(mesh.positions)) return partOfRequest("mesh", mesh);
-  const arrays = Object.entries(mesh).map(async ([name, array]) => [name, await partOfRequest(`mesh.${name}`, array)]);
-  return Object.fromEntries(await Promise.all(arrays));
+  const parts = Object.entries(mesh).map(async ([name, part]) => [name, await partOfRequest(`mesh.${name}`, part)]);
+  return Object.fromEntries(await Promise.all(parts));
 }

@@ -25,14 +25,14 @@ interface BatchEntry {
 /** The content of a transform file: a pose, or the entries of a batch. */
 type TransformFile = { pose: object } | { entries: readonly BatchEntry[] };
 
-/** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
+/** Each file is read once, for all cases. */
 const contents = { transform: contentsOf("transform"), initial: contentsOf("initial") };
 
 function contentsOf(argument: "transform" | "initial") {
   return readOncePerKey(async (path: string): Promise<TransformFile> => {
     try {
-      const isRecord = isFile(path) && isRecordText(bytesOf(path, 0, 16).toString());
-      return await (isRecord ? recordIn : poseOrResultsIn)(path, argument);
+      const isOfBatch = isFile(path) && isRecordText(bytesOf(path, 0, 16).toString());
+      return await (isOfBatch ? recordIn : poseOrResultsIn)(path, argument);
     } catch (cause) {
       if (cause instanceof Sim3AlignError) throw cause;
       throw failure("CORRUPT_FILE", argument, `${path}: ${(cause as Error).message}`, "JSON", remedy, cause);
@@ -85,12 +85,13 @@ async function recordIn(path: string, argument: string): Promise<TransformFile> 
   const tooLong = (problem: string) =>
     failure("FILE_TOO_LARGE", argument, `${path}: ${problem}`, "lines of a record", remedy);
   const entries: BatchEntry[] = [];
-  for await (const { bytes, start } of linesIn(path, tooLong)) {
+  for await (const { bytes, start, number } of linesIn(path, tooLong)) {
     const line = bytes.toString();
     if (line.trim() === "" || line.startsWith('{"sim3align":')) continue;
-    const row = JSON.parse(line) as { case: string; path?: unknown };
+    const row: unknown = JSON.parse(line);
+    if (!isRecord(row)) throw new Error(`line ${number} is no object`);
     const read = () => JSON.parse(bytesOf(path, start, bytes.length).toString());
-    entries.push({ name: row.case, path: absolute(row.path), read });
+    entries.push({ name: String(row.case), path: absolute(row.path), read });
   }
   return { entries: entries.reverse() };
 }

@@ -28,7 +28,7 @@ impl BoxFit {
     pub const IDENTITY: Self = Self { along: None, zoom: 1.0, towards: [0.0; 2] };
 }
 
-/// Number of the first hypotheses, by which the mask shows all of the object.
+/// Number of hypotheses, the first ones, by which the mask shows all of the object.
 pub const UNCUT: usize = 2;
 
 /// The hypotheses for a grid: the unchanged box, a slightly larger one and, if it is cut, boxes extended towards the

@@ -29,7 +29,8 @@ const GREY: f32 = 0.01;
 /// Regularisation of the fit of the shading, relative to the number of cells: a flat surface has one normal.
 const RIDGE: f64 = 1e-3;
 
-/// Values of a channel from which on all of a pixel is blown out, and up to which it is black: it has no colour that compares.
+/// A pixel with no channel above the first value is black, one with none below the second is blown out: neither has a colour that
+/// compares.
 const CLIPPED: [u8; 2] = [5, 250];
 /// Largest offset of a photo from the depth map, relative to the width of the image, and in cells.
 const MAX_SHIFT: f64 = 0.016;
@@ -74,8 +75,8 @@ impl PhotoCells {
         }
     }
 
-    /// How far the photo is off the outline of the mask, in cells: where its edges along the outline are strongest. `None` where
-    /// they are hardly stronger than in place. It is the same for all poses, so that it favours none.
+    /// How far the photo is off the outline of the mask, in cells: the offset at which its edges along the outline are strongest.
+    /// `None` if they are hardly stronger than in place. The offset is the same for all poses, so that it favours none.
     fn offset(&self, image: [f64; 2], grid: &CropGrid) -> Option<[f64; 2]> {
         let reach = ((MAX_SHIFT * image[0] / grid.cell[0]).ceil() as i32).clamp(1, MAX_SHIFT_CELLS);
         let outline = outline(grid);
@@ -124,7 +125,7 @@ impl PhotoCells {
         (!strength.is_nan()).then(|| strength / (strength + EDGE))
     }
 
-    /// The means on cells that are moved by `offset`, in cells. A cell of which most is clipped has none.
+    /// The means on cells that are moved by `offset`, in cells. A cell has no colour if most of it is clipped.
     fn shifted(photo: &Photo, region: &PhotoRegion, image: [f64; 2], grid: &CropGrid, offset: [f64; 2]) -> Self {
         let sizes = [photo.width(), photo.height()];
         let ratio: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.size[k] / image[k]);

@@ -13,8 +13,8 @@ pub const DROP: f64 = 0.01;
 /// Regularisation, so that unconstrained directions remain finite.
 pub const DAMPING: f64 = 1e-9;
 /// Deviation of a size, relative to that of the curvature, per unit of what depths and outline miss together, and what they always
-/// miss. Of right poses on fresh seeds, 90 and 91 % of the sizes of single objects are within 1.645 deviations, 84 to 86 % in scenes,
-/// generated or real; the median error is 0.55 and 0.8 of one.
+/// miss. Of right poses on fresh seeds, 90 and 91 % of the sizes of single objects are within 1.645 deviations, and 85 and 86 % of
+/// those in scenes, generated or real; the median error is 0.4 to 0.8 of one.
 const MISFIT: f64 = 5.5;
 const MIN_MISFIT: f64 = 0.01;
 /// Standard deviation of a roll that a symmetry makes meaningless, radians.
@@ -54,11 +54,9 @@ impl Conditioning {
             position_m: scale * widest(covariance, 4).0,
         }
     }
-}
 
-impl Conditioning {
-    /// With the size as uncertain as the fit is inexact: what depths and outlines miss, wrong proportions of the mesh and biases of the
-    /// sensor cause, and these change the size.
+    /// With the size as uncertain as the fit is inexact: wrong proportions of the mesh and biases of the sensor cause what depths
+    /// and outlines miss, and change the size, too.
     pub fn with_misfit(self, score: &Score) -> Self {
         let missing = 2.0 - f64::from(score.depth) - f64::from(score.outline);
         let factor = MISFIT * (missing + MIN_MISFIT);

@@ -96,8 +96,8 @@ impl Rounds {
         rounds
     }
 
-    /// Leaves out the sizes and positions by which something hides a part of the object, or the border cuts it. Returns whether
-    /// there are any: several times as many as the others, and few objects need them.
+    /// Leaves out the sizes and positions by which something hides a part of the object, or the border cuts it: they are several
+    /// times as many as the others, and few objects need them. Returns whether there were any.
     pub fn assume_uncut(&mut self) -> bool {
         let is_cut = self.box_fits.len() > UNCUT;
         self.box_fits.truncate(UNCUT);

@@ -1,9 +1,9 @@
 //! Confidence: the probability that a pose is correct, from its fit, its conditioning and its alternatives.
 //!
-//! A logistic regression on generated cases, some of them with the mesh of another object, whose intercept is fitted to real ones as
-//! well, each sensor weighing the same (`npm run fit`, which prints its calibration on others). The score alone is not informative: correct poses of
-//! half-hidden objects have low scores. Informative are the margin to the next best placement, the agreement of
-//! independent terms, and how sharply the score falls around the pose.
+//! A logistic regression on generated cases, some of them with the mesh of another object. Its intercept is fitted to real cases
+//! as well, each sensor weighing the same (`npm run fit`, which prints the calibration on other cases). The score alone is not
+//! informative: correct poses of half-hidden objects have low scores. Informative are the margin to the next best placement, the
+//! agreement of independent terms, and how sharply the score falls around the pose.
 
 use super::choice::CORRELATION_PER_SCORE;
 use crate::precise::scoring::conditioning::Conditioning;
