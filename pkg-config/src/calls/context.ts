@@ -13,7 +13,7 @@ import type {
   Task,
 } from "../modules/exports.js";
 import type { LoadedModule, Modules } from "../modules/module.js";
-import { withoutInput } from "../values/error.js";
+import { isOfInput, withoutInput } from "../values/error.js";
 import type { CoreMesh } from "../values/prepared-mesh.js";
 
 /** The searches, with which other threads may help. */
@@ -98,6 +98,15 @@ export class JobContext {
   /** The same job without progress. */
   quiet(): JobContext {
     return new JobContext(this.modules, this.scheduler, undefined);
+  }
+
+  /** Another alignment, without progress and metrics; `undefined` where its input allows none. An abort or a crash ends the job. */
+  another(input: CoreInput, options: object): Promise<Alignment | undefined> {
+    const search = this.quiet().search("align", input, { ...options, metrics: false });
+    return search.catch((error) => {
+      if (isOfInput(error)) return undefined;
+      throw error;
+    });
   }
 
   /** Calls a module with an input. */

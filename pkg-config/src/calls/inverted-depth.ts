@@ -20,12 +20,7 @@ export async function checkInversion(
   { alone }: { alone: boolean },
 ): Promise<Alignment> {
   if (input.depth === undefined) return found;
-  const scoreOf = (of: CoreInput) =>
-    context
-      .quiet()
-      .search("align", of, { ...options, metrics: false })
-      .then(({ diagnostics }) => diagnostics.score)
-      .catch(() => 0);
+  const scoreOf = async (of: CoreInput) => (await context.another(of, options))?.diagnostics.score ?? 0;
   const score = alone ? found.diagnostics.score : await scoreOf(input);
   const isInverted = (await scoreOf(exchanged(input))) > score;
   return isInverted ? found : { ...found, warnings: found.warnings.filter((warning) => !looksInverted(warning)) };

@@ -85,13 +85,7 @@ export async function lookedAtAgain(
   context: JobContext,
 ): Promise<Alignment> {
   const { id: _, samples, ...shape } = input.mesh;
-  const searched = (mesh: CoreMesh, more: object): Promise<Alignment | undefined> => {
-    const core = { ...input, mesh };
-    return context
-      .quiet()
-      .search("align", core, { ...options, ...more, metrics: false })
-      .catch(() => undefined);
-  };
+  const searched = (mesh: CoreMesh, more: object) => context.another({ ...input, mesh }, { ...options, ...more });
   const isInDoubt = found.shapeConfidence < DOUBT;
   const share = isInDoubt ? speckled(input) : 0;
   const isSpeckled = share > SPECKLED;
