@@ -56,7 +56,10 @@ test("the pose and the metrics are those in the corrected map", async () => {
   const { metrics } = await here.evaluate({ ...input, depth, camera: calibration.camera }, found);
   // The rotation, read from the result, is rounded once more.
   for (const [name, value] of Object.entries(found.metrics ?? {}))
-    assert.ok(Math.abs(Number(metrics[name as keyof typeof metrics]) - Number(value)) <= 1e-12, `${name} is not ${value}`);
+    assert.ok(
+      Math.abs(Number(metrics[name as keyof typeof metrics]) - Number(value)) <= 1e-12,
+      `${name} is not ${value}`,
+    );
   await rejectsWith(() => here.evaluate(disparity, found), "INVALID_ARGUMENT depthKind", /correctDepth/);
   const uncalibrated = { ...input, camera: undefined } as AlignInput;
   await rejectsWith(() => here.evaluate(uncalibrated, truth), "INVALID_ARGUMENT camera", /focal/);
