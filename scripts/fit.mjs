@@ -1,8 +1,8 @@
 /**
  * `npm run fit`: fits the regression behind `confidence` to generated cases, prints its constants as
  * `src/precise/verdict/confidence.rs` declares them, and how reliable they are on other cases. Where folders of real cases are
- * given, the intercept is fitted to these, too: each folder is a sensor, and weighs as much as a generated set. How reliable it is on
- * a folder is told by the intercept that the others give.
+ * given, the intercept is fitted to these, too: each folder is a sensor, and weighs as much as a generated set. The reliability on
+ * each folder is printed for the intercept fitted to all others.
  */
 import { mkdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";

@@ -16,7 +16,7 @@ import { framesPicture } from "./pictures/frames.mjs";
 
 /** @typedef {import("playwright-core").Page} Page */
 
-/** What guides show of the 3D view: the sample, and what is pressed before. @type {Record<string, readonly [string, readonly string[]]>} */
+/** The 3D views that guides show: the sample, and the keys pressed before the picture is taken. @type {Record<string, readonly [string, readonly string[]]>} */
 const views = {
   "first-alignment": ["mug", []],
   scenes: ["table", []],

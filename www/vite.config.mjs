@@ -30,7 +30,7 @@ const first =
   /(core|formats)_bg[^/]*\.wasm$|^assets\/(formats|camera-file|compressed-gltf|own-decoders|meshopt)-[^/]*\.js$/;
 
 /**
- * What the first alignment needs is downloaded beside the script, not after it.
+ * Preloads what the first alignment needs, so that it is downloaded in parallel with the script.
  * @type {import("vite").Plugin}
  */
 const preloads = {

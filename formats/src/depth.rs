@@ -1,5 +1,6 @@
 //! Depth map files: PNG and `.npy`, and those that depth models and renderers write: `.npz`, `.exr`, `.tiff` and `.pfm`.
 
+use crate::cursor::Cursor;
 use crate::depth_image::Stored;
 pub use crate::depth_image::{DEFAULT_DEPTH_SCALE, DepthImage, DepthReadOptions, DepthUnit};
 use crate::guard::{beginning, unsupported};
@@ -111,18 +112,14 @@ const ROS_HEADER_BYTES: usize = 12;
 /// The beginnings of recordings.
 const RECORDINGS: [&[u8]; 3] = [b"\x89MCAP0\r\n", b"#ROSBAG V", b"SQLite format 3\0"];
 
-/// Whether bytes may be an image in RVL behind that configuration: its sides, and words of differences, at most one a pixel.
+/// Whether an RVL image may follow that configuration: width, height, then 32-bit words, at most one per pixel.
 fn is_rvl(bytes: &[u8]) -> bool {
-    let side = |at: usize| {
-        bytes.get(at..at + 4).map(|word| word.iter().rev().fold(0, |all, byte| all << 8 | usize::from(*byte)))
-    };
-    let sides = side(ROS_HEADER_BYTES).zip(side(ROS_HEADER_BYTES + 4));
-    let (words, rest) = (bytes.len().saturating_sub(ROS_HEADER_BYTES + 8) / 4, bytes.len() % 4);
-    let fits = |(width, height): (usize, usize)| {
-        let is_size = [width, height].iter().all(|side| (8..=16_384).contains(side));
-        is_size && rest == 0 && (1..=width * height).contains(&words)
-    };
-    sides.is_some_and(fits)
+    let mut cursor = Cursor::new("depth", bytes);
+    let sides = cursor.take(ROS_HEADER_BYTES).and_then(|_| Ok([cursor.u32_le()?, cursor.u32_le()?]));
+    let Ok(sides) = sides.map(|sides| sides.map(|side| side as usize)) else { return false };
+    let (words, rest) = (cursor.remaining().len() / 4, cursor.remaining().len() % 4);
+    let is_size = sides.iter().all(|side| (8..=16_384).contains(side));
+    is_size && rest == 0 && (1..=sides[0] * sides[1]).contains(&words)
 }
 
 fn read_png(bytes: &[u8], options: &DepthReadOptions, kind: DepthKind) -> Result<DepthImage> {

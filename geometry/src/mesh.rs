@@ -1,6 +1,6 @@
 //! Triangle meshes, validated on construction.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::cloud::Bounds;
 use sim3align_runtime::error::{Error, ErrorCode, Result};
@@ -128,10 +128,7 @@ impl Mesh {
     /// relative to the first vertex, so that a mesh far from the origin loses no precision.
     pub fn signed_volume6(&self) -> f64 {
         let Some(&origin) = self.positions.first() else { return 0.0 };
-        let volume = |t: &[u32; 3]| {
-            let [a, b, c] = self.corners(*t).map(|p| p.as_dvec3() - origin.as_dvec3());
-            a.dot(b.cross(c))
-        };
+        let volume = |t: &[u32; 3]| volume6(self.corners(*t).map(|p| p.as_dvec3()), origin.as_dvec3());
         self.triangles.iter().map(volume).sum()
     }
 
@@ -147,6 +144,13 @@ impl Mesh {
         }
         sum == 0
     }
+}
+
+/// Six times the signed volume of the tetrahedron that a triangle spans with a point.
+#[inline(always)]
+pub(crate) fn volume6(corners: [DVec3; 3], origin: DVec3) -> f64 {
+    let [a, b, c] = corners.map(|p| p - origin);
+    a.dot(b.cross(c))
 }
 
 /// The vertices that are corners of triangles.

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::cloud::{Bounds, Cloud};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, volume6};
 use crate::random::Random;
 use crate::symmetric_eigen::{SymmetricEigen, outer};
 use sim3align_runtime::error::{Error, ErrorCode, Result};
@@ -67,14 +67,14 @@ pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
 /// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
 pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn FnMut(SurfaceSample)) -> Result<()> {
     check_triangles(mesh.triangles().len())?;
-    // Six times the enclosed volume, as by `Mesh::signed_volume6`.
+    // One pass for the areas and for `Mesh::signed_volume6`.
     let (mut total, mut volume) = (0.0, 0.0);
     let origin = mesh.positions().first().map_or(DVec3::ZERO, |p| p.as_dvec3());
     let ends: Vec<f64> = (mesh.triangles().iter())
         .map(|&t| {
-            let [a, b, c] = corners(mesh, t);
-            volume += (a - origin).dot((b - origin).cross(c - origin));
-            total += area_of([a, b, c]);
+            let corners = corners(mesh, t);
+            volume += volume6(corners, origin);
+            total += area_of(corners);
             total
         })
         .collect();

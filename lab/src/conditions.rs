@@ -126,7 +126,8 @@ pub struct Class {
     pub has_wrong_colors: bool,
     /// Whether the photo is grey.
     pub is_grey: bool,
-    /// Whether the photo is blown out or too dark in up to half of the object, with reflections, and farther off the depth map.
+    /// Whether up to half of the object is over- or underexposed in the photo, which also has reflections and a larger offset from
+    /// the depth map.
     pub is_harsh: bool,
 }
 

@@ -15,7 +15,7 @@ const load = (path) => import(path.startsWith("three") ? path : pathToFileURL(re
 const truth = () => JSON.parse(readFileSync(source("truth.json"), "utf8"));
 
 /**
- * What a program does with files: writes one (what is expected of it as in `checks.py`), or loads one of ours: its points.
+ * A program writes a file, with what is expected of it as in `checks.py`, or loads one of ours and returns its points.
  * @typedef {object} Cells
  * @property {(variant: string, file: string, write: (path: string) => unknown, expect?: object) => Promise<void>} mesh
  * @property {(load: (path: string) => Promise<Iterable<number>>) => Promise<void>} glb

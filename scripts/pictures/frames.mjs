@@ -23,7 +23,7 @@ function wordFor([right = 0, down = 0, forward = 0]) {
   return forward > 0 ? "forward" : "backward";
 }
 
-/** Where a direction points on the page: forward is up and to the right. @param {readonly number[]} direction */
+/** Projects a direction onto the page: forward points up and to the right. @param {readonly number[]} direction */
 const onPage = ([right = 0, down = 0, forward = 0]) => [
   LENGTH * (right + 0.62 * forward),
   LENGTH * (down - 0.5 * forward),

@@ -31,11 +31,22 @@ const FIGURES = 7;
 const row = new RegExp(`^\\| ([^|]+) \\|(?: [^|]+ \\|){${FIGURES}}$`, "gm");
 const confidences = /^\| confidence *\| *poses *\| *right % *\|\n\|.*\n(\|.*\n)*/m;
 
+/** The cells of the rows of tables in a text. @param {string} text */
+const rowsIn = (text) =>
+  text
+    .split("\n")
+    .filter((line) => /^\|.*\d/.test(line))
+    .map((line) =>
+      line
+        .split("|")
+        .slice(1, -1)
+        .map((cell) => cell.trim()),
+    );
+
 /** A function that brings the figures in a text up to date. */
 function update() {
   const record = existsSync(recordFile) ? readFileSync(recordFile, "utf8") : "";
-  const lines = record.split("\n").map((line) => line.split("|").map((cell) => cell.trim()));
-  const known = new Map(lines.map(([, set, name, ...cells]) => [`${set} | ${name}`, cells.slice(0, FIGURES)]));
+  const known = new Map(rowsIn(record).map(([set, name, ...cells]) => [`${set} | ${name}`, cells.slice(0, FIGURES)]));
   const [trusted = ""] = confidences.exec(record) ?? [];
   return (/** @type {string} */ text) =>
     text
@@ -48,20 +59,9 @@ function update() {
 
 /** The picture of the figures in the page of the record. */
 function picture() {
-  const rows = readFileSync(recordFile, "utf8")
-    .split("\n")
-    .filter((line) => /^\|.*\d/.test(line))
-    .map((line) =>
-      line
-        .slice(1, -1)
-        .split("|")
-        .map((cell) => cell.trim()),
-    );
-  const confidences = rows.filter(([first = ""]) => /^[\d.]+ to/.test(first));
-  return recordPicture(
-    rows.filter((row) => !confidences.includes(row)),
-    confidences,
-  );
+  const record = readFileSync(recordFile, "utf8");
+  const [trusted = ""] = confidences.exec(record) ?? [];
+  return recordPicture(rowsIn(record.replace(confidences, "")), rowsIn(trusted));
 }
 
 export async function writeFigures() {

@@ -86,10 +86,16 @@ interface CallOf<M extends Method> {
 }
 
 /** An alignment whose warning of inverted depth has been checked, if it has one: what checks it is loaded then. */
-async function withInversionChecked(found: Alignment, ...about: [CoreInput, object, JobContext, { alone: boolean }]) {
+async function withInversionChecked(
+  found: Alignment,
+  input: CoreInput,
+  options: object,
+  context: JobContext,
+  kind: { alone: boolean },
+): Promise<Alignment> {
   if (found.warnings.every(({ code }) => code !== "DEPTH_LOOKS_INVERTED")) return found;
   const { checkInversion } = await import("./inverted-depth.js");
-  return checkInversion(found, ...about);
+  return checkInversion(found, input, options, context, kind);
 }
 
 const calls: { readonly [M in Method]: CallOf<M> } = {

@@ -1,4 +1,4 @@
-/** Whether depth that looks inverted is inverted: an object among taller ones looks the same at its outline. */
+/** Checks whether depth that looks inverted really is: at the outline, an object among taller ones looks the same. */
 import type { Alignment, Warning } from "../generated/types.js";
 import { metresPerUnit } from "../input/depth.js";
 import type { CoreInput } from "../modules/core-input.js";

@@ -13,7 +13,7 @@ export interface Line {
   start: number;
   /** From 1. */
   number: number;
-  /** Whether a line break ends it, and not the file. */
+  /** Whether a line break ends it: the last line of a file may have none. */
   isEnded: boolean;
 }
 

@@ -53,7 +53,7 @@ export type RecordHeader = (pathOf: (path: string) => string) => { command: stri
 /** The first bytes of the lines of cases, and of the first line. */
 const STARTS = ['{"case":', '{"sim3align":'];
 
-/** Whether a text begins as a record does. */
+/** Whether a text begins like a record. */
 export const isRecordText = (text: string): boolean => STARTS.some((start) => text.startsWith(start));
 
 /**
@@ -220,7 +220,7 @@ export class JsonlFile {
     return { last, moved };
   }
 
-  /** Whether the files of a case have changed since, or some were added. */
+  /** Whether files of a case have been changed or added since its row was written. */
   #hasChanged({ folder }: CaseKey, content: Content | undefined, { unread }: Entry): boolean {
     const files = Object.keys(content?.files ?? {});
     if (content !== undefined && contentNow(folder ?? this.#folder, files)?.content !== content.content) return true;

@@ -22,7 +22,7 @@ const arrays = {
   uint32: Uint32Array,
 } as const;
 
-/** What a request has instead of a case: files and arrays, and their size. */
+/** The fields of a request without a case: files, arrays and their size. */
 const parts = ["depth", "pointMap", "mask", "mesh", "camera", "cameraFile", "image", "width", "height"];
 
 /** Requests that are read while others are worked on. */
