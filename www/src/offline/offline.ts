@@ -13,8 +13,9 @@ export async function storePage(): Promise<void> {
     const registration = await workers.register(new URL("service-worker.js", document.baseURI));
     const follow = (worker: ServiceWorker | null) => {
       const note = () => {
-        const isStored = worker?.state === "installed" || worker?.state === "activated";
-        if (isStored) offlineState.value = worker === registration.waiting && !isFirst ? "newer" : "stored";
+        const isWaiting = worker?.state === "installed";
+        // The registration may name its waiting worker later than the worker its state.
+        if (isWaiting || worker?.state === "activated") offlineState.value = isWaiting && !isFirst ? "newer" : "stored";
       };
       worker?.addEventListener("statechange", note);
       note();
