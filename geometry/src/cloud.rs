@@ -3,6 +3,8 @@
 use glam::Vec3;
 use wide::f32x4;
 
+use crate::rotations::fibonacci_sphere;
+
 /// Points, optionally with unit normals, in any frame and unit.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cloud {
@@ -123,4 +125,13 @@ pub fn farthest_along(points: &[Vec3], direction: Vec3) -> Option<usize> {
         }
     }
     best.map(|(i, _)| i)
+}
+
+/// The points that are farthest along so many evenly spread directions, each once, in the order of the directions.
+pub fn outermost(points: &[Vec3], directions: usize) -> Vec<Vec3> {
+    let farthest = |k| farthest_along(points, fibonacci_sphere(k, directions).as_vec3());
+    let mut kept: Vec<usize> = (0..directions).filter_map(farthest).collect();
+    let mut seen = vec![false; points.len()];
+    kept.retain(|&i| !core::mem::replace(&mut seen[i], true));
+    kept.iter().map(|&i| points[i]).collect()
 }

@@ -154,5 +154,11 @@ fn what_is_not_symmetric_has_no_axis() {
         let cup = tapered(&ellipsoid(Vec3::new(1.0, 1.0, 1.3), 30));
         let handle = mapped(&cuboid(Vec3::new(0.6, 0.15, 1.2)), |p| p + Vec3::X * 1.1);
         assert_eq!(symmetry_axes(&askew(&joined(&cup, &handle), draw, 0.0).0).unwrap(), [], "seed {seed}: mug");
+        // A small stem shows which side of an apple is up, and leaves its axis.
+        let stem = mapped(&cuboid(Vec3::new(0.05, 0.05, 0.4)), |p| p + Vec3::Z * 1.1);
+        let (apple, turn) = askew(&joined(&sphere(1.0, 30), &stem), draw, 0.0);
+        let axes = symmetry_axes(&apple).unwrap();
+        assert_eq!(axes.iter().map(|axis| axis.fold).collect::<Vec<_>>(), [None], "seed {seed}: apple");
+        assert!(apart(DVec3::from_array(axes[0].axis.into()), turn * DVec3::Z) < 0.05, "seed {seed}: {axes:?}");
     }
 }

@@ -11,10 +11,9 @@ use super::pose::MeshFrame;
 use super::render::Model;
 use super::turns::Turns;
 use crate::error::Result;
-use crate::geometry::cloud::farthest_along;
+use crate::geometry::cloud::outermost;
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::rotations::fibonacci_sphere;
 use crate::geometry::surface::SurfaceMoments;
 use crate::metrics::symmetry::Symmetry;
 use crate::precise::observation::{FINE, FINEST, GRIDS, Grid};
@@ -56,7 +55,7 @@ impl MeshPyramid {
         let turns = Turns::new(&surface);
         Some(Self {
             frame,
-            outermost: outermost(&models[FINE]),
+            outermost: outermost(&models[FINE].positions, DIRECTIONS),
             surface,
             turns,
             models,
@@ -80,13 +79,4 @@ impl MeshPyramid {
         }
         Ok(found)
     }
-}
-
-/// The extreme vertices along evenly spread directions.
-pub fn outermost(model: &Model) -> Vec<Vec3> {
-    let farthest = |k| farthest_along(&model.positions, fibonacci_sphere(k, DIRECTIONS).as_vec3());
-    let mut kept: Vec<usize> = (0..DIRECTIONS).filter_map(farthest).collect();
-    let mut seen = vec![false; model.positions.len()];
-    kept.retain(|&i| !core::mem::replace(&mut seen[i], true));
-    kept.iter().map(|&i| model.positions[i]).collect()
 }
