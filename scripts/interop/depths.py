@@ -70,8 +70,8 @@ def openexr(c, t):
         OpenEXR.File(kind, channels).write(path)
 
     def parts(path, parts):
-        kind = {"type": OpenEXR.scanlineimage}
-        OpenEXR.File([OpenEXR.Part(kind, channels, name) for name, channels in parts]).write(path)
+        made = [OpenEXR.Part({"type": OpenEXR.scanlineimage}, channels, name) for name, channels in parts]
+        OpenEXR.File(made).write(path)
 
     c.writes(
         save=save,

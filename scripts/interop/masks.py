@@ -40,7 +40,9 @@ def datumaro(c, t):
     import datumaro as dm
 
     image = dm.Image.from_numpy(data=np.zeros((t.height, t.width, 3), np.uint8))
-    item = dm.DatasetItem("rgb", media=image, annotations=[dm.Mask(t.mask.astype(bool), label=0, id=1)])
+    # MOTS needs the number of a track.
+    mask = dm.Mask(t.mask.astype(bool), label=0, id=1, attributes={"track_id": 1})
+    item = dm.DatasetItem("rgb", media=image, annotations=[mask])
     dataset = dm.Dataset.from_iterable([item], categories=["body"])
 
     def save(path, format, pattern):
